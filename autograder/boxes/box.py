@@ -16,7 +16,7 @@ ANSWER_SECONDS = 30.0
 
 
 class NoSandbox(RuntimeError):
-    """No box can be made here. The message gives the reason, and says what to do about it."""
+    """No box can be made on this machine. The exception's text gives the reason, and says what to do about it."""
 
 
 @dataclass(frozen=True)
@@ -26,8 +26,8 @@ class Box:
     Attributes:
         name: The name of this box, unique among the boxes of its supervisor.
         pid: The PID of the box's first process, as seen from the host.
-        pidfd: A pidfd of the box's first process. Send it to a fork server to enter the box. The supervision closes
-            it. It is -1 for a command that ended at once.
+        pidfd: A pidfd of the box's first process, which a fork server needs to enter the box; -1 for a command that
+            ended at once. The supervision closes it.
         guarded: True if the guard's limits apply to every process that enters the box.
         supervision: The connection to the supervisor, through which this box is ended.
     """
@@ -40,7 +40,7 @@ class Box:
 
     @property
     def lost(self) -> bool:
-        """True if the supervisor, and so the box, has ended. Exit codes then say nothing about the student's code."""
+        """True if the supervisor, and so the box, was lost. If so, exit codes say nothing about the student's code."""
         return self.supervision.lost
 
     def end(self) -> int:
@@ -64,7 +64,7 @@ class Box:
 
 
 class Supervision:
-    """A connection to one supervisor process. Several threads may use it.
+    """A connection to one supervisor process, which several threads may use.
 
     Args:
         supervisors: The socket address of the fork server that starts supervisors.
@@ -129,7 +129,7 @@ class Supervision:
             return self._ended[name]
 
     def abandon(self) -> None:
-        """Make the supervisor end all boxes, and do not wait. Any thread may call this, even if another one waits."""
+        """Make the supervisor end all boxes, but do not wait. Any thread may call this, even if another one waits."""
         self._channel.hang_up()
 
     def close(self) -> None:

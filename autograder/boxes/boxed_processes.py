@@ -76,7 +76,7 @@ class ForkedProcess:
 
     @property
     def lost(self) -> bool:
-        """True if the supervisor or box ended first. Then the exit status says nothing about the student's code."""
+        """True if the supervisor or box ended first. If so, the exit status says nothing about the student's code."""
         self._look(0.0)
         return self._lost or (self._box is not None and self._box.lost)
 
@@ -95,7 +95,7 @@ class ForkedProcess:
         return self._status is not None or self._lost
 
     def abandon(self) -> None:
-        """Kill the process, and do not wait for its end. The process then counts as lost. Any thread may call this."""
+        """Kill the process, which then counts as lost, but do not wait for its end. Any thread may call this."""
         self._channel.hang_up()
 
     def end_box(self) -> None:
@@ -198,15 +198,15 @@ class Running:
         return os.read(self._output, 1 << 16)
 
     def exit_code(self) -> int | None:
-        """Wait for the box to end, once the output has ended. Return the exit code as in ``Finished.returncode``."""
+        """After the end of the output, wait until the box ends. Return the exit code as in ``Finished.returncode``."""
         return self.wait(_ITS_TIME).returncode
 
     def interrupt(self) -> None:
         """Send Ctrl-C as a terminal does: to the whole process group at once.
 
         If the processes got it one by one, a program could end, and `ros2 run` with it, before Ctrl-C reached `ros2
-        run`. The first process of the box leads the group. It ignores the signal, because it has no handler for it
-        (pid_namespaces(7)).
+        run`. The box does not end, although its first process is in the group, too: a PID namespace's first process
+        ignores signals for which it has no handler (pid_namespaces(7)).
         """
         signal_group(self.pid, signal.SIGINT)
 
@@ -247,7 +247,7 @@ class WarmCommand:
     def exit_code(self) -> int | None:
         """Wait for the command's end, and return its exit code in the form of ``Finished.returncode``.
 
-        Call this only after the end of the output. Return None if the exit code is unknown.
+        Call this only after the end of the output. The result is None if the exit code is unknown.
         """
         if not self._process.wait(_CLOSING_SECONDS):
             self._process.end_box()  # the command closed its output but goes on; this is the last chance to stop it

@@ -1,8 +1,9 @@
 """Control groups (cgroups) for submissions, if the host allows them: exact counts, and equal shares of processors.
 
-Both version 1 (one hierarchy for each controller) and version 2 (one for all) are in use. Whether a process can be
-put into a new group depends on permissions, delegation and read-only mounts together, so it is tried with a real
-process. See cgroups(7), and ``cgroup-v1/memory`` and ``cgroup-v2`` in the kernel's documentation.
+Version 1 (one hierarchy for each controller) and version 2 (one for all) are both supported, because hosts use both.
+Whether a process can be put into a new group depends on permissions, delegation and read-only mounts together, so it is
+tried with a real process. For the files, see cgroups(7), and ``cgroup-v1/memory`` and ``cgroup-v2`` in the kernel's
+documentation.
 """
 
 from __future__ import annotations
@@ -122,7 +123,7 @@ def memberships(procs: Iterable[str]) -> list[int]:
 
 
 def join(opened: Iterable[int]) -> None:
-    """Move this process, and so everything that it starts later, into the groups. Then close the descriptors."""
+    """Move this process, and so everything that it starts later, into the groups, and close the descriptors."""
     for group in opened:
         os.write(group, b"0")  # the 0 stands for the process that writes (cgroups(7))
         os.close(group)
@@ -151,7 +152,8 @@ def _settings(kind: str, version: int, memory_bytes: int, processes: int) -> Ite
         # Nothing to set: a new group has the same share as every other one (cpu.shares 1024, cpu.weight 100).
         return []
     if version == 1:
-        # Limit memory and swap together, if the kernel counts swap. This limit must not be lower than that on memory.
+        # If the kernel counts swap, also limit memory and swap together. The kernel requires that this limit is not
+        # lower than the limit on memory alone.
         return [
             ("memory.limit_in_bytes", str(memory_bytes)),
             ("memory.memsw.limit_in_bytes", str(memory_bytes)),
@@ -201,7 +203,7 @@ def _inside(place: str, root: str, path: str) -> Path:
 
 
 def _can_hold_a_process(kind: str, controller: Controller) -> bool:
-    """Return True if a process can be put into a new group with a limit. This is tried out, and undone."""
+    """Return True if a process can be put into a new group with a limit. To find out, try it and undo it."""
     try:
         if controller.version == 2:
             enabled = controller.base / "cgroup.subtree_control"

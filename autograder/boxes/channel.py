@@ -1,6 +1,7 @@
 """Messages between the grader's own processes: JSON and file descriptors over a Unix socket.
 
-No process in a box holds an end of such a socket. Each message is one packet, so it always arrives complete.
+The messages can be trusted, because no process in a box holds an end of such a socket. Each message is one packet, so
+it always arrives complete.
 """
 
 from __future__ import annotations

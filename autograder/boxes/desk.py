@@ -6,9 +6,10 @@
     with in_memory(data) as source, in_memory() as answer:
         code = desk.ask(source, answer, most=1_000_000, seconds=20)
 
-All desk processes of one :class:`Desk` enter the same box. A desk process cannot open files, start processes or use a
-network (:func:`autograder.boxes.seccomp_filter.filter_for_readers`), so it leaves no data of one student for the next.
-If no box can be made on this machine, a desk is still a separate process with limits and a filter of system calls.
+All desk processes of one :class:`Desk` enter the same box. This is safe because a desk process cannot open files, start
+processes or use a network (:func:`autograder.boxes.seccomp_filter.filter_for_readers`), so it leaves no data of one
+student for the next. If no box can be made on this machine, a desk is still a separate process with limits and a filter
+of system calls.
 """
 
 from __future__ import annotations
@@ -97,7 +98,7 @@ class Desk:
                 raise ChannelClosed("the process that reads files was lost")
             code = os.waitstatus_to_exitcode(process.status)
             if code == -signal.SIGKILL:
-                # A desk cannot kill itself. Linux has killed it, usually because the machine is short of memory.
+                # A desk cannot kill itself, so Linux has killed it, usually because the machine is short of memory.
                 raise ChannelClosed("the process that reads files was killed")
             return code
         finally:

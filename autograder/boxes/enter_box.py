@@ -35,8 +35,8 @@ class Entrance:
     Attributes:
         cwd: The working folder, as a path inside the box.
         environment: All environment variables.
-        boxed: True to enter a box. The first descriptor of the request is then a pidfd of the box's first process.
-            False to stay outside, only for the course's own notebooks and ``--unsafe-no-sandbox``.
+        boxed: True to enter the box whose first process is given as a pidfd, the first descriptor of the request. False
+            to stay outside any box, which is only for the course's own notebooks and ``--unsafe-no-sandbox``.
         cgroups: The ``cgroup.procs`` files to join, as paths outside the box.
         rlimits: Limits on each process, by their names in :mod:`resource`.
         hidden_memory: True to allow memory that belongs to no process; see
@@ -62,14 +62,15 @@ class Entrance:
 def enter(channel: Channel, run: Run) -> None:
     """Serve one request in a child of a fork server: fork into the box, then watch the process there.
 
-    The answer is ``{"pid": …}``, as seen from the host. When that process has ended, ``{"status": …}`` follows, its
-    wait status. If the other end closes first, the process is killed.
+    The first answer is ``{"pid": …}``, the process's id as seen from the host. The second answer, when the process has
+    ended, is ``{"status": …}`` with its wait status. If the other end of the connection closes first, the process is
+    killed.
     """
     die_with_parent()
     message, descriptors = channel.receive()
     entrance = Entrance(**message)
-    # Open the files now, while their paths are visible. Only the child joins the cgroups: if the box runs out of
-    # memory, the kernel must not kill this process, which watches the child.
+    # Open the files of the cgroups now, while their paths are visible. But only the child joins the cgroups, because if
+    # the box runs out of memory, the kernel must not kill this process, which watches the child.
     groups = memberships(entrance.cgroups)
     if entrance.boxed:
         syscalls.setns(descriptors[0], _ALL_NAMESPACES)
@@ -118,8 +119,8 @@ def _begin(entrance: Entrance, descriptors: Sequence[int], run: Run) -> None:
             descriptors = descriptors[1:]
             filters = filter_for_boxes(hidden_memory=entrance.hidden_memory)
             give_up_rights(b"" if entrance.reader_seconds else filters)
-        # Call this only now, because giving up rights clears the setting (prctl(2)). The parent is in another PID
-        # namespace, so its id is not passed.
+        # Call this only after giving up rights, which clears the setting (prctl(2)). The parent's id is not passed,
+        # because the parent is in another PID namespace.
         die_with_parent()
         signal.signal(signal.SIGINT, signal.default_int_handler)
         if entrance.reader_seconds:
@@ -151,7 +152,7 @@ def _limit_processor_time(seconds: int) -> None:
     """Set the limit on processor time, at which SIGXCPU ends this process.
 
     The process cannot catch or block SIGXCPU, because the filters of readers and desks refuse the calls for it. SIGKILL
-    would look as if the machine were out of memory, so it comes only a second later.
+    follows only a second later, because at the limit it would look as if the machine were out of memory.
     """
     resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds + 1))
 

@@ -6,8 +6,8 @@ enters the box named in the request (:mod:`autograder.boxes.enter_box`). In the 
 connection itself.
 
 Forking is safe because this process starts with a clean environment, and makes no thread and no ROS context. (LTTng,
-which rclpy loads, has two threads, which sleep until a tracing daemon runs.) It never reads a request; the child
-does. So data of one submission is never in the memory with which the next kernel begins. The process ends when its
+which rclpy loads, has two threads, but they sleep until a tracing daemon runs.) Not this process but each child reads a
+request, so data of one submission is never in the memory with which the next kernel begins. The process ends when its
 standard input ends, and its children end with it.
 """
 
@@ -80,9 +80,10 @@ _MIDDLEWARE = "librmw_fastrtps_cpp.so"
 def library_folders(address: str) -> list[Path]:
     """Return the folders in which the forks of a fork server first look for libraries.
 
-    The list is fixed because the loader reads it only once. Outside a box, the folders are empty. In a box, they are
-    links to the box's folders with libraries, which a student may have made. This is safe because a process that
-    enters a box loads nothing by name before it has given up its rights.
+    The list is fixed because the loader reads it only once, before it is known which box a fork will enter. Outside a
+    box, the folders are empty. In a box, they are links to the box's folders with libraries, which a student may have
+    made. Such libraries can do no harm, because a process that enters a box loads nothing by name before it has given
+    up its rights.
 
     Args:
         address: The socket address of the fork server.
@@ -154,7 +155,7 @@ def _child(mode: str, module: Any, listener: socket.socket, connection: socket.s
 
 
 def preload(modules: Iterable[str]) -> None:
-    """Import modules, and skip missing ones. The code that needs a missing module will report it."""
+    """Import modules, and skip missing ones, which the code that needs them will report."""
     for name in modules:
         with contextlib.suppress(Exception):
             importlib.import_module(name)
@@ -173,12 +174,12 @@ def preload_ros(interfaces: Iterable[str]) -> None:
                 if load is not None:
                     load()
     with contextlib.suppress(OSError):
-        # rclpy.init loads this library. In a child it is then loaded already.
+        # rclpy.init would load this library in each child. Load it now, so that each child has it already.
         ctypes.CDLL(_MIDDLEWARE)
     with contextlib.suppress(ImportError):
-        # A process's first log line searches the files of all modules for its caller (rclpy/impl/rcutils_logger.py,
-        # and inspect.getmodule, which remembers them). This takes 46 ms of processor time in each kernel, but 8 ms if
-        # it was done here before.
+        # For a process's first log line, rclpy searches the files of all modules for the caller
+        # (rclpy/impl/rcutils_logger.py), and inspect.getmodule remembers them. In a kernel this takes 46 ms of
+        # processor time, but only 8 ms if it was done here before the fork.
         importlib.import_module("rclpy.impl.rcutils_logger").CallerId()
 
 
@@ -206,7 +207,7 @@ class ForkServer:
         self.address = str(address)
         with socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET) as listener:
             listener.bind(self.address)
-            # Clients can connect from now on. They are served once the imports are done.
+            # Clients can connect from now on, but they are served only once the imports are done.
             listener.listen(128)
             arguments = ("-m", "autograder.boxes.fork_server", mode, module, str(listener.fileno()), *words)
             variables = {**base_environment(), "PYDEVD_DISABLE_FILE_VALIDATION": "1", **(extra or {})}
@@ -263,11 +264,11 @@ class ForkServers:
             the judge.
         boxed: True to start the fork servers for supervisors and programs, too.
         log: The descriptor for their standard error.
-        environment: More environment variables for all fork servers except that for supervisors. Libraries read some
-            variables when they are loaded.
+        environment: More environment variables for all fork servers except that for supervisors. They are set here
+            because libraries read some variables when they are loaded.
         of_judges: More environment variables for the judges only, such as the folder of the course.
-        interfaces: The modules of the course's interfaces, so that a kernel finds them already imported. The kernel
-            learns nothing else about the course.
+        interfaces: The modules of the course's interfaces, which are imported before the forks, so that a kernel starts
+            faster. No other module of the course is imported.
     """
 
     def __init__(

@@ -1,10 +1,11 @@
 """Guards that enforce a box's limits: cgroups if the host allows them, otherwise regular checks of the processes.
 
-With cgroups, the operating system itself refuses or ends a process at a limit. Without them, this guard reads the box's
-``/proc`` several times a second and ends a box that exceeds a limit. Limits on each single process stop a program that
-is faster than these checks. The checks also read the largest amount of memory that a process ever had, so the verdict
-is the same whichever limit a process reaches first. The limit on processor time is always enforced by the checks,
-because it does no harm if they are late.
+With cgroups, the operating system itself refuses or ends a process at a limit. Without cgroups, this guard checks the
+box's ``/proc`` several times a second, and ends a box that exceeds a limit. A program may exceed a limit faster than it
+is checked, so each single process also has limits of its own, which the operating system enforces. The checks also read
+the largest amount of memory that a process ever had, so the verdict is the same whichever limit a process reaches
+first. The limit on processor time is always enforced by checks, even with cgroups, because a late check does no harm
+there.
 """
 
 from __future__ import annotations
@@ -41,7 +42,7 @@ _PIECE = 1 << 16
 
 
 class BoxGuard:
-    """Enforces the limits on the boxes of one submission. Close it after the boxes have ended."""
+    """Enforces the limits on the boxes of one submission. Call :meth:`close` after the boxes have ended."""
 
     def __init__(self, limits: Limits) -> None:
         self._limits = limits
@@ -75,8 +76,8 @@ class BoxGuard:
             "RLIMIT_SIGPENDING": 1000,
         }
         if not self._memory:
-            # This limits writable address space, including the stacks of threads. It is always larger than the memory
-            # in use, so the limit is twice as high.
+            # This limits writable address space, including the stacks of threads. The limit is twice that on memory,
+            # because address space is always larger than the memory in use.
             limits["RLIMIT_DATA"] = 2 * self._limits.memory_bytes
         if not self._processes and os.geteuid() != 0:
             limits["RLIMIT_NPROC"] = self._limits.processes
@@ -124,7 +125,7 @@ class BoxGuard:
         self._group.close()
 
     def _look(self) -> Ended | None:
-        # If the kernel killed any process of the group, memory was used up. Which process it chose does not matter.
+        # Memory was used up if the kernel killed any process of the group, whichever process it chose.
         if self._group.ran_out_of_memory:
             return Ended.OUT_OF_MEMORY
         use = use_of(self._first, None if self._memory else _memory_of)
@@ -158,7 +159,7 @@ class Use:
     """The resources that the processes of a box use together.
 
     Attributes:
-        threads: The number of threads. Each process has at least one.
+        threads: The number of threads, of which each process has at least one.
         memory: Memory in bytes that belongs to no file; 0 if it was not measured.
         most_memory: The largest memory in bytes that any single process had at any time.
         cpu_seconds: Processor time in seconds, including that of children that have ended and were waited for.
@@ -214,7 +215,8 @@ def use_of(first: int, memory_of: _MemoryOf | None) -> Use:
 def _files_of(process: str) -> int:
     """Return the number of files that a process has open.
 
-    Since Linux 6.2, this number is the size of the folder ``fd`` (proc_pid_fd(5)). If the size is 0, count the entries.
+    Since Linux 6.2, this number is the size of the folder ``fd`` (proc_pid_fd(5)). Earlier, the size is 0, so the
+    entries of the folder are counted.
     """
     folder = f"{process}/fd"
     return os.stat(folder).st_size or len(os.listdir(folder))  # noqa: PTH116, PTH208 (several times a second)
@@ -261,11 +263,11 @@ def _network_of(first: int, most: int) -> _Network:
 
 
 def _locks_of(first: int, most: int) -> int:
-    """Count the file locks that the processes of a box hold or wait for. No other limit covers their memory.
+    """Count the file locks that the processes of a box hold or wait for, because no other limit covers their memory.
 
-    A box's ``/proc/locks`` shows the locks of its own processes. It also shows the locks that belong to an open file
-    instead of a process, from the whole machine, with -1 as the PID. Such locks do not count: no process in a box can
-    make such a lock (:mod:`autograder.boxes.seccomp_filter`).
+    A box's ``/proc/locks`` shows the locks of the box's processes. It also shows, with -1 as the PID, all locks of the
+    whole machine that belong to an open file instead of a process. These are not counted, because no process in a box
+    can make such a lock (:mod:`autograder.boxes.seccomp_filter`).
 
     Args:
         first: The PID of the box's first process, as seen from the host.
@@ -291,7 +293,7 @@ def _rows(table: Path) -> list[list[str]]:
 
 
 def _scratch_of(first: int) -> int:
-    """Return the size in bytes of the files that a box has written. They are in memory and belong to no process."""
+    """Return the size in bytes of the files that a box has written, which are in memory but belong to no process."""
     try:
         inside, outside = (os.statvfs(place) for place in (f"/proc/{first}/root/tmp", "/tmp"))
     except OSError:
@@ -311,7 +313,7 @@ def _memory_of(process: str) -> tuple[int, int]:
 
 
 def _exact_memory_of(process: str) -> tuple[int, int]:
-    """Measure memory, counting a page that several processes share only once. This takes the kernel a moment."""
+    """Measure memory, counting a page that several processes share only once, for which the kernel needs more time."""
     try:
         sizes = _sizes_in(Path(process, "smaps_rollup"))
     except PermissionError:
@@ -324,14 +326,14 @@ def _exact_memory_of(process: str) -> tuple[int, int]:
 def _sizes_in(file: Path) -> Counter[str]:
     """Return the sizes in bytes in a file such as /proc/PID/status, by the name of the field; 0 for a missing field.
 
-    Only whole lines such as ``VmPTE: 64 kB`` are read. The file also contains the process's name, which the process
-    chooses itself and which could imitate a field.
+    Only whole lines such as ``VmPTE: 64 kB`` are read, because the file also contains the process's name, which the
+    process chooses itself and which could imitate a field.
     """
     return Counter({name: int(size) * 1024 for name, size in _SIZE.findall(file.read_text(errors="replace"))})
 
 
 class NoGuard:
-    """The guard for execution without a box. It measures nothing, and only the time limits apply."""
+    """The guard for execution without a box. It measures nothing, so only the time limits apply."""
 
     cpu_seconds = 0.0
 
@@ -353,10 +355,10 @@ def guards() -> Mapping[str, str]:
     return {
         "memory": _cgroup("memory") or watched,
         "processes": _cgroup("pids") or _processes_without(watched),
-        "processor time": "the total is checked four times a second, and each process has a limit of its own",
+        "processor time": "the sum over all processes is checked four times a second, and each process also has a limit",
         "share of the processors": _cgroup("cpu") or "none (no cgroup can be made here)",
         "disk": "a file system in memory that limits the size and the number of files",
-        "open files": "each process has a limit of its own, and the total is checked four times a second",
+        "open files": "each process has a limit, and the sum over all processes is checked four times a second",
     }
 
 

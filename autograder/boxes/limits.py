@@ -33,7 +33,7 @@ class Ended(StrEnum):
 
 @dataclass(frozen=True)
 class Limits:
-    """The limits of one notebook. If a limit is reached, the feedback names it.
+    """The limits of one notebook, each of which the feedback names if it is reached.
 
     Attributes:
         cell_seconds: Time limit in seconds for one cell; on a busy machine it gets longer. A check cell has the limit
@@ -60,8 +60,8 @@ class Limits:
         open_files: The maximum number of open files, sockets and pipes of one process.
         all_open_files: The same for all processes of a box; also the maximum number of sockets in the box's network.
         file_locks: The maximum number of file parts that all processes of a box may lock; a database locks five.
-        socket_bytes: The maximum number of bytes that may wait in the sockets of a box's network. The machine has one
-            limit for all boxes; if it is used up, no box receives messages any more.
+        socket_bytes: The maximum number of bytes that may wait in the sockets of a box's network. This is needed
+            because the machine has one limit for all boxes; if it is used up, no box receives messages any more.
         scratch_bytes: The maximum size in bytes of all files that the boxes write.
         scratch_files: The maximum number of these files, with folders and links.
     """
@@ -135,9 +135,10 @@ descriptors would take too long.
 def raise_own() -> None:
     """Raise this process's limits, for resources that the system counts by user, to the most that the user may have.
 
-    A descriptor that is being sent through a socket counts for the user. If a user has as many of these in transit as
-    the sender may have open files, the sender can send no more (unix(7), ETOOMANYREFS). A box of the same user must
-    never be able to reach the grader's limit, so that the grader can always send one more.
+    Descriptors that are being sent through sockets are counted for each user. A process can send no more of them if its
+    user has as many in transit as this process may have open files (unix(7), ETOOMANYREFS). A box runs as the same user
+    as the grader, so the grader's limit must be higher than a box can reach: otherwise a box could keep the grader from
+    sending descriptors.
     """
     for kind, most in (
         (resource.RLIMIT_NOFILE, _MOST_OPEN_FILES),

@@ -127,8 +127,9 @@ def box_arguments(
 def _course_below_the_scratch() -> tuple[str, ...]:
     """Return the folder of the course's git clone if a box could write to it; else nothing.
 
-    A box can write to ``/tmp`` and its home. Python imports from the clone, so a clone in one of these is made
-    read-only. A package installed with pip is inside Python's own folder, which the box sees read-only anyway.
+    A box can write to ``/tmp`` and its home. A clone in one of these is made read-only, because Python imports from the
+    clone. Nothing has to be done for a package installed with pip, because it is inside Python's own folder, which the
+    box sees read-only anyway.
     """
     folder = _PACKAGE.parent
     if folder.is_relative_to(sys.prefix) or not any(map(folder.is_relative_to, (HOME, Path("/tmp")))):
@@ -146,7 +147,7 @@ def _etc(scratch: Path) -> list[str]:
 
 @functools.cache
 def etc_files() -> Mapping[str, bytes]:
-    """Return the files for a box's ``/etc``, by name. They name the user and the host, and set up linker and clock."""
+    """Return the files for a box's ``/etc``, by name, such as those with the user, the host and the time zone."""
     files = {name: text.encode() for name, text in _ETC_FILES.items()}
     for name in _ETC_OF_THE_HOST:
         with contextlib.suppress(OSError):
@@ -198,9 +199,9 @@ def system() -> list[str]:
 def installation() -> tuple[Path, ...]:
     """Return the folders of Python, ROS and this package that lie outside the system's folders.
 
-    A virtual environment has its own prefix and that of the Python that made it. A sourced ROS has the folders that
-    its search paths name. A folder from a search path is used only if it is an installation: below the prefix of ROS
-    (``share/ament_index``) or of conda.
+    For a virtual environment, these are its own prefix and that of the Python that made it. For a sourced ROS, they are
+    the folders in its search paths. But a folder from a search path is used only if it is an installation, that is,
+    below the prefix of ROS (``share/ament_index``) or of conda.
     """
     return _installation(os.environ)
 

@@ -26,12 +26,13 @@ class OneCommandBox:
 
     Args:
         scratch: An empty folder. Only this process and the boxes see the files that are made in it.
-        folder: The folder of the user that a command sees, read-only and at the same path. It is the working folder.
+        folder: The folder of the user that a command sees, read-only and at the same path. It is also the working
+            folder.
         command: The command, which is checked for names of files that would not be visible.
 
     Raises:
-        ValueError: The folder contains files that no box may see, or the command needs files outside it. The message
-            says what to do.
+        ValueError: The folder contains files that no box may see, or the command needs files outside the folder. The
+            exception's text says what to do.
     """
 
     def __init__(self, scratch: Path, folder: Path, command: Sequence[str]) -> None:

@@ -7,7 +7,7 @@
         done = enclosure.run(["ros2", "run", "my_robot_pkg", "talker"], limit=30.0)
 
 All boxes of an enclosure share one network namespace, which has only the loopback interface. So their ROS nodes can
-reach each other and no other node, whatever the domain. When the enclosure is closed, or its process is killed, all
+reach each other but no other node, whatever the domain. When the enclosure is closed, or its process is killed, all
 processes in its boxes end and the scratch is removed.
 """
 
@@ -53,7 +53,7 @@ class Enclosure:
         files: Files to put into the notebook's folder, by relative path.
         scratch_bytes: The maximum size in bytes of all files that the boxes write into the scratch together.
         scratch_inodes: The maximum number of files, folders and links in the scratch.
-        guard: Enforces the limits. The commands of this enclosure count together with all other boxes of the guard.
+        guard: Enforces the limits, for the commands of this enclosure together with all other boxes of the guard.
 
     Raises:
         NoSandbox: The supervisor could not make the namespaces.
@@ -191,8 +191,8 @@ class Enclosure:
                 :func:`autograder.boxes.environment.box_environment`.
             cwd: The working folder.
             output_bytes: The maximum number of bytes of output to keep.
-            scratch: True if the box gets the enclosure's scratch; see :meth:`box`. Commands with the scratch see each
-                other's files.
+            scratch: True if the box gets the enclosure's scratch, in which commands see each other's files; see
+                :meth:`box`.
 
         Raises:
             NoSandbox: The box could not be made.
@@ -257,7 +257,7 @@ class Enclosure:
         return WarmCommand(process, reading, box.pid)
 
     def abandon(self) -> None:
-        """End all boxes, and do not wait. Any thread may call this. Threads that use a box see that it is lost."""
+        """End all boxes, but do not wait. Any thread may call this; threads that use a box see that it is lost."""
         self._supervision.abandon()
 
     def close(self) -> None:

@@ -15,9 +15,10 @@ The namespaces decide what a box can reach. In addition, the filter refuses:
   them: those of open file descriptions, and of ended processes whose table of open files is shared;
 * network protocols whose waiting data the guard does not count: all except UDP, TCP, and netlink to list interfaces.
 
-A refused call fails with EPERM, as for any user without the right to make it. Calls for attributes of files fail with
-EOPNOTSUPP, as on a file system without attributes, which ``cp -p`` expects. ``clone3`` fails as if it did not exist
-(ENOSYS), because its flags are in memory that a filter cannot read. Libraries then use ``clone``.
+A refused call fails with EPERM, as for any user without the right to make it, with two exceptions. Calls for attributes
+of files fail with EOPNOTSUPP, as on a file system without attributes, which ``cp -p`` expects. And ``clone3`` fails
+with ENOSYS, as if it did not exist, so that libraries use ``clone`` instead: the flags of ``clone3`` are in memory that
+a filter cannot read.
 
 The numbers come from the kernel's own tables (asm/unistd_64.h, asm-generic/unistd.h), which never change.
 """
@@ -214,8 +215,8 @@ def filter_for_boxes(*, hidden_memory: bool = True, machine: str = "") -> bytes:
 def filter_for_readers(machine: str = "") -> bytes:
     """Return the filter for a process that only reads what it was given and writes its answer.
 
-    Such a process cannot open, start or reach anything, and it cannot sleep: it either ends or uses up its processor
-    time. So such processes for several students can share a box, and no data of one student is left for the next.
+    Such a process cannot open, start or reach anything, so no data of one student is left for the next, even if their
+    processes share a box. It cannot sleep, either: it ends, or it uses up its processor time.
 
     Args:
         machine: The machine as in ``uname -m``; by default this machine.
@@ -274,7 +275,7 @@ def _fail(number: int) -> _Instruction:
 
 
 def _where(call: int, decide: Sequence[_Instruction]) -> list[_Instruction]:
-    """Return instructions that decide about one system call by its arguments.
+    """Return instructions that decide, by its arguments, about one system call.
 
     The call is allowed unless ``decide`` refuses it.
     """
@@ -283,7 +284,7 @@ def _where(call: int, decide: Sequence[_Instruction]) -> list[_Instruction]:
 
 
 def _load(argument: int) -> _Instruction:
-    """Return an instruction to load the low half of an argument. The kernel ignores the rest of a flag or command."""
+    """Return an instruction to load the low half of an argument, because the kernel ignores the rest of a flag."""
     return (_LOAD, 0, 0, _ARGUMENTS + 8 * argument)
 
 

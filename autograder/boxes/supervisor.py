@@ -2,8 +2,9 @@
 
 The scratch is the file system in memory to which the boxes write. The supervisor is forked by a separate fork server
 (:mod:`autograder.boxes.fork_server`), which has few imports. It enters new user, network and mount namespaces, in which
-bubblewrap then makes the boxes. Each box gets a further user namespace, so that no process in a box has rights over the
-network. When the connection to the executor is lost, for whatever reason, the supervisor kills all boxes and exits.
+bubblewrap then makes the boxes. Each box gets a further user namespace, because otherwise a process in a box would have
+rights over the network. When the connection to the executor is lost, for whatever reason, the supervisor kills all
+boxes and exits.
 
 The executor sends ``open`` (once), ``start`` (for a box or a command) and ``kill``. The supervisor answers ``opened``,
 ``started``, ``ended`` or ``failed``.
@@ -40,7 +41,7 @@ MOST_TERMINALS = 32
 
 
 def prepare() -> None:
-    """Read the files for every box's ``/etc`` once. Apart from them, the imports above are all that is needed."""
+    """Read the files for every box's ``/etc`` once, before the forks. Supervisors need no other preparation."""
     etc_files()
 
 
@@ -138,8 +139,8 @@ class _Supervisor:
     ) -> None:
         """Start a box with bubblewrap.
 
-        Without a command, the box stays empty until a process enters it, and lives until it is killed. With a
-        command, the descriptors that came with the message are the command's standard input, output and error.
+        If the message has a command, the descriptors that came with it are the command's standard input, output and
+        error. If it has none, the box stays empty until a process enters, and lives until it is killed.
         """
         if name in self._started:
             raise ValueError(f"a box named {name} already exists")
@@ -196,7 +197,7 @@ class _Supervisor:
         self._channel.send({"say": "ended", "name": name, "status": self._reap(name)})
 
     def _reap(self, name: str) -> int:
-        """Wait for a box to end. Return its exit code."""
+        """Wait until a box ends, and return its exit code."""
         started = self._started.pop(name)
         status = started.process.wait()
         close_all([started.end, *([started.first] if started.first >= 0 else [])])

@@ -77,8 +77,8 @@ def filter_system_calls(program: bytes, *, every_thread: bool = False) -> None:
     """Install a seccomp filter for all later system calls of this thread, the threads that it starts, and its children.
 
     Args:
-        program: Instructions of 8 bytes each (linux/filter.h, struct sock_filter). If empty, the process only loses
-            the ability to gain rights by executing a program (no_new_privs).
+        program: Instructions of 8 bytes each (linux/filter.h, struct sock_filter). If there are none, no filter is
+            installed, but the process still loses the ability to gain rights by executing a program (no_new_privs).
         every_thread: True to install it for the other threads of this process, too (seccomp(2)).
     """
     prctl(PR_SET_NO_NEW_PRIVS, 1)
@@ -130,8 +130,8 @@ def mount_terminals(place: Path, most: int) -> None:
 
     Args:
         place: An existing folder.
-        most: The maximum number of terminals at the same time. The machine has a few thousand for all such file
-            systems together.
+        most: The maximum number of terminals at the same time. It is limited because the machine has only a few
+            thousand for all such file systems together.
     """
     options = f"newinstance,ptmxmode=0666,mode=620,max={most}".encode()
     flags = ctypes.c_ulong(_MS_NOSUID | _MS_NOEXEC)

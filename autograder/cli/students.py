@@ -46,7 +46,7 @@ _notebooks = click.option(
     "--box",
     "boxed",
     is_flag=True,
-    help="Run COMMAND in a sandbox, as submissions of a class: it can read only this folder.",
+    help="Run COMMAND in the sandbox in which submissions of a class run. It can read only the current folder.",
 )
 @click.option(
     "--mcap",

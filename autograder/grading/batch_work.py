@@ -149,10 +149,10 @@ def find_work(
         work = Work(submission, fingerprints.of(submission), names[submission.assignment])
         if is_not_believed(submission.folder):
             found.notices.append(
-                f"{submission.student}/{submission.assignment}: its timestamp.txt is ignored, because "
-                f"`{COMMAND} collect` did not write this file. To set the time, type "
-                f"{course_command('collect', directory.path)}, write the time into the column handed_in of "
-                f"this submission's line in {NAME}, and type the command again"
+                f"{submission.student}/{submission.assignment}: timestamp.txt is ignored, because "
+                f"`{COMMAND} collect` did not write it. To set the time of handing in, first type "
+                f"{course_command('collect', directory.path)}. Then write the time into the column handed_in of "
+                f"this submission's line in {NAME}, and type the same command again"
             )
         (found.works if asked.has(*work.key) else found.others).append(work)
     return found

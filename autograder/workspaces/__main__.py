@@ -2,10 +2,10 @@
 
 It builds the packages in the workspace, reports the result, then becomes the student's program.
 
-In a terminal, the check starts this command as a process; in a notebook, the kernel starts it when the judge asks.
-The judge reads the output. The report on the build comes before any output of the student's program. Everything runs
-with the student's rights on the student's own computer. When a class is graded, `autograder.workspaces.service` does
-this work instead.
+In a terminal, the check starts this command as a process; in a notebook, the kernel starts it when the judge asks. The
+judge reads the output, in which the report on the build comes before any output of the student's program. Everything
+runs with the student's rights on the student's own computer. When a class is graded, however,
+`autograder.workspaces.service` does this work instead.
 """
 
 from __future__ import annotations
@@ -35,8 +35,9 @@ if TYPE_CHECKING:
 def main(arguments: Sequence[str]) -> int:
     """Run ``python -m autograder.workspaces EXERCISE PATH``, or ``EXERCISE -- COMMAND`` for a launch command.
 
-    If an exercise has several programs, the path is followed by the name of one. A launch may be followed by
-    ``--alone`` and the name of a program to run instead of the launch. The exit code is returned.
+    If an exercise has several programs, the path is followed by the name of one of them. If the exercise is about a
+    launch, the path may be followed by ``--alone`` and the name of a program to run instead of the launch. The exit
+    code is returned.
     """
     exercise = exercises.get(arguments[0])
     die_with_parent(number=signal.SIGTERM)
@@ -72,11 +73,11 @@ def _launch(rest: Sequence[str]) -> int:
 def _run(launch: Prepared) -> int:
     """Run a launch to its end, and report the processes that it starts. Return its exit code.
 
-    On the wire, a topic that was renamed in the code looks like one that the launch file remaps. The command lines of
-    the processes tell the two apart, because a launch passes a remapping on a node's command line.
+    On the wire, a topic that was renamed in the code looks like a topic that the launch file remaps. The reported
+    command lines tell the two apart, because a launch passes a remapping on a node's command line.
     """
-    # Ignore Ctrl-C here. It also reaches the launch, which ends its nodes and itself; this process waits for the
-    # launch.
+    # Ignore Ctrl-C in this process, which has to wait for the launch. The launch also gets Ctrl-C, and ends its nodes
+    # and itself.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     process = subprocess.Popen(launch.command, env=launch.environment, preexec_fn=_listen_to_interrupts)
     signal.signal(signal.SIGTERM, lambda *_: process.terminate())

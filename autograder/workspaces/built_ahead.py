@@ -1,8 +1,8 @@
 """Builds the course's own packages before any notebook needs them; all submissions share these builds.
 
-``solutions/ros2_ws`` contains the course's own programs. ``solutions/*/built_ahead.json`` contains the packages that
-the labs' texts and solutions make; ``python -m tests.measure built_ahead`` writes these files. If a package is
-missing there, or has changed since, each submission builds it for itself, which only costs time.
+The packages are the course's own programs (``solutions/ros2_ws``), and those that the labs' texts and solutions make
+(``solutions/*/built_ahead.json``, written by ``python -m tests.measure built_ahead``). If a package is missing there,
+or has changed since, each submission builds it for itself, which only costs time.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ def recorded(root: Path) -> list[Files]:
 
 
 def build_ahead(folder: Path, jobs: Jobs) -> None:
-    """Build every shared package that the cache lacks. Another call for the same folder in this process does nothing.
+    """Build every shared package that the cache lacks. A second call for the same folder does nothing.
 
     Args:
         folder: The folder for these builds; see :func:`autograder.workspaces.builds.cache.graders_root`.

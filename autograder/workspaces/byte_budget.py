@@ -23,7 +23,7 @@ class ByteBudget:
         self.sufficed = True
 
     def has(self, file: Path) -> bool:
-        """Return True if the budget is enough for a file, and subtract its size. A missing file costs nothing."""
+        """Subtract the size of a file (0 if it is missing). If too little is left, return False instead."""
         try:
             size = file.stat().st_size
         except OSError:

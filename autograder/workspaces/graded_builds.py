@@ -1,9 +1,10 @@
 """Makes the builds on which a grade depends: in a box, from the sources alone.
 
 No submission shares a build with another submission, or with a second execution of itself. Otherwise the duration of a
-build would reveal to a notebook what classmates have handed in, or that it runs for the second time. Only packages that
-the course itself publishes or makes are built in advance, once for all submissions
-(:mod:`autograder.workspaces.built_ahead`). No box can write to the folders with builds.
+build would reveal to a notebook what classmates have handed in, or that it runs for the second time. The only
+exceptions are packages that the course itself publishes or makes, which are built in advance, once for all submissions
+(:mod:`autograder.workspaces.built_ahead`). No submission can change such a build, because no box can write to the
+folders with builds.
 """
 
 from __future__ import annotations
@@ -34,8 +35,8 @@ ROOM = 32_000_000
 class GradedBuilds(Builds):
     """The builds for one execution of a submission.
 
-    A package that only defines interfaces uses a build made in advance even if the sources differ in comments and
-    spaces, as students' sources often do.
+    For a package that only defines interfaces, a build made in advance is used even if the sources differ in comments
+    and spaces, as students' sources often do.
 
     Args:
         folder: The folder for the builds of this execution. Only the grader can write to it.
@@ -62,7 +63,7 @@ class GradedBuilds(Builds):
         return self._entry(found, order)
 
     def _entry(self, found: Build, order: BuildOrder, folder: Path | None = None) -> Build:
-        """Return the build, or a failed build if the size limit is exceeded. Builds made in advance count, too."""
+        """Return the build, or a failed build if all builds, including those made in advance, exceed the size limit."""
         made = super()._entry(found, order, folder)
         if made.install is None or order.key in self._paid:
             return made

@@ -57,7 +57,7 @@ _HIDING = ("COLCON_IGNORE", "AMENT_IGNORE", "CATKIN_IGNORE")
 
 
 class BadPackage(ValueError):
-    """A package.xml cannot be used. The message is for a student."""
+    """A package.xml cannot be used. The exception's text says why, in words for a student."""
 
 
 @dataclass(frozen=True)
@@ -107,8 +107,8 @@ class Package:
     def programs(self) -> tuple[str, ...]:
         """The console scripts that are written in setup.py.
 
-        The file is read and not run: every text in it of the form ``name = module:function`` counts. Computed names,
-        and those in setup.cfg, are known only after the build.
+        The file is not run, only read: every text in it of the form ``name = module:function`` counts. So names that
+        setup.py computes, and names in setup.cfg, are known only after the build.
         """
         return tuple(_entry_points(_text(self.folder / "setup.py")))
 
@@ -135,7 +135,7 @@ def find_packages(src: Path) -> tuple[list[Package], list[str]]:
 def launch_files(folder: Path) -> list[Path]:
     """Return the launch files below a folder, as paths inside it.
 
-    A launch file has a name like ``x.launch.py``, or is in a folder named `launch`.
+    A file counts as a launch file if it has a name like ``x.launch.py``, or is in a folder named `launch`.
     """
     every = (path for path in folder.rglob("*") if path.suffix in LAUNCH_LANGUAGES and path.is_file())
     named = (path for path in every if path.stem.endswith("launch") or path.parent.name == "launch")
@@ -242,7 +242,8 @@ def _validate(file: Path, shown: str) -> None:
         what = re2.sub(r"^Error\(s\) in package '[^']*':\s*", "", str(error)).strip()
         raise BadPackage(f"{shown} is not valid: {what}") from error
     except AssertionError as error:
-        # An AssertionError means an unknown format. catkin_pkg's own message, to update catkin_pkg, would not help.
+        # An AssertionError means an unknown format. It is replaced, because catkin_pkg's own message, to update
+        # catkin_pkg, would not help.
         raise BadPackage(f'{shown} is not valid: <package format="…"> has to be 1, 2 or 3') from error
     except (*UNREADABLE, ExpatError) as error:
         raise BadPackage(f"{shown} is not valid: {_told(error)}") from error

@@ -35,7 +35,7 @@ class Prepared:
 
     Attributes:
         command: The command.
-        environment: All environment variables of the program. They make ROS find the builds.
+        environment: All environment variables of the program, including those with which ROS finds the builds.
         builds: The builds that the program may read, by kind of workspace (:data:`WORKSPACE`, :data:`COURSE`).
     """
 
@@ -49,7 +49,7 @@ class Preparation:
     """Prepares the program that an exercise runs from a workspace or a launch file, and reports on the way.
 
     Attributes:
-        builds: Finds or makes the builds. Their jobs will run the program.
+        builds: Finds or makes the builds. Its ``jobs`` also run the program.
         report: Called with each line of the report for the check.
         build_ended: Called when a build has ended, before its result is reported.
         cancelled: Returns True when the program is no longer needed.
@@ -64,7 +64,7 @@ class Preparation:
         """Prepare the program that an exercise runs from a workspace.
 
         Returns:
-            The program; None if there is nothing to run. The report then contains the reason.
+            The program; None if there is nothing to run, for the reason that the report contains.
         """
         found = look(folder)
         self.report(report_line("found", found, plan))
@@ -104,7 +104,7 @@ class Preparation:
     def _course(self) -> Build | None:
         """Return the build of the course's own packages; None in a student's copy of the course.
 
-        The packages are the solutions of Lab 1.2, so students do not get them.
+        A student's copy does not contain these packages, because they are the solutions of Lab 1.2.
         """
         if not (own := reference_workspace()).is_dir():
             return None
@@ -118,8 +118,8 @@ class Preparation:
     ) -> Prepared:
         """Return a launch that finds the student's build first, then the course's.
 
-        If the student's package lacks programs of the course's package, the course's build with the student's files
-        added comes first.
+        But if the student's package lacks programs of the course's package, a copy of the course's build with the
+        student's files added comes first.
         """
         environment: Mapping[str, str] = {**self.builds.jobs.environment, **_ALL_OUTPUT}
         builds: dict[str, Build] = {}

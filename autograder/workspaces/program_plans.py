@@ -60,7 +60,7 @@ def plan_for(
     """Return the plan for the program, launch or interface that an exercise runs from a workspace.
 
     Args:
-        runner: What the exercise runs.
+        runner: The exercise's runner, such as :class:`autograder.kit.runners.RunsProgram`.
         arguments: The arguments with which the program is started this time. If the exercise has several programs, the
             first argument names one. The arguments of a launch may name a program to run instead of the launch.
     """
@@ -170,9 +170,9 @@ def alone(arguments: Sequence[str]) -> Sequence[str]:
 def lacks_programs(file: Path, made: Build, course_build: Build) -> bool:
     """Return True if a launch file starts programs of the course's package that the student's package does not have.
 
-    A student who wrote talker and listener only in the notebooks has no programs to launch. The answer depends on the
-    words in the launch file: it is True if they include a program that only the course has, and none that only the
-    student has. With programs of the student, ``talker`` may be a variable, a node's name or part of a comment.
+    This is so if a student wrote talker and listener only in the notebooks. The words in the launch file decide: the
+    result is True if they include a program that only the course has, and no program that only the student has. In a
+    launch file with a program of the student, ``talker`` may be just a variable, a node's name or part of a comment.
     """
     words, own, given = _launch_words(file, made), _programs(made), _programs(course_build)
     if words is None:

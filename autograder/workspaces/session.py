@@ -53,11 +53,11 @@ class Submitted:
 
 
 class Session:
-    """One check of a workspace or launch file. The judge may start programs several times; they are built only once.
+    """One check of a workspace or launch file, whose programs are built once but may be started several times.
 
     Args:
         lines: The connection to the judge.
-        builds: Finds or makes the builds. Their jobs run the programs.
+        builds: Finds or makes the builds. Its ``jobs`` also run the programs.
         variables: Environment variables for the programs.
         folder: An empty folder that nothing else uses.
     """

@@ -1,12 +1,13 @@
-"""The sources of a build, read into memory once: the key of the build and the files to build both come from there.
+"""The sources of a build, read once into memory, from where both the build's key and the files to build are taken.
 
-So a build depends on nothing that its key does not cover. Links, pipes, devices, unreadable files, and files that tools
-or compilers make are not sources. Times, the order of files in a folder, and permissions (except the one to execute)
-are not read, either. Names are bytes: two names that differ in case or in their Unicode normal form are different.
+In this way a build depends on nothing that its key does not cover. Links, pipes, devices, unreadable files, and files
+that tools or compilers make are not sources. Times, the order of files in a folder, and permissions (except the one to
+execute) are not read, either. Names are bytes, so two names that differ in case or in their Unicode normal form are
+different.
 
 When a class is graded, the sources are collected in the process that runs a student's code, and checked and written in
-another process. The student's process may send anything, so the number, sizes and names of the files are checked. Their
-content may be anything.
+another process. The student's process may send anything, so the number, sizes and names of the files are checked. The
+content of a file need not be checked.
 """
 
 from __future__ import annotations
@@ -51,7 +52,7 @@ _MACHINE_CODE = (b"\x7fELF", b"!<arch>\n", b"!<thin>\n")
 
 
 class BadSources(ValueError):
-    """The sources cannot be used. The message is for a student."""
+    """The sources cannot be used. The exception's text says why, in words for a student."""
 
 
 @dataclass(frozen=True)
@@ -76,7 +77,7 @@ class Tree:
         return digest.hexdigest()
 
     def write(self, folder: Path) -> None:
-        """Write the sources into a folder. No other process may write to the folder.
+        """Write the sources into a folder, to which no other process may write.
 
         Raises:
             FileExistsError: One of the files already exists.
@@ -146,7 +147,7 @@ def read_file(file: str | Path, name: str, largest: int, folder: int | None = No
 def collect_workspace(workspace: Path) -> list[Source]:
     """Return all sources in ``src`` of a workspace. Their paths begin with the name of the workspace.
 
-    Return no sources if the path is not a folder; a later step reports that.
+    If the path is not a folder, return no sources, because a later step reports that.
 
     Raises:
         BadSources: The workspace is too large.
@@ -186,8 +187,8 @@ def collect_launch(file: Path, workspace: Path | None) -> tuple[str, list[Source
 def checked(sources: Iterable[Source]) -> list[Source]:
     """Check that sources are harmless (names, number, sizes, no duplicates), and return the real sources among them.
 
-    The sender should have left out other files. They are dropped here again, so that a box sees nothing that the
-    build's key does not cover.
+    Other files are dropped, so that a box sees nothing that the build's key does not cover. An honest sender has
+    already left them out.
 
     Raises:
         BadSources: The sources could do harm.

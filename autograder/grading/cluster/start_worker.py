@@ -72,7 +72,7 @@ def start_worker(
             "add --unsafe-no-sandbox to run them without a sandbox."
         )
     tell(
-        f"{name} offers {offered.slots} notebooks at once, "
+        f"{name} can execute {offered.slots} notebooks at the same time, "
         f"{'WITHOUT a sandbox' if offered.obstacle else 'in boxes'}, with course version {course_version()}."
     )
     logging.getLogger("distributed").setLevel(logging.ERROR)

@@ -74,7 +74,7 @@ def export(
             check_known(list(columns or ()), wanted, "assignment")
             wanted = list(columns or ()) or wanted
             filled, notices = lms_gradebooks.filled_in(into, to, table, wanted, columns or {})
-            purpose = f"{to.capitalize()}: the list that it exported, with the points of {', '.join(wanted)}"
+            purpose = f"{to.capitalize()}: the list that you exported there, now with the points of {', '.join(wanted)}"
         parts = [(into.name, filled, purpose)] if into else _files(directory, table, to, wanted, notices)
         for name, data, purpose in parts:
             with clear_place_errors(folder / name, "--output"):

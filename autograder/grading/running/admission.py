@@ -57,7 +57,7 @@ def admitted_offer(data: bytes) -> Offer:
     except msgspec.MsgspecError as error:
         raise Forged(f"the worker's offer is not valid: {error}") from error
     if not 1 <= offer.slots <= _MOST_SLOTS:
-        raise Forged(f"the worker offers to execute {offer.slots} notebooks at once")
+        raise Forged(f"the worker offers to execute {offer.slots} notebooks at the same time")
     return offer
 
 

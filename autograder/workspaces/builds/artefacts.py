@@ -1,8 +1,8 @@
 """Takes the result of a build out of a box, as regular files and folders and nothing else.
 
-The code of a student can put anything into the install folder of a build. So the folder is packed in the box as a list
-of typed entries, and outside the box every entry is checked before it is written. Links are replaced by copies of their
-targets, so that no program follows a link out of the folder.
+A student's code can put anything into the install folder of a build. So the folder is packed in the box as a list of
+typed entries, and outside the box every entry is checked before it is written. Links are replaced by copies of their
+targets, because otherwise a program might follow a link out of the folder.
 
 In a box, this module is a program that prints the packed folder: ``python -m autograder.workspaces.builds.artefacts
 FOLDER``.
@@ -111,14 +111,14 @@ def unpack(packed: bytes, folder: Path, most: int = MAX_BYTES) -> None:
     """Check a packed install folder, and write it into a new folder.
 
     Args:
-        packed: The result of :func:`pack`, if it is genuine. A student's code may have written any bytes instead.
+        packed: The result of :func:`pack`; but a student's code may have written any bytes instead.
         folder: The folder to create. It must not exist yet.
         most: The maximum size in bytes of all files and folders together.
 
     Raises:
         BadArtefacts: An entry leads out of the folder or is a device, a link does not lead to a file of the build, or
             there are too many files or bytes. The files that were written before the error stay.
-        OSError, MemoryError: The disk, memory or open files of this machine are used up. The build is not at fault.
+        OSError, MemoryError: The disk, memory or open files of this machine are used up, so the build is not at fault.
     """
     if not packed:
         raise BadArtefacts("the result of the build could not be packed")
@@ -198,7 +198,7 @@ def _place(name: bytes) -> PurePosixPath:
 def _target(place: PurePosixPath, link: Entry) -> PurePosixPath:
     """Return the target of a link as a path inside the install folder.
 
-    The path is computed without looking at the disk. That is correct, because the written folder contains no links.
+    The path is computed without looking at the disk, which is correct because the written folder contains no links.
     """
     inside = os.path.normpath(place.parent / os.fsdecode(link.data))
     if inside.startswith(("..", "/")) or "\0" in inside:

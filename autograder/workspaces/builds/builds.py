@@ -1,8 +1,9 @@
 """Makes builds of workspaces, and stores them in a cache, so that the same sources are built only once.
 
 The key of a build in the cache is a hash of the sources and of the build tools, because the result depends on nothing
-else. The sources are read only once, for the hash and for the build. Builds in a student's kernel, in a terminal and
-for a class differ only in the process that makes them (:class:`autograder.workspaces.running.jobs.Jobs`).
+else. The sources are read only once, for both the hash and the build, so that the two cannot differ. Builds in a
+student's kernel, in a terminal and for a class differ only in the process that makes them
+(:class:`autograder.workspaces.running.jobs.Jobs`).
 """
 
 from __future__ import annotations
@@ -93,7 +94,7 @@ class Builds:
 
         If only a dependency fails, the needed packages are built again without their dependencies. For example,
         ``my_robot_pkg`` depends on ``my_robot_interfaces`` from Lab 1.3 on, but its programs of earlier labs do not
-        import it. A program that does import it fails when it runs.
+        import ``my_robot_interfaces`` and should still run. A program that does import it then fails when it runs.
 
         Args:
             found: The workspace, as :func:`autograder.workspaces.builds.colcon.look` returns it.
@@ -125,8 +126,8 @@ class Builds:
     def lend(self, made: Build, course: Build) -> Build:
         """Return a copy of the course's build to which the student's files have been added.
 
-        The copy is used if the student's package lacks programs that the course's package has. ROS finds a package in
-        one prefix only, so this prefix must also contain the student's launch files.
+        The copy is used if the student's package lacks programs that the course's package has. The student's files must
+        be added because ROS finds a package in one prefix only, which must also contain the student's launch files.
         """
         assert course.install is not None
         names = {prefix.name for prefix in made.prefixes}
@@ -184,7 +185,7 @@ class Builds:
         )
 
     def _entry(self, found: Build, order: BuildOrder, folder: Path | None = None) -> Build:
-        """Return a build from the cache in ``folder``, or make it there. None stands for the cache of this object."""
+        """Return a build from the cache in ``folder`` (None for the cache of this object), or make it there."""
         with cache.entry(order.key, folder or self._folder, order.cancelled) as entry:
             install = entry.folder / "install"
             if entry.complete:
@@ -257,8 +258,8 @@ def _underlay() -> str:
 def _tools() -> tuple[str, ...]:
     """Return the build tools with their versions, such as ``colcon_core-0.18.1.dist-info``.
 
-    The names of folders (PEP 376) are read instead of using importlib.metadata, which takes five times as long: this
-    runs each time a program in a workspace starts.
+    Only the names of folders (PEP 376) are read, because importlib.metadata takes five times as long, and this function
+    is called each time a program in a workspace starts.
     """
     entries: set[str] = set()
     for folder in filter(None, sys.path):

@@ -1,9 +1,9 @@
 """A cache of builds: one folder (entry) for each build, named by the build's key. Each user has a separate cache.
 
-A build is made at its final path, because files in an install folder contain that path. Meanwhile the entry is locked.
-At the end, a marker file is written. An entry without a marker is an interrupted build; it is removed and made again.
-If the process that makes a build is killed (as JupyterLab kills a kernel to restart it), the build is ended, too. The
-lock is released only when no process of the build can write any more.
+A build is made at its final path, because files in an install folder contain that path. While it is made, the entry is
+locked, and at the end, a marker file is written. So an entry without a marker is an interrupted build, which is removed
+and made again. If the process that makes a build is killed (as JupyterLab kills a kernel to restart it), the build is
+ended, too, but the lock is released only when no process of the build can write any more.
 """
 
 from __future__ import annotations
@@ -74,7 +74,7 @@ def root() -> Path:
 
 
 def graders_root() -> Path:
-    """Return the folder for the grader's builds of the course's packages. A box sees only the builds that it needs."""
+    """Return the folder for the grader's builds of the course's packages, of which a box sees only those it needs."""
     return _own(platformdirs.user_cache_path(_NAME) / "graded-builds")
 
 
@@ -90,7 +90,7 @@ def _own(folder: Path) -> Path:
 
 @functools.cache
 def _in_place_of(folder: Path) -> Path:
-    """Make a temporary folder to use instead of an unsafe folder. It is removed when this process ends."""
+    """Make a temporary folder, which is used instead of an unsafe one and removed when this process ends."""
     del folder
     made, owner = fresh_folder("workspace-builds-"), os.getpid()
 
@@ -110,12 +110,12 @@ def is_ones_own(folder: Path) -> bool:
 
 
 def is_complete(key: str, base: Path) -> bool:
-    """Return True if the cache contains a finished build with this key. This never waits for an unfinished one."""
+    """Return True if the cache contains a finished build with this key, and do not wait for an unfinished one."""
     return _is_of(key, base / key / _MARKER)
 
 
 def _is_of(key: str, marker: Path) -> bool:
-    """Return True if a marker file contains this key. In a folder that was renamed, the marker contains another key."""
+    """Return True if a marker file contains this key. The marker of a renamed folder contains another key."""
     try:
         return marker.read_text(encoding="utf-8") == key
     except (OSError, UnicodeDecodeError):
@@ -126,8 +126,8 @@ def _is_of(key: str, marker: Path) -> bool:
 def entry(key: str, base: Path, cancelled: Callable[[], bool] = lambda: False) -> Iterator[CachedBuild]:
     """Lock the entry with a key during a ``with`` block, so that no other process makes this build at the same time.
 
-    If the entry has no finished build, it is an empty folder. It is removed at the end unless the caller has called
-    :meth:`CachedBuild.finish`.
+    If the entry has no finished build, it is an empty folder, in which the caller makes the build. At the end of the
+    block, it is removed unless the caller has called :meth:`CachedBuild.finish`.
 
     Args:
         key: The key of the build.
@@ -159,7 +159,7 @@ def entry(key: str, base: Path, cancelled: Callable[[], bool] = lambda: False) -
 def _turn(file: Path, cancelled: Callable[[], bool]) -> Iterator[IO[str]]:
     """Hold a lock on the lock file of an entry.
 
-    While this process waited, another process may have removed the entry and the lock file. Then lock a new lock file.
+    If another process has removed the entry and the lock file while this process waited, a new lock file is locked.
     """
     while True:
         with file.open("a") as lock:
@@ -190,7 +190,7 @@ def await_turn(lock: int, cancelled: Callable[[], bool]) -> None:
         try:
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
-            # Waiting inside flock could not be canceled. So try to lock again and again.
+            # Try to lock again and again, because waiting inside flock could not be canceled.
             if cancelled():
                 raise GivenUp("nobody waits for the entry any more") from None
             time.sleep(ASK_EVERY)

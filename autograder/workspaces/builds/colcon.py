@@ -97,8 +97,8 @@ def failed(found: Build, log: str) -> Build:
     search = _FAILED.search(log)
     name = search["name"] if search else ""
     own = _log_of(log, name)
-    # If setup.py fails when colcon asks for its metadata, the error is not in the package's part of the log. Then use
-    # the whole log.
+    # Use the whole log if setup.py fails when colcon asks for its metadata, because the error is then not in the
+    # package's part of the log.
     own = log if "CalledProcessError" in telling_line(own) else own
     made = replace(found, trouble="build", package=name, line=telling_line(own), log=own[-MAX_LOG:])
     if _REFUSED not in made.line:
@@ -129,8 +129,9 @@ def look(workspace: Path) -> Build:
 def choose(found: Build, targets: Targets | None) -> tuple[list[Package], Build]:
     """Return the packages to build, and the workspace.
 
-    If the workspace contains none of the targets, all its packages are built. But if one of these is unusable, no
-    packages are returned, and the workspace's ``trouble`` is set. Unusable packages do not matter if a target is found.
+    If the workspace contains a target, unusable packages do not matter. If it contains none of the targets, all its
+    packages are to be built. But if one of them is then unusable, no packages are returned, and the workspace's
+    ``trouble`` is set.
     """
     chosen = needed(found.packages, targets(found)) if targets is not None else []
     if chosen or not found.unusable:
@@ -157,8 +158,8 @@ def command(packages: Iterable[Package], folder: Path, cmake: Sequence[str] = ()
         folder: The folder in which colcon makes ``build``, ``install`` and ``log``.
         cmake: More arguments for CMake.
 
-    The build type is Release, which defines NDEBUG. Without NDEBUG, a value of the wrong type in a field of a
-    generated message ends the process with SIGABRT instead of raising an exception.
+    The build type is Release because it defines NDEBUG. Without NDEBUG, a value of the wrong type in a field of a
+    generated message would end the process with SIGABRT instead of raising an exception.
     """
     words = [
         "-m", "colcon", "--log-base", str(folder / "log"),

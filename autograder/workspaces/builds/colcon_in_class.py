@@ -1,8 +1,8 @@
 """The command `colcon` in a graded notebook: the grader makes plain builds, and the real colcon does everything else.
 
-A plain build is ``colcon build`` in a workspace, with at most ``--packages-select`` or ``--packages-up-to``. It ends
-as usual, with the packages in ``install`` and lines that list the finished packages. Only the files for colcon's next
-build (in ``build``) are missing, and ``log`` is empty.
+A plain build is ``colcon build`` in a workspace, with at most the options ``--packages-select`` or
+``--packages-up-to``. As usual, it leaves the packages in ``install`` and lists the finished packages. But it leaves
+``log`` empty, and does not leave the files in ``build`` that would make colcon's next build faster.
 """
 
 from __future__ import annotations

@@ -32,10 +32,10 @@ def telling_line(log: str) -> str:
     if found := _COMPILER.search(log):
         return f"{_short(found['file'])}:{found['line']}: {found['what']}"
     python = _python(log)
-    # Remove CMake's status lines. They come from another stream, so they may appear between the lines of an error.
+    # Remove CMake's status lines, because they come from another stream and may appear between the lines of an error.
     log = _CMAKE_STATUS.sub("", log) or log
     if found := _CMAKE.search(log):
-        # CMake reports that a Python program that it called has failed. The cause is the error in that program.
+        # If CMake reports that a Python program that it called has failed, the cause is the error in that program.
         if python and "execute_process" in found["what"]:
             return python
         what = " ".join(found["what"].split())
@@ -51,7 +51,8 @@ def telling_line(log: str) -> str:
 
 
 def _python(log: str) -> str:
-    # CalledProcessError means that a program that colcon or CMake called has failed. The cause is that program's error.
+    # CalledProcessError only means that a program that colcon or CMake called has failed, so look for that program's
+    # error.
     found = list(_PYTHON.finditer(log))
     errors = [error for error in found if "CalledProcessError" not in error["what"]] or found
     if not errors:

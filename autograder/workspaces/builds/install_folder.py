@@ -1,7 +1,7 @@
 """A colcon install folder: its layout, and the environment in which programs find its packages.
 
-The environment equals the one that ``source install/setup.bash`` makes. It is computed here, because sourcing would
-need a shell, half a second, and a path without spaces.
+The environment is the one that ``source install/setup.bash`` would make. It is computed here instead, because sourcing
+needs a shell, half a second, and a path without spaces.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ _INDEX = "share/ament_index/resource_index"
 
 
 class CannotPlace(RuntimeError):
-    """A build cannot be copied into the workspace's install folder. The message says what to do."""
+    """A build cannot be copied into the workspace's install folder. The exception's text says what to do."""
 
 
 def package_prefixes(install: Path) -> list[Path]:
@@ -54,7 +54,8 @@ def python_folders(prefix: Path) -> list[Path]:
 def linked_build(prefix: Path) -> Path | None:
     """Return the build folder from which Python imports a package; None unless `--symlink-install` installed it.
 
-    The path is computed. The link in the prefix is not read, because in a submission it could lead anywhere.
+    The path is computed from the names of the folders. It is not read from the link in the prefix, because in a
+    submission that link could lead anywhere.
     """
     build = prefix.parent.parent / BESIDE[0] / prefix.name
     linked = any(any(folder.glob("*.egg-link")) for folder in _libraries(prefix))
@@ -185,8 +186,8 @@ def merge(lent: Iterable[Path], own: Iterable[Path], install: Path) -> None:
 def place(made: Build) -> Path:
     """Copy a build from the cache into the workspace's ``install`` folder, so that terminals can source it.
 
-    Packages of the build replace earlier ones; other packages stay. A running program keeps the libraries that it has
-    loaded, because files are replaced and not overwritten.
+    Packages of the build replace earlier builds of the same packages; other packages stay. Files are replaced and not
+    overwritten, so that a running program keeps the libraries that it has loaded.
 
     Returns:
         The install folder.

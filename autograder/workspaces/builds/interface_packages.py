@@ -1,7 +1,7 @@
 """Simplifies the sources of packages that only define interfaces, so that sources with the same meaning are equal.
 
-Students write the same three lines with different comments and spaces; one build can serve them all. A text is
-simplified only if its meaning certainly stays the same. Otherwise the package is built separately.
+Students write the same three lines with different comments and spaces, and a single build can serve them all. A text is
+simplified only if its meaning certainly stays the same; otherwise the package is built separately.
 """
 
 from __future__ import annotations
@@ -69,7 +69,8 @@ def _simple(source: Source) -> bytes | None:
 def simple_definition(text: str) -> str:
     """Return an interface definition without comments and needless spaces. Unusual lines stay unchanged.
 
-    rosidl rejects a space after ``---`` or before a type, and spaces that are not ASCII. So such a line is kept.
+    Unusual lines have, for example, a space after ``---`` or before a type, or spaces that are not ASCII. They are kept
+    because rosidl rejects them, and a simplified line would be accepted.
     """
     lines = []
     for line in text.splitlines():
@@ -84,7 +85,8 @@ def simple_definition(text: str) -> str:
 def simple_cmake(text: str) -> str:
     """Return a CMakeLists.txt without comments and needless spaces; unchanged if it has more than plain commands.
 
-    Bracket arguments and comments, escapes, and quoted texts of several lines (cmake-language(7)) are not changed.
+    For example, it is unchanged if it has bracket arguments or bracket comments, escapes, or quoted texts of several
+    lines (cmake-language(7)).
     """
     if re2.search(r"\\|\[=*\[", text) or any(line.count('"') % 2 for line in text.splitlines()):
         return text

@@ -1,15 +1,15 @@
 """Finds out whether a student's own build (`install`) is up to date with the sources (`src`), and what was changed.
 
 This is decided by comparing two times: when a file's content or name last changed (``st_ctime``), and when the
-package's last `colcon build` began. Both times come from the same file system, and so from the same clock, and no
-program can set the first one. Comparing contents would not be enough, because `install` has no copy of setup.py or
-CMakeLists.txt. But a newer file that equals its installed copy counts as unchanged, because running a cell that
-writes a program touches the file.
+package's last `colcon build` began. The times can be compared because both come from the same file system, and so from
+the same clock; and no program can set the first one. Comparing contents instead would not be enough, because `install`
+has no copy of setup.py or CMakeLists.txt. But a newer file that equals its installed copy counts as unchanged, because
+running a cell that writes a program changes the file's time even if the program stays the same.
 
-`colcon` never removes what an earlier build has installed. So an `install` folder with a module or program that the
-sources do not have is not used: the grader of a class builds from the sources alone and would not have it either. Nor
-is it used if it contains a launch file that the last build did not install, because `ros2 launch` refuses a name that
-it finds twice.
+`colcon` never removes what an earlier build has installed. So an `install` folder may have a module or program that the
+sources do not have. Such a folder is not used, because the grader of a class builds from the sources alone and would
+not have this module or program. Nor is a folder used if it contains a launch file that the last build did not install,
+because `ros2 launch` refuses a name that it finds twice.
 """
 
 from __future__ import annotations
@@ -118,7 +118,7 @@ def _left_over(workspace: Path, package: Package) -> Iterator[Path]:
 
 
 def _linked(prefix: Path) -> list[Path]:
-    """Return the source folders to which `--symlink-install` made links. Python imports the modules from there."""
+    """Return the source folders to which `--symlink-install` made links, and from which Python imports the modules."""
     build = linked_build(prefix)
     return (
         [entry.resolve() for entry in build.iterdir() if entry.is_symlink() and entry.is_dir()]

@@ -69,10 +69,10 @@ class BoxedJobs:
         return WORK
 
     def build(self, order: BuildOrder, command: Sequence[str], entry: CachedBuild) -> Built:
-        """Run a build in a separate box. Pack its install folder when no process of the build is alive any more.
+        """Run a build in a separate box, and pack its install folder when no process of the build is alive any more.
 
-        The memory limit is low at first, because other builds may run. A build that reaches the limit is run again with
-        a higher one, while no other build is run again.
+        The memory limit is low at first, because other builds may run at the same time. If a build reaches this limit,
+        it is run again with a higher limit; only one build at a time may do so.
         """
         built, needs_room = self._build(order, command, entry.folder, BUILD_LIMITS)
         if needs_room:
@@ -84,7 +84,7 @@ class BoxedJobs:
     def _turn(self, cancelled: Callable[[], bool]) -> Iterator[None]:
         """Hold the lock that lets only one build at a time be run again with more memory.
 
-        The lock is on the folder of the fork servers, because all submissions that run at once have the same one.
+        The lock is on the folder of the fork servers, because all submissions that run at once share this folder.
 
         Raises:
             GivenUp: The build is no longer needed.
@@ -127,8 +127,8 @@ class BoxedJobs:
                     output_bytes=MAX_ARCHIVE_BYTES,
                 )
                 if packed.returncode is None:
-                    # Packing takes milliseconds. So a timeout means that the machine was too busy, not that the build
-                    # failed.
+                    # A timeout means that the machine was too busy, not that the build failed, because packing takes
+                    # only milliseconds.
                     return Built(None, output, late=PACK_SECONDS), False
                 whole = packed.returncode == 0 and not packed.cut
                 return Built(returncode, output, packed.output if whole else b""), False

@@ -1,7 +1,7 @@
 """Jobs (builds and programs): their requests, their results, and the interface of the classes that run them.
 
-The result of a build is only bytes: its output, and the files in its install folder. The process that asked for the
-build never executes or unpickles them.
+The result of a build is only bytes: its output, and the files in its install folder. These bytes may come from a
+student's code, so the process that asked for the build never executes or unpickles them.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ class BuildOrder:
 
     Attributes:
         name: The kind of workspace; see :meth:`Jobs.place`.
-        workspace: The student's workspace. Earlier results in it must not influence the build.
+        workspace: The student's workspace, whose earlier results must not influence the build.
         tree: The sources of the build. They are put into ``src`` of the build's folder.
         packages: The packages in the sources. Their folders are relative to the build's folder.
         cancelled: Called from time to time. If it returns True, the build is ended.
@@ -156,7 +156,7 @@ class Jobs(Protocol):
 
     @property
     def environment(self) -> Mapping[str, str]:
-        """The environment variables of all jobs. The variables of a request are added to them."""
+        """The environment variables of all jobs, to which the variables of a request are added."""
         ...
 
     def place(self, name: str, entry: Path) -> Path:

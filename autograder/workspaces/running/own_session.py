@@ -118,7 +118,7 @@ class OwnSession:
             process_trees.signal_group(self.pid, signal.SIGINT)
 
     def end(self, polite: float = 0.0) -> None:
-        """Kill the program and everything that it has started, even outside its group. It may be called twice.
+        """Kill the program and everything that it has started, even outside its group. This may be called twice.
 
         Args:
             polite: If not 0, interrupt the program first, and give it this many seconds of wall time to end by
@@ -130,7 +130,7 @@ class OwnSession:
                 self._process.wait(timeout=polite)
         if self.exit_code() is None:
             process_trees.end_below(self.pid)
-        # Kill the keeper, which may be suspended. If the program has killed the keeper, this kills the rest of the
-        # group.
+        # Kill the keeper, which may be suspended. The signal goes to the whole group, because the program may have
+        # killed the keeper but left other processes.
         process_trees.signal_group(self.pid, signal.SIGKILL)
         self._process.wait()

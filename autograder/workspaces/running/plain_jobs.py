@@ -31,8 +31,8 @@ class PlainJobs:
 
     Args:
         environment: The environment of the jobs.
-        handed_in: True if the code is a submission. Then jobs get a separate home folder, and the result of a build is
-            packed into an archive.
+        handed_in: True if the code is a submission. In that case jobs get a separate home folder, and the result of a
+            build is packed into an archive.
     """
 
     def __init__(self, environment: Mapping[str, str], *, handed_in: bool) -> None:
@@ -49,7 +49,7 @@ class PlainJobs:
         return sources
 
     def build(self, order: BuildOrder, command: Sequence[str], entry: CachedBuild) -> Built:
-        """Run a build in the folder of the entry. For a submission, pack the install folder, and then remove it."""
+        """Run a build in the folder of the entry. For a submission, pack the install folder and then remove it."""
         seconds, size = (
             (BUILD_SECONDS, MAX_LOG_BYTES) if self._handed_in else (OWN_BUILD_SECONDS, sys.maxsize)
         )

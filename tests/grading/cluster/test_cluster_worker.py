@@ -87,7 +87,7 @@ def test_it_says_what_it_offers_and_ends_when_it_is_told(tmp_path_factory: pytes
     with DaskCluster() as cluster, cluster.worker("w", slots=3, version="v1", obstacle="") as process:
         process.send_signal(signal.SIGTERM)
         assert process.wait(timeout=180) == 0
-    assert "w offers 3 notebooks at once, in boxes, with course version v1." in cluster.said
+    assert "w can execute 3 notebooks at the same time, in boxes, with course version v1." in cluster.said
 
 
 @pytest.fixture
