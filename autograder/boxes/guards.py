@@ -355,7 +355,7 @@ def guards() -> Mapping[str, str]:
     return {
         "memory": _cgroup("memory") or watched,
         "processes": _cgroup("pids") or _processes_without(watched),
-        "processor time": "the sum over all processes is checked four times a second, and each process also has a limit",
+        "processor time": "the sum over all processes is checked four times a second; each process has a limit, too",
         "share of the processors": _cgroup("cpu") or "none (no cgroup can be made here)",
         "disk": "a file system in memory that limits the size and the number of files",
         "open files": "each process has a limit, and the sum over all processes is checked four times a second",

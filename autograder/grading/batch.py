@@ -1,10 +1,11 @@
 """Grades a class: rebuilds notebooks, executes them in parallel, and writes the results to the gradebook.
 
 The order of the steps ensures that no failure leaves a wrong grade. First, grades that may be outdated are set to zero
-in the gradebook. Then each result is stored in the class's store, and entered into the gradebook when its submission
-is complete. If the run is killed, the gradebook contains zeros and finished grades, and the next run grades the rest.
+in the gradebook. Then each result is stored in the class's store, and entered into the gradebook when its submission is
+complete. So if the run is killed, the gradebook contains only zeros and finished grades, and the next run grades the
+rest.
 
-The results of a submission are in memory only until they are written, so a class may have any size.
+A class may have any size, because the results of a submission are in memory only until they are written.
 """
 
 from __future__ import annotations
@@ -91,8 +92,8 @@ def grade(
         judge: The Python class that makes a judge, as ``module:class``; by default the real judge. For tests.
         scheduler: The address of a Dask scheduler whose workers execute the notebooks; by default this machine
             executes them.
-        dry_run: True to leave the gradebook unchanged, and report the students whose points would change. The results
-            are stored, so that the next run only has to enter them.
+        dry_run: True to leave the gradebook unchanged, and report the students whose points would change. But the
+            results are stored, so that the next run only has to enter them.
 
     Returns:
         The report. If a submission could not be graded, the report contains it with zero points and the reason.
@@ -124,7 +125,7 @@ def grade(
         batch.collect()
         batch.plan(again)
         # This raises an error if no worker can execute notebooks. It comes before grades are set to zero, so that the
-        # class is unchanged then.
+        # error leaves the class unchanged.
         execute = stack.enter_context(backend) if batch.unsettled else None
         if not dry_run:
             batch.take_back()
@@ -205,7 +206,7 @@ class _Batch:
         )
 
     def plan(self, again: bool) -> None:
-        """Find out which submissions already have their grades in the gradebook. The others have to be graded."""
+        """Find out which submissions already have their grades in the gradebook, and which have to be graded."""
         self._entries = read_entries(self._directory.gradebook_url)
         self._entered = self._store.entered()
         for work in self._others:
@@ -267,7 +268,7 @@ class _Batch:
                 self._write(work)  # no notebook of this submission had to be executed
 
     def report(self, seconds: float) -> GradeReport:
-        """Return the report on the chosen submissions. Also write ``grades.csv``, which contains the whole class."""
+        """Return the report on the chosen submissions, and write ``grades.csv``, which contains the whole class."""
         url = self._directory.gradebook_url
         works = {work.key: work for work in (*self._works, *self._others)}
         entries = read_entries(url)
@@ -342,7 +343,7 @@ class _Batch:
         work.written = True
 
     def _take_known(self, work: Work) -> None:
-        """Take the stored results of an earlier run. If no result is missing then, write the submission."""
+        """Take the stored results of an earlier run, and write the submission if no result is missing after that."""
         known = self._store.results(*work.key)
         for task in self._tasks_of(work.submission) if known else ():
             if (key := task.key()) in known:
@@ -367,7 +368,7 @@ class _Batch:
             return tasks_of(self._directory, submission)
 
     def _take(self, work: Work, task: Task, execution: Execution) -> None:
-        """Store the result of a task. If no result of the submission is missing then, write the submission."""
+        """Store the result of a task, and write the submission if none of its results is missing after that."""
         self._executed += 1
         self._timings.count(task.cells, execution)
         execution = self._store.keep(task, execution)

@@ -159,7 +159,7 @@ def find_work(
 
 
 def _unusable(directory: ClassDirectory, asked: AskedFor, released: Released) -> Iterator[RefusedFile]:
-    """Yield the assignments whose source notebooks cannot be used. The other assignments are graded.
+    """Yield the assignments that cannot be graded, because their source notebooks cannot be used.
 
     Raises:
         MasterUnusable: An assignment that was chosen by name cannot be graded.

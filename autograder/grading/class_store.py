@@ -1,9 +1,10 @@
 """The store of a class: one SQLite file in which the grader keeps results, evidence, attempts and runs.
 
 Each write is one transaction, so that a killed run or a power failure leaves no half-written entry. The file uses
-SQLite's rollback journal. A write-ahead log would not work on network disks, and would need write access even for
-readers. Other programs may read the file during a run, which locks it only for milliseconds. A separate lock file
-(:mod:`autograder.grading.classes.class_lock`) ensures that only one process grades a class at a time.
+SQLite's rollback journal, because a write-ahead log would not work on network disks, and would need write access even
+for readers. Other programs may read the file during a run, because the run locks it only for milliseconds at a time. A
+separate lock file (:mod:`autograder.grading.classes.class_lock`) ensures that only one process grades a class at a
+time.
 """
 
 from __future__ import annotations
@@ -82,8 +83,8 @@ _Decoded = TypeVar("_Decoded")
 class ClassStore:
     """The store of one class. Use it in a ``with`` statement, which closes the file at the end.
 
-    The first write makes the file. Before that, the store is empty. Methods skip a damaged entry if the next run can
-    make it again.
+    The first write makes the file, and before that, the store counts as empty. Methods skip a damaged entry if the next
+    run can make it again.
 
     Every method raises :class:`DiskFull` if the disk is full, and :class:`StoreTrouble` if the file is damaged,
     locked, read-only or of another version. The content of the file does not change in these cases.
@@ -113,7 +114,7 @@ class ClassStore:
     # -- results of tasks
 
     def keep(self, task: Task, execution: Execution) -> Execution:
-        """Store the result and the evidence of a notebook. Return the result without the evidence.
+        """Store the result and the evidence of a notebook, and return the result without the evidence.
 
         The notebook's earlier result and evidence are deleted, except evidence for points in the gradebook, which an
         appeal may need. If the grader itself failed, store nothing, so that the next run tries again.
@@ -141,7 +142,7 @@ class ClassStore:
     def results(self, student: str, assignment: str) -> dict[str, Execution]:
         """Return the stored results of a submission by the hash of the task, in the order of the notebooks.
 
-        A result is outdated if the submission has changed since: its present tasks then have other hashes.
+        Some results may be outdated: if the submission has changed since, its present tasks have other hashes.
         """
         rows = self._rows(
             "SELECT task, execution FROM result WHERE (student, assignment) = (?, ?) ORDER BY notebook",
@@ -152,7 +153,7 @@ class ClassStore:
         return {task: execution for task, execution in found.items() if execution is not None}
 
     def forget_results(self, submissions: Iterable[Submission]) -> None:
-        """Delete the results of submissions, so that the submissions are executed again. Their evidence stays."""
+        """Delete the results, but not the evidence, of submissions, so that the submissions are executed again."""
         with self._step() as book:
             names = ((one.student, one.assignment) for one in submissions)
             book.executemany("DELETE FROM result WHERE (student, assignment) = (?, ?)", names)
@@ -172,7 +173,7 @@ class ClassStore:
     # -- entries in the gradebook
 
     def enter(self, submission: Submission, attempt: Attempt, entered: Entered | None) -> None:
-        """Record an attempt and the results in the gradebook. With ``entered`` None, the next run grades again."""
+        """Record an attempt, and what the gradebook now contains. If ``entered`` is None, the next run grades again."""
         names = (submission.student, submission.assignment)
         with self._step() as book:
             book.execute(
@@ -210,7 +211,7 @@ class ClassStore:
         self._note(submission, "shown", shown)
 
     def forget_entered(self, submissions: Iterable[Submission]) -> None:
-        """Delete the records of submissions in the gradebook. Call this before setting their grades to zero."""
+        """Delete the records of what the gradebook contains. Call this before setting those grades to zero."""
         with self._step() as book:
             names = ((one.student, one.assignment) for one in submissions)
             book.executemany("DELETE FROM entered WHERE (student, assignment) = (?, ?)", names)
@@ -241,7 +242,7 @@ class ClassStore:
     # -- runs
 
     def keep_run(self, course: str, rows: Sequence[Row]) -> None:
-        """Store the table of results after a run, if it differs from the last table. Delete the oldest tables."""
+        """Store the table of results after a run, if it differs from the last table, and delete the oldest tables."""
         report = msgspec.json.encode(rows)
         if self._rows("SELECT course, report FROM run ORDER BY name DESC LIMIT 1") == [(course, report)]:
             return

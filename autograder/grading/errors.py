@@ -1,4 +1,4 @@
-"""Errors about a class, with messages that tell an instructor what to do. Commands end with exit code 2 for them."""
+"""Errors about a class, with messages that tell an instructor what to do, at which commands end with exit code 2."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def check_known(wanted: Sequence[str], known: Sequence[str], what: str) -> None:
     """Check that every chosen name exists.
 
     Raises:
-        GradingError: A name does not exist. The message lists the names that do.
+        GradingError: A name does not exist. The message lists the names that exist.
     """
     for name in wanted:
         if name not in known:

@@ -1,9 +1,9 @@
 """Makes ``nbgrader autograde``, ``nbgrader generate_feedback`` and formgrader's buttons use the course's grader.
 
 nbgrader's own conversion does not use the judge. It also copies every file of a submission: a pipe would block it
-forever, and a sparse file of a terabyte would fill the disk. So the steps of ``./course grade`` replace it. The
-class's configuration names the exporters of this module. nbgrader makes an exporter before it converts the first
-notebook. In that moment, the exporter replaces the class of nbgrader's converter by one of this module.
+forever, and a sparse file of a terabyte would fill the disk. So the steps of ``./course grade`` replace it. For this,
+the class's configuration names the exporters of this module. nbgrader makes an exporter before it converts the first
+notebook, and in its constructor, the exporter replaces the class of nbgrader's converter by one of this module.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ class _Ours(BaseConverter):
         """Convert the chosen submissions.
 
         Raises:
-            NbGraderException: Some submissions could not be converted. The log has a line for each.
+            NbGraderException: Some submissions could not be converted; the log has a line for each.
             SystemExit: The same, if nbgrader runs as a command. The exit code is that of ``./course grade``; after an
                 NbGraderException, it would be 1.
         """
@@ -95,8 +95,8 @@ class _OurAutograde(_Ours, Autograde):
                 feedback=False,
                 console=Console(quiet=True),
             )
-            # A collected file without a known student may belong to any student. So it is only a warning, not a
-            # failure.
+            # This is only a warning, not a failure, because a collected file without a known student may belong to any
+            # student.
             refused = [(f"{one.path}: {one.reason}", one.path.is_absolute()) for one in report.refused]
             remarks = [f"{'/'.join(key)}: {words}" for key, words in remarks_on(report.rows).items()]
             for notice in (*report.notices, *remarks, *(text for text, in_class in refused if not in_class)):
@@ -147,7 +147,7 @@ def _take_over(converter: object) -> None:
 
 
 class SubmissionExporter(NotebookExporter):
-    """The exporter for ``autograde`` in a class's configuration. Making it lets this package's grader take over."""
+    """The exporter for ``autograde`` in a class's configuration. Its constructor lets the package take over."""
 
     def __init__(self, *args: Any, **kw: Any) -> None:
         initialise: Any = super().__init__
@@ -156,7 +156,7 @@ class SubmissionExporter(NotebookExporter):
 
 
 class FeedbackExporter(PageExporter):
-    """The exporter for ``generate_feedback`` in a class's configuration. Making it lets this package take over."""
+    """The exporter for ``generate_feedback`` in a class's configuration. Its constructor lets the package take over."""
 
     def __init__(self, *args: Any, **kw: Any) -> None:
         initialise: Any = super().__init__

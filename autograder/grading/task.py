@@ -1,4 +1,4 @@
-"""Defines a task: one notebook of one student, ready to be executed. Computes the points from the task's verdicts."""
+"""Defines a task (one notebook of one student, ready to be executed), and computes the points from its verdicts."""
 
 from __future__ import annotations
 
@@ -31,8 +31,9 @@ class Task:
         problem: The reason if the notebook cannot be executed; otherwise empty.
         remarks: Sentences about repairs of the notebook.
         pictures: A hash of the pictures that the student attached, so that changed pictures change the task's hash.
-        boxed: True to execute the notebook in a sandbox. False for the course's own notebooks, and if the instructor
-            allowed grading without a sandbox. A result without a sandbox is not reused for a boxed task.
+        boxed: True to execute the notebook in a sandbox; False for the course's own notebooks, and if the instructor
+            allowed grading without a sandbox. A result without a sandbox is not reused for a boxed task, because the
+            two have different hashes.
     """
 
     student: str
@@ -58,7 +59,7 @@ class Task:
         return f"{self.student}/{self.assignment}/{self.notebook}"
 
     def key(self) -> str:
-        """Return a hash of the whole task. Tasks with the same hash have the same result."""
+        """Return a hash of the whole task: tasks with the same hash have the same result."""
         return hashlib.sha256(msgspec.json.encode(self, order="deterministic")).hexdigest()
 
     def without_execution(self) -> Execution:

@@ -120,7 +120,8 @@ class ClassDirectory:
             )
         url = str(config.CourseDirectory.get("db_url") or "sqlite:")
         if not url.startswith("sqlite:") and not config.CourseDirectory.get("course_id"):
-            # nbgrader stores the course's id as a foreign key. Without an id, only SQLite accepts that key.
+            # nbgrader stores the course's id as a foreign key. The id is set because, without an id, only SQLite
+            # accepts this key.
             raise ClassIncomplete(
                 f"A gradebook on a database server needs a name of the course. Add a line to "
                 f'{self.path / CONFIG_NAME}: c.CourseDirectory.course_id = "ros2"'
@@ -157,7 +158,7 @@ class ClassDirectory:
 
     @functools.cached_property
     def secret(self) -> bytes:
-        """The secret of the class. If the class has no secret, a new one is made and stored.
+        """The secret of the class, which is made and stored at its first use.
 
         Raises:
             ClassIncomplete: The file of the secret is damaged.
@@ -224,8 +225,8 @@ class ClassDirectory:
     def submissions(self) -> tuple[list[Submission], list[RefusedFile]]:
         """Return the submissions in ``submitted``, and the files and folders there that cannot be graded.
 
-        A notebook that is not an ordinary file, such as a link, is in both lists: the submission gets zero points, and
-        the instructor a line with the reason.
+        A submission whose notebook is not an ordinary file, for example a link, is in both lists: it gets zero points,
+        and the instructor gets a line with the reason.
         """
         notebooks = {assignment: self.notebooks(assignment) for assignment in self.assignments()}
         taken: list[Submission] = []
@@ -256,9 +257,9 @@ class ClassDirectory:
 
     @contextlib.contextmanager
     def lock(self) -> Iterator[None]:
-        """Lock the class during the block, so that only one process grades it. Clean up after a killed process first.
+        """Lock the class during the block, so that only one process grades it. First clean up if another was killed.
 
-        The lock also ends when this process ends.
+        Even if this process is killed, its lock ends.
 
         Raises:
             ClassBusy: Another process holds the lock.
@@ -273,7 +274,7 @@ class ClassDirectory:
 
     @property
     def scratch_prefix(self) -> str:
-        """The prefix of this class's temporary folders. It is short, because a socket's path may not be long."""
+        """The prefix of this class's temporary folders, which is short because the path of a socket must be short."""
         return f"autograder-{hashlib.sha256(str(self.path).encode()).hexdigest()[:8]}-"
 
 
@@ -283,7 +284,7 @@ def refuse_students_folder(folder: Path) -> None:
     Otherwise, a student could hand in a class directory whose configuration file, a program, would then be run.
 
     Raises:
-        ClassIncomplete: The folder is among students' files. The message names the class around it.
+        ClassIncomplete: The folder is among students' files, in the class that the message names.
     """
     place = folder.resolve()
     for outer in place.parents:
@@ -302,8 +303,9 @@ def in_zone(when: datetime, zone: tzinfo) -> str:
 def reason_against_name(name: str) -> str:
     """Return why the name of a folder cannot be a student's id; empty if it can.
 
-    nbgrader uses the name in search patterns. So with a character such as ``*`` in the name, nbgrader would find
-    another student's folder or none. With control characters, a student could forge lines in a terminal or log.
+    For example, ``*`` is not allowed, because nbgrader uses the name in search patterns and would find another
+    student's folder or none. Control characters are not allowed, because with them a student could forge lines in a
+    terminal or log.
     """
     if len(name.encode("utf-8", "surrogateescape")) > _LONGEST_NAME:
         return f"the name is longer than {_LONGEST_NAME} bytes"
@@ -324,7 +326,7 @@ def _odd_files(paths: Iterable[Path]) -> Iterator[RefusedFile]:
 
 
 def _folders(parent: Path, refused: list[RefusedFile]) -> list[Path]:
-    """Return the folders in ``parent`` with usable names. Add other folders and special files to ``refused``."""
+    """Return the folders in ``parent`` with usable names, and add other folders and special files to ``refused``."""
     found = []
     for entry in _entries(parent, refused):
         if entry.name.startswith("."):

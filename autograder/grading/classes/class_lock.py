@@ -50,16 +50,16 @@ _changing = threading.Lock()
 def held(path: Path, of: Path) -> Iterator[bool]:
     """Hold the lock of a class during the block. Yield True if the previous holder was killed.
 
-    The lock is a POSIX record lock: the system releases it when the process ends, and child processes do not inherit
-    it. The holder writes its name into the file, and removes it at the end. If a file is not locked but contains a
-    name, its holder was killed.
+    The lock is a POSIX record lock, which the system releases when the process ends, and which child processes do not
+    inherit. The holder writes its name into the file, and removes the name at the end. So if a file is not locked but
+    contains a name, its holder was killed.
 
     Args:
         path: The lock file, which is created if it does not exist.
         of: The class, for messages.
 
     Raises:
-        ClassBusy: A process already holds the lock. The message names this process.
+        ClassBusy: Another process, which the message names, already holds the lock.
         OSError: The lock file cannot be written.
     """
     path = path.resolve()

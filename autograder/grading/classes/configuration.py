@@ -1,7 +1,7 @@
 """Checks that ``nbgrader_config.py`` sets no option of grading to a value that this grader does not support.
 
 This grader replaces nbgrader's grading, and supports only some of nbgrader's options. If a class sets another option,
-no command grades it: otherwise, the option would be ignored without notice.
+no command grades the class, because the option would be ignored without notice.
 """
 
 from __future__ import annotations
@@ -85,7 +85,7 @@ def check_configuration(directory: ClassDirectory) -> None:
     """Check that a class's configuration sets only supported options.
 
     Raises:
-        ClassIncomplete: An option is not supported. The message names it and says what to do.
+        ClassIncomplete: An option, which the message names, is not supported.
     """
     path = directory.path / CONFIG_NAME
     for option in _not_honoured(directory.config):

@@ -92,7 +92,7 @@ class NewClass:
 
     Attributes:
         path: The class directory.
-        assignments: The assignments of the class. ``release/`` contains their notebooks as students get them.
+        assignments: The assignments of the class, whose notebooks as students get them are in ``release/``.
         timezone: The name of the class's time zone.
     """
 
@@ -127,7 +127,7 @@ def new_class(
     """Make a class directory with its gradebook, sources and release.
 
     Args:
-        path: The folder for the class. It must be empty or not exist, and lie outside the course's repository.
+        path: The folder for the class, which must be empty or not exist, and lie outside the course's repository.
         course_root: The top folder of the course, which contains ``solutions``.
         assignments: The names of the assignments; by default all labs with a graded cell.
         timezone: The name of the time zone of due dates, such as ``Europe/Berlin``; by default this machine's.
@@ -234,8 +234,8 @@ def write_source(
 ) -> None:
     """Write a source notebook into a class, and adapt its links to other notebooks.
 
-    In a class, unlike in the course, each notebook has a folder of its own. A link to a notebook that the class does
-    not have becomes plain text.
+    The links have to change, because in a class, unlike in the course, each notebook has a folder of its own. A link to
+    a notebook that the class does not have becomes plain text.
 
     Args:
         directory: The class. The assignment's folder must exist.
@@ -267,7 +267,7 @@ def release(directory: ClassDirectory, assignments: Sequence[str] = ()) -> None:
         assignments: The names of the assignments to release; by default all of the class.
 
     Raises:
-        GradingError: nbgrader failed. The class's ``nbgrader.log`` has the details.
+        GradingError: nbgrader failed; the details are in the class's ``nbgrader.log``.
     """
     for assignment in assignments or directory.assignments():
         course = CourseDirectory(config=directory.config)
@@ -335,8 +335,9 @@ def renew(path: Path, course_root: Path, assignments: Sequence[str] = ()) -> lis
 def _version_read_here() -> Iterator[None]:
     """During the block, replace nbgrader's slow way to find the version of the gradebook's tables.
 
-    nbgrader starts an Alembic command (``nbgrader.api.get_alembic_version``), which takes four seconds of processor
-    time for each new gradebook. Reading the same files in this process is much faster.
+    For each new gradebook, nbgrader starts an Alembic command (``nbgrader.api.get_alembic_version``), which takes four
+    seconds of processor time. Instead, the files that this command reads are read in this process, which is much
+    faster.
     """
     theirs = api.get_alembic_version
     api.get_alembic_version = _newest_version

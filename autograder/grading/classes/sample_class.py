@@ -41,7 +41,7 @@ _STAMP = "sample"
 
 @dataclass(frozen=True)
 class SampleNotebook:
-    """The description of one student's notebook. The data file ``sample_class.toml`` explains the fields."""
+    """The description of one student's notebook, with the fields that the data file ``sample_class.toml`` explains."""
 
     student: str
     assignment: str
@@ -83,11 +83,12 @@ def submit_sample(path: Path) -> None:
 def demo(path: Path, *, console: Console | None = None) -> GradeReport:
     """Make the sample class, grade it, and print the results.
 
-    If an earlier call made the class from the same version of the course, it is only graded, which takes seconds. If
-    this machine cannot run sandboxes, the class is graded without them, because the course's own samples are harmless.
+    If an earlier call made the class from the same version of the course, the class is only graded again, which takes
+    seconds. If this machine cannot run sandboxes, the class is graded without them, which is safe because the course's
+    own samples are harmless.
 
     Args:
-        path: The class directory. It is made if it does not exist.
+        path: The class directory, which is made if it does not exist.
         console: The console to print on; by default standard output.
 
     Raises:

@@ -1,4 +1,4 @@
-"""Computes the seed of a notebook's random inputs. Students cannot guess it, but the grader can compute it again."""
+"""Computes the seed of a notebook's random inputs, which students cannot guess but the grader can compute again."""
 
 from __future__ import annotations
 
@@ -18,7 +18,8 @@ def create_secret(path: Path) -> None:
     """Write a new secret of a class into a file that only the owner can read.
 
     Raises:
-        FileExistsError: The file exists. A new secret would change the inputs of every student.
+        FileExistsError: The file exists. It is not replaced, because a new secret would change the inputs of every
+            student.
     """
     descriptor = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
     with os.fdopen(descriptor, "w") as file:
@@ -46,8 +47,8 @@ def seed_for(secret: bytes, student: str, assignment: str, notebook: str, work: 
         student: The student's id.
         assignment: The assignment's name.
         notebook: The notebook's name.
-        work: A hash of the submitted cells. Because of it, a changed submission gets different inputs. So a student
-            cannot copy inputs from the feedback into the next submission.
+        work: A hash of the submitted cells, so that a changed submission gets different inputs. Otherwise a student
+            could copy inputs from the feedback into the next submission.
     """
     # With the lengths in the message, ("ab", "c") and ("a", "bc") give different seeds.
     message = "".join(f"{len(part)}:{part};" for part in (student, assignment, notebook, work))

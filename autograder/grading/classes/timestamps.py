@@ -31,7 +31,7 @@ machine.
 def read_timestamp(folder: Path) -> str:
     """Return the submission time as text, from the timestamp file; empty if no ordinary file has that name.
 
-    In a class that uses ``./course collect``, return the time that this command recorded instead: the file may come
+    But in a class that uses ``./course collect``, return the time that this command recorded, because the file may come
     from the student.
     """
     records = CollectedRecords(folder.parent.parent.parent / STATE_NAME)
@@ -52,7 +52,7 @@ def _text(path: Path) -> str | None:
 def companions(folder: Path) -> dict[str, bytes]:
     """Return the contents of the files that nbgrader copies from a submission to ``autograded`` and ``feedback``.
 
-    Without these files, `nbgrader release_feedback` does not know for which student a page is.
+    They are copied because without these files, `nbgrader release_feedback` does not know for which student a page is.
     """
     found = {}
     stamp = read_timestamp(folder)
@@ -86,8 +86,8 @@ def handed_in_at(folder: Path, *, believed: datetime | None = None) -> datetime 
 
     Args:
         folder: The folder of the submission.
-        believed: A time that was accepted earlier, such as the time in the gradebook. It is not checked against this
-            machine's clock again.
+        believed: A time that was accepted earlier, such as the time in the gradebook, and is therefore not checked
+            against this machine's clock again.
 
     Raises:
         ValueError: The recorded text is not a time, or the time is impossible: in the future, or before ROS 2 Jazzy.

@@ -1,6 +1,7 @@
-"""Functions that a Dask worker calls by name. Their results are bytes.
+"""Functions that a Dask worker calls by name, with bytes as results.
 
-The client process also imports this module, and should load as little as possible. So imports are inside the functions.
+All imports are inside the functions, because the client process also imports this module, and should load as little as
+possible.
 """
 
 from __future__ import annotations

@@ -2,12 +2,13 @@
 
 The standard input is a socket, over which the process exchanges lines of JSON with the grader.
 
-There are four reasons for a separate process. Dask's client unpickles messages from workers, and pickles can run code;
-here they cannot (inert_pickle.py). A memory limit stops an answer that is too large. The grader stays free of Dask's
-threads and event loop. If this process is killed, the scheduler cancels all tasks that this process gave it.
+There are four reasons for a separate process. First, Dask's client unpickles messages from workers, and pickles can run
+code; in this process they cannot (inert_pickle.py). Second, this process can have a memory limit, which stops an answer
+that is too large. Third, the grader stays free of Dask's threads and event loop. Fourth, if this process is killed, the
+scheduler cancels all tasks that this process gave it.
 
-The process reads no files of the class. It passes orders to the workers that the grader names. It reports the answers,
-and which workers have joined or left.
+The process reads no files of the class. It only passes orders to the workers that the grader names, and reports to the
+grader the answers and which workers have joined or left.
 """
 
 from __future__ import annotations
@@ -111,7 +112,7 @@ class _Carrier:
                 self._drop(command.number)
 
     async def watch_workers(self) -> None:
-        """Report to the grader which workers join and leave. Read the scheduler's list after each of its events."""
+        """Report to the grader which workers join and leave. For this, read the scheduler's list after each event."""
         self._client.subscribe_topic("all", self._on_event)
         try:
             await asyncio.gather(*(self._introduce(*who) for who in await self._look()))
@@ -126,7 +127,7 @@ class _Carrier:
             _tell(self._grader, Broken(f"the scheduler has ended: {_first_line(error)}"))
 
     async def _look(self) -> list[tuple[str, str, int]]:
-        """Report the workers that have left. Return the address, name and number of threads of each new worker."""
+        """Report the workers that have left, and return the address, name and number of threads of each new worker."""
         known = (await self._client.scheduler.identity())["workers"]
         for address in self._workers - known.keys():
             for number, worker_address in list(self._given.items()):
@@ -189,7 +190,7 @@ class _Carrier:
         await wait([future])
         if future.status == "error":
             return Failed(number, _first_line(await future.exception()))
-        # The worker reported this size to the scheduler. An answer that is too large is not fetched.
+        # The worker reported the answer's size to the scheduler, so an answer that is too large need not be fetched.
         size = (await self._client.nbytes(keys=[key], summary=False)).get(key, 0)
         if size > 2 * LARGEST_ANSWER:
             return Failed(number, f"the answer has {size} bytes", forged=True)

@@ -36,7 +36,7 @@ def execute(data: bytes) -> bytes:
 
 
 class _Watch(WorkerPlugin):
-    """Ends the processes of canceled orders. Dask itself would let them run on."""
+    """Ends the processes of canceled orders, which Dask itself would let run on."""
 
     def transition(self, key: Any, start: str, finish: str, **_: Any) -> None:
         """End an order if it was canceled. Dask calls this when a task of the worker changes its state."""

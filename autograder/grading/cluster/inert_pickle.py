@@ -1,8 +1,8 @@
 """A replacement for ``pickle.loads`` that makes only plain values and inert exceptions, and runs no code.
 
-A pickle can make its reader call any function. Dask's client unpickles results, the types of results, errors and
-warnings from workers. :func:`install` prevents such calls in the whole process. Use it only in a process that does
-nothing but communicate with a cluster.
+A pickle can make its reader call any function, and Dask's client unpickles results, the types of results, errors and
+warnings from workers. :func:`install` prevents such calls in the whole process. Because other code may need pickle's
+own functions, use it only in a process that does nothing but communicate with a cluster.
 
 The method is described in the documentation of :mod:`pickle` under "Restricting Globals".
 """
@@ -31,7 +31,7 @@ class Inert(Exception):
 
 class _InertUnpickler(pickle.Unpickler):
     def find_class(self, module: str, name: str) -> Any:
-        """Return a plain type, or an inert stand-in with this name. Nothing is imported."""
+        """Return a plain type or, without importing anything, an inert stand-in with this name."""
         if module == "builtins" and name in _PLAIN:
             return getattr(builtins, name)
         # tblib, which Dask uses, stores errors under these two names.
@@ -56,7 +56,7 @@ def loads(data: Any, /, *, buffers: Iterable[Any] | None = None, **_: Any) -> An
 
 
 def install() -> None:
-    """Replace pickle's own functions in this process. Call this before other modules import them."""
+    """Replace pickle's own functions in this process. Call this before any module imports the original functions."""
     replaced: Any = pickle
     replaced.loads = loads
     replaced.load = lambda file, **options: loads(file.read(), **options)

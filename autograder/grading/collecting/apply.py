@@ -127,8 +127,8 @@ class Submitted:
             else:
                 changes.append((place, line, content))
         history = History(now)
-        # Write the record before the files. If this command is interrupted, the next `collect` still knows that these
-        # files are its own.
+        # Write the record before the files, so that the next `collect` knows that these files are its own even if this
+        # command is interrupted.
         passing = {place[2]: content for place, _, content in changes if content}
         if changes:
             self._records.put(assignment, student, replace(history, replaced=passing))

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 def put_right(directory: ClassDirectory) -> Iterator[str]:
     """Rename students' folders whose accents a Mac has stored as characters of their own; yield a sentence about each.
 
-    Both forms of a name look the same, so an instructor could not find the fault.
+    They are renamed because both forms of a name look the same, so an instructor could not find the fault.
     """
     for folder in _folders(directory.path / "submitted"):
         composed = folder.with_name(unicodedata.normalize("NFC", folder.name))

@@ -206,7 +206,7 @@ class _Collecting:
 
 
 def _hindered(one: Line, results: Mapping[Place, tuple[State, str]]) -> Line:
-    """Return the line. If its file could not be written into ``submitted``, the line waits for a person."""
+    """Return the line, which waits for a person if its file could not be written into ``submitted``."""
     state, reason = results.get(one.place, (State.PLACED, ""))
     is_hindered = one.state == State.PLACED and state == State.NOT_PLACED
     return replace(one, state=state, reason=reason) if is_hindered else one

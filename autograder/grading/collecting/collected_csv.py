@@ -1,8 +1,8 @@
-"""``collected.csv``: one line for each file, as ``collect`` decided. What people write into it takes precedence.
+"""``collected.csv``: one line for each file, with what ``collect`` decided. What people write there takes precedence.
 
-A person has written a cell if it differs from the table that ``collect`` wrote. Therefore a copy of each table is kept,
-and the table's header contains the number of its copy. A table that was open in a spreadsheet while another ``collect``
-wrote a new one is compared with its own copy.
+A cell counts as written by a person if it differs from the same cell in the table that ``collect`` wrote. To compare
+them, a copy of each table is kept, and the table's header contains the number of its copy. This works even if the table
+was open in a spreadsheet while another ``collect`` wrote a new table.
 """
 
 from __future__ import annotations
@@ -222,7 +222,7 @@ class Table:
         return text.getvalue().encode("utf-8-sig", "replace")
 
     def _row(self, several: Sequence[Line], edit: Edit) -> list[str]:
-        """Return the row for a file. The work of a group comes as several lines, one for each student."""
+        """Return the row for a file. If it is the work of a group, ``several`` has a line for each student."""
         first = (State.NOT_PLACED, State.PLACED)
         line = min(several, key=lambda one: first.index(one.state) if one.state in first else len(first))
         when = f"{line.when.astimezone(self._zone):%Y-%m-%d %H:%M:%S %z}" if line.when else ""

@@ -1,8 +1,8 @@
 """The inbox of a class: every file that ``collect`` was given, stored by the hash of its bytes, with its origin.
 
 Each ``collect`` command makes one delivery, which is one file on the disk: a zip with the new bytes and a list of the
-files that came. The zip is written completely or not at all, and never changes. The same delivery, made again, is the
-same zip.
+files that came. The zip is written completely or not at all, and never changes. If the same command is run again with
+the same files, it makes the same zip.
 """
 
 from __future__ import annotations
@@ -73,7 +73,7 @@ class Arrival:
 
     @property
     def key(self) -> str:
-        """The key of the file in ``collected.csv``. Equal bytes with an equal name always have the same key."""
+        """The key of the file in ``collected.csv``; the same for all files with equal bytes and an equal name."""
         named = f"{self.content}\0{self.path or self.source}".encode("utf-8", "replace")
         return f"#{hashlib.sha256(named).hexdigest()[:_KEY_LENGTH]}"
 
@@ -139,7 +139,7 @@ class Inbox:
 
     @contextlib.contextmanager
     def receiving(self) -> Iterator[Receiving]:
-        """Take in a delivery within a ``with`` block. The delivery is stored when the block ends without an error.
+        """Take in a delivery within a ``with`` block, and store it if the block ends without an error.
 
         Raises:
             OSError: The delivery could not be written.
@@ -165,7 +165,7 @@ class Receiving:
     """A delivery while it is being taken in.
 
     Attributes:
-        delivery: The files with the options of the command. Set this before the block ends.
+        delivery: The files with the options of the command, to be set before the block ends.
         new: The hashes of bytes that the inbox did not have before.
     """
 

@@ -1,4 +1,4 @@
-"""The records of collected work, stored in the class. Once a class has one, only times in the records are trusted."""
+"""The records of collected work, stored in the class. If a class has any, only the times in the records are trusted."""
 
 from __future__ import annotations
 

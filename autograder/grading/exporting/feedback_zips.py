@@ -1,4 +1,4 @@
-"""Feedback as one zip in the format that an LMS can read: a page has the name of the file that it is about.
+"""Feedback as one zip in the format that an LMS can read, in which a page has the name of the file that it is about.
 
 The systems find the student of a page as follows. Moodle (*Upload multiple feedback files in a zip*): by the folder
 ``<name>_<number>_assignsubmission_file``. Canvas (*Upload submissions*): by the numbers of the student and of the
@@ -75,7 +75,8 @@ def feedback_zip(
 def _called(file: str, lms: str, page: PurePath, *, is_one: bool) -> str:
     """Return the name of a page in the zip, derived from the name that the system gave to the student's file or folder.
 
-    If a zip was unpacked, this is the name of the folder, because the student chose the names inside it.
+    If the student handed in a zip that was unpacked, use the folder's name, because the student chose the names in the
+    zip.
     """
     parts = PurePosixPath(file).parts
     place, found = next(

@@ -29,7 +29,7 @@ def filled_in(
 ) -> tuple[bytes, list[str]]:
     """Fill points into a list that an LMS exported, and leave everything else in the list unchanged.
 
-    Points that are already in the list stay if the class has none for the student.
+    If the class has no points for a student, points that are already in the list stay.
 
     Args:
         into: Moodle's grading worksheet, or a gradebook that another system exported.
@@ -126,7 +126,7 @@ _KINDS = ("number", "login", "name")
 
 
 def _column(header: Sequence[str], kind: ListForm, assignment: str, called: str) -> int:
-    """Return the index of the column for an assignment. Canvas adds a number to its name: ``lab_1_2 (815)``.
+    """Return the index of the column for an assignment, to whose name Canvas adds a number: ``lab_1_2 (815)``.
 
     Raises:
         GradingError: The list has no such column, or the column names the student.
@@ -148,7 +148,7 @@ def _without_number(name: str) -> str:
 
 
 def _letters(name: str) -> str:
-    """Return the letters and digits of a name. In these, an assignment and its column differ least."""
+    """Return the letters and digits of a name, in which the names of an assignment and of its column differ least."""
     return re2.sub(r"[\W_]+", "", _without_number(name)).casefold()
 
 

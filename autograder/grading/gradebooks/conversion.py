@@ -1,7 +1,7 @@
 """Converts a graded submission: writes its notebooks to ``autograded/``, and makes its entry for the gradebook.
 
-The files and entries are the same as those of ``nbgrader autograde``. But this module takes a twentieth of the time:
-nbgrader reads, validates and writes every notebook twice, and opens the gradebook a dozen times.
+The files and entries are the same as those of ``nbgrader autograde``. But this module takes a twentieth of the time,
+because nbgrader reads, validates and writes every notebook twice, and opens the gradebook a dozen times.
 """
 
 from __future__ import annotations
@@ -98,7 +98,7 @@ def _graded(
 
 
 def _text(notebook: NotebookNode) -> bytes:
-    """Return the JSON text of a notebook, equal to nbformat's but made faster. This changes ``notebook``."""
+    """Return the JSON text of a notebook, equal to nbformat's but made faster. The argument is changed."""
     split: Any = rwbase.split_lines
     strip: Any = rwbase.strip_transient
     encoded = msgspec.json.encode(strip(split(notebook)), order="sorted")
@@ -128,7 +128,7 @@ def _write(path: Path, data: bytes) -> None:
 
 
 def _with_results(nb: NotebookNode, task: Task, execution: Execution) -> NotebookNode:
-    """Return a rebuilt notebook with the outputs of its cells. A check cell shows the card and the points."""
+    """Return a rebuilt notebook with the outputs of its cells, which for a check cell are the card and the points."""
     count = 0
     for index, (node, cell) in enumerate(zip(nb.cells, task.cells, strict=True)):
         if node.cell_type != "code":

@@ -45,8 +45,8 @@ class NotebookEntry:
 def reset(url: str, submissions: Iterable[tuple[str, str]]) -> None:
     """Set the automatic points of submissions to zero and mark their cells for review, in one transaction.
 
-    After that, a later failure cannot leave old points in the gradebook. Points that an instructor gave by hand are
-    not changed.
+    Use this before a grading run, so that a failure cannot leave old points in the gradebook. Points that an instructor
+    gave by hand are not changed.
 
     Args:
         url: The address by which SQLAlchemy opens the gradebook.
@@ -71,7 +71,7 @@ def enter(
     notebooks: Mapping[str, NotebookEntry],
     timestamp: datetime | None,
 ) -> bool:
-    """Enter the results of one submission, in one transaction. Points and comments by a person are not changed.
+    """Enter the results of one submission, in one transaction, without changing points and comments by a person.
 
     Args:
         url: The address by which SQLAlchemy opens the gradebook.
@@ -228,8 +228,8 @@ def _enter_scores(book: Connection, notebook: str, cells: _Cells, entry: Noteboo
             "n": notebook,
             "cell": cell,
             "score": scores.get(name, 0.0),
-            # Mark a cell for review if a person gave points or still has to give them. nbgrader's SaveAutoGrades does
-            # the same.
+            # Mark a cell for review if a person gave points or still has to give them, as nbgrader's SaveAutoGrades
+            # does.
             "look": by_hand.get(cell) is not None or scores.get(name, 0.0) is None or name in entry.unchecked,
         }
         for cell, name in cells.graded

@@ -1,7 +1,7 @@
 """Reads submissions with their points and comments from nbgrader's gradebook.
 
-This module uses SQL on nbgrader's tables (``nbgrader/api.py`` in version 0.9). nbgrader's own objects would be slow:
-they need a query for every cell, and importing them takes more than a second.
+This module uses SQL on nbgrader's tables (``nbgrader/api.py`` in version 0.9), because nbgrader's own objects would be
+slow: they need a query for every cell, and importing them takes more than a second.
 """
 
 from __future__ import annotations
@@ -140,7 +140,7 @@ class SubmissionEntry:
         return entry.judged if entry else None
 
     def shown(self) -> str:
-        """Return a hash of the whole entry. If it changes, the feedback page has to be made again."""
+        """Return a hash of the whole entry. If the hash changes, the feedback page has to be made again."""
         return hashlib.sha256(msgspec.json.encode(self, order="deterministic")).hexdigest()
 
 
@@ -155,13 +155,13 @@ def opened(url: str) -> AbstractContextManager[Connection]:
 
 @functools.lru_cache(maxsize=8)
 def _engine(url: str) -> Engine:
-    """Return SQLAlchemy's engine for a gradebook. The engine opens a new connection for each block."""
+    """Return SQLAlchemy's engine for a gradebook, which opens a new connection for each block."""
     return sqlalchemy.create_engine(url, poolclass=NullPool)
 
 
 @functools.lru_cache(maxsize=64)
 def sql(statement: str) -> TextClause:
-    """Return a statement in the form that SQLAlchemy executes. Each text is parsed only once."""
+    """Return a statement in the form that SQLAlchemy executes, parsed only once for each text."""
     return sqlalchemy.text(statement)
 
 

@@ -1,4 +1,4 @@
-"""Writes the results of a submission to the gradebook, ``autograded/`` and ``feedback/``. No other module does so."""
+"""Writes the results of a submission to the gradebook, ``autograded/`` and ``feedback/``, as no other module does."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 
 class NotWritten(RuntimeError):
-    """The points could not be written to the gradebook, or differ there from the judge's. The message says where."""
+    """The points could not be written to the gradebook, or differ there from the judge's, as the message says."""
 
 
 class Writer:
@@ -100,8 +100,8 @@ class Writer:
     def _convert_and_enter(self, submission: Submission, results: Sequence[tuple[Task, Execution]]) -> None:
         """Write the notebooks, then enter the grades.
 
-        The notebooks come first: if the grader is interrupted between the two steps, notebooks without grades do no
-        harm.
+        The notebooks come first because notebooks without grades do no harm, if the grader is interrupted between the
+        two steps.
         """
         folder = self._folder("autograded", submission)
         _remove(folder)
@@ -167,7 +167,7 @@ class Writer:
 
 
 class _LogFile(logging.FileHandler):
-    """A log file that ignores errors when it is written. The grader itself reports a full disk, once."""
+    """A log file that ignores errors when it is written, because the grader itself reports a full disk, once."""
 
     def handleError(self, record: logging.LogRecord) -> None:  # noqa: N802  (logging's name)
         """Ignore the error."""

@@ -27,8 +27,9 @@ _OF_CHAPTERS = (f"*/{course.CHAPTER}", "*/*/*.py", f"*/*/*{REFERENCE}")
 def course_version() -> str:
     """Return a hash of all files of the course that run or judge submissions, in hexadecimal.
 
-    Results are stored under this hash. When it changes, for example after a fix of an exercise, graded submissions are
-    run again. All machines of a cluster must have the same hash.
+    Results are stored under this hash, so when it changes, for example after a fix of an exercise, graded submissions
+    are run again. All machines of a cluster must have the same hash, because otherwise they could give different
+    grades.
 
     The hash covers the files of the folders ``autograder`` and ``environment``, even files that seem to influence no
     grade. Of ``solutions/``, it covers the exercises, their reference outputs, the chapters' interfaces and the

@@ -1,11 +1,11 @@
 """Finds the cells to skip when a class is graded: those that only show something, such as a ``ros2`` command.
 
-The notebooks of a chapter contain about forty such cells. Each starts processes that take half a second. To run them
-would take longer than all student code and checks. No check depends on them, because a check runs its subject in a
-separate ROS domain.
+The notebooks of a chapter contain about forty such cells, each of which starts processes that take half a second. To
+run them would take longer than all student code and checks. They can be skipped because no check depends on them: a
+check runs its subject in a separate ROS domain.
 
-The master marks these cells with a tag. A cell that makes something, such as ``colcon build``, has no such tag,
-because a later check may need the result.
+The master marks these cells with a tag. But a cell that makes something, for example with ``colcon build``, has no such
+tag, because a later check may need the result.
 
 After the last cell with points, all cells that write files or run terminal commands are skipped, too, because no check
 follows.

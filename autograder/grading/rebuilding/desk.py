@@ -4,9 +4,9 @@
 
     cells, left_out = read_notebook(read_bytes(path))
 
-A file that takes over its desk can only change what is read from this one file. The document that the desk returns is
-checked (:func:`autograder.grading.running.admission.admitted_notebook`). If the document is impossible, or the desk
-fails on the file, the file counts as unreadable.
+Even if a file takes over its desk, it can only change what is read from this one file, because the document that the
+desk returns is checked (:func:`autograder.grading.running.admission.admitted_notebook`). If the document is impossible,
+or the desk fails on the file, the file counts as unreadable.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ _NOT_READ = f"The file is not a notebook: the program that reads notebooks faile
 
 
 class DeskFailed(GradingError):
-    """Desks do not work on this machine, so no file can be read. The message says what to do."""
+    """No file can be read, because desks do not work on this machine. The message says what to do."""
 
 
 def read_notebook(data: bytes) -> tuple[Sequence[SubmittedCell], int]:
@@ -55,7 +55,7 @@ def read_notebook(data: bytes) -> tuple[Sequence[SubmittedCell], int]:
 
 
 def document_of(desk: Desk | KeptDesk, data: bytes) -> bytes:
-    """Let a desk process read the bytes of a file. Return the desk's document, which has not been checked yet.
+    """Let a desk process read the bytes of a file, and return the desk's document, which is not checked yet.
 
     Raises:
         UnreadableSubmission: The desk process failed because of the file.
@@ -69,7 +69,7 @@ def document_of(desk: Desk | KeptDesk, data: bytes) -> bytes:
 
 
 def checked(document: bytes) -> tuple[Sequence[SubmittedCell], int]:
-    """Check a desk's document. Return its cells, and the number of invalid cells that the desk left out.
+    """Check a desk's document, and return its cells and the number of invalid cells that the desk left out.
 
     Raises:
         UnreadableSubmission: The file is not a notebook, or the document is impossible.
@@ -93,7 +93,7 @@ def why_unreadable(data: bytes) -> str:
 
 
 def _rehearse(desk: Desk) -> None:
-    """Let a new desk read a sample. If that fails, this machine is the cause, not a student's file."""
+    """Let a new desk read a sample, to find out whether this machine, and not a student's file, causes failures."""
     try:
         checked(document_of(desk, _SAMPLE))
     except UnreadableSubmission as error:

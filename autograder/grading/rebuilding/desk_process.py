@@ -1,9 +1,9 @@
 """The desk: a process in a box that parses the file of one student, and does nothing else.
 
-The fork server (:mod:`autograder.boxes.fork_server`) forks it with the system call filter for readers. It gets the
-bytes of one file, and writes a document: the cells, or the reason why the file cannot be read. A student can craft a
-file that keeps a parser busy or uses up memory; the limits of this process then end it. The grader starts the desk with
-:mod:`autograder.grading.rebuilding.desk`.
+The grader starts the desk with :mod:`autograder.grading.rebuilding.desk`, and a fork server
+(:mod:`autograder.boxes.fork_server`) forks it with the system call filter for readers. The desk gets the bytes of one
+file, and writes a document: the cells, or the reason why the file cannot be read. If a student has crafted a file that
+keeps a parser busy or uses up memory, the limits of this process end it.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
-"""Computes a fingerprint of a submission from its files. A run skips submissions whose fingerprint is unchanged.
+"""Computes a fingerprint of a submission from its files, so that a run can skip submissions that are unchanged.
 
-To read files is much faster than to rebuild the notebooks: a class of a hundred students has a thousand notebooks, and
-in most runs few of them are new. If the fingerprint of a submission has changed, its notebooks are rebuilt and
-compared cell by cell.
+This saves time, because to read files is much faster than to rebuild the notebooks: a class of a hundred students has a
+thousand notebooks, and in most runs few of them are new. Only if the fingerprint of a submission has changed, its
+notebooks are rebuilt and compared cell by cell.
 """
 
 from __future__ import annotations
@@ -67,7 +67,7 @@ class Fingerprints:
 
 
 def _trusted(path: Path) -> str:
-    """Return a hash of an instructor's file. It may be a link, unlike a submitted file."""
+    """Return a hash of an instructor's file, which, unlike a submitted file, may be a link."""
     return hashlib.sha256(path.read_bytes()).hexdigest()
 
 

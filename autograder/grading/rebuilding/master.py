@@ -30,8 +30,8 @@ if TYPE_CHECKING:
 def read_master(source: Path, config: Config) -> NotebookNode:
     """Return the notebook that ``nbgrader generate_assignment`` would enter into the gradebook.
 
-    The notebook in ``release/`` would not do, because it lacks the hidden tests. All callers share one object: copy it
-    before you change it.
+    The notebook in ``release/`` cannot be used instead, because it lacks the hidden tests. All callers get the same
+    object, so copy it before you change it.
 
     Args:
         source: The notebook in the class's ``source`` folder.

@@ -1,8 +1,9 @@
 """Matches submitted cells with cells of the master, even if an editor has dropped nbgrader's metadata.
 
-A cell is recognized by its grade_id, otherwise by its id, otherwise by its text. If no submitted cell matches an
-answer cell, the answer is searched in the student's other cells, by the names that they define. Matching only assigns
-a student's texts to the cells of the master. The text of given cells and of checks always comes from the master.
+A cell is recognized by its grade_id, otherwise by its id, otherwise by its text. If no submitted cell matches an answer
+cell, the answer is searched in the student's other cells, by the names that they define. A wrong match cannot change a
+check, because matching only assigns a student's texts to cells of the master, and the text of given cells and of checks
+always comes from the master.
 """
 
 from __future__ import annotations
@@ -131,7 +132,8 @@ class _Matching:
     def elsewhere(self) -> dict[str, list[int]]:
         """Return, for each answer cell without a match, the submitted cells that define the same names.
 
-        If a student wrote an answer into a given cell, that cell no longer matches the given cell of the master.
+        Even a given cell may have the answer: if a student wrote the answer there, it no longer matches the master's
+        cell.
         """
         code = {
             place: cell.source
@@ -227,6 +229,6 @@ def _defined_names(stub: str) -> list[str]:
 
 
 def _has_lines(text: str, lines: str) -> bool:
-    """Return True if a text contains all the lines, in their order. Spaces around a line do not matter."""
+    """Return True if a text contains all the lines, in their order, without regard to spaces around a line."""
     there = (line.strip() for line in text.splitlines())
     return all(line.strip() in there for line in lines.splitlines() if line.strip())

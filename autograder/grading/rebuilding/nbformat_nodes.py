@@ -1,4 +1,4 @@
-"""Makes, reads and writes notebooks with nbformat. Adds the type annotations that nbformat lacks."""
+"""Makes, reads and writes notebooks with nbformat, and adds the type annotations that nbformat lacks."""
 
 from __future__ import annotations
 
@@ -41,12 +41,12 @@ _OUTPUT: Any = _Stream | _Display | _Result | _Error
 
 
 def notebook(cells: list[NotebookNode], metadata: dict[str, Any]) -> NotebookNode:
-    """Return a notebook of format 4.5 with these cells. Validation is skipped, because this package made the cells."""
+    """Return a notebook of format 4.5 with these cells, which are not validated because this package made them."""
     return NotebookNode(metadata=_node(metadata), nbformat=4, nbformat_minor=5, cells=cells)
 
 
 def cell(kind: CellType, source: str, identifier: str = "") -> NotebookNode:
-    """Return a new cell without outputs. nbformat's slow validation is skipped.
+    """Return a new cell without outputs, and without nbformat's slow validation.
 
     Args:
         kind: The type of the cell.
@@ -65,7 +65,7 @@ def cell(kind: CellType, source: str, identifier: str = "") -> NotebookNode:
 def output(**fields: Any) -> NotebookNode:
     """Return an output of a cell with the given fields, after checking their types.
 
-    nbformat's own check takes a hundred times as long.
+    The types are checked here, because nbformat's own check takes a hundred times as long.
 
     Raises:
         msgspec.ValidationError: The fields do not form a valid stream, display, result or error output.
@@ -86,7 +86,7 @@ def read(text: str) -> NotebookNode:
 
 
 def read_own(data: bytes) -> NotebookNode:
-    """Return a notebook of format 4 that this package wrote. Validation is skipped.
+    """Return a notebook of format 4 that this package wrote, and which is therefore not validated.
 
     Raises:
         msgspec.DecodeError: The data is not JSON.

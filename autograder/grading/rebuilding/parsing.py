@@ -1,7 +1,7 @@
 """Parses a notebook into typed cells with limited sizes, and drops everything else, such as outputs.
 
-The class's source notebooks are parsed in any process. A student's file is parsed only in a desk: call
-:func:`autograder.grading.rebuilding.desk.read_notebook`.
+The class's source notebooks may be parsed in any process. But a student's file is parsed only in a desk, so call
+:func:`autograder.grading.rebuilding.desk.read_notebook` for it.
 """
 
 from __future__ import annotations

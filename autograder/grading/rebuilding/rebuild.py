@@ -67,7 +67,7 @@ def is_of_another(master: NotebookNode, submitted: Sequence[SubmittedCell]) -> b
     """Return True if the cells belong to a different master.
 
     This is so if the master does not know most of the cells' names, and the notebook has none of the master's graded
-    cells. Some names may still be the same, because labs share names.
+    cells. The other names may be known although the master is different, because labs share names.
     """
     names = {cell.grade_id for cell in submitted if cell.grade_id}
     ours = {grade_id(cell) for cell in master.cells}
@@ -182,8 +182,8 @@ class _Sorting:
     def _choose(self, name: str, places: Sequence[int]) -> int:
         """Return the index of the copy of a cell that counts: the last copy before its check.
 
-        An unchanged stub counts only if all copies are unchanged. A copy after the check counts only if none stands
-        before the check.
+        There are two exceptions. An unchanged stub counts only if all copies are unchanged. A copy after the check
+        counts only if no copy is before the check.
         """
         stub = self._master[name].source.strip()
         answered = [place for place in places if self._submitted[place].source.strip() != stub] or places
@@ -251,8 +251,8 @@ class _Sorting:
             answer = self._submitted[self._chosen[name]]
             filled.update(source=answer.source, attachments=_attachments(answer))
         elif is_answer(cell) and self._may_be_answered_elsewhere(name):
-            # A stub would overwrite the student's definitions. So the cell gets a note that sends a person to the
-            # other cells.
+            # The cell gets a note that sends a person to the other cells. It does not get the stub, because the stub
+            # would overwrite the student's definitions.
             filled["source"] = _ELSEWHERE if cell.cell_type == CellType.MARKDOWN else f"# {_ELSEWHERE}"
         return filled
 
@@ -379,5 +379,5 @@ def _quoted(name: str) -> str:
 
 
 def _cell_id(cell: NotebookNode, index: int) -> str:
-    """Return an id made from the cell's index and name. With random ids, every run would give a different file."""
+    """Return an id made from the cell's index and name, and not a random id, so that each run gives the same file."""
     return re.sub(r"[^A-Za-z0-9_-]", "-", f"{index}-{grade_id(cell) or 'own'}")[:64]

@@ -1,6 +1,6 @@
 """Lists the cells with points in a class's source notebooks, and compares them with the gradebook.
 
-The list is stored, because it takes a second to make: nbgrader's preprocessors run on each source notebook.
+The list is stored, because it takes a second to make, in which nbgrader's preprocessors run on each source notebook.
 """
 
 from __future__ import annotations

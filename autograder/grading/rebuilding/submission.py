@@ -136,7 +136,7 @@ def reason_against_file(path: Path) -> str:
 
 @contextlib.contextmanager
 def _opened(path: Path) -> Iterator[IO[bytes]]:
-    """Open an ordinary file. Check its type before, because opening a device may have effects, and again after."""
+    """Open an ordinary file. Check its type before, because opening a device may have effects, and after opening."""
     try:
         _check(path, path.lstat())
         with opened(path) as file:
@@ -165,9 +165,9 @@ def _check(path: Path, status: os.stat_result) -> None:
 def _is_somebody_elses(path: Path, status: os.stat_result) -> bool:
     """Return True if a file with several names (hard links) belongs to another student or to the class.
 
-    The file belongs to the student whose folder has the oldest change time. So a student cannot make another student's
-    submission fail by making a link to it. Only the system can set the change time of a folder. Links outside the
-    class are ignored, because a backup may have made them.
+    The file belongs to the student whose folder has the oldest change time, which only the system can set. So a student
+    cannot make another student's submission fail by making a link to it. Links outside the class are ignored, because a
+    backup may have made them.
     """
     submitted = next((folder for folder in path.parents if folder.name == "submitted"), path.parent)
     places = itertools.chain(files_below(submitted), files_below(submitted.parent / "source"))

@@ -104,8 +104,8 @@ def cells_of(
     Args:
         notebook: The notebook.
         demonstrations: False to empty the cells that only show something, so that they are skipped.
-        prose: The texts of the master's text cells. A cell with such a text counts as given, not as the student's. If
-            a text occurs more often than in ``prose``, the additional cells count as the student's, so that limits
+        prose: The texts of the master's text cells. A cell with such a text counts as given, not as the student's. But
+            if a text occurs more often than in ``prose``, the additional cells count as the student's, so that limits
             apply to thousands of copies.
     """
     left_out = frozenset() if demonstrations else demonstrations_of(notebook)

@@ -64,7 +64,7 @@ class ItemFigures:
         mean: The mean of these students' points.
         full: The number of these students with full points.
         none: The number of these students without points.
-        difficulty: The mean divided by the maximum points. A high value means an easy exercise.
+        difficulty: The mean divided by the maximum points, so a high value means an easy exercise.
         discrimination: Pearson's correlation, from -1 to 1, between students' points for this exercise and their
             points for all other exercises; None if it cannot be computed.
         criteria: How many submissions meet each criterion of the exercise.
@@ -126,8 +126,8 @@ def progress(student: str, attempts: Iterable[Attempt]) -> list[AttemptProgress]
 
     Args:
         student: The student's id.
-        attempts: All graded attempts of the student, oldest first. Only attempts with the same version of the course
-            as the last attempt are used, because others are not comparable.
+        attempts: All graded attempts of the student, oldest first. But only attempts with the same version of the
+            course as the last attempt are used, because other attempts are not comparable.
     """
     found: dict[str, list[Attempt]] = defaultdict(list)
     for attempt in attempts:
@@ -144,7 +144,7 @@ def progress(student: str, attempts: Iterable[Attempt]) -> list[AttemptProgress]
 
 
 def bands(table: ClassTable) -> list[Band]:
-    """Return the distribution of total points in ten bands. Students without points are left out."""
+    """Return the distribution of total points in ten bands, without students who have no points."""
     found: dict[int, list[str]] = defaultdict(list)
     for student in handed_in(table):
         if (points := table.score(student)) is None:

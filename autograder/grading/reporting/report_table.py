@@ -103,7 +103,7 @@ def tables(rows: Sequence[Row], console: Console, *, diagnoses: bool) -> Iterato
     Args:
         rows: The rows to show.
         console: The console into which each table has to fit.
-        diagnoses: True to also show recognized mistakes. A table with four exercises is then about 130 characters
+        diagnoses: True to also show recognized mistakes, with which a table with four exercises is about 130 characters
             wide.
     """
     grid = _Grid.of(rows, diagnoses=diagnoses)
@@ -157,13 +157,13 @@ class _Grid:
         """Return a grid with one row, which consists of the widest cell of each column."""
         student = next(iter(self.students))
         by_width = sorted(self.results.values(), key=lambda row: cell_len(_cell(row, self.diagnoses).plain))
-        # A dict keeps the last value for a key. As the rows are sorted by width, this is the widest cell of the
+        # The rows are sorted by width, and a dict keeps the last value for a key, so it keeps the widest cell of each
         # column.
         results = {(student, row.assignment, row.exercise): row for row in by_width}
         return replace(self, students={student: self.students[student]}, results=results)
 
     def table(self, keys: Sequence[tuple[str, str]], *, is_last: bool = False) -> Table:
-        """Return a table of some columns. The last table also has columns for late penalty, dropped work and total."""
+        """Return a table of some columns; the last table also has columns for late penalty, dropped work and total."""
         there = {exercise for _, _, exercise in self.results} if is_last else set()
         late, dropped = LATE in there, DROPPED in there
         shown = Table(header_style="bold", box=box.SIMPLE_HEAD, pad_edge=False)
@@ -208,7 +208,7 @@ def _diagnoses(rows: Sequence[Row]) -> Table:
 
 
 def _unreadable(report: GradeReport) -> list[tuple[str, str]]:
-    """Return pairs of a submission and the reason why its notebook cannot be read. Refused files are left out."""
+    """Return pairs of a submission and the reason why its notebook cannot be read, without refused files."""
     refused = {(entry.path.parent.parent.name, entry.path.parent.name) for entry in report.refused}
     reasons = {
         f"{row.student}/{row.assignment}": row.reason

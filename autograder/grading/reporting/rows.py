@@ -103,7 +103,7 @@ class Row:
 
     @property
     def is_unchecked(self) -> bool:
-        """True if the exercise was submitted but not judged. The next run may give points."""
+        """True if the exercise was submitted but not judged, so that the next run may give points."""
         return self.is_blank and self.state in (NOT_GRADED, State.NOT_CHECKED)
 
     @property
@@ -170,7 +170,7 @@ def write_csv(path: Path, rows: Iterable[Row]) -> None:
     """Write rows as a CSV file, in UTF-8 with a byte order mark (BOM), so that Excel recognizes the encoding.
 
     Raises:
-        OSError: The file could not be written. An earlier file is unchanged.
+        OSError: The file could not be written. If it existed before, it is unchanged.
     """
     write_whole(path, csv_text([COLUMNS, *map(csv_cells, rows)]).encode("utf-8-sig"))
 

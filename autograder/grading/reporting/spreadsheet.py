@@ -1,4 +1,4 @@
-"""Reads and writes CSV text. In written CSV, no text of a student is executed as a formula by a spreadsheet."""
+"""Reads CSV text, and writes CSV text in which a spreadsheet executes no text of a student as a formula."""
 
 from __future__ import annotations
 
@@ -63,10 +63,10 @@ def original(cell: str) -> str:
 def defused(cell: str) -> str:
     """Return a text that no spreadsheet executes as a formula (OWASP, "CSV Injection").
 
-    An apostrophe is put in front of a possible formula, at the beginning of the text, or after a character at which
-    some spreadsheets split a line. Spreadsheets then read the cell as text. Full-width signs such as "＝" count as
-    well, because some programs convert them to "=". Control characters such as tabs become spaces. Invisible
-    characters are removed.
+    An apostrophe is put in front of a possible formula, so that spreadsheets read the cell as text. A formula may be at
+    the beginning of the text, or after a character at which some spreadsheets split a line. Full-width signs such as
+    "＝" count as well, because some programs convert them to "=". Control characters such as tabs become spaces, and
+    invisible characters are removed.
 
     Args:
         cell: The original text.

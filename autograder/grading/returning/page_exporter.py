@@ -88,9 +88,9 @@ class Remembered:
 class PageExporter(HTMLExporter):
     """Makes nbgrader's feedback page from an untrusted notebook, without scripts.
 
-    nbgrader's own page loads MathJax from the network. This page loads nothing, and shows formulas as TeX. Parts that
-    are the same for many students are rendered only once. nbconvert would copy and validate a notebook twice for its
-    preprocessors. This class has no preprocessors, and gives the notebook directly to the template.
+    Unlike nbgrader's own page, which loads MathJax from the network, this page loads nothing, and shows formulas as
+    TeX. It is also made faster: parts that are the same for many students are rendered only once, and the notebook is
+    given directly to the template, while nbconvert would copy and validate it twice for its preprocessors.
     """
 
     @property
@@ -130,7 +130,7 @@ class PageExporter(HTMLExporter):
         """Return the feedback page of one notebook, as HTML.
 
         Args:
-            notebook: The notebook from ``autograded/``, with points and comments filled in. It is changed.
+            notebook: The notebook from ``autograded/``, with points and comments filled in. The object is changed.
             names: The values that the template needs about the student, the notebook and the points.
         """
         language = notebook.metadata.get("language_info", {})
@@ -169,10 +169,11 @@ class PageExporter(HTMLExporter):
 
 @pass_context
 def markdown_to_html(context: Any, source: str) -> str:
-    """Return a Markdown cell as HTML, cleaned unless the cell comes from the master. Replaces nbconvert's filter.
+    """Return a Markdown cell as HTML, cleaned unless the cell comes from the master. This replaces nbconvert's filter.
 
-    For formgrader, ``nbgrader_config.py`` sets this filter as ``HTMLExporter.filters["markdown2html"]``. A picture
-    that is not attached to the cell is left out. nbconvert's filter would raise an error, and no page would be made.
+    For formgrader, ``nbgrader_config.py`` sets this filter as ``HTMLExporter.filters["markdown2html"]``. A picture that
+    is not attached to the cell is left out, because an error, as from nbconvert's filter, would leave the student
+    without a page.
     """
     cell = context.get("cell", {})
     rendered = MarkdownWithMath(renderer=Renderer(escape=False)).render(source)
@@ -199,7 +200,7 @@ def _with_pictures(page: str, take: Callable[[str, dict[str, str]], Mapping[str,
     return _SHOWS_ATTACHED.sub(shown, page)
 
 
-# The head is most of a page, and the same for all students of an assignment. So the result is cached.
+# The result is cached, because the head is most of a page, and the same for all students of an assignment.
 @functools.lru_cache(maxsize=16)
 def without_scripts(head: str) -> str:
     """Return the head of a page without scripts, and with the policy that forbids scripts.
@@ -228,7 +229,7 @@ def _highlighter(lexer: str | None) -> Any:
 
 
 def _with_alternative_texts(page: str) -> str:
-    """Add missing alternative texts to pictures, as nbconvert does. If none is missing, do not parse the page."""
+    """Add missing alternative texts to pictures, as nbconvert does, but parse the page only if any is missing."""
     if all(_ALTERNATIVE.search(picture[0]) for picture in _PICTURE.finditer(page)):
         return page
     soup = BeautifulSoup(page, features="html.parser")

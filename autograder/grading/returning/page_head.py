@@ -1,6 +1,7 @@
 """Writes the top of a feedback page: the student's name, and a table of the exercises with points.
 
-At the top of nbgrader's own page, the student's name is missing, and each exercise is called "Test cell".
+This replaces the top of nbgrader's own page, where the student's name is missing, and each exercise is called "Test
+cell".
 """
 
 from __future__ import annotations
@@ -60,8 +61,8 @@ def cards_first(notebook: NotebookNode) -> list[tuple[bool, bool]]:
     """Move the check cells to the top of a notebook, because their outputs are the cards.
 
     Returns:
-        For each cell a pair of booleans: whether a block of given cells begins with this cell, and whether such a
-        block ends with it. A page folds these blocks.
+        For each cell a pair of booleans, with which a page folds blocks of given cells: whether such a block begins
+        with this cell, and whether it ends with this cell.
     """
     notebook.cells = sorted(notebook.cells, key=lambda cell: not is_check(cell))
     given = [is_the_masters(cell) and not is_check(cell) for cell in notebook.cells]

@@ -1,8 +1,8 @@
 """Reads the number of pixels of a picture from its header, without decoding the picture.
 
-A small file can have very many pixels: a PNG of 30 kB with 16,000 x 16,000 pixels takes a gigabyte in a browser. Each
-frame of an animated picture is counted. Sources: PNG specification (W3C, third edition), 11.2 and 11.3.6; GIF89a, 18
-to 26; ITU-T T.81, B.2.2; RFC 9649.
+Pixels are counted because even a small file can have very many: a PNG of 30 kB with 16,000 x 16,000 pixels takes a
+gigabyte in a browser. In an animated picture, the pixels of each frame are counted. Sources: PNG specification (W3C,
+third edition), 11.2 and 11.3.6; GIF89a, 18 to 26; ITU-T T.81, B.2.2; RFC 9649.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ class PixelBudget:
         self._left = MOST_POINTS
 
     def fit(self, encoded: Iterable[str]) -> bool:
-        """Count the pixels of base64 pictures. If they would exceed the limit, return False and do not count them."""
+        """Count the pixels of base64 pictures; but if they would exceed the limit, count none and return False."""
         wanted = sum(points_of(picture) or 0 for picture in encoded)
         if wanted > self._left:
             return False

@@ -1,7 +1,7 @@
 """The program of the desk that renders a notebook's texts as a trial, to find out how long that takes.
 
-The desk writes one byte after each text that it has rendered. The rendered texts are not used. The module
-:mod:`autograder.grading.returning.rendering_time` starts the desk.
+The module :mod:`autograder.grading.returning.rendering_time` starts the desk. The rendered texts are not used: the desk
+only writes one byte after each text that it has rendered.
 """
 
 from __future__ import annotations

@@ -1,9 +1,9 @@
 """Makes a submission's texts and outputs harmless for a browser.
 
 nbconvert copies raw HTML, Mermaid diagrams and any address into nbgrader's feedback pages and formgrader. So a
-student's text is parsed with nbconvert's own Markdown parser before it is written into ``autograded/``. Plain Markdown
-stays unchanged. Any other text is rendered, cleaned with nh3, and stored as HTML. Feedback pages are cleaned again
-when they are made (:mod:`autograder.grading.returning.page_exporter`).
+student's text is parsed with nbconvert's own Markdown parser before it is written into ``autograded/``. If it is plain
+Markdown, it stays unchanged; otherwise it is rendered, cleaned with nh3, and stored as HTML. Feedback pages are cleaned
+again when they are made (:mod:`autograder.grading.returning.page_exporter`).
 """
 
 from __future__ import annotations
@@ -73,8 +73,8 @@ _LINK = re2.compile(r"https?://\S+|mailto:[^\s:]+|#\S*|(/|/?[\w%.-][\w%./-]*)(#\
 _PICTURE = re2.compile(r"data:image/(?:png|jpeg|gif|webp);base64,([A-Za-z0-9+/=\s]*)")
 _ATTACHED = "attachment:"
 _ATTACHMENT = re2.compile(rf"{_ATTACHED}[\w.%+-]+")
-# The allowed CSS classes are those that Pygments and mistune give to code. With other classes, a text could look like
-# a verdict, or cover the page.
+# Only the CSS classes that Pygments and mistune give to code are allowed, because with other classes, a text could look
+# like a verdict, or cover the page.
 _CLASSES = {name for name in STANDARD_TYPES.values() if name} | {"highlight"}
 _LANGUAGE = re2.compile(r"language-[\w+-]{1,30}")
 
@@ -100,8 +100,8 @@ def make_harmless(notebook: NotebookNode, as_they_are: Collection[int] = ()) -> 
 
     Args:
         notebook: A rebuilt or graded notebook. It is changed.
-        as_they_are: The indexes of cells that take too long to render. They are shown as typed and, because
-            nbconvert's filters read them even then, cut to a total length.
+        as_they_are: The indexes of cells that take too long to render, which are therefore shown as typed. They are
+            also cut to a total length, because nbconvert's filters read even such cells.
 
     Returns:
         The same notebook.
@@ -139,7 +139,7 @@ def _pictures_of(cell: NotebookNode) -> list[str]:
 
 
 def _with_pictures_that_fit(output: NotebookNode, pictures: PixelBudget) -> NotebookNode:
-    """Replace each picture in an output that is invalid or too large by a sentence. Return the changed output."""
+    """Return an output in which a sentence replaces each picture that is invalid or too large."""
     for kind in IMAGES:
         encoded = output.get("data", {}).get(kind)
         if encoded is not None and not (is_shown(text := "".join(encoded)) and pictures.fit([text])):
@@ -154,8 +154,8 @@ def harmless_markdown(source: str, figures: tuple[str, ...] = ()) -> str:
     """Return Markdown that shows the same text as ``source``, without scripts, foreign pictures or misleading markup.
 
     Args:
-        source: A student's text cell.
-        figures: The names of the bitmaps attached to the cell. Each may be shown once.
+        source: The text of a student's text cell.
+        figures: The names of the bitmaps attached to the cell, each of which may be shown once.
     """
     if len(source) > LONGEST_MARKDOWN:
         return as_typed(source)
@@ -182,7 +182,7 @@ def as_typed(source: str) -> str:
 
 
 def _figures(cell: Any) -> tuple[str, ...]:
-    """Remove all attachments of a text cell except bitmaps. Return the names of the bitmaps."""
+    """Remove all attachments of a text cell except bitmaps, and return the names of the bitmaps."""
     attached = cell.pop("attachments", {})
     bitmaps = {
         name: {kind: data}
@@ -211,7 +211,7 @@ def _cut(source: str, length: int) -> str:
 
 
 def _in_one_line(page: str) -> str:
-    """Return HTML without line breaks. After an empty line, a Markdown parser would read the rest as Markdown."""
+    """Return HTML without line breaks, because a Markdown parser would read what follows an empty line as Markdown."""
     pieces = re2.split(r"(?s)(<pre\b.*?</pre>)", page.strip())
     return "".join(("&#10;" if i % 2 else " ").join(piece.splitlines()) for i, piece in enumerate(pieces))
 
@@ -220,7 +220,7 @@ def _in_one_line(page: str) -> str:
 def clean(page: str) -> str:
     """Return HTML reduced to allowed elements: text, structure, links and embedded pictures.
 
-    A forbidden tag is shown as text. If nh3 removed it, a text such as "List<int>" would lose its meaning.
+    A forbidden tag is shown as text, because a text such as "List<int>" would lose its meaning if the tag were removed.
     """
     if _may_open(page) > _MOST_OPENED:
         return f"<pre>{escape(page)}</pre>"
@@ -231,13 +231,13 @@ def clean(page: str) -> str:
 def _may_open(page: str) -> int:
     """Return the maximum number of elements that nh3 could make because formatting elements are not closed.
 
-    At each tag, nh3 opens each kind of unclosed formatting again, up to three times per kind. So for a text of 50,000
-    characters, nh3 can make gigabytes of elements, and nothing can interrupt nh3.
+    This is needed because at each tag, nh3 opens each kind of unclosed formatting again, up to three times per kind. So
+    for a text of 50,000 characters, nh3 can make gigabytes of elements, and nothing can interrupt nh3.
     """
     tags = list(_TAG.finditer(page))
     formatting = [tag[0] for tag in tags if tag[1].lower() in _FORMATTING]
-    # `_TAG` reads a tag only up to its first quotation mark. So each tag with a quotation mark counts as a kind of its
-    # own.
+    # Each tag with a quotation mark counts as a kind of its own, because `_TAG` reads a tag only up to its first
+    # quotation mark.
     kinds = {tag for tag in formatting if tag[-1] not in "\"'"}
     return len(tags) * (3 * len(kinds) + sum(tag not in kinds for tag in formatting))
 
@@ -285,7 +285,7 @@ _CLEANER = nh3.Cleaner(
 
 
 class Renderer(IPythonRenderer):
-    """nbconvert's renderer without inserting attached pictures. They are inserted later, as they are slow to parse."""
+    """nbconvert's renderer without attached pictures, which are inserted later because they are slow to parse."""
 
     def _embed_image_or_attachment(self, src: str) -> str:
         embedded: str = super()._embed_image_or_attachment("" if src.startswith(_ATTACHED) else src)
@@ -293,7 +293,7 @@ class Renderer(IPythonRenderer):
 
 
 class _Looking(Renderer):
-    """nbconvert's renderer. Sets ``is_plain`` to False if a text contains more than plain Markdown."""
+    """nbconvert's renderer, which also sets ``is_plain`` to False if a text contains more than plain Markdown."""
 
     def __init__(self, figures: tuple[str, ...] = ()) -> None:
         super().__init__(escape=False, exclude_anchor_links=True)
@@ -335,7 +335,7 @@ def _as_shown(markdown: str) -> str:
 
 
 def harmless_output(output: NotebookNode) -> NotebookNode:
-    """Remove everything but texts and bitmaps from an output of a student's cell. Return the changed output."""
+    """Return an output of a student's cell with everything but texts and bitmaps removed."""
     if "data" in output:
         output.data = {kind: _visible(output.data[kind]) for kind in SHOWN if kind in output.data}
         output.metadata = {}

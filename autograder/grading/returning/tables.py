@@ -1,7 +1,7 @@
 """Computes the size of the tables on a page, as rows times columns.
 
-A browser needs memory for each position in a table, even if the position has no cell. A cell of twenty characters may
-span 1,000 columns, so 46 kB of text can make a table that no browser can open.
+The size has to be limited because a browser needs memory for each position in a table, even if the position has no
+cell. A cell of twenty characters may span 1,000 columns, so 46 kB of text can make a table that no browser can open.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ _SPAN = re2.compile(r' (colspan|rowspan)="([0-9]+)"')
 
 
 def places_in_tables(page: str) -> int:
-    """Return the sum, over all tables, of rows times columns. The real size may be smaller.
+    """Return the sum, over all tables, of rows times columns, which is an upper limit of the real size.
 
     Args:
         page: HTML that nh3 has cleaned.
@@ -42,7 +42,7 @@ class _Table:
         rows: The number of rows so far.
         width: The number of columns that the cells of the current row take.
         widest: The largest number of columns in any row.
-        reaching: The number of columns of all cells that span into later rows. They move other cells to the side.
+        reaching: The number of columns of all cells that span into later rows, where they move other cells to the side.
     """
 
     rows: int = 0

@@ -1,9 +1,9 @@
 """Checks the answers of desks and workers before the grader uses anything in them.
 
 A student's file may have taken over the desk that parsed it, and a student's program may have taken over the worker
-that executed it. So a desk's document is accepted only if a notebook could have produced it. A worker's answer is
-accepted only if it has the form of an execution of the task, and no check gives more points than it has. Everything
-that a browser would run is removed from the outputs.
+that executed it. So a desk's document is accepted only if a notebook could have produced it. And a worker's answer is
+accepted only if it has the form of an execution of the task, and no check in it gives more than the check's maximum
+points. Everything that a browser would run is removed from the outputs.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ _LONGEST_WORDS = 1_000
 
 
 class Forged(ValueError):
-    """A worker or desk gave an answer that an unmodified one would never give. The message says why."""
+    """A worker or desk gave an answer that an unmodified one would never give, for the reason in the message."""
 
 
 def admitted_offer(data: bytes) -> Offer:
@@ -84,7 +84,7 @@ def admitted_notebook(data: bytes) -> ReadNotebook | Unreadable:
 
 
 def admitted(data: bytes, task: Task) -> Execution:
-    """Decode and check a worker's answer to a task. Return the execution, with cleaned outputs.
+    """Decode and check a worker's answer to a task, and return the execution with cleaned outputs.
 
     Raises:
         Forged: The data is not an execution, or not an execution of this task.
@@ -125,7 +125,7 @@ def _look_at(verdict: Verdict, check: CellCheck) -> None:
 
 
 def _harmless(cells: tuple[CellRun, ...], limits: Limits) -> tuple[CellRun, ...]:
-    """Cut and clean the outputs of the cells again. The worker should have done so, but it is not trusted."""
+    """Cut and clean the outputs of the cells again: the worker should have done so, but is not trusted."""
     outputs = NotebookOutputs(len(cells), limits.cell_output_bytes, limits.notebook_output_bytes)
     for index, cell in enumerate(cells):
         outputs.put(index, cell.outputs)

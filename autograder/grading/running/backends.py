@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 def remove_leftovers(directory: ClassDirectory) -> None:
     """Remove temporary files that a killed batch left behind.
 
-    The caller must hold the lock of the class, so that no other process uses the files.
+    Call this only while holding the lock of the class, so that no other process uses the files.
     """
     sweep(directory.scratch_prefix)
 

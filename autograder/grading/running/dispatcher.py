@@ -1,9 +1,9 @@
 """Gives tasks to workers, on this machine or in a cluster, and decides which tasks run again and which run alone.
 
-A worker is a machine with a number of slots; each slot executes one task at a time. This machine counts as one worker.
-A task runs again if its worker ended. It runs again, alone on a worker, if the result is not reliable: the grader
-itself failed, or other tasks may have used up the memory or processor time that this task needed. Every answer is
-checked by :func:`autograder.grading.running.admission.admitted` before it is used.
+A worker is a machine with a number of slots, each of which executes one task at a time. This machine counts as one
+worker. A task runs again if its worker ended. It also runs again, but alone on a worker, if the result is not reliable:
+the grader itself failed, or other tasks may have used up the memory or processor time that this task needed. Every
+answer is checked by :func:`autograder.grading.running.admission.admitted` before it is used.
 """
 
 from __future__ import annotations
@@ -95,7 +95,7 @@ class _Flight:
 
 @dataclass(frozen=True)
 class Done:
-    """A task with its execution. If the task could not be executed, ``execution.trouble`` says why."""
+    """A task with its execution; ``execution.trouble`` says why the task could not be executed, if it could not."""
 
     task: Task
     execution: Execution
@@ -190,7 +190,7 @@ class Dispatcher:
                 yield self._done.pop()
 
     def _give_out(self, jobs: Iterator[_Job], on_start: Callable[[Task], None]) -> None:
-        """Give a task to every free slot. No tasks are queued at a worker: they would be lost if the worker ended."""
+        """Give a task to every free slot. No tasks are queued at a worker, because they would be lost if it ended."""
         for address, worker in self._workers.items():
             while len(worker.flights) < worker.slots and len(self._flights) < _MOST_IN_FLIGHT:
                 job = self._next_for(address, worker, jobs)
@@ -204,9 +204,9 @@ class Dispatcher:
     def _next_for(self, address: str, worker: _Worker, jobs: Iterator[_Job]) -> _Job | None:
         """Return the next task for a worker; None if there is no task for it now.
 
-        A task that was lost may have ended its worker. So a worker runs at most one such task at a time, and if
-        possible not one that it lost itself. A task that must run alone waits until the worker is idle because no
-        other tasks are left.
+        If a worker ended while it ran a task, the task may be the cause. So a worker runs at most one such task at a
+        time, and if possible not one that it ran before. A task that must run alone waits until no other tasks are left
+        and the worker is idle.
         """
         held = [self._flights[number].job for number in worker.flights]
         if any(job.alone for job in held):
@@ -347,7 +347,7 @@ class Dispatcher:
         self._wait(job)
 
     def _wait(self, job: _Job) -> None:
-        """Queue a job. Jobs that must run alone are sorted by the processor time that they took, the least first."""
+        """Queue a job. Jobs that must run alone are sorted by their earlier processor time, the shortest first."""
         if job.alone:
             bisect.insort(self._alone, job, key=operator.attrgetter("cpu_seconds"))
         else:
@@ -366,7 +366,7 @@ class Dispatcher:
         self._turn_out(address, f"it sent an impossible answer: {reason}. Check that machine")
 
     def _turn_out(self, address: str, reason: str) -> None:
-        """Give no more tasks to an accepted worker. Other workers execute the tasks that it was running."""
+        """Give no more tasks to an accepted worker, and give the tasks that it was running to other workers."""
         name = self._workers[address].name
         self._forget(address, f"the worker was given no more work: {reason}")
         self._refuse(address, name, reason)

@@ -58,7 +58,8 @@ def execute_all(
     If the caller leaves the loop early, the tasks that still run are ended.
 
     Args:
-        tasks: The tasks in the order in which they begin. Another thread takes the next one when a slot is free.
+        tasks: The tasks in the order in which they begin. The next task is taken, in another thread, when a slot is
+            free.
         scratch: The folder in which submissions run. The caller removes it.
         workers: The number of notebooks to execute at the same time; None for the number that :func:`at_once`
             returns.

@@ -1,8 +1,8 @@
 """Executes orders on this machine, each in a thread. Both the executor process of a batch and a Dask worker use it.
 
-A thread starts the processes of a notebook, and reads and checks their messages. It runs no student's code itself.
-The kernel, the kernel's desk and the judge are forked from fork servers, which serve all orders. Run as a program, this
-module is the executor process: it exchanges lines of JSON with the dispatcher over the socket on its standard input.
+A thread starts the processes of a notebook, and reads and checks their messages, but runs no student's code itself. The
+kernel, the kernel's desk and the judge are forked from fork servers, which serve all orders. Run as a program, this
+module is the executor process, which exchanges lines of JSON with the dispatcher over the socket on its standard input.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ _JUDGE_MODULE = "autograder.judge.serving.attached"
 
 
 class Executor:
-    """Executes orders. Several threads may use it at the same time.
+    """Executes orders. Several threads may use it at the same time, each for one order.
 
     Args:
         scratch: The folder in which each submission gets its own folder.
@@ -150,7 +150,7 @@ class _Running:
                 place.abandon()
 
     def end(self) -> None:
-        """End every process in the boxes. The execution of the order then fails."""
+        """End every process in the boxes, so that the execution of the order fails."""
         with self._changing:
             self._ended = True
             if self._place is not None:

@@ -1,7 +1,7 @@
 """Commands and messages between the dispatcher and its workers.
 
-They are sent as lines of JSON, to and from the executor process of this machine or the client process of a cluster.
-The client process passes orders and answers on as bytes, without decoding them.
+They are sent as lines of JSON, to and from the executor process of this machine or the client process of a cluster. The
+client process only passes orders and answers on as bytes, without decoding them.
 """
 
 from __future__ import annotations
@@ -110,7 +110,7 @@ class Failed(msgspec.Struct, frozen=True, tag=True):
 
 
 class Broken(msgspec.Struct, frozen=True, tag=True):
-    """A message: the connection to all workers is lost. No other message follows."""
+    """A message, always the last: the connection to all workers is lost."""
 
     reason: str
 

@@ -35,7 +35,7 @@ _STOPPED = Broken("the run was stopped")
 
 
 class ProcessLink:
-    """A process and the connection to it. The process starts and ends with the ``with`` block.
+    """A process, which starts and ends with the ``with`` block, and the connection to it.
 
     Args:
         words: The module that the process runs, and the arguments of the module.
@@ -61,7 +61,7 @@ class ProcessLink:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        """End the process. After an error, a Dask client is killed, so that the scheduler cancels its tasks."""
+        """End the process. A Dask client is killed after an error, so that the scheduler cancels its tasks."""
         with self._changing:
             self._closing = True
         self._end(at_once=kind is not None and not self._cleans_up)
@@ -104,7 +104,7 @@ class ProcessLink:
         self._lines = Lines(own, sys.maxsize)
 
     def _end(self, *, at_once: bool) -> None:
-        """Ask the process to end, and wait for its end. Kill it if it takes too long, or at once."""
+        """Ask the process to end, and kill it if it takes too long; or kill it now, if ``at_once`` is true."""
         if at_once:
             self._process.kill()
         self._lines.finish()

@@ -1,7 +1,7 @@
 """Shows the progress of grading: a bar in a terminal, or plain lines in a log file or in Jupyter.
 
 The remaining time is estimated from the finished notebooks. If a notebook still runs after the estimated time, the text
-says instead which notebook it is, how long it has been running, and when it will be stopped at the latest.
+names this notebook instead, with how long it has been running, and when it will be stopped at the latest.
 """
 
 from __future__ import annotations

@@ -51,7 +51,7 @@ def execute(
         scratch: The folder in which the task gets its own folder.
         judge: The Python class of the judge, as ``module:class``. It is called with the path of a socket, a seed, and a
             function that starts the judge's process.
-        addresses: The addresses of the fork servers. A boxed task needs the one for supervisors.
+        addresses: The addresses of the fork servers, which for a boxed task must include the one for supervisors.
         began: Called with the boxes of the task before anything runs in them.
 
     Raises:
@@ -121,7 +121,7 @@ def _execute(
 def a_check_was_stopped(cells: Sequence[Cell], execution: Execution) -> bool:
     """Return True if a check by the judge reached the time limit of its cell.
 
-    The judge has a shorter limit for each of its waits, so this usually means that the machine is busy.
+    Usually this means that the machine is busy, because the judge has a shorter limit for each of its waits.
     """
     judged = [cell.check is not None and not cell.check.asserts for cell in cells]
     runs = zip(judged, execution.cells, strict=True)
@@ -129,20 +129,20 @@ def a_check_was_stopped(cells: Sequence[Cell], execution: Execution) -> bool:
 
 
 def patiently(seconds: float) -> Left:
-    """Return a function that returns the seconds left. On an overloaded machine, more than ``seconds`` may pass."""
+    """Return a function that returns the seconds left of a limit, which gets longer on an overloaded machine."""
     patience = Patience(seconds)
     return lambda: patience.left
 
 
 class _Judges:
-    """Gives each check a judge on the network of its subject. Only one judge is alive at a time.
+    """Gives each check a judge on the network of its subject, of which only one is alive at a time.
 
     :meth:`close` returns None if the notebook never requested the check, and raises an error if the judge failed.
 
     Args:
         made: Makes a judge that is not started yet: with True for programs, with False for the notebook's own nodes.
         runners: The exercises whose subjects are programs.
-        first: The exercise of the notebook's first check. A judge for this check is started in advance.
+        first: The exercise of the notebook's first check, for which a judge is started in advance.
 
     Attributes:
         evidence: The evidence of the verdicts, by exercise.

@@ -45,12 +45,12 @@ class Arrangement:
 
     @property
     def judges_folder(self) -> Path:
-        """The folder with the judge's socket. The judge's box sees it; the student's box must not see it."""
+        """The folder with the judge's socket, which the judge's box sees but the student's box must not see."""
         return self.folder / "jobs"
 
     @property
     def judges_socket(self) -> Path:
-        """The path of the judge's socket. It is the same inside and outside the judge's box."""
+        """The path of the judge's socket, which is the same inside and outside the judge's box."""
         return self.judges_folder / "sock"
 
     def variables(self) -> Mapping[str, str]:

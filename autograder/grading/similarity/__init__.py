@@ -1,1 +1,1 @@
-"""Finds pairs of submissions that are more similar than their task explains. A pair is a hint for a person."""
+"""Finds pairs of submissions that are more similar than their task explains, as hints that a person has to judge."""

@@ -1,4 +1,4 @@
-"""Compares all submissions of a class. Returns the similar pairs, and a line for each file that was not compared."""
+"""Compares all submissions of a class, and lists the similar pairs and the files that were not compared."""
 
 from __future__ import annotations
 

@@ -117,9 +117,10 @@ def by_students(pairs: Iterable[Pair]) -> list[list[Pair]]:
 
 
 def _candidates(answers: Sequence[Compared]) -> list[tuple[Compared, Compared]]:
-    """Return the pairs that share enough sequences to be similar. A full comparison of all pairs would take too long.
+    """Return the pairs that share enough sequences to be similar: only these are then compared fully, to save time.
 
-    If two answers share ``SHORTEST`` own words, they share at least ``SHORTEST // SEQUENCE`` sequences.
+    No similar pair is lost, because two answers that share ``SHORTEST`` own words share at least ``SHORTEST //
+    SEQUENCE`` sequences.
     """
     holders: defaultdict[tuple[str, ...], list[int]] = defaultdict(list)
     for place, answer in enumerate(answers):

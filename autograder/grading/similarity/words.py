@@ -1,6 +1,6 @@
 """Splits code into words for the comparison, without comments, layout and chosen names, which often differ in copies.
 
-A regular expression reads the text, in time proportional to its length. Python's parser would not do, because a
+A regular expression reads the text, in time proportional to its length. Python's parser cannot be used, because a
 student's text may be invalid or hostile.
 """
 

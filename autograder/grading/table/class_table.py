@@ -32,7 +32,7 @@ class ClassTable:
         roster: The students of the class.
         entries: The entries of the gradebook, by student and assignment.
         stale: Submissions, as student/assignment, that were never graded, or changed after they were graded.
-        unplaced: Collected files that belong to no known submission. A person has to assign them.
+        unplaced: Collected files that belong to no known submission, so that a person has to assign them.
         unusable: Assignments without rows because a source notebook cannot be used, by name, each with the reason.
         notices: Sentences about probable mistakes of the instructor in ``students.csv``. They contain students' ids.
         absent: The points of students who handed in nothing: None for no points, or zero if the instructor chose zero.
@@ -68,7 +68,7 @@ class ClassTable:
         """Raise an error if a wanted assignment cannot be graded, or if no assignment at all can be graded.
 
         Raises:
-            MasterUnusable: A source notebook cannot be used. The message says why.
+            MasterUnusable: A source notebook cannot be used, for the reason in the message.
         """
         for name, reason in self.unusable.items():
             if name in wanted or not self.assignments:
@@ -77,8 +77,7 @@ class ClassTable:
     def of(self, student: str, assignment: str = "") -> list[Row]:
         """Return a student's rows, for one assignment or for all.
 
-        For all assignments, the result contains a row with negative points for each dropped assignment. For one
-        assignment, it does not.
+        If the result is for all assignments, it also contains a row with negative points for each dropped assignment.
         """
         own = self._of_student.get(student, [])
         return [
@@ -98,8 +97,8 @@ class ClassTable:
     def score(self, student: str, assignment: str = "") -> float | None:
         """Return a student's points for an assignment, or for all, after weights and the late penalty.
 
-        Return ``absent`` if the student handed in nothing. For one assignment, return None if one of its checks could
-        not be made: the sum of the others would look like the final points.
+        The result is ``absent`` if the student handed in nothing. For one assignment, it is None if one of its checks
+        could not be made, because the sum of the others would look like the final points.
         """
         rows = self.of(student, assignment)
         return None if assignment and any(row.is_unchecked for row in rows) else self.points(rows)
@@ -119,7 +118,7 @@ class ClassTable:
 
     @functools.cached_property
     def _max_scores(self) -> dict[str, float]:
-        """The maximum points by assignment. The key ``""`` stands for all assignments together."""
+        """The maximum points by assignment, and under the key ``""`` those of all assignments together."""
         return {
             name: max(
                 (sum(row.max_score for row in self.of(one, name)) for one in self.students), default=0.0

@@ -1,6 +1,6 @@
 """The late penalty: a percentage of the points for each started day, with a grace period and a cut-off.
 
-A class sets these three values in its ``nbgrader_config.py``. nbgrader's own commands use the penalty as well.
+A class sets these three values in its ``nbgrader_config.py``, from where nbgrader's own commands use them as well.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ class LatePolicy(LateSubmissionPlugin):
         Args:
             student_id: The student's id.
             score: The points that were earned.
-            total_seconds_late: The number of seconds after the due date. The due date includes extensions.
+            total_seconds_late: The number of seconds after the due date, which includes the student's extension.
         """
         del student_id  # unused: the due date already includes the student's extension
         if total_seconds_late <= 60 * self.grace_minutes:

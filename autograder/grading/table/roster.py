@@ -54,7 +54,7 @@ _NOBODY = ("points possible", "student, test")
 
 
 class RosterError(GradingError):
-    """``students.csv`` cannot be used. The message says why."""
+    """``students.csv`` cannot be used, for the reason in the message."""
 
 
 @dataclass(frozen=True)
@@ -164,8 +164,8 @@ class Roster:
     def find(self, identity: Identity) -> tuple[Student, ...]:
         """Return the students to whom an identity may belong: one if that is certain, otherwise several or none.
 
-        The number in the LMS decides. If no student has this number, user names and email addresses decide. If they
-        match no student, names decide.
+        First the number in the LMS decides. If no student has this number, user names and email addresses decide. If
+        these match no student either, names decide.
         """
         for known in (self._by_number, self._by_login, self._by_name):
             found = known(identity)
@@ -283,7 +283,7 @@ def _as_ours(line: Mapping[str, str], form: Mapping[str, tuple[str, ...]]) -> di
 
 
 def enter_roster(directory: ClassDirectory) -> None:
-    """Enter the students from ``students.csv`` into the gradebook. Other students in the gradebook stay unchanged.
+    """Enter the students from ``students.csv`` into the gradebook, without changing other students there.
 
     Raises:
         RosterError: The file cannot be used.

@@ -29,10 +29,10 @@ class _File(msgspec.Struct, forbid_unknown_fields=True):
 
 @dataclass(frozen=True)
 class WhatCounts:
-    """The weights for a class's table. They can change at any time, because the gradebook has points without weights.
+    """The weights for a class's table. They may change at any time, because the gradebook's points are without weights.
 
     Attributes:
-        factors: The factors that multiply points, by assignment and exercise. The factor 0 leaves an exercise out.
+        factors: The factors that multiply points, by assignment and exercise; the factor 0 leaves an exercise out.
         drop_lowest: The number of assignments that do not count: for each student, those with the fewest points.
     """
 
@@ -53,11 +53,11 @@ class WhatCounts:
         return found + [_scaled(row, late) for row in rows if row.exercise == LATE and found]
 
     def without_lowest(self, rows: Sequence[Row]) -> list[Row]:
-        """Return the rows of one student. For each dropped assignment, add a row that subtracts its points.
+        """Return the rows of one student, with an added row for each dropped assignment that subtracts its points.
 
         Assignments without a submission are dropped first, then those with the smallest share of their maximum points.
-        At least one assignment always counts. No assignment is dropped while points for any assignment are still
-        missing.
+        But at least one assignment always counts, and no assignment is dropped while points for any assignment are
+        still missing.
         """
         by_assignment: dict[str, list[Row]] = {}
         for row in rows:

@@ -22,7 +22,7 @@ _UNDER = "under assignment in collected.csv"
 
 
 class NoTarget(ValueError):
-    """The notebook of a file is unclear, or the file is not to be collected now. The message says what to do.
+    """The notebook of a file is unclear, or the file is not to be collected now, for the reason in the message.
 
     Args:
         message: The reason, and what to type.

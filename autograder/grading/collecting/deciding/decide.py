@@ -1,4 +1,4 @@
-"""Decides which file of a student counts. The result does not depend on the order in which the files came."""
+"""Decides which file of a student counts, independently of the order in which the files came."""
 
 from __future__ import annotations
 
@@ -138,7 +138,7 @@ def _people(place: Place, pool: Sequence[Line], _: Looks) -> list[tuple[Line, st
 
 
 def _unreadable(place: Place, pool: Sequence[Line], looks: Looks) -> list[tuple[Line, str]]:
-    """Return the unreadable files; none if all are unreadable. An incomplete file must not replace readable work."""
+    """Return the unreadable files, which must not replace readable work; none if all files are unreadable."""
     if len({one.content for one in pool}) < 2:
         return []
     reasons = [(one, reason) for one in pool if (reason := why_unreadable(looks.inbox.read(one.content)))]
@@ -151,9 +151,10 @@ def _unreadable(place: Place, pool: Sequence[Line], looks: Looks) -> list[tuple[
 def _best(place: Place, files: Sequence[Line], looks: Looks) -> tuple[Line | None, list[_Why]]:
     """Return the file that counts, and the decisions about the others.
 
-    The newest counts, by its time. If that does not decide, a file with answers goes before a file that is as it was
-    handed out. Then the exact name decides between files of one download, and last the system's numbering. If several
-    different files are left, the one that counted before still counts; None if none did.
+    The file with the newest time of handing in counts. If the times do not decide, a file with answers is preferred to
+    a file that is as it was handed out. If this does not decide either, the exact name decides between files of one
+    download, and last the system's numbering. If several different files are left, the one that counted before still
+    counts; None if none of them did.
     """
     is_several = len({one.content for one in files}) > 1
     work = {

@@ -1,4 +1,4 @@
-"""Distinguishes a student's work from a notebook that is still as it was handed out. A student may send both."""
+"""Distinguishes a student's work from a notebook that is as it was handed out, because a student may send both."""
 
 from __future__ import annotations
 
@@ -18,8 +18,9 @@ if TYPE_CHECKING:
 def has_work(directory: ClassDirectory, assignment: str, notebook: str, data: bytes) -> bool:
     """Return True if a notebook has an answer, or an added cell, that was not handed out.
 
-    What was handed out is the notebook in ``release``, which may be older than the source, and the source. If one of
-    these cannot be read, every notebook counts as containing work. An unreadable notebook contains none.
+    The student's notebook is compared with those in ``release`` and in ``source``, because ``release`` may be older. If
+    one of these two cannot be read, every notebook counts as containing work. But if the student's notebook cannot be
+    read, it counts as containing none.
 
     Args:
         directory: The class.

@@ -38,7 +38,7 @@ _OTHER_ARCHIVES = (".rar", ".7z", ".gz", ".bz2", ".xz", ".zst")
 
 @dataclass(frozen=True)
 class Edit:
-    """What a person has written into a line of ``collected.csv``. An empty cell changes nothing.
+    """What a person has written into a line of ``collected.csv``. An empty field changes nothing.
 
     Attributes:
         use: ``yes`` or ``no``.
@@ -58,9 +58,9 @@ class Edit:
 def lines_of(
     directory: ClassDirectory, inbox: Inbox, roster: Roster, edits: Mapping[str, Edit]
 ) -> list[Line]:
-    """Return one line of ``collected.csv`` for each file. What a person wrote takes precedence over what was found.
+    """Return one line of ``collected.csv`` for each file, with what a person wrote or else what was found.
 
-    A file that was collected for two assignments has two lines.
+    But if a file was collected for two assignments, it has two lines.
 
     Args:
         directory: The class.
@@ -73,9 +73,9 @@ def lines_of(
     alone = {id_ for id_, of in inbox.deliveries.items() if all(file.is_list for file in of.arrivals)}
     found: dict[str, list[Line]] = defaultdict(list)
     for id_, delivery in inbox.deliveries.items():
-        # All lists, from any delivery, are used to map numbers to students. But the times in a list apply only to
-        # files in the same delivery, because a later list may be about a later file. A list that came alone applies
-        # to all files.
+        # All lists, from any delivery, are used to map numbers to students. But the times in a list apply only to files
+        # in the same delivery, because a later list may be about a later file. Only if a list came alone do its times
+        # apply to all files.
         student_of = StudentOf(
             roster,
             assignments.is_notebook,
@@ -110,7 +110,7 @@ class _Reading:
     zone: tzinfo
 
     def lines(self, edits: Mapping[str, Edit]) -> Iterator[Line]:
-        """Yield the line of each file. Edits in the line of an archive apply to the files in it, too."""
+        """Yield the line of each file. What a person wrote into an archive's line applies to the files in it, too."""
         opened: dict[tuple[str, tuple[str, ...]], Edit | None] = {}
         for arrival in self.delivery.arrivals:
             place, edit = (arrival.source, arrival.parts), edits.get(arrival.key, Edit())

@@ -85,8 +85,9 @@ class StudentOf:
     def owners(self, parts: Sequence[str], levels: int, *, is_alone: bool = False) -> Owners:
         """Return the students of a file, by the topmost name in its path that identifies any student.
 
-        The topmost name is the system's: a name that the student chose comes below it or after it. If two systems may
-        have written a name, both must mean the same student; "no match" counts as a disagreement.
+        The topmost name is used because the system has written it: names that the student chose come below it or after
+        it. If two systems may have written a name, both must mean the same student; if one of them means no student,
+        they disagree.
 
         Args:
             parts: The folders of the path and the file.
@@ -159,7 +160,7 @@ class StudentOf:
         return Owners(None, (_distinct(students for one in read for students in one.members),))
 
     def _undisputed(self, owners: Owners, name: str) -> Owners:
-        """Return ``owners``. If the name contains numbers of several students in Canvas, all of these may be meant."""
+        """Return ``owners``; but if the name has Canvas numbers of several students, any of these may be meant."""
         if owners.found is None or owners.found.identity.lms != "canvas" or not owners.members:
             return owners
         others = map(self._of, (Identity("canvas", number) for number in numbers_in(name)))

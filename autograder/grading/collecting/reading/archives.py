@@ -1,4 +1,4 @@
-"""The files in zips and folders. A desk, a process in a box, unpacks an archive; this module reads only the answer.
+"""The files in zips and folders. A desk, a process in a box, unpacks an archive, so this module reads only its answer.
 
 In the desk, :mod:`autograder.grading.collecting.reading.unpack` writes all files of an archive, within limits, into one
 file on the disk. This module treats each name in it as text only, reads bytes up to the size limit of a notebook, and
@@ -41,7 +41,7 @@ _DEEPEST_FOLDER = 100
 
 
 class NotTaken(ValueError):
-    """A file or archive cannot be taken. The message gives the reason."""
+    """A file or archive cannot be taken, for the reason in the message."""
 
 
 class File(NamedTuple):
@@ -69,7 +69,7 @@ class Room:
 
 @dataclass(frozen=True)
 class _Unpacked:
-    """A line of the desk's answer. :mod:`autograder.grading.collecting.reading.unpack` describes it."""
+    """A line of the desk's answer, as :mod:`autograder.grading.collecting.reading.unpack` describes it."""
 
     names: tuple[str, ...]
     size: int
@@ -77,7 +77,7 @@ class _Unpacked:
 
 
 class Archives:
-    """Opens archives, as a context manager. Unpacked bytes are kept on the disk until the end of the block.
+    """Opens archives, as a context manager. Unpacked bytes stay on the disk until the ``with`` block ends.
 
     Args:
         disk: A folder on a disk with enough space for the unpacked bytes.
@@ -97,7 +97,7 @@ class Archives:
         """Yield the files in an archive or folder, or the file itself. An unreadable file raises only when it is read.
 
         Args:
-            source: A file or folder that the instructor named. It may itself be a link, but links below it are not
+            source: A file or folder that the instructor named, which may be a link. But links inside the folder are not
                 followed.
             is_opened: True to open an archive here; False to treat it as a file, as inside a download.
         """
@@ -129,7 +129,7 @@ class Archives:
             yield File(Arrival("", (name,)), functools.partial(_read_file, source))
 
     def within(self, arrival: Arrival, data: bytes, room: Room) -> Iterator[File]:
-        """Yield the files in a student's archive, and in archives inside it. Read each one before taking the next.
+        """Yield the files in a student's archive, and in archives inside it. Read each file before taking the next.
 
         Args:
             arrival: The archive.
@@ -176,7 +176,7 @@ def _lines(out: IO[bytes]) -> Iterator[tuple[_Unpacked, int]]:
 
 
 def _path(name: str) -> tuple[str, ...]:
-    """Return the path of a file in an archive, without ``..``. The path is only a text: nothing is written there."""
+    """Return the path of a file in an archive, as a text without ``..``. No file is written to this path."""
     parts = name[:LONGEST_NAME].replace("\\", "/").split("/")
     return tuple(part for part in parts if part not in ("", ".", "..")) or (name[:LONGEST_NAME],)
 

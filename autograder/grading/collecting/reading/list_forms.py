@@ -39,7 +39,7 @@ class ListForm:
 
 
 FORMS = (
-    # Moodle's grading worksheet. Its identifiers look like "Participant 12345"; the word depends on the language.
+    # Moodle's grading worksheet. Its identifiers look like "Participant 12345", but the word depends on the language.
     ListForm(
         "moodle",
         ("identifier", "grade"),

@@ -1,4 +1,4 @@
-"""Lists that come with a download. They map numbers to students, and contain the times at which work was handed in."""
+"""Lists that come with a download: they map numbers to students, and contain the times at which work was handed in."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class Entry:
 
 
 def parse_list(name: str, data: bytes) -> list[Entry] | None:
-    """Parse a list; return None if its form is unknown. Only a desk calls this.
+    """Parse a list; return None if its form is unknown. Call this only in a desk, because the file is not trusted.
 
     Args:
         name: The name of the file.

@@ -26,8 +26,8 @@ if TYPE_CHECKING:
 
 _MOST_MARKS = 10
 """The maximum number of hyphens or underscores at which a name is divided; real names have fewer."""
-# Browsers, Canvas and Drive add one of these marks to a name that already exists. File managers add one to the name of
-# a copy.
+# Browsers, Canvas and Drive add one of these marks to a name that already exists, and file managers add one to the name
+# of a copy.
 _COPY_OF = "Copy of "
 _MARKED = re2.compile(rf"(?s)^(?:{_COPY_OF})*(?P<base>.+?)(?: ?\(\d{{1,6}}\)|-\d{{1,6}}| - [Cc]opy)*$")
 
@@ -42,8 +42,8 @@ class Found:
         when: The time of handing in, in the LMS's own time; None if the name contains no readable time.
         order: A number that increases with later files of one student, if the LMS numbers files.
         late: True if the LMS marks the file as late.
-        readings: If the name can be read in several ways, the student according to each, with the longest name first;
-            else empty. The first of these students who is in the class is meant.
+        readings: If the name can be read in several ways, the student according to each way, with the longest name
+            first; else empty. Use the first of these students who is in the class.
         assignment: The assignment, if the instructor's pattern finds one in the name.
     """
 
@@ -170,7 +170,7 @@ def _plainly(lms: str) -> _Who:
 
 
 def _at_its_end(lms: str) -> _Who:
-    """Return a reader for names that end with a user name. The user name may itself contain the mark before it."""
+    """Return a reader for names that end with a mark and a user name, which may itself contain the mark."""
 
     def who(found: Mapping[str, str]) -> tuple[Identity, tuple[Identity, ...]]:
         whole = f"{found['item']}_{found['login']}"
@@ -221,8 +221,9 @@ _READERS = {
     "moodle": _in_one_part(
         r"^(?P<name>[^_]+)_(?P<number>\d+)_assignsubmission_(?:file|onlinetext)_?(?P<file>.*)$", _moodle
     ),
-    # lab_1_2_adal_attempt_2025-10-03-14-05-06_lab_1_2.ipynb. Without the file's name it ends with .txt: what the
-    # student typed. The first "attempt" in the name is Blackboard's; everything after it was chosen by the student.
+    # lab_1_2_adal_attempt_2025-10-03-14-05-06_lab_1_2.ipynb. If .txt follows the time instead of a file's name, the
+    # file contains what the student typed. The first "attempt" in the name is Blackboard's, because the student chose
+    # only the file's name.
     "blackboard": _in_one_part(
         r"^(?P<item>.+?)_(?P<login>[^_]+)_attempt_(?P<when>\d{4}(?:-\d\d){5})(?:_(?P<file>.+)|\.txt)$",
         _at_its_end("blackboard"),
@@ -237,9 +238,9 @@ _READERS = {
         _plainly("brightspace"),
         says_file=True,
     ),
-    # lovelaceada_LATE_123_456_lab_1_2-1.ipynb: first the number of the student, then that of the file. Canvas keeps
-    # only the word characters of a name (github.com/instructure/canvas-lms, content_zipper.rb).
-    # A user named 🙂 has an empty name there.
+    # lovelaceada_LATE_123_456_lab_1_2-1.ipynb: first the number of the student, then that of the file. The name may be
+    # empty, for example for a user named 🙂, because Canvas keeps only the word characters of a name
+    # (github.com/instructure/canvas-lms, content_zipper.rb).
     "canvas": _in_one_part(
         r"^(?P<login>[\pL\pM\pN_-]*?)_(?i:(?P<late>LATE)_)?(?P<number>\d+)_(?P<order>\d+)_(?P<file>.+)$",
         _plainly("canvas"),

@@ -5,8 +5,9 @@ Only the names on the command line decide, never the contents:
 - **One student's own**: a file or folder whose name, or whose system, identifies one student; and every file that is
   neither a zip nor a list. Names inside it identify no student. If a student may have chosen one of the names of a
   command, or if the command names several folders, as with ``repositories/*``, everything is one student's own.
-- **A download**: every other zip and folder. The names at its top identify students. If a single folder contains all
-  others, the names in that folder do so, too. Students have chosen all names further down.
+- **A download**: every other zip and folder. The names at its top identify students. If a single folder at the top
+  contains everything else, the names in that folder identify students, too. No names further down do, because students
+  have chosen them.
 """
 
 from __future__ import annotations

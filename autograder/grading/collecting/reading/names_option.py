@@ -47,7 +47,7 @@ def read_names(pattern: str) -> Callable[[Sequence[str], int], Found | None]:
     """Return a function that reads a path according to a pattern.
 
     The pattern has to fit from the top of the path, or to identify the student by one of the path's first ``levels``
-    names: a student may have chosen any name below these.
+    names, because a student may have chosen any name below these.
 
     A pattern without a slash describes a single name: a file without its suffix, or a folder around it. A pattern
     with slashes describes names that follow each other in a path. ``{any}`` stands for any text. A word that is not
@@ -66,7 +66,7 @@ def read_names(pattern: str) -> Callable[[Sequence[str], int], Found | None]:
             texts = ("/".join([*above, name]) for name in (bare, last) if name)
             ways = (list(itertools.islice(_ways(text, literals, words), _MOST_WAYS)) for text in texts)
             if divided := next(filter(None, ways), None):
-                # In 2025-10-03_140506_lab, the day alone could be the time, too. The longest possible time is meant.
+                # Use the longest possible time, because in 2025-10-03_140506_lab the day alone would be a time, too.
                 divided.sort(
                     key=lambda way: -len(way.get("time", "")) if read_time(way.get("time", "")) else 0
                 )

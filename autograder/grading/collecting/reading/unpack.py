@@ -36,7 +36,7 @@ be longer than :data:`LONGEST_NAME`.
 
 
 def is_archive(name: str, data: bytes) -> bool:
-    """Return True if a file is an archive to be opened. Office documents, which are zips as well, are not opened."""
+    """Return True if a file is an archive to be opened; False for Office documents, although they are zips as well."""
     lower = name.lower()
     plain = "." not in lower or lower.endswith((".txt", ".bin"))
     return ".zip" in lower or lower.endswith(_TARS) or (plain and data.startswith(b"PK\x03\x04"))
@@ -77,7 +77,7 @@ def _opened(tar: tarfile.TarFile, one: tarfile.TarInfo) -> IO[bytes]:
 
 
 def _name_of(one: zipfile.ZipInfo) -> str:
-    """Return the name of a file in a zip. Many programs write names in UTF-8 without the flag for UTF-8."""
+    """Return the name of a file in a zip. Try UTF-8 even without the flag for UTF-8, which many programs do not set."""
     try:
         return one.filename if one.flag_bits & 0x800 else one.filename.encode("cp437").decode("utf-8")
     except UnicodeError:
@@ -93,7 +93,7 @@ class Unpacking:
 
     Args:
         answer: The descriptor of the file for what is unpacked.
-        depth: The maximum number of archives inside one another. With 1, an archive in the archive is not unpacked.
+        depth: The maximum number of archives inside one another; 1 if an archive in the archive is not unpacked.
         files: The maximum number of files.
         unpacked: The maximum size of all files together, in bytes.
         of_one: The maximum size of one file, in bytes.
