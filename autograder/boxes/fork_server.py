@@ -46,7 +46,7 @@ FOLDER_PREFIX = "autograder-held-"
 Older versions used another prefix and no lock. Their folders are left alone.
 """
 _LIBRARY_FOLDERS = 8
-"""The maximum number of folders for libraries. No workspace of the course has so many packages with libraries."""
+"""The maximum number of folders for libraries, which is more than any workspace of the course needs."""
 SUPERVISOR_MODULE = "autograder.boxes.supervisor"
 KERNEL_MODULE = "autograder.execution.kernel_process"
 PROGRAM_MODULE = "autograder.execution.program_process"

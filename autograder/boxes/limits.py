@@ -127,7 +127,7 @@ BUILD_LIMITS = Limits(
 
 
 _MOST_OPEN_FILES = 1 << 20
-"""The highest limit on open files to set. Some systems allow a billion, and programs that loop over all possible
+"""The highest limit on open files to set. Some systems allow a billion, with which programs that loop over all possible
 descriptors would take too long.
 """
 

@@ -36,7 +36,7 @@ _PROC_HIDDEN = {"kcore", "kmsg", "keys", "key-users"}
 """Files in ``/proc`` that say more about the machine and its users than a program needs."""
 
 ETC = "etc"
-"""The folder of the scratch that becomes the ``/etc`` of a box. No box can write to it."""
+"""The folder of the scratch that becomes the ``/etc`` of a box, to which no box can write."""
 TERMINALS = "pts"
 """The folder of the scratch that contains the pseudo-terminals of all boxes of a supervisor."""
 _ETC_FILES = {

@@ -34,10 +34,10 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
 SCRATCH_FOLDERS = ("home", "tmp", "shm", "work")
-"""The folders in the scratch. A box sees each of them at another path, such as ``shm`` at ``/dev/shm``."""
+"""The folders in the scratch, each of which a box sees at another path, such as ``shm`` at ``/dev/shm``."""
 
 MOST_TERMINALS = 32
-"""The maximum number of terminals. A line of a notebook that begins with ``!`` uses a terminal while it runs."""
+"""The maximum number of terminals. For example, a line of a notebook that begins with ``!`` uses one while it runs."""
 
 
 def prepare() -> None:
@@ -62,7 +62,7 @@ class _Started:
     process: subprocess.Popen[bytes]
     """The bubblewrap process outside the box.
 
-    It ends when the first process of the box has ended; all other processes of the box end with that process.
+    It ends when the first process of the box has ended, and with that process all other processes of the box.
     """
     end: int
     """The pidfd of bubblewrap."""

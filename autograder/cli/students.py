@@ -64,8 +64,8 @@ def check(
     """Run a command as the subject of an exercise and print the verdict."""
     from autograder import course, exercises
 
-    # A course in this folder has its own code that judges. With --box the program may be another person's, who may have
-    # changed that code, so the course is not used then.
+    # A course around the current folder judges with its own code. With --box the program may be another person's, and
+    # this person may have changed that code, so the course is not used.
     if not boxed:
         course.use_the_one_around(Path.cwd())
     if exercise is None:

@@ -31,7 +31,8 @@ if TYPE_CHECKING:
 
 NAME = "class.db"
 _FORM = 2
-"""The version of the tables. It increases with each change of the tables. A file with another version is not used."""
+"""The version of the tables, which increases with each change of the tables. A file with another version is not used.
+"""
 _TABLES = """
 -- The last result of each notebook. The column task contains the hash of everything on which the result depends.
 CREATE TABLE IF NOT EXISTS result (

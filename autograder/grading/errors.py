@@ -1,4 +1,4 @@
-"""Errors about a class, with messages that tell an instructor what to do, at which commands end with exit code 2."""
+"""Errors about a class, at which commands end with exit code 2. Their messages tell an instructor what to do."""
 
 from __future__ import annotations
 

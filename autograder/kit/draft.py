@@ -25,8 +25,8 @@ View_co = TypeVar("View_co", covariant=True)
 Judge = Callable[[View, View], Finding]
 """A function that decides a criterion, given the view of the subject and the view of the reference solution."""
 Told = Callable[[View, View], Advice | None]
-"""A function that returns the advice about a mistake; None if the subject did not make this mistake. Its arguments are
-the view of the subject and the view of the reference solution.
+"""A function that returns the advice about a mistake; None if the subject did not make this mistake. It gets the same
+two views as a :data:`Judge`.
 """
 
 
@@ -45,10 +45,10 @@ class Recipe(Protocol[View_co]):
         """Run the scenario: tell the bench what to do in each part."""
 
     def seen(self, evidence: Evidence) -> View_co:
-        """Return the view of the student's subject."""
+        """Return the student's subject as an object from which criteria and mistakes decide."""
 
     def expected(self, evidence: Evidence) -> View_co:
-        """Return the view of the recorded reference solution."""
+        """Return the recorded reference solution as an object of the same type as :meth:`seen` returns."""
 
 
 class SeenAsItIs:

@@ -110,7 +110,7 @@ class Part:
 
 
 _LAUNCHED = re2.compile(r"(?s)(\[[\w.]+-\d+\] )?(.*)")
-"""Splits a line of output into the prefix that a launch adds, such as ``[talker-1]``, and the rest."""
+"""Splits a line of output into the prefix that a launch adds, such as ``[talker-1]``, and the program's own words."""
 
 
 def _stream_and_line(event: Event) -> tuple[str, str]:
@@ -133,8 +133,8 @@ INTERRUPTED = "Ctrl-C"
 
 _TRACEBACK = "Traceback (most recent call last)"
 _IGNORED = "Exception ignored in"
-"""The beginning of Python's message about an error in a destructor. Such an error does not stop the program, and is
-often the consequence of another error.
+"""The beginning of Python's message about an error in a destructor. Such an error is not the mistake to show, because
+it does not stop the program, and is often the consequence of another error.
 """
 _OF_A_TRACEBACK = (
     "Exception in thread ",
@@ -148,7 +148,7 @@ _OF_A_TRACEBACK = (
     "During handling of the above exception",
     "The above exception was the direct cause",
 )
-"""The beginnings of lines that belong to tracebacks or stacks, even if two threads print theirs at the same time.
+"""The beginnings of lines that belong to tracebacks or stacks, even if two threads print tracebacks at the same time.
 
 For example, if a Python program ends while one of its threads still spins, the C++ runtime often aborts it
 (``terminate called without an active exception``), and faulthandler then prints the stacks.
@@ -187,8 +187,8 @@ def without_tracebacks(events: Sequence[Event]) -> Iterator[tuple[int, Event]]:
 
 
 REPORTS = ("@workspace ", "@process ")
-"""The beginnings of lines with which a runner reports a build or a launched process. Such lines do not come from the
-subject.
+"""The beginnings of lines with which a runner reports a build or a launched process; so they are not the subject's
+words.
 """
 _ROS2_RUN = "[ros2run]: "
 """The prefix of messages from ``ros2 run``, for example that the program exited with failure 3. Such a message does not
@@ -202,14 +202,14 @@ rcutils adds this prefix, so it does not count as text from the subject.
 
 
 _LIBRARIES = re2.compile(r"\.action_(client|server)$|^(rcl|rclpy|rcutils|rmw\w*)(\.|$)")
-"""Matches the names of ROS's own loggers. They write lines such as "Ignoring unexpected result response"
+"""Matches the names of ROS's own loggers, which write lines such as "Ignoring unexpected result response"
 (rclpy/action/client.py).
 """
 _COLOURS = r"(?:\x1b\[[\d;]*m)*"
 _MIDDLEWARE = re2.compile(
     rf"^{_COLOURS}\d{{4}}-\d\d-\d\d [\d:.]+ .*\[{_COLOURS}\w+{_COLOURS} (Error|Warning)\]"
 )
-"""Matches the beginning of an error or warning of Fast DDS. On a busy machine these appear even if the program is
+"""Matches the beginning of an error or warning of Fast DDS, which on a busy machine appears even if the program is
 right.
 """
 

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 STEP = 0.05
-"""The default length of one step in simulated seconds. It is short compared with every period in the course."""
+"""The default length of one step in simulated seconds, which is short compared with every period in the course."""
 
 
 class Pace(StrEnum):
@@ -123,7 +123,8 @@ class Bench(Protocol):
     random: Random
     reference: Any
     in_a_cell: bool
-    """True if the subject runs in a notebook's kernel. Then a student may be waiting for the check cell to finish."""
+    """True if the subject runs in a notebook's kernel, so that a student may be waiting for the check cell to finish.
+    """
 
     def part(self, name: str, **inputs: Any) -> None:
         """Begin a part, which is a new run of the subject. ``inputs`` are stored in the part's record."""

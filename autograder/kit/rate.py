@@ -27,8 +27,8 @@ LATE = 6
 SIMULATED_TOLERANCE = 0.05
 """The tolerance for the mean interval in simulated time, as a fraction of the reference's interval."""
 SIMULATED_JITTER = 0.1
-"""The tolerance for a single interval, in simulated seconds. The judge moves its clock in steps: this is two steps, or
-one long step.
+"""The tolerance for a single interval, in simulated seconds: two steps, or one long step, because the judge moves its
+clock in steps.
 """
 SLOWER, FASTER = 0.18, 0.1
 """The tolerances for the median interval in real time, as fractions of the reference's interval. The tolerance for

@@ -115,7 +115,7 @@ class StateRule:
         return judge
 
     def taken_for(self, *wrong: State) -> Callable[[Part, Part], bool]:
-        """Return a function that recognizes a mistake: all reports follow one of the given wrong rules."""
+        """Return a function that recognizes a mistake: all reports are those of a wrong variant of :attr:`rule`."""
 
         def recognise(seen: Part, _: Part) -> bool:
             said = list(self._said(seen))

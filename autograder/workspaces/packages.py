@@ -35,7 +35,7 @@ LAUNCH_LANGUAGES = (".py", ".xml", ".yaml", ".yml")
 """The file name extensions of launch files, in all languages and spellings."""
 MAX_FILES = 5_000
 MAX_BYTES = 100_000_000
-"""The maximum numbers of files and bytes of sources. A path with more is not a workspace."""
+"""The maximum numbers of files and bytes of sources. If a path has more, it is not a workspace."""
 MAX_PACKAGES = 50
 """The maximum number of packages to read; a workspace of the course has a few."""
 MAX_PACKAGE_XML = 20_000
@@ -45,7 +45,9 @@ The limit is needed because validating takes quadratic time. Entities (``<!ENTIT
 thousand bytes expand to eight million.
 """
 MAX_SETUP = 50_000
-"""The maximum size of a setup.py in bytes. Python's own parser takes minutes for an f-string of half a megabyte."""
+"""The maximum size of a setup.py in bytes. It is needed because Python's parser takes minutes for an f-string of half a
+megabyte.
+"""
 MAX_CMAKE_LISTS = 50_000
 """The maximum size of a CMakeLists.txt in bytes."""
 MAX_LOOK = 100_000

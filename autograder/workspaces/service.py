@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from autograder.workspaces.running.jobs import Jobs
 
 MAX_BUILDS = 20
-"""The maximum number of builds that one notebook may request. After that, colcon itself builds in the box."""
+"""The maximum number of builds that one notebook may request. For later builds, colcon itself runs in the box."""
 PIECE = 400_000
 """The maximum number of bytes of an archive in one message."""
 

@@ -33,8 +33,8 @@ if TYPE_CHECKING:
 CONFIG_NAME = "nbgrader_config.py"
 STATE_NAME = ".autograder"
 COURSE_NAME = "course"
-"""The name of a file in the class's state folder. It contains the path of the course's top folder, which an installed
-package cannot find otherwise.
+"""The name of a file in the class's state folder, with the path of the course's top folder, which an installed package
+cannot find otherwise.
 """
 SUFFIX = ".ipynb"
 _LONGEST_NAME = 100

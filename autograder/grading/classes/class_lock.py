@@ -42,7 +42,8 @@ class Holder:
 
 
 _own: dict[Path, Holder] = {}
-"""The locks that this process holds. The system itself would let a process take the same lock twice."""
+"""The locks that this process holds. They are listed because the system would let a process take the same lock twice.
+"""
 _changing = threading.Lock()
 
 

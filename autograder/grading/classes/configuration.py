@@ -71,7 +71,9 @@ _MAY_BE: Mapping[str, Mapping[str, tuple[Any, ...]]] = {
         )
     },
 }
-"""The supported options by section, with their supported values. Sections that are not listed may have any option."""
+"""The supported options by section, with their supported values. In sections that are not listed, any option is
+allowed.
+"""
 
 
 _INSTEAD = {

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 TIMESTAMP = "timestamp.txt"
 """The name of nbgrader's timestamp file, which lies next to the notebooks of a submission."""
 SECRET = "submission_secret.txt"
-"""The name of a file that nbgrader's exchange writes next to collected notebooks. From this file, nbgrader knows for
+"""The name of a file that nbgrader's exchange writes next to collected notebooks, and from which nbgrader knows for
 which student a feedback page is.
 """
 _LONGEST = 200

@@ -45,10 +45,12 @@ from autograder.grading.running.orders import (  # noqa: E402
 from autograder.messages.lines import Hangup, Lines  # noqa: E402
 
 _MEMORY = 3 << 30
-"""The limit of this process's address space, in bytes. Python and Dask take 0.2 GB of it."""
+"""The limit of this process's address space, in bytes, of which Python and Dask take 0.2 GB."""
 _CONNECT_SECONDS = 10
 _OFFER_SECONDS = 60.0
-"""Time limit in seconds for a worker's offer. The worker first tries to make a box, which can take a second."""
+"""Time limit in seconds for a worker's offer. Before the offer, the worker tries to make a box, which can take a
+second.
+"""
 _LINK_SECONDS = 5.0
 """If the scheduler has reported nothing for this many seconds, the connection to it is checked."""
 

@@ -16,11 +16,13 @@ class State(StrEnum):
     """The state of a file after collecting. Each file has exactly one of these."""
 
     PLACED = "placed"
-    """The file counts: it is in ``submitted``. In a report, this command has written it."""
+    """The file counts: it is in ``submitted``. In a report, it also means that this command has written the file."""
     UNCHANGED = "unchanged"
-    """A file with the same bytes counts. In a report, also: the file was in ``submitted`` before."""
+    """A file with the same bytes counts. In a report, it may also mean that the file itself was in ``submitted``
+    before.
+    """
     EARLIER = "earlier"
-    """Another file counts. This one is kept as an earlier attempt."""
+    """Another file counts, so this file is kept as an earlier attempt."""
     BESIDE = "beside"
     """The file is not one of the notebooks to collect, and its student has handed in such a notebook; or it is a page
     of the LMS.

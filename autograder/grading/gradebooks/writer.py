@@ -1,4 +1,4 @@
-"""Writes the results of a submission to the gradebook, ``autograded/`` and ``feedback/``, as no other module does."""
+"""Writes the results of a submission to the gradebook, ``autograded/`` and ``feedback/``; the only module that does."""
 
 from __future__ import annotations
 

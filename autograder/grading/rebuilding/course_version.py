@@ -16,8 +16,8 @@ if TYPE_CHECKING:
 
 _MADE_BY_PYTHON = "__pycache__"
 _MADE_BY_COLCON = frozenset({"build", "install", "log"})
-"""The folders that colcon makes next to a workspace's ``src``. The hash covers the files in ``src``, from which colcon
-makes them.
+"""The folders that colcon makes next to a workspace's ``src``. They are not hashed, because they are made from the
+files in ``src``, which are hashed.
 """
 _OF_CHAPTERS = (f"*/{course.CHAPTER}", "*/*/*.py", f"*/*/*{REFERENCE}")
 """Patterns for the chapters' files that the hash covers: ``chapter.toml``, exercises, and reference outputs."""

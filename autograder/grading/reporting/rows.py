@@ -27,7 +27,9 @@ WAITS = "waits"
 BY_HAND = "by_hand"
 """The state of a cell to which a person has given points."""
 EXCUSED = "excused"
-"""The state of an exercise if students.csv excuses the student from its assignment. It does not count in the total."""
+"""The state of an exercise if students.csv excuses the student from its assignment, so that it does not count in the
+total.
+"""
 LATE = "late"
 """The value of ``exercise`` in a row for a late penalty."""
 DROPPED = "dropped"
@@ -103,7 +105,7 @@ class Row:
 
     @property
     def is_unchecked(self) -> bool:
-        """True if the exercise was submitted but not judged, so that the next run may give points."""
+        """True if the exercise was submitted but could not be judged yet; the next run may give points."""
         return self.is_blank and self.state in (NOT_GRADED, State.NOT_CHECKED)
 
     @property

@@ -32,8 +32,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
 
 POLICY = "default-src 'none'; style-src 'unsafe-inline'; img-src data:; base-uri 'none'; form-action 'none'"
-"""The Content Security Policy of a feedback page. It lets a browser show only the text, styles and pictures inside the
-page.
+"""The Content Security Policy of a feedback page, which lets a browser show only the text, styles and pictures inside
+the page.
 """
 
 _OURS = Path(__file__).parents[1] / "page_templates"
@@ -42,10 +42,12 @@ _NBGRADERS = _FORMGRADER / "templates"
 _BOOTSTRAP = _FORMGRADER / "static" / "node_modules" / "bootstrap" / "dist" / "css"
 _SCRIPT = re.compile(r"<script\b.*?</script\s*>", re.DOTALL | re.IGNORECASE)
 _REMEMBERED = 1024
-"""The maximum number of code cells in the cache of highlighted code. A chapter has a few hundred given cells."""
+"""The maximum number of code cells in the cache of highlighted code; enough for a chapter, which has a few hundred
+given cells.
+"""
 _REMEMBERED_CHARACTERS = 8_000_000
-"""The maximum length of all rendered parts of pages in the cache, in characters. The parts that are the same for all
-students of a chapter take about a million.
+"""The maximum length of all rendered parts of pages in the cache, in characters; enough for the parts that are the same
+for all students of a chapter, which take about a million.
 """
 _PICTURE = re2.compile(r"(?i)<img\b[^>]*")
 _SHOWS_ATTACHED = re2.compile(r'(?P<before><img\b(?:\s+[\w-]+="[^"]*")*?\s+)src="attachment:(?P<name>[^"]*)"')

@@ -25,8 +25,8 @@ if TYPE_CHECKING:
     from autograder.grading.gradebooks.gradebook_reading import CellEntry
 
 WAITS = "waits_for_a_person"
-"""The key in a cell's nbgrader metadata for a cell without final points. Its value is a remark for the student, such
-as "waits for your instructor".
+"""The key in a cell's nbgrader metadata, if the cell has no final points, of a remark for the student, such as "waits
+for your instructor".
 """
 _FOR_A_PERSON, _TRIED_AGAIN = "waits for your instructor", "could not be checked, and is tried again"
 _BEGIN, _END = '<div id="toc">', "</div>"

@@ -33,14 +33,14 @@ if TYPE_CHECKING:
 LONGEST_MARKDOWN = 50_000
 """The maximum length of a text cell to render, in characters. A longer text is shown as typed."""
 _MOST_PLACES = 50_000
-"""The maximum size of all tables in a text, as rows times columns. A browser needs memory for each position in a
-table, even if the position has no cell.
+"""The maximum size of all tables in a text, as rows times columns. It is limited because a browser needs memory for
+each position in a table, even if the position has no cell.
 """
 SHOWN = (*IMAGES, "text/plain")
-"""The media types that an output of a student's cell may have. None of these types can contain scripts."""
+"""The media types that an output of a student's cell may have, because they cannot contain scripts."""
 
 _FORMATTING = frozenset(("a", "b", "code", "em", "i", "s", "small", "strike", "strong", "tt", "u"))
-"""The formatting elements of HTML. If one is not closed, a parser opens it again in each following block."""
+"""The formatting elements of HTML, which a parser opens again in each following block if they are not closed."""
 _TAGS = _FORMATTING | {
     *("abbr", "blockquote", "br", "caption", "center", "dd", "del", "details", "div", "dl", "dt"),
     *("h1", "h2", "h3", "h4", "h5", "h6", "hr", "img", "input", "ins", "kbd", "li", "mark", "ol", "p", "pre"),
@@ -83,8 +83,8 @@ _TURNS = {
     code: f"\\u{code:04x}"
     for code in (0x061C, 0x200E, 0x200F, *range(0x202A, 0x202F), *range(0x2066, 0x206A))
 }
-"""The characters that change the writing direction, each with the escape to show instead. With such characters, a text
-may look different from its real content (Unicode TR 36, "Bidirectional Text").
+"""The characters that change the writing direction, each with the escape to show instead. They are replaced because
+with them, a text may look different from its real content (Unicode TR 36, "Bidirectional Text").
 """
 
 

@@ -45,11 +45,13 @@ if TYPE_CHECKING:
     from autograder.grading.task import Task
 
 ATTEMPTS = 3
-"""The maximum number of times that a task is given to a worker. If each worker ended, the task may be the cause."""
+"""The maximum number of times that a task is given to a worker. If the worker ended each time, the task may be the
+cause.
+"""
 _RETURN_SECONDS = 60.0
-"""Seconds to wait for a worker if none is left. A worker that ended is often started again."""
+"""Seconds to wait for a worker if none is left, because a worker that ended is often started again."""
 _EXTRA_SECONDS = 90.0
-"""Seconds that a worker may take beyond the time limits of a task. Then its answer is no longer expected."""
+"""Seconds that a worker may take beyond the time limits of a task before its answer is no longer expected."""
 _MOST_IN_FLIGHT = 2_000
 _MOST_TROUBLES = 3
 

@@ -21,8 +21,8 @@ if TYPE_CHECKING:
     from autograder.grading.task import Task
 
 _PER_CORE = 4
-"""The maximum number of notebooks per processor at the same time. A notebook spends most of its time waiting: for a
-timer, for ROS discovery, or for a program to start.
+"""The maximum number of notebooks per processor at the same time. It is greater than one, because a notebook spends
+most of its time waiting: for a timer, for ROS discovery, or for a program to start.
 """
 BOX_BYTES = Limits().beside_bytes + 150_000_000
 """The memory in bytes that is reserved for each notebook with its sandbox and judge."""

@@ -43,7 +43,9 @@ if TYPE_CHECKING:
     from autograder.execution.notebook_boxes import BoxedPlace, UnboxedPlace
 
 LAST_SECONDS = 10.0
-"""Time limit in seconds for the clean-up of the executor process. A grader that still runs kills it earlier."""
+"""Time limit in seconds for the clean-up of the executor process. It matters only if the grader has ended, because a
+grader that still runs kills the process earlier.
+"""
 _JUDGE_MODULE = "autograder.judge.serving.attached"
 
 

@@ -9,9 +9,11 @@ from __future__ import annotations
 import msgspec
 
 ADDRESS = "this machine"
-"""The address of the worker that is this machine. The grader uses the same course, so no versions are compared."""
+"""The address of the worker that is this machine. Its version of the course is not compared, because the grader uses
+the same course.
+"""
 JUDGE = "autograder.judge.serving.process:JudgeProcess"
-"""The name of the real judge's Python class, as ``module:class``. Only workers import the class itself."""
+"""The name of the real judge's Python class, as ``module:class``; only workers import the class itself."""
 
 
 class Offer(msgspec.Struct, frozen=True):

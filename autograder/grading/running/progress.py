@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from rich.progress import Task
 
 _LINES = 20
-"""The approximate number of lines that a large class gets in a log file. Each failure adds a line."""
+"""The approximate number of lines that a large class gets in a log file, not counting a line for each failure."""
 _SILENCE = 30.0
 """Seconds between two lines in a log file about a notebook that runs longer than estimated."""
 

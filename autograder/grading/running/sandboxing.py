@@ -23,8 +23,8 @@ class SandboxMissing(GradingError):
 
 
 _off: set[Path] = set()
-"""The folders of the classes that this process grades without boxes. Folders are stored, because several
-``ClassDirectory`` objects may represent one class.
+"""The folders of the classes that this process grades without boxes. Folders are stored, and not ``ClassDirectory``
+objects, because several such objects may represent one class.
 """
 
 

@@ -32,8 +32,8 @@ if TYPE_CHECKING:
     from autograder.verdict import Verdict
 
 MOST_EVIDENCE = 4_000_000
-"""The maximum size in bytes of the evidence of one notebook, enough for ten checks. The evidence of a check that would
-exceed it is not kept.
+"""The maximum size in bytes of the evidence of one notebook, enough for ten checks. If the evidence of a further check
+would exceed this size, it is not kept.
 """
 
 

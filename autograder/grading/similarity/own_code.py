@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from autograder.grading.similarity.student_texts import StudentAnswer
 
 SEQUENCE = 7
-"""The number of words in a sequence. Answers are compared by such sequences; each is about one short line of code."""
+"""The number of words in each of the sequences by which answers are compared; about one short line of code."""
 LONGEST = 10_000
 """The maximum number of words of an answer to compare: more than a thousand lines."""
 _LONGEST_TEXT = 20 * LONGEST

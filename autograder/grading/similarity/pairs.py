@@ -72,12 +72,12 @@ class Pair:
 
     @property
     def share(self) -> float:
-        """The common passages' share of the shorter answer: a fraction of the words that its student wrote."""
+        """The fraction of the shorter answer that is in the common passages, counting only the student's own words."""
         return self.shared / min(self.one.length, self.other.length)
 
     @property
     def percent(self) -> str:
-        """The share in percent as text, rounded down, so ``100 %`` means that the passages contain all these words."""
+        """The share in percent as text, rounded down, so that only a share of all words is ``100 %``."""
         return f"{int(100 * self.share)} %"
 
     @property

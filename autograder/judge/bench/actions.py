@@ -39,7 +39,7 @@ STATUS = {
 
 _SERVICES = ("send_goal", "cancel_goal", "get_result")
 FEEDBACK_MATCH = 3.0
-"""Time limit in seconds for discovering the subscription to feedback. Feedback without a subscription would be lost."""
+"""Time limit in seconds for discovering the subscription to feedback, without which feedback would be lost."""
 
 
 class ScriptedActionServer:

@@ -128,7 +128,7 @@ def _process(gid: bytes) -> int:
 
 
 def counterparts(judge: Node, heard: list[str], spoken: list[str]) -> list[NodeName]:
-    """Return those of the subject's nodes that use these topics and whose names are already known.
+    """Return the subject's nodes that use these topics, except nodes whose names are not discovered yet.
 
     Args:
         judge: The judge's node.
@@ -149,10 +149,10 @@ def owners(judge: Node, role: str, name: str) -> list[NodeName]:
 
 
 def shows(judge: Node, marker: str) -> bool:
-    """Return True if a node on the graph has both a publisher and a subscription on the topic ``marker``.
+    """Return True if the topic ``marker``, which shows that all endpoints are made, is on the graph.
 
-    The notebook makes the marker's publisher and subscription last, and endpoints of one kind are announced in order
-    (DDSI-RTPS, 8.5.4). So once the marker is on the graph, all other endpoints are, too.
+    The notebook makes a publisher and a subscription on this topic after all other endpoints, and endpoints of one kind
+    are announced in order (DDSI-RTPS, 8.5.4). So once both are on the graph, all other endpoints are, too.
     """
     return any(
         marker in dict(_ask(Node.get_publisher_names_and_types_by_node, judge, node))

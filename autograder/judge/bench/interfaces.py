@@ -21,7 +21,9 @@ if TYPE_CHECKING:
     from rclpy.node import Node
 
 _SIDES = {"request": "rq{service}Request", "response": "rr{service}Reply"}
-"""The DDS topics of a service in rmw_fastrtps. Each announces the type hash of one side."""
+"""The DDS topics of a service in rmw_fastrtps: one announces the type hash of the request, the other that of the
+response.
+"""
 
 
 class UnknownInterface(LookupError):

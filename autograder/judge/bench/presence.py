@@ -175,8 +175,8 @@ class Presence:
         def over() -> bool:
             nonlocal interface
             marker = self._subject.marker
-            # Look for the marker before the survey. The subject announces the marker last, so if it is on the graph,
-            # the survey finds all endpoints.
+            # Look for the marker topic (see graph.shows) before the survey. The subject makes it last, so if it is on
+            # the graph, the survey finds all endpoints.
             all_made = marker is not None and graph.shows(self._node, marker)
             interface = graph.survey(self._node)
             if there(interface) or self._subject.ended or all_made:

@@ -157,7 +157,7 @@ class Recorder:
             condition: Called in the waiting thread, without holding the recorder's lock.
             within: The limit in seconds of patience (:mod:`autograder.judge.bench.patience`).
             poll: Seconds until the condition is checked again without an event. A few milliseconds if the condition
-                queries the graph, because changes of the graph are no events.
+                queries the graph, because changes of the graph are not events.
             quiet: Give up earlier if nothing was recorded for this many seconds of patience.
             wall: True to count wall time: for a wait that is a step of the scenario and not a limit for the subject.
 

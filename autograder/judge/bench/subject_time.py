@@ -33,7 +33,9 @@ if TYPE_CHECKING:
     from autograder.judge.subjects.subject import Subject
 
 ANSWER_LIMIT = 0.5
-"""Time limit in seconds of wall time for a spinning node to answer. A node that does not answer is not stepped."""
+"""Time limit in seconds of wall time for a spinning node to answer. If a node does not answer, simulated time is not
+used for it.
+"""
 PATIENT_ANSWER = 1.5
 """Time limit in seconds of wall time for an answer. A node that has not answered by then counts as not spun."""
 TURNS = 3
@@ -44,7 +46,9 @@ subscriptions just before the time arrives, and its services just after the requ
 handles only the request.
 """
 FIRST = 100.0
-"""The simulated time at the start, in seconds. The jump to it distorts the first interval, which is not counted."""
+"""The simulated time at the start, in seconds. The jump to this time distorts the first interval, which is therefore
+not counted.
+"""
 SLOW_STEP = 0.25
 """Time limit in seconds of wall time for a step. A longer step is suspicious: the subject sleeps, or the machine is
 overloaded.

@@ -26,9 +26,9 @@ __all__ = ["NoFreeDomainError", "lease", "remove_abandoned", "remove_if_abandone
 FOLDER = Path("/dev/shm")
 _SUFFIX = "_el"
 _LOCKS = f"fastrtps_{'[0-9a-f]' * 16}{_SUFFIX}"
-"""A pattern for the lock files of shared memory segments. The program that owns a segment holds its lock as long as the
-program runs (RobustExclusiveLock.hpp). Segments for ports have other names. They stay, because several programs share
-them.
+"""A pattern for the lock files of shared memory segments. The program that owns a segment holds the segment's lock as
+long as the program runs (RobustExclusiveLock.hpp). The pattern does not match segments for ports, which must stay
+because several programs share them.
 """
 AGE = 60.0
 """The age in seconds from which an unlocked lock file counts as abandoned. A younger lock file may be unlocked because

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 _ENDINGS = (signal.SIGINT, signal.SIGTERM)
 LAST_WORDS = 2.0
-"""Seconds of wall time that a judge gets for its verdict after the time limit of the check. Then it is killed."""
+"""Seconds of wall time that a judge gets for its verdict after the time limit of the check, before it is killed."""
 
 
 @dataclass(frozen=True)

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 MAX_TEXT = 4_000
 """The maximum length of a text from the notebook, in characters."""
 MAX_MARKER = 200
-"""The maximum length of a marker's name, in characters."""
+"""The maximum length, in characters, of the name of the topic that shows that all endpoints are made."""
 MAX_STACK = 50_000
 """The maximum length of the stacks of a hung subject, in characters."""
 CONSTRUCT_LIMIT = 10.0
@@ -125,7 +125,7 @@ class RemoteSubject:
     def release(self) -> None:
         """Have the notebook spin the node.
 
-        A node with a timer or thread may make more endpoints once it is spun. So the marker, which shows that all
+        A node with a timer or thread may make more endpoints once it is spun. So the marker topic, which shows that all
         endpoints exist, is dropped.
         """
         if self._may_make_more:

@@ -21,8 +21,7 @@ _DATAGRAMS, _BYTES = 16, 4096
 holds, but more than a socket holds if other programs have used up the system's memory for sockets.
 """
 _ARRIVES_WITHIN = 10.0
-"""Time limit in seconds of wall time for a datagram to arrive. It is generous: nothing but a busy processor delays it.
-"""
+"""Time limit in seconds of wall time for a datagram to arrive. Only a busy processor can delay a datagram so long."""
 
 
 class NotDelivered(JudgeFailed):

@@ -18,7 +18,9 @@ if TYPE_CHECKING:
 WHAT_TO_DO = "Show this card to your instructor: the exercise has to be corrected first."
 KIT = Path(kit.__file__).parent
 MAX_WORDS = 300
-"""The maximum length of the quoted error, in characters. The error may contain output of the subject."""
+"""The maximum length of the quoted error, in characters. It is limited because the error may contain output of the
+subject.
+"""
 
 
 class ExerciseFailed(JudgeFailed):

@@ -30,7 +30,8 @@ if TYPE_CHECKING:
 MAX_BYTES = 400_000
 """The maximum size of the evidence of one check, in compressed bytes."""
 MAX_RAW_BYTES = 8_000_000
-"""The maximum size in bytes before compression. This limit is for endless repetition, which compresses well."""
+"""The maximum size in bytes before compression. It is needed for endless repetition, which is small after compression.
+"""
 _GZIP = 31
 """The value of zlib's ``wbits`` for a gzip header with the largest window."""
 _FLOAT = "$float"

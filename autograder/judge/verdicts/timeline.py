@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from autograder.kit.evidence import Event, Evidence, Part, Reference
 
 MAX_MOMENTS = 80
-"""The maximum number of moments in a verdict: all important moments, and the first of the others."""
+"""The maximum number of moments in a verdict: all important ones and, of the less important ones, the first."""
 MOST_MOMENTS = 120
 """The maximum number of moments if more than :data:`MAX_MOMENTS` are important, as when a program sends goals forever.
 """

@@ -81,10 +81,10 @@ def raised(how: str, traceback: str, next_step: str = "") -> Advice:
 
 
 _EXECUTOR = "rclpy/executors.py"
-"""The file of rclpy that calls callbacks. In a traceback, the code below a line of this file ran in a callback."""
+"""The file of rclpy that calls callbacks, so in a traceback, the code below a line of this file ran in a callback."""
 _LOGGING = "/logging/__init__.py"
-"""The file of Python's ``logging``. A traceback that begins in this file means that one log line could not be written;
-the program goes on.
+"""The file of Python's ``logging``. A traceback that begins in this file is not a crash: one log line could not be
+written, and the program goes on.
 """
 _FRAME = re2.compile(r'(?m)^ +File "(?P<file>[^"\n]*)", line (?P<line>\d+), in (?P<function>[^\n]*)$')
 

@@ -18,13 +18,13 @@ _LIBRARY = re2.compile(r"/lib/python3(?:\.\d+)?/|/(?:site|dist)-packages/|^/opt/
 _BUILT = re2.compile(
     r"/install/(?:[^/.]+/)?(?:local/)?lib/python3[^/]*/(?:site|dist)-packages/(?P<package>\w+)"
 )
-"""Matches the path of a package that colcon has installed. It may be the student's package, or a package of ROS if ROS
-was built from source.
+"""Matches the path of a package that colcon has installed: the student's package, or a package of ROS if ROS was built
+from source.
 """
 _ROS = ("rclpy", "launch", "launch_ros", "ros2cli", "ros2run")
 _MISSED = re2.compile(r"AttributeError: .*(?:has no attribute|object attribute) '(?P<name>\w+)'")
 _OWNER = r"(?:^|[^\w.)\]])(?P<owner>[A-Za-z_][\w.]*(?:(?:\(\)|\[[^\[\]]*\])[\w.]*)*)\.{name}\b"
-"""Matches the expression before a dot and a given name. It may contain names, dots, calls without arguments and
+"""Matches the expression before a dot and a given name, if it consists of names, dots, calls without arguments and
 indexes.
 """
 _RESULT = ".result()"

@@ -304,7 +304,7 @@ RUNNING: Sequence[Row] = (
         "compare the types, names and methods, and their order, with the lab's text.",
     ),
 )
-"""The rows for errors in a running program. The last row matches every traceback."""
+"""The entries for errors in a running program, of which the last matches every traceback."""
 
 
 def meaning(traceback: str) -> Meaning:

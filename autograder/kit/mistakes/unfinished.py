@@ -96,7 +96,7 @@ def ended_too_early(evidence: Evidence) -> Advice | None:
         )
     roles = evidence.reference.interface.keys()
     if roles and roles <= {"client", "action_client"}:
-        return None  # If a client did something, its end is no mistake: the criteria say what is missing.
+        return None  # If a client did something, its end is not a mistake: the criteria say what is missing.
     asked = evidence.main.of("asked")
     is_open = len(asked) > len(evidence.main.of("answered"))
     when = (

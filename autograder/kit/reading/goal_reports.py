@@ -30,11 +30,11 @@ SERVED = (LATE, REFUSED, ABORTED)
 WAIT = Wait("server", "action_client", "goal", ABSENT, SERVED)
 """The criterion and the mistakes of a client that waits for an action server."""
 FEEDBACKS = 14
-"""The number of feedback messages that the judge sends for the goal that succeeds. So many are needed to notice a
-client that stops receiving them.
+"""The number of feedback messages that the judge sends for the goal that succeeds. With fewer messages, a client that
+stops receiving them would not be noticed.
 """
 SUCCEEDED, CANCELED, WAS_ABORTED = Outcome("succeeded"), Outcome("canceled", "cancelled"), Outcome("aborted")
-"""The three ways in which an accepted goal can end. A client reports an end by this word or by the number of the
+"""The three ways in which an accepted goal can end, each of which a client reports by the word or by the number of the
 status.
 """
 REJECTED = Outcome("rejected")
@@ -43,8 +43,8 @@ NO_GOAL = "no goal"
 UNASKED = "a request to cancel the goal"
 NOT_AWAITED = "the client ended without processing the answer to its goal"
 MANY_REQUESTS = 3
-"""The maximum number of requests for one result that a client may need. A client that makes more requests repeats them
-without end.
+"""The maximum number of requests for one result that a client may need. If a client makes more requests, it repeats
+them without end.
 """
 
 AT_ONCE = 3.6

@@ -18,16 +18,16 @@ if TYPE_CHECKING:
     from autograder.kit.evidence import Event, Part
 
 SURE = 2
-"""The minimum number of messages that the judge surely notices. A single message may come before the judge can receive
-it.
+"""The minimum number of messages that the judge surely notices. It is not one, because a single message may come before
+the judge can receive it.
 """
 SLOWLY = 1.5
 """A publisher is slow if its intervals are at least this many times as long as the reference's. It may also be silent
 for this many of its own intervals at the end of the run.
 """
 BURST = 0.3
-"""A limit in seconds. A program that published for a shorter time and ended may have published everything at once, if
-the machine was busy.
+"""A limit in seconds. If a program published for a shorter time and ended, it may have published everything at once,
+and a busy machine delayed some messages.
 """
 _NUMBER, _WHOLE = re2.compile(r"-?\d+(?:[.,]\d+|e[+-]?\d+)*"), re2.compile(r"0|-?[1-9]\d{0,17}")
 _DIGITS = re2.compile(r"\d{1,18}")

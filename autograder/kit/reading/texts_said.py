@@ -42,8 +42,8 @@ MUCH = 5
 OFTEN = 3
 """The minimum number of reports that count as a repetition if only the last text is repeated."""
 GROWING = 6
-"""The minimum number of lines, each of which contains all earlier texts, that count as repeating. A program may show a
-few recent texts.
+"""The minimum number of lines, each of which contains all earlier texts, that count as repeating. It is greater than
+two or three, because a program may show a few recent texts.
 """
 
 

@@ -44,11 +44,11 @@ the next ones may be delayed until the heartbeat of the publisher, 3 s later.
 """
 PART = "launching"
 MOST = 4
-"""The maximum number of programs that the judge starts without their rules, if a launch file starts many."""
+"""The maximum number of programs that the judge starts without their remapping rules, if a launch file starts many."""
 
 
 class Launched:
-    """The programs that a launch file started, as the judge saw them: their endpoints, processes and rules.
+    """The programs that a launch file started, as the judge saw them: their endpoints, processes and remapping rules.
 
     Args:
         evidence: All evidence.
@@ -87,8 +87,8 @@ class Launched:
             for process in self._processes
             if any(package in word for word in process.argv) and not _is_a_tool(process.argv)
         }
-        """The ids of the processes that run programs of the package. A tool whose arguments contain the package's name
-        may be included.
+        """The ids of the processes that run programs of the package. They may include a tool whose arguments contain
+        the package's name.
         """
 
     @property
@@ -120,7 +120,7 @@ class Launched:
 
     @property
     def not_moved(self) -> list[str]:
-        """The programs that use the new name even if they are started without their rules."""
+        """The programs that use the new name even if they are started without their remapping rules."""
         seen = [(one.main, Launched(one, self._package, self._old_name)) for one in self._alone]
         return [
             str(part.inputs["program"]) for part, it in seen if it.topic in it.publishers | it.subscriptions
@@ -214,7 +214,7 @@ class Launched:
         return any(self._leads_there(old, new) for old, new in remappings(argv))
 
     def _leads_there(self, old: str, new: str) -> bool:
-        """Return True if a rule maps the old name, with any node name or namespace before it, to the new name."""
+        """Return True if a remapping rule from ``old`` to ``new`` leads from the topic's old name to its new name."""
         begins = old.rpartition(":")[2].rpartition("/")[2] == self._old_name
         return begins and _leads_to(self.topic, new)
 
@@ -250,7 +250,7 @@ class LaunchFile:
         return Launched(evidence, self._package, self._old_name)
 
     def expected(self, evidence: Evidence) -> Launched:
-        """Return the same view as :meth:`seen`, because the reference solution only provides the new name."""
+        """Return the same as :meth:`seen`, because criteria need only the new name from the reference solution."""
         return self.seen(evidence)
 
     def scenario(self, bench: Bench) -> None:
@@ -282,7 +282,7 @@ class LaunchFile:
             self._run_alone(bench, words)
 
     def _run_alone(self, bench: Bench, words: Sequence[str]) -> None:
-        """Start a program without its rules, and wait until it uses the old or the new name of the topic."""
+        """Start a program without its remapping rules, and wait until it uses the old or the new name of the topic."""
         bench.part(f"{words[1]} without its rule", program=words[1])
         bench.start(ALONE, *words)
         bench.watch_graph(lambda evidence: self.seen(evidence).is_there, BEGINNING[bench.pace])
@@ -350,7 +350,7 @@ def _is_a_tool(argv: tuple[str, ...]) -> bool:
 
 
 def _leads_to(topic: str, target: str) -> bool:
-    """Return True if the target of a rule is the topic. A relative target may have any namespace before it."""
+    """Return True if ``target`` of a remapping rule is the topic; in any namespace if ``target`` is relative."""
     return topic == target or topic.endswith(f"/{target.removeprefix('~').lstrip('/')}")
 
 

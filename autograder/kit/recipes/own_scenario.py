@@ -150,7 +150,7 @@ class OwnScenario:
 class Spoken(OwnScenario):
     """The recipe for a subject that logs or prints words instead of publishing them.
 
-    The view has a message event for each line with exactly one of the words; capitals do not matter.
+    For criteria, a line with exactly one of the words, in upper or lower case, counts as a message with this word.
 
     Args:
         words: The words, as the task names them.
@@ -161,7 +161,7 @@ class Spoken(OwnScenario):
         self._words = words
 
     def view(self, part: Part) -> Part:
-        """Return the record with a message event in place of each such line."""
+        """Return the record with a message event instead of each line that contains exactly one of the words."""
         lines = [
             (event, word) for _, event in without_tracebacks(part.events) if (word := self._word_in(event))
         ]
@@ -191,7 +191,7 @@ def _is_a_logged_one(event: Event) -> bool:
 
 
 def _without_echoes(lines: Sequence[tuple[Event, str]]) -> Iterator[tuple[Event, str]]:
-    """Yield the lines, but not one that is printed right after the same word was logged, or the other way round."""
+    """Yield the lines. If the same word is logged and at once printed, or printed and logged, yield one line only."""
     said, kind, at = "", "", 0.0
     for event, word in lines:
         if word != said or event.kind == kind or event.moment - at > ECHO:

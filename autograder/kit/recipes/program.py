@@ -24,7 +24,7 @@ SAYING = {Pace.FAST: 2.0, Pace.REAL_TIME: 5.0}
 LATE = 0.3
 """The number of seconds without any event, after the program has logged its line, until its log counts as complete."""
 COMPARED, LONG = 200, 400
-"""The maximum number of lines to compare, and of characters in each. Comparing more could take minutes."""
+"""The maximum number of lines to compare, and of characters in each, because comparing more could take minutes."""
 
 
 class Ran:
@@ -115,11 +115,11 @@ class Program:
         self.runner = RunsProgram(package, program)
 
     def seen(self, evidence: Evidence) -> Ran:
-        """Return the view of the student's program."""
+        """Return what the judge saw of the student's program."""
         return Ran(evidence)
 
     def expected(self, evidence: Evidence) -> Ran:
-        """Return the same view as :meth:`seen`, because it also contains the line of the reference output."""
+        """Return the same as :meth:`seen`, because a :class:`Ran` also contains the line of the reference output."""
         return Ran(evidence)
 
     def scenario(self, bench: Bench) -> None:

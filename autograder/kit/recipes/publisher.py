@@ -36,7 +36,8 @@ In Fast DDS, a message that was lost during discovery delays all later messages 
 s later (``heartbeatPeriod``).
 """
 PERSISTENT = 13
-"""The number of messages in real time after which the judge assumes that a publisher goes on. Many loops send only ten.
+"""The number of messages in real time after which the judge assumes that a publisher goes on. It is greater than ten,
+because many loops end after ten messages.
 """
 LOST = 1
 """The maximum number of messages that a right program may send, on an idle machine, before the judge can receive them.
@@ -136,7 +137,7 @@ class Hears:
     # --- views -----------------------------------------------------------------------------------------------
 
     def seen(self, evidence: Evidence) -> Publisher:
-        """Return the view of the subject as a publisher."""
+        """Return the subject as a :class:`Publisher`, from which criteria and mistakes decide."""
         topic, _ = evidence.reference.only("publisher")
         if evidence.real_time:
             enough = self._enough(evidence.before)
@@ -149,7 +150,7 @@ class Hears:
         )
 
     def expected(self, evidence: Evidence) -> Publisher:
-        """Return the view of the recorded reference solution."""
+        """Return the recorded reference solution as a :class:`Publisher`."""
         topic, _ = evidence.reference.only("publisher")
         return Publisher(topic, evidence.reference.part("talking"))
 

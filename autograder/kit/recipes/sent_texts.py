@@ -16,9 +16,9 @@ TRIES = 3
 moment.
 """
 GREETING = "Hello, world!"
-"""The text with which many talkers begin their messages. Some of the judge's texts contain it."""
+"""The text with which many talkers begin their messages, and which some of the judge's texts contain."""
 KINDS = 6
-"""The number of unusual texts in each series. In addition, one text comes twice."""
+"""The number of unusual texts in each series, not counting the text that comes twice."""
 
 _WORDS = (
     "amber", "birch", "cedar", "delta", "ember", "fjord", "grove", "harbour", "islet", "juniper", "kelp", "lagoon",

@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 
 CALLS = "calls"
 AT_ONCE = 6
-"""The number of simultaneous calls. The queue of a service holds 10 requests; with 12 calls, even a right server lost
-some (measured).
+"""The number of simultaneous calls. It is less than 10, because the queue of a service holds 10 requests: with 12
+calls, even a right server lost some (measured).
 """
 SERVER_LIMIT = {Pace.FAST: 3.0, Pace.REAL_TIME: 6.0}
 """Time limit in seconds until a server on the ROS graph is connected with the judge's client."""

@@ -274,7 +274,7 @@ class Watch(Declared):
         return [span for span in spans[1:] if span.state is not SILENCE]
 
     def _matched(self, seen: Part, rule: State) -> tuple[list[Span], list[Event]]:
-        """Return the intervals with the times at which their states were reported, and the other messages."""
+        """Return each due state with the time at which it was reported, and the messages that report none of them."""
         spans, stray = self._spans(seen, rule), []
         for event in seen.of("message"):
             at, told = reported_at(event), self._told(event)

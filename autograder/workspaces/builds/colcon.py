@@ -23,8 +23,8 @@ if TYPE_CHECKING:
 MAX_LOG = 40_000
 """The maximum number of characters to keep from the end of a failed build's log."""
 _REFUSED = "setup()' was never called"
-"""The last line of a build's output contains this text if setuptools rejects an argument in setup.py. The output then
-does not contain the reason.
+"""The last line of a build's output contains this text if setuptools rejects an argument in setup.py, without giving
+the reason.
 """
 _WHAT_REFUSED = (
     "setuptools refuses setup.py; `python3 setup.py --version`, in the folder of the package, says why"

@@ -105,7 +105,9 @@ class Program(Protocol):
     """A running program."""
 
     pid: int
-    """The process id, as seen outside the sandbox, of the first process of the program. All others descend from it."""
+    """The process id, as seen outside the sandbox, of the program's first process, from which its other processes
+    descend.
+    """
 
     def read(self, within: float) -> bytes | None:
         """Return the output since the last call; None if nothing has come yet, b"" at the end.

@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 LOOK_EVERY = 0.05
 """Seconds between two scans of the launch's processes."""
 MAX_COMMAND_LINE = 32_000
-"""The maximum number of bytes read of a command line. A process can change its own command line before each scan, and
-make it megabytes long.
+"""The maximum number of bytes read of a command line. It is needed because a process can make its own command line
+megabytes long, and change it before each scan.
 """
 MAX_COMMAND_LINES = 500
 """The maximum number of command lines to report for one launch; a usual launch has about ten."""

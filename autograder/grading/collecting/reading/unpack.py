@@ -28,10 +28,11 @@ _LEFT_BY_PROGRAMS = ("__MACOSX", ".git", ".ipynb_checkpoints", "__pycache__", ".
 EMPTY = "contains no file, or only files that programs leave there"
 """The reason why an archive or folder was not taken, if it contains nothing to take."""
 LONGEST_NAME = 1_000
-"""The maximum length of a path in characters. A zip may have paths of 65,535, too long to print."""
+"""The maximum length of a path in characters. It is needed because a zip may have paths of 65,535, too long to print.
+"""
 LONGEST_LINE = 50_000
-"""The maximum length in bytes of the line of JSON about a file. The line has up to three names, and an escaped name may
-be longer than :data:`LONGEST_NAME`.
+"""The maximum length in bytes of the line of JSON about a file. It is several times :data:`LONGEST_NAME`, because the
+line has up to three names, and escapes make a name longer.
 """
 
 
