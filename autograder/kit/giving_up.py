@@ -1,8 +1,8 @@
 """Decides how clients behave if their server is late or missing: how long they wait, and how they give up.
 
-One rule holds for every client of the course. A client that ends and reports :data:`NOT_AVAILABLE` behaves well. A
-client that repeatedly reports that it waits may go on; the card then remarks that a robot also needs a time limit. A
-function with a parameter ``patience_sec`` must wait that many seconds.
+Every client of the course may choose between two ways: it may end and report :data:`NOT_AVAILABLE`, or it may go on
+waiting and repeatedly report that it waits. In the second case, the card remarks that a robot also needs a time limit.
+A function with a parameter ``patience_sec`` must wait that many seconds before it gives up.
 """
 
 from __future__ import annotations
@@ -32,15 +32,15 @@ that it waits.
 LATENESS = 1.5
 """The maximum delay in seconds between a client's start and the start of its late server."""
 LATE_AT_FIRST = 0.65
-"""A shorter delay than :data:`LATENESS`, in seconds. It is used as long as a later run without a server can show
+"""A shorter delay than :data:`LATENESS`, in seconds, which is enough as long as a later run without a server can show
 whether the client would have waited longer.
 """
 CLOSELY = 0.5
 """The number of seconds by which a function may exceed a short patience and still counts as using this patience as its
 limit.
 
-A function with a constant limit is noticed. If the constant is three quarters of a second or more, the function waits
-too long. If it is shorter, the function misses a server that comes after :data:`LATE_AT_FIRST`.
+Even so, a function with a constant limit is noticed: if the constant is three quarters of a second or more, the
+function waits too long, and if it is shorter, the function misses a server that comes after :data:`LATE_AT_FIRST`.
 """
 PATIENCES = (6.5, 6.95)
 """The range, in seconds, from which a function's patience is drawn at random.
@@ -49,11 +49,9 @@ No common constant, such as 5 or 10, is in this range, even with the tolerances 
 """
 PATIENCES_WITHOUT_A_SERVER = {Pace.FAST: (0.2, 0.24), Pace.REAL_TIME: PATIENCES}
 """Like :data:`PATIENCES`, but for a run without a server, by pace. In such a run the function waits for its whole
-patience.
-
-The short range exposes a constant limit that is long enough for a late server. A function that cannot keep to the short
-range, for example because it waits in whole seconds, gets the long range in the second look. rclpy's own waits check
-four times a second, so they take a quarter of a second here.
+patience, so the short range exposes a constant limit that would be long enough for a late server. A function that
+cannot keep to the short range, for example because it waits in whole seconds, gets the long range in the second look.
+rclpy's own waits check four times a second, so they take a quarter of a second here.
 """
 TOO_LONG = 2.0
 """The number of seconds by which a function may exceed its patience, to make and destroy its node and for a slow
@@ -75,15 +73,16 @@ WAITING = Outcome("not available", "waiting")
 AGAIN_AND_AGAIN = 3
 """The minimum number of times that a client must report that it is still waiting."""
 SAYS_SO_TO = 8.0
-"""The minimum time in seconds from the first sight of the client to its last report that it waits. A client that
-reports every four seconds reaches this time. A client that stops after three tries does not.
+"""The minimum time in seconds from the moment when the judge first saw the client to the client's last report that it
+waits. For example, a client that reports every four seconds reaches this time, but a client that stops after three
+tries does not.
 """
 _CLIENTS = ("client", "action_client")
 _AT_WORK = ("log", "called", "looked")
 """The kinds of events that show that a node or function is running, even if the ROS graph does not show it."""
 MOMENT = 0.5
-"""Reports within this many seconds count only once. A log line is recorded twice (printed and on /rosout), and a loop
-may be fast.
+"""Reports within this many seconds count only once, because a log line is recorded twice (printed and on /rosout), and
+a loop may be fast.
 """
 
 
@@ -134,8 +133,8 @@ def await_it(bench: Bench) -> None:
 def says_that_it_waits(part: Part) -> bool:
     """Return True if the subject repeatedly reports that it waits, and not only at its beginning.
 
-    The beginning is the moment when the judge first saw the client. On a busy machine a program may need seconds until
-    then.
+    The beginning is the moment when the judge first saw the client, and not the start of the program, because on a busy
+    machine a program may need seconds to make its client.
     """
     looks = (event.t for event in part.of("interface") if any(map(event.data.get, _CLIENTS)))
     late = (next(looks, 0.0) + SAYS_SO_TO) / MOMENT
@@ -257,9 +256,9 @@ def remark(absent: str) -> Callable[[Evidence], str]:
 def gave_up(served: Sequence[Part], absent: Part, asked: Callable[[Part], bool]) -> bool:
     """Return True if the subject gave up: it reported a missing server and ended, although the server was available.
 
-    On the network, a client that gave up looks like one that never meant to call: both just end. But a client that gave
-    up prints the same words whether the server is available or missing. Timing decides in which runs it ends too early:
-    a client that checks only once may find the server in some runs, in all or in none.
+    On the network, a client that gave up looks like a client that never meant to call, because both just end. But a
+    client that gave up prints the same words in a run with a server as in the run without one. All runs with a server
+    are searched, because chance may decide in which of them a client ends too early.
 
     Args:
         served: The runs with a server. In the first one the server comes late.
@@ -279,7 +278,8 @@ def gave_up(served: Sequence[Part], absent: Part, asked: Callable[[Part], bool])
 def looked_for_nobody(parts: Iterable[Part]) -> bool:
     """Return True if the subject ended in each run without an error, but never showed a node or a wait.
 
-    A notebook's function may end before the graph shows its node. Then it is unknown whether it looked for a server.
+    This happens because a notebook's function may end before the graph shows its node. In that case it is unknown
+    whether the function looked for a server.
     """
     return all(
         part.ending is not None and part.ending.name in ("exited", "returned") and not _was_seen(part)

@@ -1,9 +1,9 @@
 """Decides whether a client is patient: whether it waits for a late server and for late answers.
 
-On a quiet machine, everything is available in milliseconds, so a client that hardly waits would look as right as one
-that waits. Therefore the judge is deliberately slow, as a real robot may be: slow enough to show the difference, and
-much faster than the few seconds for which a client must wait. If a student is waiting for a check cell, answers come
-sooner.
+On a quiet machine, everything is available in milliseconds, so a client that hardly waits would look as right as a
+client that waits. Therefore the judge's servers and answers come late, as a real robot's may: late enough to show the
+difference, but much sooner than after the few seconds for which a client must wait. If a student is waiting for a check
+cell, the delays of answers are shorter.
 """
 
 from __future__ import annotations
@@ -30,8 +30,8 @@ client has just missed an answer.
 Neither delay equals a common time limit of programs, such as half a second.
 """
 PATIENT_WITH_AN_ANSWER = 0.9
-"""A client that waited this many seconds for an answer before it gave up was patient. On a busy machine it may have
-missed the answer.
+"""A client that waited this many seconds for an answer before it gave up was patient, and may have missed the answer
+only because the machine was busy.
 """
 PATIENT_WITH_A_RESULT = 4.0
 """A client that waited this many seconds for a goal's result before it gave up was patient. The time is longer than for
@@ -44,8 +44,8 @@ its answer, because a slow machine may miss even an early answer. In the fast lo
 real time is the next try.
 """
 PATIENT = 1.2
-"""A client that waited this many seconds for its server before it gave up was patient. It may have missed the server by
-a moment.
+"""A client that waited this many seconds for its server before it gave up was patient, and may have missed the server
+only by a moment.
 """
 LONG = 4.0
 """A client that waited this many seconds for its server has not missed it by a moment, so one more run is enough."""
@@ -59,8 +59,8 @@ def answers_late(bench: Bench) -> float:
 def late_at_first(bench: Bench) -> float:
     """Return the delay of the server in the first run, in seconds.
 
-    In the first run the judge does not yet know how long the client waits. Only the last run, without a server, shows
-    that.
+    In the fast look the delay is short, because the judge does not know yet how long the client waits: only the last
+    run, without a server, shows that.
     """
     return LATE_AT_FIRST if bench.pace is Pace.FAST else LATENESS
 
@@ -68,8 +68,8 @@ def late_at_first(bench: Bench) -> float:
 def may_be_impatient(bench: Bench) -> bool:
     """Return True if the last run, which has no server, does not show that the client waits long enough.
 
-    A function that was told how long to wait must wait that long; any other client must wait long. In real time, return
-    False, because the server of the first run was already as late as allowed.
+    A function that was told how long to wait must wait for that time, any other client for a few seconds. In real time
+    the result is always False, because the server of the first run was already as late as allowed.
     """
     absent = bench.seen()
     limit = patience(absent)
@@ -83,8 +83,8 @@ def may_be_impatient(bench: Bench) -> bool:
 def called_before_server(part: Part) -> bool:
     """Return True if the client's last call was made before the server existed, so that no server received it.
 
-    Only the calls of a notebook are recorded with their times. They are compared with the start of the judge's own
-    server, so the result does not depend on the machine's load.
+    The result is False for programs, because only the calls of a notebook are recorded with their times. These are
+    compared with the start of the judge's own server, so the result does not depend on the machine's load.
     """
     calls, serving = part.of("called"), part.first("serving")
     return bool(calls) and serving is not None and calls[-1].t < serving.t
@@ -145,9 +145,10 @@ def _waited_since(part: Part, beginning: Event | None, seconds: float) -> bool:
 
 
 def await_goal(bench: Bench, server: ActionCounterpart, within: float) -> bool:
-    """Wait for the subject's goal. While the judge holds back the answer, it sends the subject's node another request.
+    """Wait for the subject's goal. While the answer is held back, send the subject's node an unrelated request.
 
-    Any node may send such a request. A client that takes its first event for the answer is right only by chance.
+    The request shows whether the client takes any first event for its answer. Such a client is right only by chance,
+    because every node on the graph may send requests.
 
     Args:
         bench: The bench of the scenario.

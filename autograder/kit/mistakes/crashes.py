@@ -145,9 +145,9 @@ LEFT_LYING = 0.3
 def _answer_not_taken(evidence: Evidence) -> Advice | None:
     """Return advice if the client goes on in each run without an answer that was available.
 
-    An example is a call that has timed out. If this happens in only one run, a busy machine may have delayed the
-    answer. An answer that was sent after the exception shows nothing. A client whose code contains ``result()`` does
-    not count, because it may never have waited for its future.
+    For example, a call has timed out. This has to happen in each run, because in a single run a busy machine may have
+    delayed the answer. An answer that was sent after the exception does not count. A client whose code contains
+    ``result()`` does not count, because it may never have waited for its future.
     """
     answered = [part for part in evidence if _got_an_answer(part)]
     if not answered or not all(map(_went_on_without_it, answered)):
@@ -181,8 +181,8 @@ def _went_on_without_it(part: Part) -> bool:
 
 
 _COROUTINE = re2.compile(
-    # Warnings about methods are not matched. A method may be a callback, and Python warns that it was never awaited if
-    # the program ends before rclpy has run it.
+    # Warnings about methods are not matched, because a method may be a callback: if the program ends before rclpy has
+    # run a callback, Python warns that it was never awaited.
     r"^<coroutine object (?P<returned>\S+) at |RuntimeWarning: coroutine '(?P<warned>[a-z]\w*)' was never awaited"
 )
 

@@ -1,10 +1,10 @@
-"""A recipe for an action client. The judge is the action server.
+"""A recipe for an action client, for which the judge is the action server.
 
-The numbers that the judge sends are not Fibonacci numbers and not sorted, one of them occurs twice, and the result
-differs from the last feedback. So a client passes only if it shows what it receives. The server comes a little late in
-one run, refuses the goal in another, aborts it in a third, and does not exist in the last. If the run without a server
-does not show that the client would have waited longer, the first run is made again with a server that comes as late as
-the task allows.
+A client passes only if it shows what it receives, because it cannot guess the judge's numbers: they are not Fibonacci
+numbers and not sorted, one of them occurs twice, and the result differs from the last feedback. The server comes a
+little late in one run, refuses the goal in another, aborts it in a third, and does not exist in the last. In this last
+run, the client should show that it waits long enough. If it does not, the first run is made again with a server that
+comes as late as the task allows.
 """
 
 from __future__ import annotations
@@ -65,15 +65,14 @@ if TYPE_CHECKING:
 ORDERS = {LATE: (41, 46), REFUSED: (-9, -1), ABORTED: (0, 0), ABSENT: (11, 30)}
 """For each part, the smallest and the largest order that the client may be given. Negative numbers and 0 are valid."""
 SHOWN_WITHIN = {Pace.FAST: 0.5, Pace.REAL_TIME: 1.5}
-"""The maximum time in seconds for a client to show a feedback message. After this time the next message is sent anyway.
-"""
+"""The time in seconds after which the next feedback message is sent even if the client has not shown the last one."""
 HASTE = {Pace.FAST: 0.1, Pace.REAL_TIME: 0.075}
-"""A shorter limit instead of :data:`SHOWN_WITHIN`, in seconds, after the client has failed to show a message. With this
-limit, the goal's result comes after about 3.5 s. This is between the 3 and the 5 seconds that many clients wait.
+"""A shorter limit instead of :data:`SHOWN_WITHIN`, in seconds, after the client has failed to show a message. It is
+chosen so that the goal's result comes after about 3.5 s, between the 3 and the 5 seconds that many clients wait.
 """
 AT_PACE = 3
 """The number of feedback messages at the end that are sent at the pace of the lab's server, whatever the client shows.
-A client that shows the newest message from a timer misses earlier messages, and these last ones are a fair test for it.
+They are needed to judge fairly a client that shows the newest message from a timer, and so misses earlier messages.
 """
 LAB_PACE = 0.5
 """The time in seconds between two feedback messages at the pace of the lab's server, by the client's clock."""
@@ -228,13 +227,14 @@ def works_on_a_goal(
     newest = bench.random.sample(range(10**8, 10**9), feedbacks)
     length = max(RESULT, bench.seen().inputs["order"] + 1)
     result = bench.random.sample(range(10**9, 2 * 10**9), length - 1)
-    # One number occurs twice, to detect clients that drop repeated numbers. It is in the middle, because a missing
-    # number at either end would be noticed anyway.
+    # One number occurs twice, to detect clients that drop repeated numbers. The second time it is the last number but
+    # one, because a missing first or last number would be noticed even without a repetition.
     result.insert(-1, result[1])
     done = await_goal(bench, server, GOAL_LIMIT)
     if done:
-        # Wait before the first feedback. If it came together with the answer to the goal, chance would decide which of
-        # the two a client receives that handles one event and ends. A client that goes on next requests the result.
+        # Wait before the first feedback until the client requests the result, which a client that goes on does next. If
+        # the feedback came together with the answer to the goal, chance would decide which of the two a client receives
+        # that handles one event and ends.
         server.await_result_request(SHOWN_WITHIN[bench.pace])
         action, _ = bench.reference.only("action_client")
         for count, last in enumerate(newest, start=2):
@@ -246,8 +246,7 @@ def works_on_a_goal(
                 bench.pass_time(LAB_PACE, "action_client", action)
             elif not bench.wait_until(lambda seen: not unshown_feedback(seen.main), shown_within):
                 shown_within = HASTE[bench.pace]
-                # The client's queue holds only ten messages. So wait until a client on a busy machine has processed
-                # those in the queue.
+                # Wait until a client on a busy machine has processed the messages in its queue, which holds only ten.
                 bench.settle()
         server.await_result_request(END_LIMIT[bench.pace])
         hold_back(bench, "result_request")
@@ -264,7 +263,7 @@ def works_on_a_goal(
 def is_done(evidence: Evidence) -> bool:
     """Return True if the subject has ended, or has printed something since its result was sent.
 
-    A program may report part of the result and then keep spinning.
+    It need not have ended, because a program may report part of the result and then keep spinning.
     """
     part = evidence.main
     result = part.first("result")
@@ -350,7 +349,7 @@ def _not_by_refusal(mistake: Mistake) -> Mistake:
 
 
 class ActionClient(SeenAsItIs):
-    """The recipe for an action client. Both of its views are the whole evidence, because several runs have a goal.
+    """The recipe for an action client. Its criteria get the whole evidence, because several runs have a goal.
 
     Args:
         scenario: The function that runs all parts of the exercise on a bench. The action's name and type are

@@ -100,7 +100,7 @@ class Calls:
         return Finding(False, wanted, given + (", then ".join(made) or "no call"))
 
     def waits(self, evidence: Evidence) -> Finding:
-        """Decide whether the client calls even if the service comes late. Another criterion judges the result."""
+        """Decide whether the client calls even if the service comes late; another criterion judges the result."""
         late = self.seen(evidence).late
         called = bool(requests(late))
         return Finding(called, "waits, then calls", "it did" if called else how_it_went(late))
@@ -113,7 +113,7 @@ class Calls:
     def _wrong_numbers(self, evidence: Evidence) -> str:
         """Return in words the calls of a run with wrong numbers; empty if there is none.
 
-        Return an empty text also if a run has too few or too many calls.
+        The text is also empty if a run has too few or too many calls, because that is another mistake.
         """
         found = self.calls_right(evidence)
         as_many = self.seen(evidence).called(self.expected(evidence).calls)

@@ -5,11 +5,11 @@ whether the client used the answer. In a third, the numbers need 64 bits. In a f
 always include a 0, which is easily mistaken for a missing answer, and negative numbers. In two runs, one answer is held
 back for a while.
 
-At first, the service is only a little late. If the run without a service does not show that the client would have
-waited longer, the first run is made again with a service that comes as late as the task allows.
+In the first run, the service is only a little late. If the run without a service does not show that the client waits
+long enough, the first run is made again with a service that comes as late as the task allows.
 
-The judge repeats a run only while a repetition can still save points. A client of another type of service is served in
-one run only.
+The judge repeats a run only while a repetition can still save points. For example, a client of another type of service
+is served in one run only.
 
 A subject cannot predict which run has no service: after the run with the late service, the others come in random order,
 with the same kinds of numbers and the same time limits.
@@ -162,7 +162,7 @@ def is_silent(part: Part, calls: int) -> bool:
 def _with_quick_answers(bench: Bench, run: Run, calls: int, done: bool, tries: int = TRIES) -> bool:
     """End a run. If a patient client has missed an answer that was held back, first repeat the run without that delay.
 
-    In the fast look the run is not repeated, because the look in real time follows.
+    But in the fast look the run is not repeated, because the look in real time follows.
     """
 
     def missed_an_answer(seen: Part) -> bool:
@@ -202,9 +202,10 @@ def meets_service(
     answer = answering(run.answers)
     server = bench.serve(service, type_name, answer, hold=run.held) if prepared else None
     bench.start(*run.numbers, patience_sec=bench.seen().inputs[PATIENCE])
-    # The service starts when the judge has discovered the client. If it existed before, the client might discover it
-    # first. Then chance would decide whether the call of a client that ends at once reaches the judge. A subject with
-    # another client waits for something else. A subject without a client may only be slow to make it.
+    # The service starts when the judge has discovered the client. If the service existed before, the client might
+    # discover it first, and chance would decide whether the call of a client that ends at once reaches the judge. If
+    # the subject has only another client, it waits for another service, so the run ends. But if it has no client, it
+    # may only be slow to make one, so the service starts.
     if not bench.await_endpoint("client", service) and (
         bench.await_end(0.0) or bench.seen().endpoints("client")
     ):
@@ -234,7 +235,7 @@ def meets_service(
 def is_done(evidence: Evidence, calls: int) -> bool:
     """Return True if the subject has ended, or has reported the sum, as a program that spins on may.
 
-    A subject that has finished counts as finished even if one more call is on its way.
+    The result stays True even if the subject then sends one more call.
     """
     return evidence.main.ending is not None or has_reported(evidence.main, calls)
 
@@ -270,6 +271,6 @@ def answering(scripted: Sequence[int]) -> Callable[[Mapping[str, Any]], Mapping[
 
 
 def _as_int64(number: int) -> int:
-    # A client that adds the numbers in another order may exceed 64 bits. C++ servers then wrap around; rclpy's would
-    # crash.
+    # A client that adds the numbers in another order may exceed 64 bits. C++ servers then wrap around, as this one
+    # does; a server in rclpy would crash.
     return (number + 2**63) % 2**64 - 2**63
