@@ -215,8 +215,8 @@ def use_of(first: int, memory_of: _MemoryOf | None) -> Use:
 def _files_of(process: str) -> int:
     """Return the number of files that a process has open.
 
-    Since Linux 6.2, this number is the size of the folder ``fd`` (proc_pid_fd(5)). Earlier, the size is 0, so the
-    entries of the folder are counted.
+    Since Linux 6.2, this number is the size of the folder ``fd`` (proc_pid_fd(5)). In earlier versions the size is 0,
+    so the entries of the folder are counted.
     """
     folder = f"{process}/fd"
     return os.stat(folder).st_size or len(os.listdir(folder))  # noqa: PTH116, PTH208 (several times a second)

@@ -115,7 +115,7 @@ def mistake(
 
 
 class Bench(Protocol):
-    """The methods with which a scenario is written. Every wait ends at an event or a time limit, and returns which."""
+    """The methods with which a scenario is written. Each wait has a time limit, and returns whether it ended before."""
 
     pace: Pace
     before: Evidence | None

@@ -181,7 +181,7 @@ def lacks_programs(file: Path, made: Build, course_build: Build) -> bool:
 
 
 def reference_workspace() -> Path:
-    """Return the workspace with the course's own talker and listener. Students do not receive it."""
+    """Return the workspace with the course's own talker and listener, which students do not receive."""
     return course.root() / "solutions" / WORKSPACE
 
 

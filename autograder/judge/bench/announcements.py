@@ -47,7 +47,7 @@ nor keep the judge from other work.
 
 
 class Announcements:
-    """Listens for the announcements of DDS participants, on each of two sockets that can be opened.
+    """Listens for the announcements of DDS participants, on two sockets. A socket that cannot be opened is left out.
 
     Args:
         domain_id: The ROS domain.

@@ -125,7 +125,7 @@ class Publisher:
         return [after - before for before, after in pairwise(times)]
 
     def goes_on_slowly(self, expected: Publisher) -> bool:
-        """Return True if the publisher is slower than the reference's, and published until the end of the run."""
+        """Return True if the publisher is slower than the reference solution and published until the run's end."""
         if self.part.ending is not None or len(self.pauses) < SURE:
             return False
         silent = self.part.events[-1].moment - self.messages[-1].moment

@@ -177,7 +177,7 @@ WAIT = Wait("service", "client", "request", ABSENT, CALLED)
 def gives_up_in_time(evidence: Evidence) -> Finding:
     """Decide whether the client handles a missing service well.
 
-    The client may report this and end, or repeatedly report that it waits.
+    The client may report the missing service and end, or it may repeatedly report that it waits.
     """
     alone = own_sum(evidence.part(ABSENT)) is not None
     return WAIT.gives_up(evidence, "reported a sum although no service answered" if alone else "")

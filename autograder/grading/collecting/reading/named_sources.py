@@ -32,8 +32,8 @@ if TYPE_CHECKING:
 
 _EXPORT = re2.compile(r"^assignment_\d+_export(?: ?\(\d+\)|-\d+)?$")
 _SUBMISSION = re2.compile(r"^submission_\d+$")
-# Names of downloads that look like names of files in Canvas: gradebook_ROS_101_2_2025-10-03-14-05-06.zip, as
-# Blackboard makes them, and lab_1_2_submissions.zip.
+# These are downloads, although their names look like names of files in Canvas:
+# gradebook_ROS_101_2_2025-10-03-14-05-06.zip, as Blackboard makes it, and lab_1_2_submissions.zip.
 _DOWNLOAD = re2.compile(r"^(?:gradebook_.*_\d{4}(?:-\d\d){5}(?: ?\(\d+\))?|\D+_\d_\d_[^_]+)\.zip$")
 
 
