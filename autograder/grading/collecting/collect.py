@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
     from autograder.grading.collecting.inbox import Receiving
     from autograder.grading.collecting.line import Line, Place
-    from autograder.grading.collecting.reading.lists import Entry
+    from autograder.grading.collecting.reading.lists import ListEntry
 
 
 def collect(
@@ -84,7 +84,7 @@ class _Collecting:
         self._submitted = Submitted(directory, self._inbox)
         self._table = Table(directory)
         self._notes: list[str] = []
-        self._entries: list[Entry] = []
+        self._entries: list[ListEntry] = []
         self._rooms: dict[object, Room] = defaultdict(Room)
 
     def run(self, sources: Sequence[Path]) -> CollectReport:

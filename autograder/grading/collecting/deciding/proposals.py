@@ -15,7 +15,7 @@ from autograder.grading.collecting.deciding.student_of import Owners, StudentOf
 from autograder.grading.collecting.inbox import BY_HAND
 from autograder.grading.collecting.line import Line
 from autograder.grading.collecting.reading.desk import read_list
-from autograder.grading.collecting.reading.lists import GRADESCOPE, Entry
+from autograder.grading.collecting.reading.lists import GRADESCOPE, ListEntry
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -232,9 +232,9 @@ def in_utc(when: datetime | None, zone: tzinfo) -> datetime | None:
     return found if 1 < found.year < 9999 else None
 
 
-def entries_of(inbox: Inbox) -> dict[str, list[Entry]]:
+def entries_of(inbox: Inbox) -> dict[str, list[ListEntry]]:
     """Return the entries of all lists in the inbox, by delivery."""
-    found: dict[str, list[Entry]] = defaultdict(list)
+    found: dict[str, list[ListEntry]] = defaultdict(list)
     for id_, delivery in inbox.deliveries.items():
         for one in delivery.arrivals:
             found[id_] += read_list(one.name, inbox.read(one.content)) or [] if one.is_list else []

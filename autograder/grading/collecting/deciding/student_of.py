@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from datetime import datetime
     from pathlib import Path
 
-    from autograder.grading.collecting.reading.lists import Entry
+    from autograder.grading.collecting.reading.lists import ListEntry
     from autograder.grading.collecting.reading.lms_file_names import Found
 
 _WRITE_IT = "write the id under student in collected.csv"
@@ -69,9 +69,9 @@ class StudentOf:
         is_notebook: Callable[[str], bool],
         form: str = "",
         names: str = "",
-        entries: Iterable[Entry] = (),
-        own: Iterable[Entry] = (),
-        others: Iterable[Entry] = (),
+        entries: Iterable[ListEntry] = (),
+        own: Iterable[ListEntry] = (),
+        others: Iterable[ListEntry] = (),
     ) -> None:
         self._roster = roster
         self._is_notebook = is_notebook
@@ -254,7 +254,7 @@ def _distinct(several: Iterable[Iterable[Student]]) -> tuple[Student, ...]:
     return tuple({one.id: one for students in several for one in students}.values())
 
 
-def _times(entries: Iterable[Entry]) -> dict[tuple[str, str], set[datetime]]:
+def _times(entries: Iterable[ListEntry]) -> dict[tuple[str, str], set[datetime]]:
     times: dict[tuple[str, str], set[datetime]] = defaultdict(set)
     for one in entries:
         if one.when is not None and one.number:

@@ -10,7 +10,7 @@ import msgspec
 from autograder.boxes.channel import ChannelClosed
 from autograder.boxes.desk import KeptDesk, answer_in, in_memory
 from autograder.boxes.sandbox import why_impossible
-from autograder.grading.collecting.reading.lists import Entry
+from autograder.grading.collecting.reading.lists import ListEntry
 
 desk = KeptDesk("autograder.grading.collecting.reading.desk_program", attempts=1)
 _CPU_SECONDS = 200
@@ -40,7 +40,7 @@ def unpack(source: int, answer: int, limits: tuple[int, int, int, int], most: in
 
 
 @functools.lru_cache(maxsize=16)  # one command needs each list several times
-def read_list(name: str, data: bytes) -> list[Entry] | None:
+def read_list(name: str, data: bytes) -> list[ListEntry] | None:
     """Return the entries of a list; None if its form is unknown, or if a limit was met.
 
     Args:
@@ -52,7 +52,7 @@ def read_list(name: str, data: bytes) -> list[Entry] | None:
             return None
         document = answer_in(answer, _LARGEST_LIST)
     try:
-        return msgspec.json.decode(document, type=list[Entry] | None)
+        return msgspec.json.decode(document, type=list[ListEntry] | None)
     except msgspec.MsgspecError:
         return None
 

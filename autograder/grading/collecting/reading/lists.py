@@ -23,7 +23,7 @@ _NUMBER = re2.compile(r"(\d+)(?:\.\w+)?$")
 
 
 @dataclass(frozen=True)
-class Entry:
+class ListEntry:
     """An entry of a list, about one submission or one person.
 
     Attributes:
@@ -39,7 +39,7 @@ class Entry:
     when: datetime | None = None
 
 
-def parse_list(name: str, data: bytes) -> list[Entry] | None:
+def parse_list(name: str, data: bytes) -> list[ListEntry] | None:
     """Parse a list; return None if its form is unknown. Call this only in a desk, because the file is not trusted.
 
     Args:
@@ -61,7 +61,7 @@ def _cell(cell: str) -> str:
     return original(cell.strip())
 
 
-def _entries(form: ListForm, records: list[dict[str, str]]) -> Iterator[Entry]:
+def _entries(form: ListForm, records: list[dict[str, str]]) -> Iterator[ListEntry]:
     for record in records:
         number = record.get(form.number, "")
         if form.lms in ("moodle", "canvas", "gradescope"):
@@ -71,10 +71,10 @@ def _entries(form: ListForm, records: list[dict[str, str]]) -> Iterator[Entry]:
         if called := " ".join(filter(None, (record.get(name, "") for name in form.names))):
             names.append(Identity(form.lms, name=called))
         if names and (number or form.time):
-            yield Entry(form.lms, number, (tuple(names),), read_time(record.get(form.time, "")))
+            yield ListEntry(form.lms, number, (tuple(names),), read_time(record.get(form.time, "")))
 
 
-def _of_gradescope(data: bytes) -> list[Entry] | None:
+def _of_gradescope(data: bytes) -> list[ListEntry] | None:
     """Read ``submission_metadata.yml``, which contains the student and the time for each submission's folder."""
     try:
         # Every value stays text: no number loses its zeros, and no text gets longer than it was typed.
@@ -90,7 +90,7 @@ def _of_gradescope(data: bytes) -> list[Entry] | None:
             members = tuple(_member(one) for one in about.get(":submitters") or () if isinstance(one, dict))
             when = read_time(_word(about.get(":created_at")))
             when = when.replace(tzinfo=UTC) if when and when.tzinfo is None else when
-            entries.append(Entry("gradescope", number[1], members, when))
+            entries.append(ListEntry("gradescope", number[1], members, when))
     return entries
 
 
