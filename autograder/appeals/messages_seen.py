@@ -28,8 +28,8 @@ if TYPE_CHECKING:
     from autograder.kit.evidence import Event, Part
 
 _ENDS = {"message": "publisher", "sent": "subscription"}
-"""The role of the subject's endpoint, by kind of event: ``message`` is a message that the subject has published,
-``sent`` one that the judge has published.
+"""The kinds of events that are messages on topics, each with the role of the subject's endpoint. The subject has
+published a ``message``. The judge has published a message that was ``sent``, and the subject subscribes to its topic.
 """
 _OF_CALLS = (
     "asked", "answered", "request", "response", "goal", "goal_sent", "goal_answer", "goal_answered", "feedback",
@@ -122,7 +122,10 @@ def _in_cdr(kind: Any, fields: Mapping[str, Any]) -> bytes:
 
 
 def _channel_in_cdr(file: MessageFile, topic: str, type_name: str) -> tuple[int, Any] | None:
-    """Return the channel number of a topic and the class of its messages; None if the message type is not installed."""
+    """Add a channel for a topic's messages, in CDR, to the MCAP file; None if the message type is not installed.
+
+    Return the number of the channel and the class of the messages.
+    """
     try:
         # Look for the definition first: it fails for a name that is not a message type. Looking for the class would
         # import any module that the file names.

@@ -226,11 +226,13 @@ class Enclosure:
         environment: Mapping[str, str],
         cwd: Path = WORK,
     ) -> WarmCommand:
-        """Start `ros2` with these words in a new box without the scratch, from the fork server for programs.
+        """Start a `ros2` command in a new box, as a child of the fork server for programs.
+
+        The box does not see the enclosure's scratch.
 
         Args:
-            programs: The socket address of that fork server.
-            words: The words after `ros2` on the command line, beginning with ``run``.
+            programs: The socket address of the fork server for programs.
+            words: The arguments of `ros2`, such as ``["run", "my_package", "talker"]``.
             binds: What the box sees in addition; see :meth:`start`.
             environment: All environment variables.
             cwd: The working folder.

@@ -28,23 +28,23 @@ _STUB = "NotImplementedError"
 
 LIMITS = {
     Ended.OUT_OF_MEMORY: (
-        "used more memory than it may have",
+        "used more memory than it is allowed",
         "Look for a list that grows in every call, or for a loop that makes something new each time.",
     ),
     Ended.OUT_OF_CPU: (
-        "used more processor time than it may have",
+        "used more processor time than it is allowed",
         "Look for a loop that never waits: a node that spins needs no loop of its own around it.",
     ),
     Ended.TOO_MANY_PROCESSES: (
-        "started more processes and threads than it may have",
+        "started more processes and threads than it is allowed",
         "Look for a loop, or for a callback, that starts a thread, an executor or a program each time.",
     ),
     Ended.TOO_MANY_FILES: (
-        "had more files and connections open at once than its programs may have together",
+        "had more files and connections open at once than all its programs together are allowed",
         "Close what you open: `with open(…) as file:` does it by itself.",
     ),
     Ended.TOO_MANY_LOCKS: (
-        "locked more parts of files at once than its programs may lock together",
+        "locked more parts of files at once than all its programs together are allowed",
         "Look for a loop that locks without unlocking, or lock a whole file instead of many parts of it.",
     ),
     Ended.TOO_MUCH_OUTPUT: (
@@ -61,7 +61,7 @@ _SHORTAGES = {
     ),
     "OSError: [Errno 24]": (
         "too_many_files",
-        "had more files open at once than one program may have",
+        "had more files open at once than one program is allowed",
         "Close what you open: `with open(…) as file:` does it by itself.",
     ),
     "BlockingIOError: [Errno 11]": ("too_many_processes", *LIMITS[Ended.TOO_MANY_PROCESSES]),

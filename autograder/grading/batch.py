@@ -343,7 +343,7 @@ class _Batch:
         work.written = True
 
     def _take_known(self, work: Work) -> None:
-        """Take the stored results of an earlier run, and write the submission if no result is missing after that."""
+        """Take the results that earlier runs stored. If they are complete, enter the submission in the gradebook."""
         known = self._store.results(*work.key)
         for task in self._tasks_of(work.submission) if known else ():
             if (key := task.key()) in known:
@@ -368,7 +368,7 @@ class _Batch:
             return tasks_of(self._directory, submission)
 
     def _take(self, work: Work, task: Task, execution: Execution) -> None:
-        """Store the result of a task, and write the submission if none of its results is missing after that."""
+        """Store the result of a task. If the results are now complete, enter the submission in the gradebook."""
         self._executed += 1
         self._timings.count(task.cells, execution)
         execution = self._store.keep(task, execution)

@@ -28,8 +28,9 @@ OF_THE_JUDGE = {
 def ros_environment() -> dict[str, str]:
     """Return the environment variables for judge and subject: ROS on loopback only, plain logs, messages over UDP.
 
-    Messages do not use shared memory, because two sandboxes have no memory in common. rmw_fastrtps creates shared
-    memory nevertheless if discovery is limited to this machine (:mod:`autograder.judge.serving.domain`).
+    Messages go over UDP and not through shared memory, because two sandboxes have no memory in common. But because
+    discovery is limited to this machine, rmw_fastrtps creates shared memory that no message uses. If a killed program
+    leaves such memory behind, :mod:`autograder.judge.serving.domain` removes it.
     """
     return {
         "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",

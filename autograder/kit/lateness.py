@@ -188,14 +188,15 @@ def again_while(
     done: bool,
     times: int | None = None,
 ) -> bool:
-    """Start a subject again while it keeps missing something for which it waited.
+    """Start a subject again, up to ``times`` times, as long as its last run lacks something that a new run may show.
 
     Args:
         bench: The bench of the scenario.
-        missed: Decides from the record of the last run whether the subject missed something.
+        missed: Returns True if the record of a run lacks something, such as the request of a client that ended just
+            before its server started.
         meet: Makes one more run. Returns True if the subject finished its work.
         done: True if the subject finished its work in the run that was made before this call.
-        times: The maximum number of runs to make; by default :data:`TRIES` in real time, and none in the fast look.
+        times: The maximum number of further runs; by default :data:`TRIES` in real time, and 0 in the fast look.
 
     Returns:
         True if the subject finished its work in the last run.
@@ -209,22 +210,22 @@ def again_while(
 
 
 def _tries(bench: Bench) -> int:
-    """Return how many times the judge starts a patient client again in this look."""
+    """Return the maximum number of times that the judge starts a patient client again: 0 in the fast look."""
     return TRIES if bench.pace is Pace.REAL_TIME else 0
 
 
 def _missed(request: str) -> Callable[[Part], bool]:
-    """Return a function that decides whether a client sent no such request although it waited long enough."""
+    """Return a function that decides whether a client never sent this request, although it waited for its server."""
     return lambda seen: not seen.of(request) and was_patient(seen)
 
 
 def _missed_by_a_moment(request: str) -> Callable[[Part], bool]:
-    """Like :func:`_missed`, but only for a client that waited less than :data:`LONG`."""
+    """Like :func:`_missed`, but False for a client that waited :data:`LONG` seconds or longer."""
     return lambda seen: _missed(request)(seen) and not was_patient(seen, LONG)
 
 
 def looks_for_it(bench: Bench, part: Part, role: str) -> bool | None:
-    """Return True if the client looks for the exercise's server, False if for another one, None if for none."""
+    """Return True if the client looks for the exercise's server, False if for another server, None if for no server."""
     found = part.endpoints(role)
     if not found:
         return None
@@ -235,10 +236,10 @@ def looks_for_it(bench: Bench, part: Part, role: str) -> bool | None:
 def meets_late(
     bench: Bench, meet: Callable[[float], bool], role: str, request: str, lateness: float = LATENESS
 ) -> bool:
-    """Run the subject with a late server. If no request arrives although the subject is patient, run it again.
+    """Run the subject with a late server. If a patient subject ends without a request, run the subject again.
 
-    The next run has a smaller delay, because the subject may have ended just before the server started. Or its request
-    was lost, because the subject ended right after it sent the request.
+    The server of the next run starts sooner, because the subject may have ended just before the late server started. Or
+    the request was lost, because the subject ended right after it had sent the request.
 
     Args:
         bench: The bench of the scenario.
@@ -256,7 +257,7 @@ def meets_late(
         return meet(SOON)
 
     def missed(seen: Part) -> bool:
-        # A client that waits for another server would only wait in vain once more.
+        # If a client waits for another server, a further run would show the same.
         return looks_for_it(bench, seen, role) is not False and _missed(request)(seen)
 
     done = again_while(bench, missed, sooner, meet(lateness), 1)
@@ -271,7 +272,10 @@ def meets_late_action(
     lateness: float = LATENESS,
     held: float | None = None,
 ) -> bool:
-    """Run the subject with a late action server. If a patient subject misses it or an answer, run it with less delay.
+    """Run the subject with an action server that is late and that holds back its answers.
+
+    If a patient subject ends before the server starts, or before an answer comes, run the subject again with shorter
+    delays.
 
     Args:
         bench: The bench of the scenario.
@@ -313,7 +317,7 @@ def meets_present(
     """
 
     def asked_too_little(seen: Part) -> bool:
-        # No request of a client that waited for the answer to its last one was lost when the client ended.
+        # A client that waited long enough for the answer to its last request did not lose a request by ending.
         waited = was_patient_with_an_answer(seen, [request])
         return seen.ending is not None and len(seen.of(request)) < wanted and not waited
 

@@ -239,7 +239,8 @@ def _unique(master: Path, named: list[NamedCell]) -> None:
                 master,
                 item.cell.line,
                 f"The grade_id '{item.name}' is already used by the cell on line {seen[item.name]}.",
-                "Give one of the cells another: ':grade_id: some_name'. An exercise may be checked in one cell only.",
+                "An exercise may be checked in one cell only: if both cells check the same one, remove a cell. "
+                "Otherwise give one of the cells another grade_id: ':grade_id: some_name'.",
             )
         seen[item.name] = item.cell.line
 

@@ -111,7 +111,7 @@ class NotebookFile(_CourseHandler):
     @web.authenticated
     @authorized
     async def delete(self) -> None:
-        """Remove the mark."""
+        """Mark the notebook as unread."""
         self._note("unread")
 
     def _note(self, kind: Any) -> None:
@@ -126,7 +126,10 @@ class ResetNotebook(_CourseHandler):
     @web.authenticated
     @authorized
     async def post(self) -> None:
-        """Restore the released notebook. Return the name of the copy of the student's notebook."""
+        """Copy the student's notebook, and put the released notebook in its place. Send the name of the copy.
+
+        The name is empty if the student's notebook did not exist, or was unchanged.
+        """
         name = self.name_in_body()
         try:
             done = await asyncio.to_thread(resetting.reset, course.root(), self.notebooks, name, self.journal)

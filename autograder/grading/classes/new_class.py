@@ -293,7 +293,7 @@ def renew(path: Path, course_root: Path, assignments: Sequence[str] = ()) -> lis
         assignments: The names of the assignments to renew; by default all that the course has.
 
     Returns:
-        A line for each renewed assignment, and one about the copies of the earlier notebooks.
+        A line of text for each renewed assignment, and a line with the folder of the earlier notebooks.
 
     Raises:
         GradingError: The course or the class does not have an assignment, they have no assignment in common, or
@@ -305,12 +305,12 @@ def renew(path: Path, course_root: Path, assignments: Sequence[str] = ()) -> lis
     for name in assignments:
         if name not in there:
             raise GradingError(
-                f"The class has no assignment {name}. Its assignments are: {', '.join(there)}."
+                f"The class has no assignment {name}. The assignments of the class are: {', '.join(there)}."
             )
     made = {name: one for name, one in sources_of(course_root, assignments).items() if name in there}
     if not made:
         raise GradingError(
-            f"The class has none of the course's assignments. Its assignments are: {', '.join(there)}."
+            f"The class has only assignments that the course does not have: {', '.join(there)}."
         )
     kept = directory.state / "sources-before" / f"{datetime.now(tz=UTC):%Y-%m-%dT%H-%M-%S.%f}"
     with directory.lock(), ClassStore(directory) as store:
@@ -326,7 +326,8 @@ def renew(path: Path, course_root: Path, assignments: Sequence[str] = ()) -> lis
             raise
         note_origins(store, made)
     lines = [
-        f"{name}: updated from the course; hand out {directory.path / 'release' / name}" for name in made
+        f"{name}: updated from the course; give students the new version: {directory.path / 'release' / name}"
+        for name in made
     ]
     return [*lines, f"the earlier source notebooks are in {kept}"]
 

@@ -28,7 +28,7 @@ def put_right(directory: ClassDirectory) -> Iterator[str]:
 
 
 def beside_their_place(directory: ClassDirectory) -> tuple[list[RefusedFile], list[str]]:
-    """Return one misplaced file of each folder that has any, and sentences about needless files."""
+    """Return one misplaced file of each folder that has any, and a sentence for each folder with needless files."""
     submitted = directory.path / "submitted"
     notebooks = {name: directory.notebooks(name) for name in directory.assignments()}
     students = _folders(submitted)
@@ -56,7 +56,9 @@ def beside_their_place(directory: ClassDirectory) -> tuple[list[RefusedFile], li
             )
             continue
         place = (
-            f"the notebook that counts at {missing}" if missing else f"it into {submitted}/STUDENT/ASSIGNMENT"
+            f"the notebook for grading here: {missing}"
+            if missing
+            else f"it into {submitted}/STUDENT/ASSIGNMENT"
         )
         refused.append(
             RefusedFile(

@@ -78,12 +78,12 @@ class Waiting:
 
     @property
     def cell(self) -> str:
-        """Return the line and the cell that a person has to edit, in brackets."""
+        """Return, in brackets, which line of ``collected.csv`` a person has to edit, and which column of it."""
         return f" ({NAME}, line {self.line}, cell {cell_in(self.reason) or 'use'})"
 
     @property
     def sentence(self) -> str:
-        """Return a sentence that says why the file waits, and which cell to edit."""
+        """Return a sentence that says why the file waits for a person, and what to edit in ``collected.csv``."""
         return f"{self.student}{': ' if self.student else ''}{self.reason}{self.cell}"
 
 
@@ -109,10 +109,10 @@ class Table:
             return {}
 
     def put_edits(self, edits: Mapping[str, Edit]) -> None:
-        """Store what people have written.
+        """Store what people have written into the table.
 
         Raises:
-            OSError: They could not be written.
+            OSError: The file could not be written.
         """
         kept = {key: edit for key, edit in sorted(edits.items()) if edit != Edit()}
         if kept != self.edits():

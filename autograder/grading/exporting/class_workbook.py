@@ -50,7 +50,7 @@ def as_csv(table: ClassTable, assignments: Sequence[str]) -> bytes:
 
 
 def as_xlsx(table: ClassTable, assignments: Sequence[str]) -> bytes:
-    """Return a workbook with two sheets: one of the students, one of the exercises."""
+    """Return a workbook with two sheets: a line for each student, and a line for each result in an exercise."""
     exercises: list[Cells] = [list(COLUMNS)]
     exercises += [list(csv_cells(row)) for row in table.rows if row.assignment in assignments]
     data = io.BytesIO()

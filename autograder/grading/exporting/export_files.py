@@ -117,7 +117,11 @@ def _files(
     if to == "csv":
         yield "students.csv", class_workbook.as_csv(table, assignments), "a line for each student"
     elif to == "xlsx":
-        yield "grades.xlsx", class_workbook.as_xlsx(table, assignments), "sheets of students and of exercises"
+        yield (
+            "grades.xlsx",
+            class_workbook.as_xlsx(table, assignments),
+            "one sheet that lists the students, and one that lists their results in the exercises",
+        )
     elif to in LAYOUTS:
         text = gradebook(to, table, records, assignments)
         yield f"{to}.csv", text.encode(), LAYOUTS[to].purpose

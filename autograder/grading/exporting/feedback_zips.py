@@ -1,6 +1,6 @@
 """Feedback as one zip in the format that an LMS can read, in which a page has the name of the file that it is about.
 
-The systems find the student of a page as follows. Moodle (*Upload multiple feedback files in a zip*): by the folder
+Each LMS finds the student of a page as follows. Moodle (*Upload multiple feedback files in a zip*): by the folder
 ``<name>_<number>_assignsubmission_file``. Canvas (*Upload submissions*): by the numbers of the student and of the
 file in the name that it gave the file. Brightspace, Sakai and ILIAS (from memory): by the folder that they gave the
 student.
@@ -29,9 +29,9 @@ WAYS = {
     "sakai": "Upload All, Feedback Attachment(s)",
     "ilias": "Multi-Feedback",
 }
-"""For each system, the name of its page for uploading the zip."""
+"""For each LMS, the name of the page on which an instructor uploads the zip."""
 _WITHIN = {"sakai": "Feedback Attachment(s)/"}
-"""The folder for feedback pages inside the student's folder, by system."""
+"""For each LMS that needs one, the folder for feedback pages inside a student's folder."""
 _MADE = (2000, 1, 1, 0, 0, 0)
 
 
@@ -73,7 +73,7 @@ def feedback_zip(
 
 
 def _called(file: str, lms: str, page: PurePath, *, is_one: bool) -> str:
-    """Return the name of a page in the zip, derived from the name that the system gave to the student's file or folder.
+    """Return the name of a page in the zip, derived from the name that the LMS gave to the student's file or folder.
 
     If the student handed in a zip that was unpacked, use the folder's name, because the student chose the names in the
     zip.

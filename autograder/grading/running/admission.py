@@ -33,8 +33,8 @@ if TYPE_CHECKING:
 
 LARGEST_OFFER = 4_000
 LARGEST_DOCUMENT = MAX_BYTES + 14_000_000
-"""The maximum size of a desk's document, in bytes. It is larger than that of a student's file, because a character of
-text takes up to 6 bytes in JSON; a picture is as long in the document as in the file.
+"""The maximum size of a desk's document, in bytes. It is larger than the limit for a student's file, because the
+document is JSON, in which a character of text takes up to 6 bytes. A picture is equally long in both.
 """
 _MOST_SLOTS = 1_000
 _LONGEST_WORDS = 1_000

@@ -329,7 +329,7 @@ _APOSTROPHES = str.maketrans(dict.fromkeys("'’‘ʼ`´"))
 
 
 def _forms(name: str) -> set[tuple[str, ...]]:
-    """Return the sorted words of a name, once with an apostrophe as a space and once without it (o brien, obrien)."""
+    """Return the words of a name, sorted, in two forms: O'Brien as the words brien and o, and as the word obrien."""
     return {tuple(sorted(_words(form))) for form in (name, name.translate(_APOSTROPHES))}
 
 

@@ -291,7 +291,10 @@ class SubjectTime:
         return True
 
     def lend(self, seconds: float, role: str, name: str) -> None:
-        """Lend a simulated clock to the node with this endpoint (:meth:`NodeClock.lend`), or wait if it refuses."""
+        """Lend a simulated clock to the node with this endpoint, so that its timers fire sooner.
+
+        See :meth:`NodeClock.lend`. If the node does not accept the clock, wait ``seconds`` of real time instead.
+        """
         for node in graph.owners(self._wire.node, role, name):
             if node.full not in self._deaf:
                 with contextlib.closing(NodeClock(self._wire, self._recorder, node)) as clock:

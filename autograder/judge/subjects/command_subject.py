@@ -40,7 +40,7 @@ POLITE = 1.0
 
 
 LEFTOVERS = 1.0
-"""Time limit in seconds for processes that a command left behind to end."""
+"""Time limit in seconds. A process that a command left behind has to end within this time."""
 
 
 class Box(Protocol):

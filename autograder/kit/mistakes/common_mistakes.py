@@ -227,8 +227,9 @@ AWAITS_IN_VAIN = mistake(
     "callback group (a ReentrantCallbackGroup or a new MutuallyExclusiveCallbackGroup), or move the code that needs "
     "the answer into a function and pass that function to the add_done_callback(...) of the future.",
 )
-"""The mistake of code that waits for an answer in a place where it can never go on. It is checked after the hangs, and
-before the mistakes of a node that is not spun.
+"""The mistake of code that never goes on after its answer came, because the code itself blocks what it waits for.
+
+Recipes list this mistake after :data:`HANGS`, and before the mistakes of a node that is not spun.
 """
 
 

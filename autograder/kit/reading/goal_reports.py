@@ -69,11 +69,11 @@ def asked_for(part: Part) -> list[int]:
 
 
 def left_at_once(part: Part, answer: str = "goal_answered") -> bool:
-    """Return True if the subject was already ending when the judge sent an answer that it had held back.
+    """Return True if the subject was already ending when the judge sent the answer that the judge had held back.
 
-    Use this because the last requests of an ending process may be lost, so no decision may depend on them. A printed
-    traceback shows that a process was already ending; without a traceback, a process that ends soon after the answer
-    counts as well.
+    Then do not decide from the subject's last requests, because requests of an ending process may be lost. The subject
+    was already ending if it had ended or printed a traceback before the answer, or if it ended soon after the answer
+    without a reaction to it.
     """
     if part.ending is None:
         return False
@@ -286,7 +286,7 @@ def tells_of_refusal(evidence: Evidence) -> Finding:
 
 
 def returns_nothing_of_a_refused_goal(evidence: Evidence) -> Finding:
-    """Decide whether the client handles a refused goal well, and a function that returns gives an empty list."""
+    """Decide whether the client handles a refused goal well. A function that returns must return an empty list."""
     told = tells_of_refusal(evidence)
     returned = returned_instead(evidence.part(REFUSED), [])
     if not told.passed or not returned:

@@ -76,7 +76,8 @@ class Publisher:
         """
         begins = self.templates.index(Counter(self.templates).most_common(1)[0][0]) if self.texts else 0
         around = last_numbers(self.texts[begins - 1 : begins + 1]) if begins else []
-        # A number in another form may continue the count: 10 follows 09.
+        # From 09 to 10 the template changes, because 09 is not a whole number in its usual form. But the count goes on,
+        # so the texts up to 09 are not greetings.
         leads_on = (
             len(around) > 1 and all(map(_DIGITS.fullmatch, around)) and int(around[1]) == int(around[0]) + 1
         )

@@ -221,7 +221,7 @@ def retold(part: Part, sent: Sequence[str]) -> str:
     """
     lines = [(line, {text for text in sent if tells(line, text)}) for line in part.said()]
     holding = [[one for one in lines if text in one[1]] for text in dict.fromkeys(sent)]
-    # This is a dictionary, because two texts may have the same shortest line.
+    # Maps each shortest line to its texts. Two texts may have the same shortest line, which counts only once.
     shortest = dict(min(those, key=lambda one: len(one[1])) for those in holding if those)
     grows = all(earlier < later for earlier, later in pairwise(shortest.values()))
     return list(shortest)[2] if grows and len(shortest) >= GROWING else ""

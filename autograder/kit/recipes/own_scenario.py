@@ -150,7 +150,7 @@ class OwnScenario:
 class Spoken(OwnScenario):
     """The recipe for a subject that logs or prints words instead of publishing them.
 
-    For criteria, a line with exactly one of the words, in upper or lower case, counts as a message with this word.
+    For criteria, a line that contains exactly one of the words, in upper or lower case, is a message with this word.
 
     Args:
         words: The words, as the task names them.
@@ -161,7 +161,7 @@ class Spoken(OwnScenario):
         self._words = words
 
     def view(self, part: Part) -> Part:
-        """Return the record with a message event instead of each line that contains exactly one of the words."""
+        """Return the record, in which each line with exactly one of the task's words is replaced by a message event."""
         lines = [
             (event, word) for _, event in without_tracebacks(part.events) if (word := self._word_in(event))
         ]

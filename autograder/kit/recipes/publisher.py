@@ -199,8 +199,8 @@ class Hears:
         wanted = reference_period(evidence.reference)
         messages = evidence.main.of("message", topic)
         before = self._simulated_rate(evidence.before)
-        # Simulated time is exact, but real time on a busy machine is not. However, if a program ends by itself, chance
-        # decides how many messages the judge received in simulated time.
+        # Use the rate in simulated time, because real time is not exact on a busy machine. But use real time if the
+        # program ends by itself, because chance decides how many messages the judge then received in simulated time.
         exact = (
             evidence.before
             and before

@@ -106,7 +106,7 @@ def _left_over(workspace: Path, package: Package) -> Iterator[Path]:
     launches = [prefix / file for file in launch_files(prefix)]
     yield from (file for file in launches if str(file) not in recorded)
     linked = _linked(prefix)
-    # If the workspace was copied, its links still lead to the original workspace; such links are left over.
+    # In a copied workspace, the links still lead into the original workspace. Yield the folders to which they lead.
     yield from (folder for folder in linked if not folder.is_relative_to(package.folder))
     modules = [] if linked else [(f, m) for f in python_folders(prefix) for m in f.rglob("*.py")]
     shared = prefix / "share" / package.name

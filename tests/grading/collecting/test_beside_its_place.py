@@ -37,7 +37,7 @@ def test_two_numbered_ones_need_a_decision(tiny: TinyClass, fake_engine: FakeEng
     path.rename(path.with_name("lab_1_2 (1).ipynb"))
     report = tiny.grade()
     assert "lab_1_2 (1).ipynb: it is not graded in this place, nor are 1 more files here" in refused(report)
-    assert f"put the notebook that counts at {path}" in refused(report)
+    assert f"put the notebook for grading here: {path}" in refused(report)
     assert report.exit_code == 2
 
 

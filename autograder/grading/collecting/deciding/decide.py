@@ -97,7 +97,9 @@ def _of_group(place: Place, group: list[Line], looks: Looks) -> Iterator[_Why]:
             # A later correction of a file does not change the time at which its student handed it in.
             times = [one.when for one in group if one.when and lying]
             yield replace(best, when=best.when or max(times, default=None)), State.PLACED, ""
-        why = "was put there by hand and counts" if lying else "counts, since yes is written under use"
+        why = (
+            "was put there by hand and is graded" if lying else "is graded, because yes is written under use"
+        )
         for one in group:
             if one not in chosen:
                 same = best and one.content == best.content
@@ -143,7 +145,7 @@ def _unreadable(place: Place, pool: Sequence[Line], looks: Looks) -> list[tuple[
         return []
     reasons = [(one, reason) for one in pool if (reason := why_unreadable(looks.inbox.read(one.content)))]
     what_to_do = (
-        f"Other work of {place[0]} counts: ask for this file again if it is newer, or write no under use"
+        f"Other work of {place[0]} is graded: ask for this file again if it is newer, or write no under use"
     )
     return [(one, f"{reason} {what_to_do}") for one, reason in reasons] if len(reasons) < len(pool) else []
 
@@ -169,7 +171,7 @@ def _best(place: Place, files: Sequence[Line], looks: Looks) -> tuple[Line | Non
     named = [one for one in best if one.is_named]
     if named and all(any(one.came_in & other.came_in for one in named) for other in best):
         best = named
-    if len({one.lms for one in best}) == 1:  # the numbers of two systems have nothing in common
+    if len({one.lms for one in best}) == 1:  # attempt numbers of different LMSs cannot be compared
         best = _top(best, lambda one: one.order)
     best = _top(best, lambda one: bool(one.lms)) if len({one.content for one in best}) == 1 else best
     there = looks.submitted.content(place)
@@ -177,7 +179,7 @@ def _best(place: Place, files: Sequence[Line], looks: Looks) -> tuple[Line | Non
     if any(one.content != first.content for one in best) and first.content != there:
         reason = (
             f"{place[0]} has several different files for {place[1]}, and nothing says which is the newest: "
-            "write yes under use for the one that counts, or the times under handed_in"
+            "write yes under use for the one that is to be graded, or the times under handed_in"
         )
         return None, [(one, State.NOT_PLACED, reason) for one in files]
     others: list[_Why] = []
@@ -186,8 +188,8 @@ def _best(place: Place, files: Sequence[Line], looks: Looks) -> tuple[Line | Non
         if one.content == first.content:
             others += [(one, State.UNCHANGED, "")] if one is not first else []
         elif one in best:
-            what_to_do = "write yes under use if this one is to count, or no"
-            reason = f"nothing says whether it is newer than {first.label}, which counts: {what_to_do}"
+            what_to_do = "write yes under use to have this file graded, or no"
+            reason = f"nothing says whether it is newer than {first.label}, which is graded now: {what_to_do}"
             others.append((one, State.NOT_PLACED, reason))
         elif first.when and not one.when and not is_older:
             at = f"{first.label}, handed in {in_zone(first.when, looks.directory.time_zone)}"
@@ -206,9 +208,12 @@ def _top(files: Sequence[Line], rank: Callable[[Line], float]) -> list[Line]:
 
 def _why_it_counts(best: Line, other: Line, work: dict[str, bool]) -> str:
     if work[best.key] > work[other.key]:
-        return "has answers and counts; this one is as it was handed out, and is kept"
+        return (
+            "has answers and is graded; this file is as it was handed out, and is kept as an earlier attempt"
+        )
     if best.is_named > other.is_named:
         return (
-            "has the notebook's own name and counts; this one is kept: to let it count, write yes under use"
+            "has the notebook's exact name and is graded; this file is kept as an earlier attempt: to have it graded "
+            "instead, write yes under use"
         )
-    return "is newer and counts; this one is kept"
+    return "is newer and is graded; this file is kept as an earlier attempt"

@@ -19,7 +19,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
     _Who = Callable[[Mapping[str, str]], tuple[Identity, tuple[Identity, ...]]]
-    """A function from the groups of a pattern to the student, and to the student in each way to read the name.
+    """A function that gets the groups of a pattern. It returns the student; and if the name can be read in several
+    ways, the student according to each way.
     """
     _Reader = Callable[[Sequence[str], int], "Found | None"]
     """A function that returns the facts in the name at one index of a path; None if it has another form."""
@@ -103,7 +104,7 @@ def read_time(text: str) -> datetime | None:
     colon) write them.
     """
     text = text.strip().removesuffix(" UTC") + (" +0000" if text.strip().endswith(" UTC") else "")
-    text = text.replace(" Z", "Z")  # this is how YAML writes it
+    text = text.replace(" Z", "Z")  # YAML writes a space before the Z
     readers: list[Callable[[], datetime]] = [lambda: datetime.fromisoformat(text)]
     readers += [functools.partial(datetime.strptime, text, form) for form in _IN_NUMBERS]
     readers.append(lambda: _in_words(text.translate(_NO_MARKS).casefold()))
@@ -116,7 +117,7 @@ def read_time(text: str) -> datetime | None:
 
 
 def _in_words(text: str) -> datetime:
-    """Return the time of a date in words: the month before or after the day, then the year and the time.
+    """Parse a date with the month as a word before or after the day, then the year and the time of day.
 
     Raises:
         ValueError: The text is not such a date.
