@@ -190,7 +190,7 @@ def test_a_new_exercise_works_and_shows_what_its_author_got_wrong(root: Path) ->
     tried = autograder(root, "try-exercise", ID, *chosen)
     assert tried.returncode == 1, tried.stdout + tried.stderr
     assert "wrong/topic_name.py: diagnosed as topic_name, not as message_type" in tried.stdout
-    assert "Your node publishes on /batery; the topic is called /battery." in tried.stdout
+    assert "Your node publishes on /batery, but the task asks for the topic /battery." in tried.stdout
     assert tried.stdout.count("wrong/topic_name.py: diagnosed as") == 1
     assert "  4/4 " in tried.stdout
     assert "2 answers, each judged 2 times, 1 not as expected" in tried.stdout

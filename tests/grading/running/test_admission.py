@@ -139,7 +139,7 @@ def test_an_offer_is_looked_at_too() -> None:
     honest = Offer("version", slots=2, obstacle="")
     assert admitted_offer(msgspec.json.encode(honest)) == honest
     for slots in (0, -1, 10**9):
-        with pytest.raises(Forged, match="at once"):
+        with pytest.raises(Forged, match="at the same time"):
             admitted_offer(msgspec.json.encode(Offer("version", slots=slots, obstacle="")))
     for data in (b"", b"\x80\x04K\x01.", b'{"version": 1}', b" " * (LARGEST_OFFER + 1)):
         with pytest.raises(Forged, match="the worker's offer"):
