@@ -93,7 +93,9 @@ scores[:] = [5.0]
 check("lab", Talker)
 """
     first, second, said = run(
-        watched, "scores[:] = [8.0]; shown.clear(); check('lab', Talker)", "print(next(text for text in shown if 'building' in text))"
+        watched,
+        "scores[:] = [8.0]; shown.clear(); check('lab', Talker)",
+        "print(next(text for text in shown if 'building' in text))",
     )
     assert [output.output_type for output in first] == ["display_data", "execute_result"]
     assert [output.output_type for output in second] == ["display_data", "execute_result"]
