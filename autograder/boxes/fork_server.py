@@ -204,6 +204,7 @@ class ForkServer:
         extra: Mapping[str, str] | None = None,
         words: Sequence[str] = (),
     ) -> None:
+        raise_own()  # this process will send descriptors to the server, so no box may use up the number in transit
         self.address = str(address)
         with socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET) as listener:
             listener.bind(self.address)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import resource
 import signal
 import subprocess
 import sys
@@ -17,6 +18,7 @@ from autograder.boxes.boxed_processes import ForkedProcess
 from autograder.boxes.enter_box import Entrance
 from autograder.boxes.environment import box_environment
 from autograder.boxes.fork_server import BESIDE, INSIDE, SUPERVISOR_MODULE, ForkServer
+from autograder.boxes.limits import open_files_of_a_box
 from autograder.boxes.mounts import WORK
 from autograder.boxes.sandbox import Enclosure
 
@@ -138,3 +140,15 @@ def test_a_process_whose_grader_hangs_up_is_killed(supervisors: ForkServer, tmp_
 
 
 SLEEPING = {"PYTHONPATH": str(Path(__file__).resolve().parents[2]), "SLEEPERS_SECONDS": SECONDS}
+
+
+def test_who_sends_descriptors_to_a_server_may_have_more_in_transit_than_a_box(tmp_path: Path) -> None:
+    soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
+    resource.setrlimit(resource.RLIMIT_NOFILE, (min(soft, 1024), hard))
+    try:
+        ForkServer(BESIDE, SUPERVISOR_MODULE, tmp_path / "supervisors").stop()
+        now = resource.getrlimit(resource.RLIMIT_NOFILE)[0]
+        assert now > 1024
+        assert open_files_of_a_box(10**9) <= now / 2
+    finally:
+        resource.setrlimit(resource.RLIMIT_NOFILE, (soft, hard))

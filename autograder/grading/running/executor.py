@@ -19,7 +19,6 @@ import msgspec
 
 from autograder import course
 from autograder.boxes.fork_server import ForkServers
-from autograder.boxes.limits import raise_own
 from autograder.grading.running.orders import (
     ADDRESS,
     LARGEST_ANSWER,
@@ -166,7 +165,6 @@ def main(arguments: list[str]) -> None:
         arguments: The scratch folder, the number of notebooks to execute at the same time, and "boxed" if they will
             be executed in boxes.
     """
-    raise_own()
     adopt_orphans()
     executor, grader = Executor(Path(arguments[0])), Lines.with_parent()
     # Start the fork servers now: they import their modules while the grader prepares the first order.
