@@ -1,6 +1,7 @@
 # family = "crafted"
 # tries = "There is no notebook at all, only files with strange names."
 # could_earn = "Yesterday's points, or a batch that ends."
+# refused = true
 
 from __future__ import annotations
 
