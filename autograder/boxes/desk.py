@@ -55,13 +55,14 @@ class Desk:
     """
 
     def __init__(self, module: str, extra: Mapping[str, str] | None = None) -> None:
-        self._open = contextlib.ExitStack()
-        folder = HeldFolder(FOLDER_PREFIX)
-        self._open.callback(folder.remove)
-        server = ForkServer(INSIDE, module, folder.path / "desks", extra=extra)
-        self._open.callback(server.stop)
-        self._address = server.address
-        self._box = self._box_in(folder.path)
+        with contextlib.ExitStack() as started:
+            folder = HeldFolder(FOLDER_PREFIX)
+            started.callback(folder.remove)
+            server = ForkServer(INSIDE, module, folder.path / "desks", extra=extra)
+            started.callback(server.stop)
+            self._address = server.address
+            self._box = _box_in(folder.path, started)
+            self._open = started.pop_all()
 
     @property
     def is_boxed(self) -> bool:
@@ -108,16 +109,18 @@ class Desk:
         """End all desk processes. This may be called twice."""
         self._open.close()
 
-    def _box_in(self, folder: Path) -> Box | None:
-        if shutil.which("bwrap") is None:
-            return None
-        supervisors = ForkServer(BESIDE, SUPERVISOR_MODULE, folder / "supervisors")
-        self._open.callback(supervisors.stop)
-        with contextlib.suppress(NoSandbox):
-            return self._open.enter_context(Enclosure(supervisors.address, folder / "box")).box(
-                "desk", scratch=False
-            )
+
+def _box_in(folder: Path, started: contextlib.ExitStack) -> Box | None:
+    """Return the box for desk processes, or None if no box can be made here. ``started`` ends the box."""
+    if shutil.which("bwrap") is None:
         return None
+    supervisors = ForkServer(BESIDE, SUPERVISOR_MODULE, folder / "supervisors")
+    started.callback(supervisors.stop)
+    with contextlib.suppress(NoSandbox):
+        return started.enter_context(Enclosure(supervisors.address, folder / "box")).box(
+            "desk", scratch=False
+        )
+    return None
 
 
 class KeptDesk:

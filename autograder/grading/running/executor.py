@@ -8,10 +8,8 @@ module is the executor process, which exchanges lines of JSON with the dispatche
 from __future__ import annotations
 
 import contextlib
-import os
 import sys
 import threading
-import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -98,19 +96,13 @@ class Executor:
         if running is not None:
             running.end()
 
-    def stop(self, within: float | None = None) -> None:
-        """End the processes of all orders, and the fork servers. An order that comes later fails at once.
-
-        Args:
-            within: The maximum number of seconds to wait for the threads that execute orders; by default
-                ``LAST_SECONDS``.
-        """
-        deadline = time.monotonic() + (LAST_SECONDS if within is None else within)
+    def stop(self) -> None:
+        """End the processes of all orders, and the fork servers. An order that comes later fails at once."""
         with self._changing:
             self._stopped = True
             for running in self._running.values():
                 running.end()
-            self._changing.wait_for(lambda: not self._running, max(0.0, deadline - time.monotonic()))
+            self._changing.wait_for(lambda: not self._running, LAST_SECONDS)
             for kept in self._fork_servers.values():
                 kept.stop()
 
@@ -180,7 +172,6 @@ def main(arguments: list[str]) -> None:
                 executor.cancel(str(command.number))
     executor.stop()
     end_descendants()
-    os._exit(0)  # a thread that is stuck must not keep this process alive
 
 
 def _answer(executor: Executor, grader: Lines, give: Give) -> None:

@@ -6,6 +6,7 @@ import json
 import os
 import random
 import shutil
+import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -186,3 +187,16 @@ def test_a_desk_that_cannot_read_a_sample_reads_no_student_s_file(
     monkeypatch.setattr(hostile, "close", lambda: None)
     with pytest.raises(DeskFailed, match="not even a sample"):
         read_notebook(notebook(""))
+
+
+def test_a_desk_that_cannot_be_started_leaves_no_process_and_no_folder(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    def too_long(*_: object) -> None:
+        raise OSError("AF_UNIX path too long")
+
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    monkeypatch.setattr(desk_of_boxes, "Enclosure", too_long)
+    with pytest.raises(OSError, match="too long"):
+        Desk(HOSTILE, {"PYTHONPATH": str(ROOT)})
+    assert not list(tmp_path.iterdir())
