@@ -194,7 +194,7 @@ def test_of_two_notebooks_the_one_with_the_exact_name_counts(klass: TinyClass, t
         assert (why(report), lies(klass, "ada")) == ("", work(klass, 3))
         assert named(report, State.EARLIER) == [(MOODLE.format("Ada Lovelace", name), "ada")]
         (earlier,) = report.having(State.EARLIER)
-        assert earlier.reason.endswith("to let it count, write yes under use")
+        assert earlier.reason.endswith("to have it graded instead, write yes under use")
     assert kept(klass) == [work(klass, 4)]
 
 
