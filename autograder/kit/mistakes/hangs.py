@@ -140,8 +140,8 @@ _HANGS: tuple[tuple[str, Recognise, str, str], ...] = (
     (
         "nested_spin",
         lambda found: any(map(_spins_in_callback, found)),
-        "{who} spins, and this spin waits forever: the executor that called the callback cannot go on before the "
-        "callback returns.",
+        "{who} spins, and this spin never gets what it waits for: the executor that called the callback cannot go on "
+        "before the callback returns.",
         "Remove the spin from the callback. If the callback needs an answer, move the code that uses the answer into "
         "another function, and pass that function to the add_done_callback(...) of the answer's future.",
     ),
