@@ -55,6 +55,10 @@ GOAL_LIMIT = 75.0
 """Seconds in which a goal must have ended, however much happens."""
 CANCEL_LIMIT = {Pace.FAST: 4.0, Pace.REAL_TIME: 8.0}
 """Seconds in which a cancel must have been honoured; a server looks once for each number."""
+UNREAD = 6
+"""If a server sends so many feedback messages without an answer to the cancel request, it reads no request while it
+works on the goal. Messages are counted, not seconds, so that the load of the machine changes nothing.
+"""
 
 LEAST, GREATEST = -(2**31), 2**31 - 1
 """The smallest and the largest order that fits into the goal."""
@@ -202,8 +206,14 @@ def _tells_all(seen: FibonacciGoal) -> bool:
 
 
 def _await_cancel(bench: Bench, number: int) -> bool:
-    """Wait until the cancel was honoured or refused, but not for ever; whether it was."""
-    if bench.wait_until(lambda e: _cancel_is_over(goal(e.main, number)), CANCEL_LIMIT[bench.pace]):
+    """Wait until the server has honoured or refused the cancel request, or reads none; False if it reads none."""
+
+    def settled(evidence: Evidence) -> bool:
+        seen = goal(evidence.main, number)
+        return _cancel_is_over(seen) or (seen.cancel_accepted is None and seen.unread >= UNREAD)
+
+    bench.wait_until(settled, CANCEL_LIMIT[bench.pace])
+    if bench.wait_until(lambda e: _cancel_is_over(goal(e.main, number)), 0.0):
         return True
     # A MultiThreadedExecutor raises what a callback of its raised only when it has something else to do.
     bench.settle()
