@@ -55,7 +55,7 @@ class Do(StrEnum):
     """Tells the desk that the kernel has ended. The desk answers when it has read everything that the kernel sent."""
 
 
-class Order(msgspec.Struct, frozen=True):
+class DeskOrder(msgspec.Struct, frozen=True):
     """One order. The desk answers each order once. When a new order comes, it answers the one before at once.
 
     Attributes:
@@ -110,7 +110,7 @@ class Result(Display, frozen=True, tag="execute_result"):
     execution_count: None
 
 
-class Failure(_Output, frozen=True, tag="error"):
+class ErrorOutput(_Output, frozen=True, tag="error"):
     """The error that ended a cell."""
 
     ename: str
@@ -118,7 +118,7 @@ class Failure(_Output, frozen=True, tag="error"):
     traceback: Annotated[Sequence[str], msgspec.Meta(max_length=TRACEBACK_LINES)]
 
 
-class Answer(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class DeskAnswer(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """The answer to an order.
 
     Attributes:
@@ -129,10 +129,10 @@ class Answer(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
     number: int
     said: Said
-    outputs: Mapping[int, Sequence[Stream | Display | Result | Failure]]
+    outputs: Mapping[int, Sequence[Stream | Display | Result | ErrorOutput]]
 
 
-def admitted_answer(line: bytes, orders: range, cells: Collection[int]) -> Answer:
+def admitted_answer(line: bytes, orders: range, cells: Collection[int]) -> DeskAnswer:
     """Check an answer of the desk, and return it.
 
     Args:
@@ -144,7 +144,7 @@ def admitted_answer(line: bytes, orders: range, cells: Collection[int]) -> Answe
         ValueError: The line is not an answer to one of these orders.
     """
     try:
-        answer = msgspec.json.decode(line, type=Answer)
+        answer = msgspec.json.decode(line, type=DeskAnswer)
     except RecursionError as error:
         raise ValueError("it is nested too deeply") from error
     if answer.number not in orders or not all(cell in cells for cell in answer.outputs):

@@ -20,7 +20,14 @@ import msgspec
 from autograder.boxes.box import NoSandbox
 from autograder.boxes.guards import INTERVAL, NoGuard
 from autograder.boxes.limits import Ended, wall_time
-from autograder.execution.desk_messages import FURTHER_BYTES, MOST_ESCAPED, Do, Order, Said, admitted_answer
+from autograder.execution.desk_messages import (
+    FURTHER_BYTES,
+    MOST_ESCAPED,
+    DeskOrder,
+    Do,
+    Said,
+    admitted_answer,
+)
 from autograder.messages.lines import Hangup, Lines, Silent, TooLong
 
 if TYPE_CHECKING:
@@ -29,7 +36,7 @@ if TYPE_CHECKING:
     from autograder.boxes.boxed_processes import ForkedProcess
     from autograder.boxes.guards import Guard
     from autograder.boxes.limits import Left, Limits
-    from autograder.execution.desk_messages import Answer
+    from autograder.execution.desk_messages import DeskAnswer
     from autograder.execution.outputs import NotebookOutputs
 
 SHELL, IOPUB = 1, 2
@@ -210,7 +217,7 @@ class Kernel:
         """Send an order to the desk, and return its answer; None if there is no answer (:meth:`_await_answer`)."""
         self._sent += 1
         try:
-            self._lines.say_json(msgspec.json.encode(Order(self._sent, do, cell, source)))
+            self._lines.say_json(msgspec.json.encode(DeskOrder(self._sent, do, cell, source)))
         except Hangup as error:
             self._desk_ended(error)
             return None
@@ -248,7 +255,7 @@ class Kernel:
                 return None
             waiting.poll(1 + int(1000 * max(0.0, min(left(), INTERVAL))))
 
-    def _answer(self) -> Answer:
+    def _answer(self) -> DeskAnswer:
         """Return the next answer of the desk.
 
         Raises:

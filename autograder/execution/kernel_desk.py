@@ -21,7 +21,7 @@ from zmq.utils.monitor import recv_monitor_message
 
 from autograder.boxes import syscalls
 from autograder.boxes.seccomp_filter import filter_for_desks
-from autograder.execution.desk_messages import Answer, Do, Order, Said, Setting
+from autograder.execution.desk_messages import DeskAnswer, DeskOrder, Do, Said, Setting
 from autograder.execution.kernel import IOPUB, SHELL
 from autograder.execution.outputs import Budget, OutputCollector
 from autograder.messages.lines import Hangup, Lines
@@ -49,8 +49,8 @@ def prepare() -> None:
     asked = session.msg("execute_request", {"code": ""})
     sent = session.serialize(session.msg("stream", {"name": "stdout", "text": "x"}, parent=asked))
     session.deserialize(session.feed_identities(sent)[1])
-    msgspec.json.decode(msgspec.json.encode(Order(1, Do.DRAIN)), type=Order)
-    msgspec.json.encode(Answer(0, Said.DONE, {}))
+    msgspec.json.decode(msgspec.json.encode(DeskOrder(1, Do.DRAIN)), type=DeskOrder)
+    msgspec.json.encode(DeskAnswer(0, Said.DONE, {}))
 
 
 def run(call: Mapping[str, Any], descriptors: Sequence[int]) -> None:
@@ -97,7 +97,7 @@ class _Desk:
             self._wait(lambda: self._probed and self._heard, _ASK_AGAIN_S)
         self._answer(0, Said.DONE)
         while True:
-            order = msgspec.json.decode(self._orders.hear_json(), type=Order)
+            order = msgspec.json.decode(self._orders.hear_json(), type=DeskOrder)
             match order.do:
                 case Do.EXECUTE:
                     said = self._execute(order)
@@ -107,7 +107,7 @@ class _Desk:
                     said = self._drain()
             self._answer(order.number, said)
 
-    def _execute(self, order: Order) -> Said:
+    def _execute(self, order: DeskOrder) -> Said:
         self._collectors[order.cell] = OutputCollector(self._setting.cell_output_bytes, self._budget)
         self._reply, self._idle, self._read = None, False, 0
         content = {

@@ -22,7 +22,7 @@ BEGINNING = {Pace.FAST: 4.0, Pace.REAL_TIME: 15.0}
 
 
 @dataclass(frozen=True)
-class Entry:
+class EntryPoint:
     """The entry point in setup.py that a task requires.
 
     Attributes:
@@ -62,7 +62,7 @@ def package_of(report: WorkspaceReport | None, name: str) -> PackageReport | Non
     return next((package for package in report.packages if package.name == name), None) if report else None
 
 
-def entry_point(evidence: Evidence, entry: Entry) -> Advice | None:
+def entry_point(evidence: Evidence, entry: EntryPoint) -> Advice | None:
     """Return advice if setup.py lacks the task's entry point, or names a module or function that does not exist."""
     report, again = report_of(evidence.main), _again(evidence)
     if report is not None and report.built and report.missing == entry.program:
@@ -115,7 +115,7 @@ def _again(evidence: Evidence) -> str:
     )
 
 
-def no_executable(evidence: Evidence, entry: Entry) -> Advice | None:
+def no_executable(evidence: Evidence, entry: EntryPoint) -> Advice | None:
     """Return advice if `ros2 run` finds the package, but not the program in it."""
     if not any("No executable found" in str(event.data["text"]) for event in evidence.main.of("output")):
         return None
@@ -139,7 +139,7 @@ def package_name(evidence: Evidence, package: str) -> Advice | None:
     )
 
 
-def wrong_folder(evidence: Evidence, entry: Entry) -> Advice | None:
+def wrong_folder(evidence: Evidence, entry: EntryPoint) -> Advice | None:
     """Return advice if the program's file is in the package, but not in the folder of the package's modules."""
     package, file = entry.package, f"{entry.module}.py"
     report = report_of(evidence.main)
@@ -156,7 +156,7 @@ def wrong_folder(evidence: Evidence, entry: Entry) -> Advice | None:
     )
 
 
-def mistakes(entry: Entry) -> tuple[Mistake, ...]:
+def mistakes(entry: EntryPoint) -> tuple[Mistake, ...]:
     """Return the mistakes of a package that does not have the task's program, most specific first."""
     return (
         Mistake("wrong_folder", lambda evidence: wrong_folder(evidence, entry), certain=True),

@@ -34,7 +34,7 @@ class Ready(Message, frozen=True):
     """The notebook has received :class:`Begin`, and is ready to start runs."""
 
 
-class Met(Message, frozen=True):
+class EndpointsMet(Message, frozen=True, tag="met"):
     """The answer to :class:`Meet`: True if the participant sees the new endpoints, and none of the removed ones."""
 
     seen: bool
@@ -130,7 +130,7 @@ RunMessage = (
     Started | Constructed | Called | Looked | Output | Returned | Raised | Exited
     | Stacks | Stopped
 )  # fmt: skip
-FromNotebook = Check | Ready | Met | Source | Sources | RunMessage
+FromNotebook = Check | Ready | EndpointsMet | Source | Sources | RunMessage
 
 
 # --- From the judge

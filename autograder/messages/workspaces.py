@@ -25,7 +25,7 @@ class Source(Message, frozen=True):
 # --- A check: from the judge
 
 
-class Check(Message, frozen=True):
+class CheckRequest(Message, frozen=True, tag="check"):
     """The judge's first message, before the sources.
 
     Attributes:
@@ -43,7 +43,7 @@ class Check(Message, frozen=True):
     trouble: str = ""
 
 
-class Start(Message, frozen=True):
+class StartProgram(Message, frozen=True, tag="start"):
     """A request to run the submission. The service builds it first, unless it has been built already.
 
     Attributes:
@@ -55,25 +55,25 @@ class Start(Message, frozen=True):
     arguments: tuple[str, ...] = ()
 
 
-class Interrupt(Message, frozen=True):
+class InterruptProgram(Message, frozen=True, tag="interrupt"):
     """A request to send Ctrl-C to the program of the run. The run continues until the program ends or is stopped."""
 
     run: int
 
 
-class Stop(Message, frozen=True):
+class StopProgram(Message, frozen=True, tag="stop"):
     """A request to end the run."""
 
     run: int
 
 
-ToService = Start | Interrupt | Stop
+ToService = StartProgram | InterruptProgram | StopProgram
 
 
 # --- A check: from the workspace service
 
 
-class Ready(Message, frozen=True):
+class ServiceReady(Message, frozen=True, tag="ready"):
     """The service has received the sources."""
 
 
@@ -90,21 +90,21 @@ class ReportLine(Message, frozen=True, tag="report"):
     text: str
 
 
-class Output(Message, frozen=True):
+class ProgramOutput(Message, frozen=True, tag="output"):
     """A line that a program has printed."""
 
     run: int
     text: str
 
 
-class Exited(Message, frozen=True):
+class ProgramExited(Message, frozen=True, tag="exited"):
     """The program has ended by itself; the exit code is None if it is not known."""
 
     run: int
     code: int | None = None
 
 
-class Stopped(Message, frozen=True):
+class ProgramStopped(Message, frozen=True, tag="stopped"):
     """The run is over, and its processes have ended."""
 
     run: int
@@ -116,13 +116,15 @@ class Trouble(Message, frozen=True):
     why: str
 
 
-FromService = Ready | BuildEnded | ReportLine | Output | Exited | Stopped | Trouble
+FromService = (
+    ServiceReady | BuildEnded | ReportLine | ProgramOutput | ProgramExited | ProgramStopped | Trouble
+)
 
 
 # --- A build for a graded notebook
 
 
-class Build(Message, frozen=True):
+class BuildRequest(Message, frozen=True, tag="build"):
     """The notebook's first message, before the sources: a request for a build.
 
     Attributes:

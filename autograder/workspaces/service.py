@@ -149,7 +149,7 @@ class WorkspaceService:
             lines.say(messages.NotBuilt("this notebook has reached its maximum number of builds"))
             return
         try:
-            order = lines.hear(messages.Build)
+            order = lines.hear(messages.BuildRequest)
             receive(lines, order.count, order.path, folder)
         except (BadSources, NotUnderstood) as error:
             lines.say(messages.NotBuilt(str(error)))

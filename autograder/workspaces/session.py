@@ -27,14 +27,14 @@ if TYPE_CHECKING:
     from autograder.messages.lines import Lines
     from autograder.workspaces.graded_builds import GradedBuilds
     from autograder.workspaces.preparation import Prepared
-    from autograder.workspaces.running.jobs import Program
+    from autograder.workspaces.running.jobs import RunningProgram
 
 MAX_OUTPUT = 2_000_000
 """The maximum number of characters of a run's output to pass on."""
 
 
 @dataclass(frozen=True)
-class Submitted:
+class SubmittedSources:
     """The sources of a check.
 
     Attributes:
@@ -69,7 +69,7 @@ class Session:
         self._builds = builds
         self._variables = variables
         self._tree = folder / "submitted"
-        self._run: _Run | None = None
+        self._run: _ProgramRun | None = None
 
     def __enter__(self) -> Self:
         return self
@@ -83,28 +83,28 @@ class Session:
         Raises:
             Hangup: The judge closed the connection.
         """
-        first = self._lines.hear(messages.Check)
+        first = self._lines.hear(messages.CheckRequest)
         wrong = self._take_sources(first)
-        submitted = Submitted(
+        submitted = SubmittedSources(
             exercises.get(first.exercise).runner,
             self._tree,
             first.path,
             first.trouble or wrong,
             {**self._variables, "ROS_DOMAIN_ID": str(first.domain)},
         )
-        self._lines.say(messages.Ready())
+        self._lines.say(messages.ServiceReady())
         while True:
             order: messages.ToService = self._lines.hear(messages.ToService)
-            if isinstance(order, messages.Interrupt):
+            if isinstance(order, messages.InterruptProgram):
                 self._interrupt(order.run)
                 continue
             self._stop()
-            if isinstance(order, messages.Start):
-                self._run = _Run(self._lines, self._builds, submitted, order)
+            if isinstance(order, messages.StartProgram):
+                self._run = _ProgramRun(self._lines, self._builds, submitted, order)
             else:
-                self._lines.say(messages.Stopped(order.run))
+                self._lines.say(messages.ProgramStopped(order.run))
 
-    def _take_sources(self, check: messages.Check) -> str:
+    def _take_sources(self, check: messages.CheckRequest) -> str:
         """Receive the sources, and write them into a folder. Return what is wrong with them; empty if nothing is."""
         self._tree.mkdir()
         try:
@@ -125,11 +125,11 @@ class Session:
             run.end()
 
 
-class _Run:
+class _ProgramRun:
     """One run of the submitted program, in a thread."""
 
     def __init__(
-        self, lines: Lines, builds: GradedBuilds, submitted: Submitted, order: messages.Start
+        self, lines: Lines, builds: GradedBuilds, submitted: SubmittedSources, order: messages.StartProgram
     ) -> None:
         self._lines = lines
         self._submitted = submitted
@@ -137,7 +137,7 @@ class _Run:
         self._cancelled = threading.Event()
         self._jobs = builds.jobs
         self._prepare = Preparation(builds, self._report, self._build_ended, self._cancelled.is_set)
-        self._program: Program | None = None
+        self._program: RunningProgram | None = None
         self._changing = threading.Lock()
         self._thread = threading.Thread(target=self._run, daemon=True)
         self._thread.start()
@@ -180,7 +180,9 @@ class _Run:
     def _launch(self, file: Path) -> None:
         tree = self._submitted.tree
         if not file.is_file():
-            self._lines.say(messages.Output(self.number, f"there is no launch file {self._submitted.path}"))
+            self._lines.say(
+                messages.ProgramOutput(self.number, f"there is no launch file {self._submitted.path}")
+            )
             self._exited(1)
             return
         workspace = workspace_of(file, (file.parent, tree))
@@ -216,12 +218,12 @@ class _Run:
         if not self._cancelled.is_set():
             self._exited(program.exit_code())
 
-    def _pass_on(self, program: Program) -> None:
+    def _pass_on(self, program: RunningProgram) -> None:
         left = MAX_OUTPUT
         for text in output_lines(program, lambda: not self._cancelled.is_set()):
             left -= len(text) + 1  # an empty line counts, too, because it has to be sent
             if left > 0:
-                self._lines.say(messages.Output(self.number, text))
+                self._lines.say(messages.ProgramOutput(self.number, text))
 
     def _report(self, line: str) -> None:
         """Send the judge a line of the report, with paths changed to those in the notebook's folder."""
@@ -233,4 +235,4 @@ class _Run:
         self._lines.say(messages.BuildEnded(self.number))
 
     def _exited(self, code: int | None) -> None:
-        self._lines.say(messages.Exited(self.number, code))
+        self._lines.say(messages.ProgramExited(self.number, code))

@@ -22,7 +22,7 @@ from tests.boxes.reach import reached
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from autograder.execution.desk_messages import Order, Said
+    from autograder.execution.desk_messages import DeskOrder, Said
 
 _NAMED = re2.compile(r"hostile: (\w+) ?(\d*)")
 SCRIPT = "<script>fired()</script><img src=x onerror=fired()>"
@@ -63,7 +63,7 @@ def run(call: Mapping[str, Any], descriptors: Sequence[int]) -> None:
 
 
 class _HostileDesk(kernel_desk._Desk):
-    def _execute(self, order: Order) -> Said:
+    def _execute(self, order: DeskOrder) -> Said:
         said = super()._execute(order)
         named = _NAMED.search(order.source)
         if named is not None:

@@ -22,7 +22,7 @@ from autograder.kit.reading.service_calls import (
     CALLED,
     EXTREME,
     LATE,
-    Client,
+    ClientSeen,
     braces_left,
     cut_short,
     gives_up_in_time,
@@ -342,9 +342,9 @@ def test_a_client_that_hangs_after_its_call_is_not_said_to_have_made_none() -> N
     asked = Event(0.1, "request", "/add_two_ints", {"fields": {"a": 19201, "b": 0}})
     hung = Evidence([Part(LATE, {"numbers": [19201, 0]}, [asked])], Reference("lab_1_3.client", {}))
     words = "one call (the service comes late), then it hung, so the other runs were left out"
-    assert cut_short(Client(hung)) == words
+    assert cut_short(ClientSeen(hung)) == words
     ended = Evidence([Part(LATE, {}, [asked, RETURNED])], Reference("lab_1_3.client", {}))
-    assert cut_short(Client(ended)) == ""
+    assert cut_short(ClientSeen(ended)) == ""
 
 
 @pytest.mark.parametrize(

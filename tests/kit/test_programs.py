@@ -11,8 +11,8 @@ from autograder.judge.verdicts import trial
 from autograder.kit import package_programs
 from autograder.kit.evidence import INTERRUPTED, Event, Evidence, Part, Reference
 from autograder.kit.model import Advice, Bench, Criterion, Exercise, Finding, Mistake
-from autograder.kit.package_programs import Entry
-from autograder.kit.recipes.programs import Program, Programs
+from autograder.kit.package_programs import EntryPoint
+from autograder.kit.recipes.programs import LabProgram, Programs
 from autograder.kit.workspace_report import PackageReport, WorkspaceReport, as_line
 
 PACKAGE = "my_robot_pkg"
@@ -34,7 +34,7 @@ def says_hello(evidence: Evidence) -> Finding:
 NODE = Exercise(
     "lab_9_1.node", "", "", lambda _: None, (Criterion("hello", "", 10, says_hello),), (), ("publisher",)
 )
-TALKER, LISTENER = Program("talker", NODE, "", 3), Program("listener", NODE, "", 3)
+TALKER, LISTENER = LabProgram("talker", NODE, "", 3), LabProgram("listener", NODE, "", 3)
 PROGRAMS = Programs(PACKAGE, TALKER, LISTENER, keeps=("simple_node",)).exercise("lab_9_1.programs", "", "")
 
 
@@ -82,7 +82,7 @@ def test_whether_a_program_is_right_is_decided_once_for_all_its_mistakes() -> No
 
     known = (*(Mistake(f"none_{number}", lambda _: None) for number in range(50)), Mistake("last", advice))
     node = replace(NODE, criteria=(Criterion("never", "", 10, never),), mistakes=known)
-    exercise = Programs(PACKAGE, Program("talker", node, "", 3)).exercise("lab_9_1.programs", "", "")
+    exercise = Programs(PACKAGE, LabProgram("talker", node, "", 3)).exercise("lab_9_1.programs", "", "")
     for word in ("one", "other"):
         asked.clear()
         seen = evidence([said(word)])
@@ -91,7 +91,7 @@ def test_whether_a_program_is_right_is_decided_once_for_all_its_mistakes() -> No
         assert len(asked) == 1
 
 
-CLIENT = Program("asker", NODE, "", 3, file="asking", ends_by_itself=True)
+CLIENT = LabProgram("asker", NODE, "", 3, file="asking", ends_by_itself=True)
 BOTH = Programs(PACKAGE, TALKER, CLIENT).exercise("lab_9_1.programs", "", "")
 HANGS = Event(0.0, "stack", "subject", {"text": ""})
 CRASH = [*map(said, TRACEBACK), subject("exited")]
@@ -203,7 +203,7 @@ def test_a_file_in_another_folder_is_found(
     modules: tuple[str, ...], programs: tuple[str, ...], wrong: str
 ) -> None:
     seen = evidence([said(as_line(report(*modules, programs=programs)))])
-    advice = package_programs.wrong_folder(seen, Entry(PACKAGE, "talker"))
+    advice = package_programs.wrong_folder(seen, EntryPoint(PACKAGE, "talker"))
     assert (advice is not None) == bool(wrong)
     assert advice is None or wrong in advice.text
 
@@ -239,7 +239,7 @@ def test_an_entry_point_that_leads_nowhere_is_told_from_an_import(
     lines: tuple[str, ...], missing: str, named: str
 ) -> None:
     seen = evidence([*map(said, lines), said(f"ModuleNotFoundError: No module named '{missing}'")])
-    advice = package_programs.entry_point(seen, Entry(PACKAGE, "talker"))
+    advice = package_programs.entry_point(seen, EntryPoint(PACKAGE, "talker"))
     assert (advice is not None) == bool(named)
     assert advice is None or named in advice.text
 
@@ -264,6 +264,6 @@ def test_a_run_that_is_made_again_is_one_of_the_same_program() -> None:
         bench.again()
 
     bench = MagicMock(before=None, reference=Reference("lab_9_1.programs", {}))
-    program = Program("talker", replace(NODE, scenario=scenario), "", 3)
+    program = LabProgram("talker", replace(NODE, scenario=scenario), "", 3)
     Programs(PACKAGE, program).exercise("lab_9_1.programs", "", "").scenario(bench)
     assert [call.args for call in bench.again.mock_calls] == [("talker: talking",), ("",)]

@@ -68,7 +68,10 @@ def test_each_kind_of_event_is_in_the_table() -> None:
 @pytest.mark.parametrize("name", RECIPES)
 def test_a_recipe_has_the_mistakes_that_the_page_promises(name: str) -> None:
     keys = {mistake.key for mistake in RECIPES[name].ladder}
-    in_all, in_nodes = paragraph("All recipes recognize"), paragraph("The first six of the table also recognize")
+    in_all, in_nodes = (
+        paragraph("All recipes recognize"),
+        paragraph("The first six of the table also recognize"),
+    )
     nodes = list(RECIPES)[:6]
     own = row(name).split("|")[2]
     promised = keys_in(own + in_all + (in_nodes if name in nodes else ""))

@@ -20,7 +20,7 @@ from autograder.messages import workspaces as messages
 from autograder.messages.lines import Hangup, Lines
 from autograder.workspaces import packages, service, session, sources
 from autograder.workspaces.builds import colcon_in_class, own_builds
-from autograder.workspaces.builds.artefacts import Entry, Kind
+from autograder.workspaces.builds.artefacts import Kind, PackedEntry
 from autograder.workspaces.builds.install_folder import LIBRARY
 from autograder.workspaces.running.jobs import BuildOrder, Built, ProgramJob
 from autograder.workspaces.running.plain_jobs import PlainProgram
@@ -82,9 +82,9 @@ class FakeJobs:
 
 def _packed(*names: str, **links: str) -> bytes:
     """A packed install folder with empty files, and links with their targets."""
-    files = [Entry(name.encode(), Kind.FILE) for name in names]
+    files = [PackedEntry(name.encode(), Kind.FILE) for name in names]
     return msgspec.msgpack.encode(
-        [*files, *(Entry(a.encode(), Kind.LINK, b.encode()) for a, b in links.items())]
+        [*files, *(PackedEntry(a.encode(), Kind.LINK, b.encode()) for a, b in links.items())]
     )
 
 
@@ -96,17 +96,17 @@ class FakeJudge:
 
     def check(self, workspace: Path, exercise: str = "lab_1_1.hello", trouble: str = "") -> None:
         sent = sources.collect_workspace(workspace)
-        self.lines.say(messages.Check(exercise, 7, workspace.name, len(sent), trouble))
+        self.lines.say(messages.CheckRequest(exercise, 7, workspace.name, len(sent), trouble))
         for source in sent:
             self.lines.say(source)
-        self.lines.hear(messages.Ready)
+        self.lines.hear(messages.ServiceReady)
 
     def hear(self) -> dict[str, Any]:
         return words_of(self.lines, messages.FromService)
 
     def run(self, number: int = 1) -> list[dict[str, Any]]:
         """What is said of a run until it has ended by itself."""
-        self.lines.say(messages.Start(number))
+        self.lines.say(messages.StartProgram(number))
         heard: list[dict[str, Any]] = []
         while not heard or heard[-1]["say"] not in ("exited", "trouble"):
             heard.append(self.hear())
@@ -296,10 +296,10 @@ def test_who_shares_a_build_has_given_the_very_same_to_its_box(
     plain = sources.collect_workspace(lab)
     for sent in ([*plain, odd], plain):
         judge = FakeJudge(sockets)
-        judge.lines.say(messages.Check("lab_1_1.hello", 7, "ros2_ws", len(sent)))
+        judge.lines.say(messages.CheckRequest("lab_1_1.hello", 7, "ros2_ws", len(sent)))
         for source in sent:
             judge.lines.say(source)
-        judge.lines.hear(messages.Ready)
+        judge.lines.hear(messages.ServiceReady)
         assert reports(judge.run())[-1]["built"]
         judge.lines.close()
     inside = f"/{odd.path.removeprefix('ros2_ws/')}"
@@ -348,9 +348,9 @@ def test_sources_that_were_not_to_be_had_are_a_failure_with_a_reason(
 
 def test_a_path_that_leads_out_is_refused(sockets: ServiceSockets, jobs: FakeJobs) -> None:
     judge = FakeJudge(sockets)
-    judge.lines.say(messages.Check("lab_1_1.hello", 7, "ros2_ws", 1))
+    judge.lines.say(messages.CheckRequest("lab_1_1.hello", 7, "ros2_ws", 1))
     judge.lines.say(messages.Source("../evil", b""))
-    judge.lines.hear(messages.Ready)
+    judge.lines.hear(messages.ServiceReady)
     assert "no path inside" in reports(judge.run())[-1]["line"]
     assert not jobs.builds
 
@@ -359,10 +359,10 @@ def test_a_run_is_ended_when_the_judge_says_so(sockets: ServiceSockets, jobs: Fa
     jobs.script = "echo started; sleep 1000"
     judge = FakeJudge(sockets)
     judge.check(lab)
-    judge.lines.say(messages.Start(1))
+    judge.lines.say(messages.StartProgram(1))
     while judge.hear().get("text") != "started":
         pass
-    judge.lines.say(messages.Stop(1))
+    judge.lines.say(messages.StopProgram(1))
     assert judge.hear() == {"say": "stopped", "run": 1}
 
 
@@ -376,11 +376,11 @@ def test_ctrl_c_ends_the_program_that_the_judge_has_named(
     jobs.script = TRAP
     judge = FakeJudge(sockets)
     judge.check(lab, "lab_1_2.programs")
-    judge.lines.say(messages.Start(1, ("talker", "7")))
+    judge.lines.say(messages.StartProgram(1, ("talker", "7")))
     while judge.hear().get("text") != "started":
         pass
     assert jobs.commands[0][-4:] == ["run", "my_robot_pkg", "talker", "7"]
-    judge.lines.say(messages.Interrupt(1))
+    judge.lines.say(messages.InterruptProgram(1))
     assert judge.hear() == {"say": "output", "run": 1, "text": "bye"}
     assert judge.hear() == {"say": "exited", "run": 1, "code": 4}
 
@@ -392,12 +392,12 @@ def test_in_place_of_a_launch_the_program_is_run_that_the_judge_has_named(
     file.write_text("")
     path, sent = sources.collect_launch(file, None)
     judge = FakeJudge(sockets)
-    judge.lines.say(messages.Check("exercise_1_1.remap", 7, path, len(sent)))
+    judge.lines.say(messages.CheckRequest("exercise_1_1.remap", 7, path, len(sent)))
     for source in sent:
         judge.lines.say(source)
-    judge.lines.hear(messages.Ready)
+    judge.lines.hear(messages.ServiceReady)
     for run, words in enumerate(((), (ALONE, "my_robot_pkg", "talker", "--ros-args")), 1):
-        judge.lines.say(messages.Start(run, words))
+        judge.lines.say(messages.StartProgram(run, words))
         while judge.hear()["say"] != "exited":
             pass
     launched, alone = jobs.commands
@@ -413,7 +413,7 @@ def test_a_program_that_was_not_built_is_named_and_the_other_one_runs(
     judge.check(lab, "lab_1_2.programs")
     missing = []
     for run, program in enumerate(("talker", "listener"), 1):
-        judge.lines.say(messages.Start(run, (program,)))
+        judge.lines.say(messages.StartProgram(run, (program,)))
         heard: list[dict[str, Any]] = []
         while not heard or heard[-1]["say"] != "exited":
             heard.append(judge.hear())
@@ -428,11 +428,11 @@ def test_ctrl_c_for_an_earlier_run_ends_no_later_one(
     jobs.script = TRAP
     judge = FakeJudge(sockets)
     judge.check(lab)
-    judge.lines.say(messages.Start(2))
+    judge.lines.say(messages.StartProgram(2))
     while judge.hear().get("text") != "started":
         pass
-    judge.lines.say(messages.Interrupt(1))
-    judge.lines.say(messages.Stop(2))
+    judge.lines.say(messages.InterruptProgram(1))
+    judge.lines.say(messages.StopProgram(2))
     assert judge.hear() == {"say": "stopped", "run": 2}
 
 
@@ -450,7 +450,7 @@ def test_a_build_is_given_up_when_nobody_waits_for_it(
     jobs.waiting = wait
     judge = FakeJudge(sockets)
     judge.check(lab)
-    judge.lines.say(messages.Start(1))
+    judge.lines.say(messages.StartProgram(1))
     assert building.wait(20.0)
     judge.lines.close()
     assert given_up.wait(20.0)
@@ -533,7 +533,7 @@ def test_the_judge_may_be_gone_when_the_grader_has_trouble(
     jobs.waiting = fail
     judge = FakeJudge(sockets)
     judge.check(lab)
-    judge.lines.say(messages.Start(1))
+    judge.lines.say(messages.StartProgram(1))
     assert building.wait(20.0)
     judge.lines.close()
     gone.set()
@@ -587,11 +587,11 @@ def test_endless_output_is_cut_and_ends_with_the_run(
     jobs.script = "yes"
     judge = FakeJudge(sockets)
     judge.check(lab)
-    judge.lines.say(messages.Start(1))
+    judge.lines.say(messages.StartProgram(1))
     size = 0
     while size < 9_900:
         size += size_of_output(judge.hear())
-    judge.lines.say(messages.Stop(1))
+    judge.lines.say(messages.StopProgram(1))
     while (words := judge.hear())["say"] != "stopped":
         size += size_of_output(words)
     assert size <= 10_000

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 from autograder.grading.classes.class_directory import SUFFIX, ClassDirectory
 from autograder.grading.classes.timestamps import TIMESTAMP, timestamp_text
 from autograder.grading.collecting.inbox import BY_HAND, Arrival, Delivery, Inbox
-from autograder.grading.collecting.line import State
+from autograder.grading.collecting.line import LineState
 from autograder.grading.collecting.records import CollectedRecords, History
 from autograder.grading.rebuilding.submission import UnreadableSubmission, read_bytes
 from autograder.regular_files import write_whole
@@ -72,7 +72,7 @@ class Submitted:
                         receiving.keep(read_bytes(self.path(place)))
                         receiving.delivery = delivery
 
-    def bring(self, lines: Iterable[Line]) -> dict[Place, tuple[State, str]]:
+    def bring(self, lines: Iterable[Line]) -> dict[Place, tuple[LineState, str]]:
         """Write each notebook that counts into ``submitted``, and remove notebooks that no longer count.
 
         Returns:
@@ -85,9 +85,9 @@ class Submitted:
         wanted: dict[tuple[str, str], dict[str, Line]] = defaultdict(dict)
         refused = set()
         for one in lines:
-            if one.state == State.PLACED:
+            if one.state == LineState.PLACED:
                 wanted[one.place[:2]][one.notebook] = one
-            elif one.state == State.LEFT_OUT and all(one.place):
+            elif one.state == LineState.LEFT_OUT and all(one.place):
                 refused.add((one.place, one.content))
         keys = {*wanted, *self._records.all(), *(place[:2] for place, _ in refused)}
         results = (self._bring(*key, wanted[key], refused) for key in sorted(keys))
@@ -99,7 +99,7 @@ class Submitted:
         assignment: str,
         wanted: Mapping[str, Line],
         refused: Collection[tuple[Place, str]],
-    ) -> Iterator[tuple[Place, State, str]]:
+    ) -> Iterator[tuple[Place, LineState, str]]:
         old = self._records.get(assignment, student) or History({})
         now: dict[str, Line] = {}
         changes: list[tuple[Place, Line | None, str]] = []
@@ -111,7 +111,7 @@ class Submitted:
             except UnreadableSubmission as error:
                 now |= {notebook: old.now[notebook]} if notebook in old.now else {}
                 if line:
-                    yield place, State.NOT_PLACED, str(error)
+                    yield place, LineState.NOT_PLACED, str(error)
                 continue
             content = hashlib.sha256(there).hexdigest() if there is not None else ""
             if line is None:
@@ -123,7 +123,7 @@ class Submitted:
             if not line.is_by_hand or line.when or line.use or known:
                 now[notebook] = line
             if content == line.content:
-                yield place, State.UNCHANGED, ""
+                yield place, LineState.UNCHANGED, ""
             else:
                 changes.append((place, line, content))
         history = History(now)
@@ -135,10 +135,10 @@ class Submitted:
         for place, line, content in changes:
             if line is None:
                 self.path(place).unlink()
-                yield place, State.EARLIER, ""
+                yield place, LineState.EARLIER, ""
             else:
                 write_whole(self.path(place), self._inbox.read(line.content))
-                yield place, State.PLACED, "instead of an earlier one" if content else ""
+                yield place, LineState.PLACED, "instead of an earlier one" if content else ""
         if history != old and (now or old != History({})):
             self._records.put(assignment, student, history)
         if now or changes:

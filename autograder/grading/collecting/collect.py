@@ -14,11 +14,11 @@ from autograder.grading.collecting.deciding.decide import Looks, decide
 from autograder.grading.collecting.deciding.proposals import NO_LIST, entries_of, in_utc, lines_of
 from autograder.grading.collecting.deciding.student_of import StudentOf
 from autograder.grading.collecting.inbox import Arrival, Delivery, Inbox
-from autograder.grading.collecting.line import State
+from autograder.grading.collecting.line import LineState
 from autograder.grading.collecting.outcomes import CollectReport
 from autograder.grading.collecting.reading.archives import Archives, File, NotTaken, Room
 from autograder.grading.collecting.reading.desk import read_list, without_sandbox
-from autograder.grading.collecting.reading.named_sources import Source, note_on, own_of
+from autograder.grading.collecting.reading.named_sources import NamedSource, note_on, own_of
 from autograder.grading.collecting.reading.names_option import check_names
 from autograder.grading.collecting.reading.unpack import is_archive
 from autograder.grading.errors import GradingError, check_known
@@ -115,7 +115,7 @@ class _Collecting:
             student_of = self._knowing()
             for path in (path for path in paths if path not in lists):
                 files = tuple(archives.files_of(path, is_opened=path not in own))
-                source = Source(path, files, path in own)
+                source = NamedSource(path, files, path in own)
                 arrivals += self._source(source, student_of, receiving, archives)
                 note = note_on(source, student_of, options.form or options.names)
                 self._notes += [note] if note else []
@@ -144,7 +144,7 @@ class _Collecting:
         return replace(arrival, is_list=True)
 
     def _source(
-        self, source: Source, student_of: StudentOf, receiving: Receiving, archives: Archives
+        self, source: NamedSource, student_of: StudentOf, receiving: Receiving, archives: Archives
     ) -> Iterator[Arrival]:
         for file in source.files:
             if source.is_list(file.arrival, self._options.form):
@@ -167,18 +167,18 @@ class _Collecting:
         self,
         delivery: Delivery,
         lines: Sequence[Line],
-        results: Mapping[Place, tuple[State, str]],
+        results: Mapping[Place, tuple[LineState, str]],
         before: Collection[str],
     ) -> CollectReport:
         zone, keys = self._directory.time_zone, {one.key for one in delivery.arrivals}
-        counting = [one for one in lines if one.state == State.PLACED]
+        counting = [one for one in lines if one.state == LineState.PLACED]
         outcomes = []
         for one in lines:
-            if one.state == State.PLACED:
+            if one.state == LineState.PLACED:
                 state, reason = results[one.place]
                 one = replace(one, state=state, reason=reason)
-            waits = one.state == State.NOT_PLACED and (not keys or f"{one.label} {one.key}" not in before)
-            if one.key in keys or one.state == State.PLACED or waits:
+            waits = one.state == LineState.NOT_PLACED and (not keys or f"{one.label} {one.key}" not in before)
+            if one.key in keys or one.state == LineState.PLACED or waits:
                 outcomes.append(replace(one, when=one.when and one.when.astimezone(zone)))
         here = {one.assignment for one in counting if one.key in keys or not keys}
         work = {(one.student, one.assignment) for one in self._directory.submissions()[0]}
@@ -200,15 +200,15 @@ class _Collecting:
             tuple(sorted(outcomes, key=lambda one: one.label)),
             {name: tuple(students) for name, students in untimed.items() if students},
             {name: students for name, students in missing.items() if students},
-            sum(one.state == State.NOT_PLACED for one in lines),
+            sum(one.state == LineState.NOT_PLACED for one in lines),
             tuple(notes),
         )
 
 
-def _hindered(one: Line, results: Mapping[Place, tuple[State, str]]) -> Line:
+def _hindered(one: Line, results: Mapping[Place, tuple[LineState, str]]) -> Line:
     """Return the line, which waits for a person if its file could not be written into ``submitted``."""
-    state, reason = results.get(one.place, (State.PLACED, ""))
-    is_hindered = one.state == State.PLACED and state == State.NOT_PLACED
+    state, reason = results.get(one.place, (LineState.PLACED, ""))
+    is_hindered = one.state == LineState.PLACED and state == LineState.NOT_PLACED
     return replace(one, state=state, reason=reason) if is_hindered else one
 
 

@@ -23,7 +23,7 @@ from babel.dates import parse_date
 from autograder.grading.collecting.deciding.decide import cell_in
 from autograder.grading.collecting.deciding.proposals import Edit, in_utc
 from autograder.grading.collecting.inbox import FOLDER
-from autograder.grading.collecting.line import State
+from autograder.grading.collecting.line import LineState
 from autograder.grading.collecting.reading.lms_file_names import read_time
 from autograder.grading.reporting.spreadsheet import csv_rows, defused, original
 from autograder.regular_files import write_whole
@@ -41,12 +41,12 @@ COLUMNS = (
 EDITABLE = ("use", "student", "assignment", "notebook", "handed_in")
 WAITS = "waits"
 _WORDS = {
-    State.PLACED: "yes",
-    State.UNCHANGED: "the same",
-    State.EARLIER: "earlier",
-    State.BESIDE: "beside",
-    State.NOT_PLACED: WAITS,
-    State.LEFT_OUT: "no",
+    LineState.PLACED: "yes",
+    LineState.UNCHANGED: "the same",
+    LineState.EARLIER: "earlier",
+    LineState.BESIDE: "beside",
+    LineState.NOT_PLACED: WAITS,
+    LineState.LEFT_OUT: "no",
 }
 _FIRST = (WAITS, "yes")
 _YES = frozenset(["yes", "y", "ja", "j", "x", "1", "true", "wahr", "oui", "si", "sí"])
@@ -223,7 +223,7 @@ class Table:
 
     def _row(self, several: Sequence[Line], edit: Edit) -> list[str]:
         """Return the row for a file. If it is the work of a group, ``several`` has a line for each student."""
-        first = (State.NOT_PLACED, State.PLACED)
+        first = (LineState.NOT_PLACED, LineState.PLACED)
         line = min(several, key=lambda one: first.index(one.state) if one.state in first else len(first))
         when = f"{line.when.astimezone(self._zone):%Y-%m-%d %H:%M:%S %z}" if line.when else ""
         cells = {
@@ -265,7 +265,7 @@ class Table:
         return Counter(
             (student, row["assignment"])
             for row in self.lines()
-            if row["counts"] == _WORDS[State.EARLIER]
+            if row["counts"] == _WORDS[LineState.EARLIER]
             for student in row["student"].split("; ")
         )
 

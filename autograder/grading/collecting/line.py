@@ -12,7 +12,7 @@ Place = tuple[str, str, str]
 """The place of a notebook in ``submitted``: student, assignment and notebook."""
 
 
-class State(StrEnum):
+class LineState(StrEnum):
     """The state of a file after collecting. Each file has exactly one of these."""
 
     PLACED = "placed"
@@ -70,7 +70,7 @@ class Line:
     order: int = 0
     late: bool = False
     use: str = ""
-    state: State = State.NOT_PLACED
+    state: LineState = LineState.NOT_PLACED
     reason: str = ""
     is_soft: bool = False
     lms: str = ""

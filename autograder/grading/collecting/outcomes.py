@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from autograder.grading.collecting.line import State
+from autograder.grading.collecting.line import LineState
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -33,11 +33,11 @@ class CollectReport:
     waiting: int = 0
     notes: tuple[str, ...] = ()
 
-    def having(self, state: State) -> tuple[Line, ...]:
+    def having(self, state: LineState) -> tuple[Line, ...]:
         """Return the lines with this state."""
         return tuple(one for one in self.outcomes if one.state == state)
 
     @property
     def exit_code(self) -> int:
         """The command's exit code: 0 if every file is settled; 2 if a line of these files waits for a person."""
-        return 2 if self.having(State.NOT_PLACED) else 0
+        return 2 if self.having(LineState.NOT_PLACED) else 0

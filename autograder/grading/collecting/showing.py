@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from rich.console import Console
 
 from autograder.cards.readable import printable
-from autograder.grading.collecting.line import State
+from autograder.grading.collecting.line import LineState
 from autograder.grading.errors import course_command
 from autograder.grading.running.progress import plain_line
 from autograder.kit.in_words import counted
@@ -27,21 +27,23 @@ def show(report: CollectReport, console: Console | None = None) -> None:
     """
     console = console or Console()
     for text in _lines(report):
-        style = "yellow" if text.startswith(State.NOT_PLACED) else ""
+        style = "yellow" if text.startswith(LineState.NOT_PLACED) else ""
         plain_line(console, printable(text), style)
 
 
 def _lines(report: CollectReport) -> Iterator[str]:
-    for one in report.having(State.PLACED):
+    for one in report.having(LineState.PLACED):
         when = f", handed in {one.when:%Y-%m-%d %H:%M} {one.when.tzinfo}" if one.when else ""
         late = ", late as the LMS says" if one.late else ""
         again = f", {one.reason}" if one.reason else ""
         yield f"placed       {one.student}/{one.assignment}: {one.label}{when}{late}{again}"
-    for state in (State.EARLIER, State.BESIDE, State.LEFT_OUT, State.NOT_PLACED):
+    for state in (LineState.EARLIER, LineState.BESIDE, LineState.LEFT_OUT, LineState.NOT_PLACED):
         for one in report.having(state):
             owner = f"{one.student}: " if one.student else ""
             also = (
-                "; the student's notebook was collected, too" if state == State.BESIDE and one.student else ""
+                "; the student's notebook was collected, too"
+                if state == LineState.BESIDE and one.student
+                else ""
             )
             yield f"{state:<12} {one.label}: {owner}{one.reason}{also}"
     for assignment, students in report.missing.items():
@@ -58,13 +60,13 @@ def _lines(report: CollectReport) -> Iterator[str]:
         )
     for note in report.notes:
         yield f"note         {note}"
-    counts = {state: len(report.having(state)) for state in State}
+    counts = {state: len(report.having(state)) for state in LineState}
     yield ", ".join(f"{count} {state}" for state, count in counts.items())
-    if counts[State.NOT_PLACED]:
+    if counts[LineState.NOT_PLACED]:
         yield (
             f"note         {counted(report.waiting, 'line')} of {report.path / 'collected.csv'} to decide: write the "
             f"student or the assignment, or yes or no under use, and type {course_command('collect', report.path)}. "
             "If many names have the same form, --from or --names can describe it"
         )
-    if counts[State.PLACED]:
+    if counts[LineState.PLACED]:
         yield f"Then         {course_command('grade', report.path)}"

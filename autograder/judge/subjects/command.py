@@ -22,7 +22,7 @@ from environment.python_child import python_child
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from autograder.judge.subjects.command_subject import Box
+    from autograder.judge.subjects.command_subject import CommandBox
     from autograder.judge.verdicts.trial import Checked
     from autograder.kit.model import Exercise
 
@@ -48,7 +48,7 @@ def check_and_keep(
     *,
     seed: str | None = None,
     cwd: Path | None = None,
-    box: Box | None = None,
+    box: CommandBox | None = None,
 ) -> tuple[Verdict, bytes]:
     """Judge a command as the subject of an exercise.
 
@@ -116,7 +116,7 @@ def _packed(checked: Checked | None) -> bytes:
 
 
 def checked_here(
-    exercise: Exercise, command: Sequence[str], seed: str, cwd: Path | None, box: Box | None = None
+    exercise: Exercise, command: Sequence[str], seed: str, cwd: Path | None, box: CommandBox | None = None
 ) -> tuple[Verdict, Checked | None]:
     """Judge a command in this process, which was forked for it. The evidence is None if the judge failed."""
     settings.prepare_judge(boxed=box is not None)

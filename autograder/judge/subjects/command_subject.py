@@ -43,7 +43,7 @@ LEFTOVERS = 1.0
 """Time limit in seconds. A process that a command left behind has to end within this time."""
 
 
-class Box(Protocol):
+class CommandBox(Protocol):
     """A sandbox with its own network, which keeps commands from the user's files and network."""
 
     def enter(self) -> None:
@@ -63,7 +63,9 @@ class Box(Protocol):
 class CommandSubject(InOwnProcesses):
     """A command that runs in a new session. Its output is recorded, and at the end all its processes are ended."""
 
-    def __init__(self, command: Sequence[str], cwd: Path | None = None, box: Box | None = None) -> None:
+    def __init__(
+        self, command: Sequence[str], cwd: Path | None = None, box: CommandBox | None = None
+    ) -> None:
         self._command = list(command)
         self._box = box
         self._cwd = cwd

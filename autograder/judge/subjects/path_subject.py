@@ -75,7 +75,7 @@ class PathSubject(InOwnProcesses):
         try:
             self._lines = Lines.to(self._socket)
             self._lines.say(
-                workspaces.Check(self._exercise, domain_id, self._path, len(sources), trouble=wrong)
+                workspaces.CheckRequest(self._exercise, domain_id, self._path, len(sources), trouble=wrong)
             )
             for source in sources:
                 self._lines.say(source)
@@ -99,14 +99,14 @@ class PathSubject(InOwnProcesses):
         self._stopped.clear()
         self._built.clear()
         self._began = time.monotonic()
-        self._say(workspaces.Start(self._run, tuple(map(str, arguments))))
+        self._say(workspaces.StartProgram(self._run, tuple(map(str, arguments))))
 
     def release(self) -> None:
         """Do nothing, because a program is never held back."""
 
     def interrupt(self) -> None:
         """Have the workspace service send Ctrl-C to the program."""
-        self._say(workspaces.Interrupt(self._run))
+        self._say(workspaces.InterruptProgram(self._run))
 
     @property
     def ended(self) -> bool:
@@ -128,7 +128,7 @@ class PathSubject(InOwnProcesses):
         self._recorder = None
         waited = not self._built.is_set() and not self.ended and time.monotonic() - self._began > PATIENCE
         if not self.trouble:
-            self._say(workspaces.Stop(self._run))
+            self._say(workspaces.StopProgram(self._run))
             if not self._stopped.wait(STOP_LIMIT):
                 raise JudgeFailed("the grader's workspace service did not end the run")
         if waited:
@@ -177,11 +177,11 @@ class PathSubject(InOwnProcesses):
         match message:
             case workspaces.Trouble(why=why):
                 self._fail(why)
-            case workspaces.Ready():
+            case workspaces.ServiceReady():
                 self._ready.set()
             case _ if message.run != self._run:
                 pass  # a message about an earlier run
-            case workspaces.Stopped():
+            case workspaces.ProgramStopped():
                 self._stopped.set()
             case workspaces.BuildEnded():
                 self._built.set()
@@ -192,9 +192,9 @@ class PathSubject(InOwnProcesses):
         match message:
             case workspaces.ReportLine(text=text):
                 record("output", "report", text=text)
-            case workspaces.Output(text=text):
+            case workspaces.ProgramOutput(text=text):
                 record("output", "stdout", text=as_words(text))
-            case workspaces.Exited(code=code):
+            case workspaces.ProgramExited(code=code):
                 self._end("exited", self._ended.set, code=code)
 
     def _fail(self, why: str) -> None:

@@ -187,7 +187,7 @@ class RemoteSubject:
         match message:
             case checks.Ready():
                 self._ready.set()
-            case checks.Met(seen=seen):
+            case checks.EndpointsMet(seen=seen):
                 self._seen_as_told = seen
                 self._answered.set()
             case checks.Check() | Source() | checks.Sources():

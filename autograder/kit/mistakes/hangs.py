@@ -37,7 +37,7 @@ _SPINS = {
 
 
 @dataclass(frozen=True)
-class Frame:
+class StackFrame:
     """One call in a stack; ``rclpy`` is the file of rclpy that contains the call, and empty for other code."""
 
     rclpy: str
@@ -45,18 +45,18 @@ class Frame:
     line: str = ""
 
 
-Stack = Sequence[Frame]
+Stack = Sequence[StackFrame]
 
 
 def stacks(part: Part) -> list[Stack]:
     """Return the stacks of the subject's threads at the time when it hung, innermost call first."""
-    found: list[list[Frame]] = []
+    found: list[list[StackFrame]] = []
     for event in part.of("stack"):
         for line in str(event.data["text"]).splitlines():
             if "most recent call first" in line:
                 found.append([])
             elif (match := _FRAME.match(line)) and found:
-                found[-1].append(Frame(_rclpy_file(match["file"]), match["function"], match["line"]))
+                found[-1].append(StackFrame(_rclpy_file(match["file"]), match["function"], match["line"]))
     return [stack for stack in found if stack]
 
 

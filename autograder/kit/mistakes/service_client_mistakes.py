@@ -9,7 +9,7 @@ import re2
 
 from autograder.kit.model import mistake
 from autograder.kit.reading.service_calls import (
-    Client,
+    ClientSeen,
     answers,
     ended_before_its_answer,
     new_words,
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 
 def _does_not_wait_for_answers(evidence: Evidence) -> bool:
-    served, calls = Client(evidence).served, Client(evidence.reference).calls
+    served, calls = ClientSeen(evidence).served, ClientSeen(evidence.reference).calls
     # A client that made all its calls although one answer came late does wait for answers.
     waits = any(len(requests(part)) >= calls for part in served if part.of("response"))
     return any(
@@ -79,7 +79,7 @@ ANSWER_NOT_AWAITED = mistake(
 
 def _dislikes_zero(evidence: Evidence) -> bool:
     """Return True if the client fails to report the answer only in runs in which the last answer is 0."""
-    served = Client(evidence).served
+    served = ClientSeen(evidence).served
     wrong = [part for part in served if part.ending and not reports(part)]
     zero = all(answers(part)[-1:] == [0] and not ended_before_its_answer(part) for part in wrong)
     return bool(wrong) and zero and any(map(reports, served))
@@ -96,7 +96,7 @@ ZERO_TAKEN_FOR_FAILURE = mistake(
 
 
 def _returns_another_each_time(evidence: Evidence) -> str | None:
-    served = [part for part in Client(evidence).served if part.of("response")]
+    served = [part for part in ClientSeen(evidence).served if part.of("response")]
     wrong = bool(served) and all(returns_another(part) and _says_the_answer(part) for part in served)
     return served[0].returned if wrong else None
 
@@ -115,7 +115,7 @@ NOT_RETURNED = mistake(
 
 
 def _asks_for_nothing(evidence: Evidence) -> bool:
-    made = [pair(event) for part in Client(evidence).served for event in requests(part)]
+    made = [pair(event) for part in ClientSeen(evidence).served for event in requests(part)]
     return bool(made) and all(pair == [0, 0] for pair in made)
 
 

@@ -38,7 +38,7 @@ is right, looks the same. So a second run has to confirm that nothing happens.
 
 
 @dataclass(frozen=True)
-class Client:
+class ClientSeen:
     """A service client as it behaved in its runs, or as it was recorded from the reference solution.
 
     Attributes:
@@ -147,11 +147,11 @@ def braces_left(part: Part) -> Advice | None:
 
 def reports_the_sum(evidence: Evidence) -> Finding:
     """Decide whether the client logs, prints or returns the last answer."""
-    calls = max(1, Client(evidence.reference).calls)
+    calls = max(1, ClientSeen(evidence.reference).calls)
     silent = next(
         (
             p
-            for p in Client(evidence).served
+            for p in ClientSeen(evidence).served
             if says_otherwise(p) or not (reports(p) or has_reported(p, calls))
         ),
         None,
@@ -206,7 +206,7 @@ def how_it_went(part: Part) -> str:
     return f"it {ending.name} after {counted(len(requests(part)), 'call')}"
 
 
-def cut_short(client: Client) -> str:
+def cut_short(client: ClientSeen) -> str:
     """Return in words why the judge left out later runs: the client hung. Empty if all runs were made."""
     hung = next((part for part in client.served if part.events and part.ending is None), None)
     if hung is None or all(part.events for part in client.served):

@@ -111,7 +111,7 @@ class Program:
     roles = ()
 
     def __init__(self, package: str, program: str, part: str) -> None:
-        self._entry, self._part = programs.Entry(package, program), part
+        self._entry, self._part = programs.EntryPoint(package, program), part
         self.runner = RunsProgram(package, program)
 
     def seen(self, evidence: Evidence) -> Ran:

@@ -30,7 +30,7 @@ _ROLES = ("publisher", "subscription", "client", "service", "action_client", "ac
 
 
 @dataclass(frozen=True)
-class Program:
+class LabProgram:
     """A program of the package.
 
     Attributes:
@@ -92,7 +92,7 @@ class Program:
 class _OneProgram:
     """A bench for the scenario of one program's node. It passes all other methods on to the judge's bench."""
 
-    def __init__(self, bench: Bench, program: Program) -> None:
+    def __init__(self, bench: Bench, program: LabProgram) -> None:
         self._bench, self._program = bench, program
         self.built = False
         self.before = program.view(bench.before) if bench.before else None
@@ -161,7 +161,7 @@ class Programs:
             entry points.
     """
 
-    def __init__(self, name: str, *programs: Program, keeps: Sequence[str] = ()) -> None:
+    def __init__(self, name: str, *programs: LabProgram, keeps: Sequence[str] = ()) -> None:
         self._name, self._programs, self._keeps = name, programs, keeps
 
     def exercise(self, exercise_id: str, title: str, task: str, **more: Any) -> Exercise:
@@ -220,7 +220,7 @@ class Programs:
             expected += f", and setup.py has an entry point for {_and(lost)}, too"
         return Finding(not lost, expected, f"no entry point for {_and(lost)}" if lost else "started")
 
-    def _is_there(self, program: Program, evidence: Evidence) -> bool:
+    def _is_there(self, program: LabProgram, evidence: Evidence) -> bool:
         view = program.view(evidence)
         report = report_of(view.main)
         if package.entry_point(view, self._entry(program)):
@@ -229,8 +229,8 @@ class Programs:
             return report.built and not report.missing
         return any(part.endpoints(role) for part in view for role in program.node.roles)
 
-    def _entry(self, program: Program) -> package.Entry:
-        return package.Entry(self._name, program.name, program.file)
+    def _entry(self, program: LabProgram) -> package.EntryPoint:
+        return package.EntryPoint(self._name, program.name, program.file)
 
     def _lost(self, evidence: Evidence) -> list[str]:
         report = report_of(evidence.main)
@@ -241,7 +241,7 @@ class Programs:
         wrong = "; ".join(f"{name} {what}" for name, what in seen.items() if what)
         return Finding(not wrong, self._ends(f"{_and(list(seen))} end on Ctrl-C"), wrong or "ended")
 
-    def _ending(self, program: Program, evidence: Evidence) -> str:
+    def _ending(self, program: LabProgram, evidence: Evidence) -> str:
         if program.ends_by_itself and not self._is_there(program, evidence):
             # This is checked first, because a program that did not start also has an event about its end.
             return "did not start"
@@ -302,7 +302,7 @@ class Programs:
         return ""
 
 
-def _of_the_view(mistake: Mistake, program: Program, evidence: Evidence) -> Advice | None:
+def _of_the_view(mistake: Mistake, program: LabProgram, evidence: Evidence) -> Advice | None:
     return mistake.recognise(program.view(evidence))
 
 
@@ -313,7 +313,7 @@ class _Wrong:
     about a hundred mistakes, and the judge has only a few seconds for all of them.
     """
 
-    def __init__(self, program: Program) -> None:
+    def __init__(self, program: LabProgram) -> None:
         self._program = program
         self._known: tuple[Evidence | None, Evidence | None] = None, None
 
@@ -335,7 +335,7 @@ _MADE_OF_NOTHING = re2.compile(
 )
 
 
-def _class_not_in_its_file(program: Program, evidence: Evidence) -> Advice | None:
+def _class_not_in_its_file(program: LabProgram, evidence: Evidence) -> Advice | None:
     """Return advice if the program uses a class that its file does not contain."""
     traceback = traceback_of(evidence)
     found = _MADE_OF_NOTHING.search(traceback)
@@ -349,7 +349,7 @@ def _class_not_in_its_file(program: Program, evidence: Evidence) -> Advice | Non
     )
 
 
-def _ignores_ctrl_c(program: Program, evidence: Evidence) -> Advice | None:
+def _ignores_ctrl_c(program: LabProgram, evidence: Evidence) -> Advice | None:
     if program.ending(evidence) != "went on":
         return None
     return Advice(

@@ -16,7 +16,7 @@ from autograder.kit.mistakes.hangs import HANGS
 from autograder.kit.model import Advice, Bench, Finding, Mistake, mistake
 from autograder.kit.reading.service_calls import (
     WAIT,
-    Client,
+    ClientSeen,
     answers,
     braces_left,
     cut_short,
@@ -73,13 +73,13 @@ class Calls:
         nobody = bench.random.choice(self._kinds)(bench.random)
         scenario(bench, runs, nobody, calls=self._calls)
 
-    def seen(self, evidence: Evidence) -> Client:
+    def seen(self, evidence: Evidence) -> ClientSeen:
         """Return the subject's client, as the judge saw it."""
-        return Client(evidence)
+        return ClientSeen(evidence)
 
-    def expected(self, evidence: Evidence) -> Client:
+    def expected(self, evidence: Evidence) -> ClientSeen:
         """Return the client of the reference solution, as it was recorded."""
-        return Client(evidence.reference)
+        return ClientSeen(evidence.reference)
 
     def is_right(self, part: Part) -> bool:
         """Return True if a run has the right number of calls, each with the right numbers."""

@@ -38,7 +38,7 @@ Objection = Callable[[Fields, Fields | None], str]
 
 
 @dataclass(frozen=True)
-class Server:
+class ServerSeen:
     """A server and the calls that the judge made to it.
 
     Attributes:
@@ -141,14 +141,14 @@ class Asks:
                 return False
         return True
 
-    def seen(self, evidence: Evidence) -> Server:
+    def seen(self, evidence: Evidence) -> ServerSeen:
         """Return the subject's server, with the calls that the judge made and the answers."""
-        return Server(evidence.main, len(evidence.reference.part(CALLS).of("asked")))
+        return ServerSeen(evidence.main, len(evidence.reference.part(CALLS).of("asked")))
 
-    def expected(self, evidence: Evidence) -> Server:
+    def expected(self, evidence: Evidence) -> ServerSeen:
         """Return the server of the recorded reference solution."""
         part = evidence.reference.part(CALLS)
-        return Server(part, len(part.of("asked")))
+        return ServerSeen(part, len(part.of("asked")))
 
     def serves(self, evidence: Evidence) -> Finding:
         """Decide whether the subject has exactly one server with the right name and type, and it answers."""

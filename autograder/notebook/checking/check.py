@@ -159,7 +159,7 @@ def converse(link: JudgeLink, exercise: str, subject: Any, card: CardPlace) -> V
                 match order := link.hear():
                     case messages.Meet():
                         place.ensure(fresh=order.fresh)
-                        link.say(messages.Met(place.sees(order.there, order.gone, order.within)))
+                        link.say(messages.EndpointsMet(place.sees(order.there, order.gone, order.within)))
                     case messages.Start():
                         # A workspace or launch file runs in a new process, with its own DDS participant.
                         if not is_path(subject):

@@ -17,7 +17,7 @@ from autograder.messages.checks import Constructed, Raised, Returned, Started
 from autograder.notebook.cells.cell_output import student_frames
 from autograder.notebook.cells.meant_names import meant_name
 from autograder.notebook.checking.judge_link import MAX_TEXT
-from autograder.notebook.nodes.spin_threads import Failure, SpinThreads, raise_in_thread
+from autograder.notebook.nodes.spin_threads import SpinFailure, SpinThreads, raise_in_thread
 
 if TYPE_CHECKING:
     from rclpy.context import Context
@@ -115,7 +115,7 @@ class SubjectRun:
         self._stopping.wait()
         threads.stop(grace=END_LIMIT / 3)
 
-    def _callback_raised(self, failure: Failure) -> None:
+    def _callback_raised(self, failure: SpinFailure) -> None:
         # Report an exception in a callback as the end of the subject, because it would also end rclpy.spin in a
         # program.
         if not self._stopping.is_set():

@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 
 
 @dataclass
-class Watch:
+class WatchMode:
     """An exercise that is watched. ``watch`` returns this object.
 
     Attributes:
@@ -126,7 +126,7 @@ class Watches:
     """
 
     def __init__(self, shell: Any) -> None:
-        self.all: dict[str, Watch] = {}
+        self.all: dict[str, WatchMode] = {}
         self._names: dict[str, Any] = shell.user_ns
         self._thread: threading.Thread | None = None
         self._link: JudgeLink | None = None
@@ -166,7 +166,7 @@ class Watches:
                 watch.get_ready()
                 self._check(watch)
 
-    def _check(self, watch: Watch) -> None:
+    def _check(self, watch: WatchMode) -> None:
         try:
             link = JudgeLink()
             with self._lock:
@@ -192,7 +192,7 @@ _watches: Watches | None = None
 _ended_by_the_student = False
 
 
-def watch(exercise: str, subject: Callable[..., Any]) -> Watch:
+def watch(exercise: str, subject: Callable[..., Any]) -> WatchMode:
     """Check a class again whenever its cell is run, until ``unwatch()`` or a restart of the kernel.
 
     A short card below the cell shows the points, what happened and what to do next. These checks change no grade. While
@@ -209,7 +209,7 @@ def watch(exercise: str, subject: Callable[..., Any]) -> Watch:
     if not (inspect.isclass(subject) or inspect.isfunction(subject)):
         raise TypeError(what_to_pass(exercise, subject, "watch"))
     _ended_by_the_student = False
-    begun = Watch(exercise, subject.__name__, subject)
+    begun = WatchMode(exercise, subject.__name__, subject)
     if is_live():
         _watches = _watches or Watches(notebook_shell())
         # If the student calls watch(...) in the cell of the class, the call is repeated with each run of the cell.

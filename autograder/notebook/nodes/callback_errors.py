@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from rclpy.node import Node
 
-    from autograder.notebook.nodes.spin_threads import Failure
+    from autograder.notebook.nodes.spin_threads import SpinFailure
 
 
 _HUNG_CALL = (
@@ -74,7 +74,7 @@ class CallbackErrors:
         self._lock = threading.Lock()
         self._errors: dict[Any, CallbackError] = {}
 
-    def record(self, failure: Failure) -> None:
+    def record(self, failure: SpinFailure) -> None:
         """Record an error, and show it if it is new."""
         key = (type(failure.error), id(failure.entity), last_student_line(failure.error))
         with self._lock:
@@ -102,7 +102,7 @@ class CallbackErrors:
                 say(f"Error in {seen}")
 
 
-def _report(seen: CallbackError, failure: Failure) -> str:
+def _report(seen: CallbackError, failure: SpinFailure) -> str:
     lines = [f"Error in {seen.node}, in the callback of {seen.where}:"]
     if last_student_line(seen.error) is None:
         lines += [_last_line(seen.error), *_hints(failure)]
@@ -115,7 +115,7 @@ def _report(seen: CallbackError, failure: Failure) -> str:
     return "\n".join(lines)
 
 
-def _hints(failure: Failure) -> list[str]:
+def _hints(failure: SpinFailure) -> list[str]:
     """Return advice if rclpy itself raised the error because the callback, or its return value, is wrong."""
     if isinstance(failure.entity, Timer) and failure.entity.callback is None:
         return [

@@ -66,7 +66,7 @@ class Ending(Enum):
 
 
 @dataclass(frozen=True)
-class Failure:
+class SpinFailure:
     """An exception that a callback raised.
 
     Attributes:
@@ -90,7 +90,7 @@ class _Work:
 
 
 @dataclass(frozen=True)
-class _Running:
+class _BusyThread:
     work: _Work
     since: float
 
@@ -111,7 +111,7 @@ class SpinThreads:
         nodes: Sequence[Node],
         *,
         threads: int = 1,
-        on_failure: Callable[[Failure], None],
+        on_failure: Callable[[SpinFailure], None],
         on_end: Callable[[Ending], None],
     ) -> None:
         self._context = nodes[0].context
@@ -127,7 +127,7 @@ class SpinThreads:
         self._finished = False
         self._to_workers: queue.SimpleQueue[_Work | None] = queue.SimpleQueue()
         self._queued: set[Task] = set()
-        self._running: dict[int, _Running] = {}
+        self._running: dict[int, _BusyThread] = {}
         self._workers = threads if threads > 1 else 0
         self._threads = [self._make_thread(self._take_work)]
         self._threads += [self._make_thread(self._run_queued_work) for _ in range(self._workers)]
@@ -224,7 +224,7 @@ class SpinThreads:
         frames = sys._current_frames()
         for ident, running in list(self._running.items()):
             error = CallbackBrokenOff().with_traceback(_traceback_of(frames.get(ident)))
-            self._on_failure(Failure(error, running.work.entity, running.work.node, goes_on=False))
+            self._on_failure(SpinFailure(error, running.work.entity, running.work.node, goes_on=False))
 
     def _finish(self) -> None:
         """Destroy the nodes and the executor. A second call does nothing."""
@@ -271,7 +271,7 @@ class SpinThreads:
                 except Exception as error:  # such as InvalidHandle, if a node is being destroyed
                     failed_waits += 1
                     if failed_waits == _MAX_FAILED_WAITS:
-                        self._on_failure(Failure(error, goes_on=False))
+                        self._on_failure(SpinFailure(error, goes_on=False))
                         self._ask_to_stop(Ending.EXECUTOR_FAILED)
                 else:
                     failed_waits = 0
@@ -309,7 +309,7 @@ class SpinThreads:
 
     def _run(self, work: _Work) -> None:
         ident = threading.get_ident()
-        self._running[ident] = _Running(work, time.monotonic())
+        self._running[ident] = _BusyThread(work, time.monotonic())
         try:
             work.task()
             error = work.task.exception() if work.task.done() else None
@@ -324,9 +324,9 @@ class SpinThreads:
             self._report(error, work.entity, work.node)
 
     def _report(self, error: BaseException, entity: Any, node: Node | None) -> None:
-        self._on_failure(Failure(error, entity, node, goes_on=not self._stop.is_set()))
+        self._on_failure(SpinFailure(error, entity, node, goes_on=not self._stop.is_set()))
 
-    def _is_of_the_end(self, error: BaseException, running: _Running) -> bool:
+    def _is_of_the_end(self, error: BaseException, running: _BusyThread) -> bool:
         """Return True if a callback failed only because its node was stopped while a call waited for an answer."""
         waited = time.monotonic() - running.since
         return self._stop.is_set() and isinstance(error, NodeEndedError) and waited < _LONG_WAIT

@@ -60,7 +60,7 @@ class Kind(StrEnum):
     OTHER = "other"
 
 
-class Entry(msgspec.Struct, frozen=True, array_like=True):
+class PackedEntry(msgspec.Struct, frozen=True, array_like=True):
     """One file, folder or link.
 
     Attributes:
@@ -75,7 +75,7 @@ class Entry(msgspec.Struct, frozen=True, array_like=True):
 
 
 def pack(install: Path) -> bytes:
-    """Return an install folder as a list of :class:`Entry`, in MessagePack; empty if it is missing or too large."""
+    """Pack an install folder as a list of :class:`PackedEntry`, in MessagePack; empty if missing or too large."""
     entries, size = [], 0
     try:
         for path in _below(install):
@@ -96,15 +96,15 @@ def _below(folder: Path) -> Iterator[Path]:
             yield from _below(path)
 
 
-def _entry(path: Path, install: Path) -> Entry:
+def _entry(path: Path, install: Path) -> PackedEntry:
     name, mode = os.fsencode(path.relative_to(install)), path.lstat().st_mode
     if stat.S_ISDIR(mode):
-        return Entry(name, Kind.FOLDER)
+        return PackedEntry(name, Kind.FOLDER)
     if stat.S_ISLNK(mode):
-        return Entry(name, Kind.LINK, os.fsencode(path.readlink()))
+        return PackedEntry(name, Kind.LINK, os.fsencode(path.readlink()))
     if not stat.S_ISREG(mode):
-        return Entry(name, Kind.OTHER)
-    return Entry(name, Kind.PROGRAM if mode & stat.S_IXUSR else Kind.FILE, path.read_bytes())
+        return PackedEntry(name, Kind.OTHER)
+    return PackedEntry(name, Kind.PROGRAM if mode & stat.S_IXUSR else Kind.FILE, path.read_bytes())
 
 
 def unpack(packed: bytes, folder: Path, most: int = MAX_BYTES) -> None:
@@ -124,14 +124,14 @@ def unpack(packed: bytes, folder: Path, most: int = MAX_BYTES) -> None:
         raise BadArtefacts("the result of the build could not be packed")
     folder.mkdir(mode=0o755)
     try:
-        _write(msgspec.msgpack.decode(packed, type=list[Entry]), folder, most)
+        _write(msgspec.msgpack.decode(packed, type=list[PackedEntry]), folder, most)
     except (msgspec.MsgspecError, OSError) as error:
         if getattr(error, "errno", None) in _OF_THIS_MACHINE:
             raise
         raise BadArtefacts(f"the result of the build cannot be read: {error}") from error
 
 
-def _write(entries: list[Entry], folder: Path, most: int) -> None:
+def _write(entries: list[PackedEntry], folder: Path, most: int) -> None:
     size = 0
     made: set[PurePosixPath] = set()
     links: dict[PurePosixPath, PurePosixPath] = {}
@@ -166,7 +166,7 @@ def check_room(size: int, most: int, number: int = 0) -> None:
         )
 
 
-def _take(entry: Entry, place: Path) -> None:
+def _take(entry: PackedEntry, place: Path) -> None:
     if entry.kind is Kind.FOLDER:
         place.mkdir(parents=True, exist_ok=True)
         return
@@ -195,7 +195,7 @@ def _place(name: bytes) -> PurePosixPath:
     return path
 
 
-def _target(place: PurePosixPath, link: Entry) -> PurePosixPath:
+def _target(place: PurePosixPath, link: PackedEntry) -> PurePosixPath:
     """Return the target of a link as a path inside the install folder.
 
     The path is computed without looking at the disk, which is correct because the written folder contains no links.

@@ -100,7 +100,7 @@ def _ask(socket: str, found: Build, chosen: Iterable[Package], install: Path) ->
         return None
     with contextlib.closing(lines), contextlib.suppress(Hangup, NotUnderstood, artefacts.BadArtefacts):
         top = found.workspace.resolve().name
-        lines.say(messages.Build(len(collected), top, [package.name for package in chosen]))
+        lines.say(messages.BuildRequest(len(collected), top, [package.name for package in chosen]))
         for source in collected:
             lines.say(source)
         answer: messages.BuildAnswer = lines.hear(messages.BuildAnswer)

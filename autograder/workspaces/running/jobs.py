@@ -101,7 +101,7 @@ class ProgramJob:
     hidden: Sequence[Path]
 
 
-class Program(Protocol):
+class RunningProgram(Protocol):
     """A running program."""
 
     pid: int
@@ -131,7 +131,7 @@ class Program(Protocol):
 
 
 def output_lines(
-    program: Program, wanted: Callable[[], bool] = lambda: True, within: float = 0.1
+    program: RunningProgram, wanted: Callable[[], bool] = lambda: True, within: float = 0.1
 ) -> Iterator[str]:
     """Yield the lines of a program's output until the output ends or is no longer needed. Long lines are cut.
 
@@ -185,6 +185,6 @@ class Jobs(Protocol):
         """Return the path at which programs see the folder of submitted files."""
         ...
 
-    def start(self, job: ProgramJob) -> Program:
+    def start(self, job: ProgramJob) -> RunningProgram:
         """Run a program on a network that the judge can see and the notebook cannot."""
         ...

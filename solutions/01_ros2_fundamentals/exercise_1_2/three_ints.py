@@ -16,7 +16,7 @@ from autograder.kit.reading.service_calls import (
     CALLED,
     EXTREME,
     LATE,
-    Client,
+    ClientSeen,
     answers,
     pair,
     requests,
@@ -84,7 +84,7 @@ adder = Draft(
 
 
 @adder.criterion("calls", 2, "Calls exactly twice")
-def calls(seen: Client, expected: Client) -> Finding:
+def calls(seen: ClientSeen, expected: ClientSeen) -> Finding:
     """In each run it calls as often as the reference solution."""
     counts = [len(requests(part)) for part in seen.served]
     found = ", ".join(f"{count} ({name})" for count, name in zip(counts, CALLED, strict=True))
@@ -98,7 +98,7 @@ adder.asks("limit", 1, "Ends clearly when there is no service", service_calls.gi
 
 
 @adder.mistake("first_answer_ignored", certain=True)
-def first_answer_ignored(seen: Client, _: Client) -> Advice | None:
+def first_answer_ignored(seen: ClientSeen, _: ClientSeen) -> Advice | None:
     """The second call carries a + b as computed by the client."""
     part = seen.evidence.part(BIASED)
     made = requests(part)
@@ -116,8 +116,8 @@ def first_answer_ignored(seen: Client, _: Client) -> Advice | None:
     )
 
 
-@adder.mistake("one_call_only", late=True, certain=Client.called_each_time)
-def one_call_only(seen: Client, expected: Client) -> Advice | None:
+@adder.mistake("one_call_only", late=True, certain=ClientSeen.called_each_time)
+def one_call_only(seen: ClientSeen, expected: ClientSeen) -> Advice | None:
     """The client ends by itself after one call or none."""
     part = next((p for p in seen.served if p.ending and len(requests(p)) < expected.calls), None)
     if part is None or not (seen.had_client or requests(part)):

@@ -2,12 +2,12 @@
 
 from lab_1_2 import listener, talker
 
-from autograder.kit.recipes.programs import Program, Programs
+from autograder.kit.recipes.programs import LabProgram, Programs
 
 EXERCISE = Programs(
     "my_robot_pkg",
-    Program("talker", talker.EXERCISE, "The talker publishes its strings at the right rate", 3),
-    Program("listener", listener.EXERCISE, "The listener says every string it hears", 3),
+    LabProgram("talker", talker.EXERCISE, "The talker publishes its strings at the right rate", 3),
+    LabProgram("listener", listener.EXERCISE, "The listener says every string it hears", 3),
     keeps=("simple_node",),
 ).exercise(
     "lab_1_2.programs",

@@ -2,18 +2,18 @@
 
 from lab_1_3 import client, server
 
-from autograder.kit.recipes.programs import Program, Programs
+from autograder.kit.recipes.programs import LabProgram, Programs
 
 EXERCISE = Programs(
     "my_robot_pkg",
-    Program(
+    LabProgram(
         "add_server",
         server.EXERCISE,
         "The server answers each call with the sum",
         3,
         file="add_two_ints_server",
     ),
-    Program(
+    LabProgram(
         "add_client",
         client.EXERCISE,
         "The client reports what the server answers",

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from autograder.kit.draft import Draft
 from autograder.kit.model import Advice, Finding
-from autograder.kit.recipes.service_server import AT_ONCE, Asks, Server
+from autograder.kit.recipes.service_server import AT_ONCE, Asks, ServerSeen
 
 if TYPE_CHECKING:
     from random import Random
@@ -81,19 +81,19 @@ server.asks("service", 2, "Serves add_two_ints, with the right type", asks.serve
 
 
 @server.criterion("sums", 4, "Answers with the sum")
-def sums(seen: Server, _: Server) -> Finding:
+def sums(seen: ServerSeen, _: ServerSeen) -> Finding:
     """Each call of the first phase is answered with the sum."""
     return seen.all_right(seen.singly, objection, "the sum, for every pair of numbers")
 
 
 @server.criterion("together", 2, "Answers several calls at once")
-def together(seen: Server, _: Server) -> Finding:
+def together(seen: ServerSeen, _: ServerSeen) -> Finding:
     """Each of the calls at once is answered with its own sum."""
     return seen.all_right(seen.together, objection, f"the right sum for each of {AT_ONCE} calls at once")
 
 
 @server.criterion("alive", 2, "Stays alive")
-def alive(seen: Server, _: Server) -> Finding:
+def alive(seen: ServerSeen, _: ServerSeen) -> Finding:
     """The call after all others is answered; with which sum, other criteria say."""
     return seen.all_right(seen.last, silence, "one more call is answered after all that")
 
@@ -109,7 +109,7 @@ server.knows(
 
 
 @server.mistake("wrong_sum", certain=True)
-def wrong_sum(seen: Server, _: Server) -> Advice | None:
+def wrong_sum(seen: ServerSeen, _: ServerSeen) -> Advice | None:
     """An answer is not the sum."""
     wrong = [text for text in seen.objections(seen.asked, objection) if " was answered" in text]
     if seen.part.traceback:

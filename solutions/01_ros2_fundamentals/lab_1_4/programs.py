@@ -2,18 +2,18 @@
 
 from lab_1_4 import client, server
 
-from autograder.kit.recipes.programs import Program, Programs
+from autograder.kit.recipes.programs import LabProgram, Programs
 
 EXERCISE = Programs(
     "my_robot_pkg",
-    Program(
+    LabProgram(
         "fibonacci_server",
         server.EXERCISE,
         "The server counts, and lets a goal be canceled",
         3,
         file="fibonacci_action_server",
     ),
-    Program(
+    LabProgram(
         "fibonacci_client",
         client.EXERCISE,
         "The client says how its goal ends",

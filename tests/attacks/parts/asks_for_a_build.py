@@ -2,7 +2,7 @@
 import os
 
 from autograder.messages.lines import Lines
-from autograder.messages.workspaces import Build, BuildAnswer
+from autograder.messages.workspaces import BuildRequest, BuildAnswer
 from autograder.workspaces.sources import collect_workspace
 
 
@@ -10,7 +10,7 @@ def ask(sources):
     """Let it be built, and print the beginning of the answer."""
     if "AUTOGRADER_BUILDS" in os.environ:
         lines = Lines.to(os.environ["AUTOGRADER_BUILDS"], 60.0)
-        lines.say(Build(len(sources), "ros2_ws", ["my_robot_pkg"]))
+        lines.say(BuildRequest(len(sources), "ros2_ws", ["my_robot_pkg"]))
         for source in sources:
             lines.say(source)
         print(str(lines.hear(BuildAnswer))[:200], flush=True)

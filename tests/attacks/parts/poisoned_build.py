@@ -3,7 +3,7 @@ import importlib._bootstrap_external
 import os
 
 from autograder.messages.lines import Lines
-from autograder.messages.workspaces import Build, BuildAnswer, Source
+from autograder.messages.workspaces import BuildRequest, BuildAnswer, Source
 from autograder.workspaces.sources import collect_workspace
 
 IN_PLACE_OF_SETUPTOOLS = """
@@ -31,7 +31,7 @@ def poison(program):
         sources.append(Source(f"ros2_ws/src/my_robot_pkg/{name}", bytes(compiled)))
     if "AUTOGRADER_BUILDS" in os.environ:
         lines = Lines.to(os.environ["AUTOGRADER_BUILDS"], 60.0)
-        lines.say(Build(len(sources), "ros2_ws", ["my_robot_pkg"]))
+        lines.say(BuildRequest(len(sources), "ros2_ws", ["my_robot_pkg"]))
         for source in sources:
             lines.say(source)
         print(lines.hear(BuildAnswer))

@@ -12,7 +12,7 @@ from test_where_it_goes import MOODLE, gathered
 
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.classes.new_class import release
-from autograder.grading.collecting.line import State
+from autograder.grading.collecting.line import LineState
 from autograder.grading.reporting.rows import remarks_on
 
 if TYPE_CHECKING:
@@ -65,7 +65,7 @@ def test_a_notebook_with_the_cells_of_two_labs_is_refused_with_both_names(
 ) -> None:
     file = {MOODLE.format("Ada Lovelace", name): of_both(klass, order=order, marked=marked)}
     report = gathered(klass, tmp_path, file)
-    assert not report.having(State.PLACED)
+    assert not report.having(LineState.PLACED)
     assert report.exit_code == 2
     assert "it has the cells of lab_1_2 and of lab_1_3" in why(report)
     assert "write the one that it is to count for under assignment" in why(report)
@@ -77,7 +77,7 @@ def test_the_instructor_says_for_which_of_them_it_is_and_grade_repeats_what_is_l
     file = {MOODLE.format("Ada Lovelace", "work.ipynb"): of_both(klass)}
     for assignment in ("lab_1_2", "lab_1_3"):
         report = gathered(klass, tmp_path, file, assignment=assignment)
-        assert [one.assignment for one in report.having(State.PLACED)] == [assignment]
+        assert [one.assignment for one in report.having(LineState.PLACED)] == [assignment]
     remarks = remarks_on(klass.grade(assignments=["lab_1_2"]).rows)
     assert remarks["ada", "lab_1_2"].startswith("This notebook also has the checks of lab_1_3.")
 
@@ -89,4 +89,4 @@ def test_a_copied_answer_of_another_lab_makes_no_second_lab(klass: TinyClass, tm
         cell for cell in other.cells if cell.metadata.get("nbgrader", {}).get("grade_id") == "Server"
     ]
     report = gathered(klass, tmp_path, {MOODLE.format("Ada Lovelace", "lab_1_2.ipynb"): json.dumps(own)})
-    assert [one.assignment for one in report.having(State.PLACED)] == ["lab_1_2"]
+    assert [one.assignment for one in report.having(LineState.PLACED)] == ["lab_1_2"]

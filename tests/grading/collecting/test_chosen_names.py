@@ -12,7 +12,7 @@ from test_lms_file_names import add_assignment
 from test_real_forms import METADATA, STEALS, gradescope_export
 
 from autograder.grading.collecting.collect import collect
-from autograder.grading.collecting.line import State
+from autograder.grading.collecting.line import LineState
 from autograder.grading.collecting.records import CollectedRecords
 
 if TYPE_CHECKING:
@@ -246,7 +246,7 @@ def test_of_files_named_one_by_one_two_people_of_one_name_are_told_apart(
     names = ("lovelaceada_101_9001_lab_1_2.ipynb", "lovelaceada_999_9999_lab_1_2.ipynb")
     files = folder(tmp_path / "d", {name: work(tiny, place) for place, name in enumerate(names)})
     report = collect(tiny.path, sorted(files.iterdir()))
-    assert (placed(report), len(report.having(State.NOT_PLACED))) == ({}, 2)
+    assert (placed(report), len(report.having(LineState.NOT_PLACED))) == ({}, 2)
     assert "several people have the name of ada, with the numbers 101, 999" in why(report)
     (tiny.path / "students.csv").write_text("id,first_name,last_name,canvas\nada,Ada,Lovelace,101\n")
     report = collect(tiny.path)

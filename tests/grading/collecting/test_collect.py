@@ -26,7 +26,7 @@ from autograder.grading.classes.timestamps import is_not_believed, read_timestam
 from autograder.grading.collecting.collect import collect
 from autograder.grading.collecting.collected_csv import Table
 from autograder.grading.collecting.inbox import Inbox
-from autograder.grading.collecting.line import State
+from autograder.grading.collecting.line import LineState
 from autograder.grading.errors import GradingError
 from autograder.grading.table.roster import RosterError
 
@@ -47,11 +47,11 @@ def work(klass: TinyClass, talker: object = 10, listener: object = 10) -> str:
 
 
 def placed(report: CollectReport) -> dict[str, str]:
-    return {one.student: one.label.rpartition("/")[2] for one in report.having(State.PLACED)}
+    return {one.student: one.label.rpartition("/")[2] for one in report.having(LineState.PLACED)}
 
 
 def why(report: CollectReport) -> str:
-    return "\n".join(f"{one.label}: {one.reason}" for one in report.having(State.NOT_PLACED))
+    return "\n".join(f"{one.label}: {one.reason}" for one in report.having(LineState.NOT_PLACED))
 
 
 def kept(klass: TinyClass) -> list[str]:
@@ -96,7 +96,7 @@ def test_moodle_as_files_and_as_folders(klass: TinyClass, tmp_path: Path) -> Non
     assert (lies(klass, "ada"), lies(klass, "jose")) == (one, two)
     assert stamp(klass, "ada") == "2025-10-03 12:05:00.000000 UTC"
     assert stamp(klass, "jose") == "2025-10-03 12:06:00.000000 UTC"
-    assert [one.student for one in report.having(State.BESIDE)] == ["", "ben"]
+    assert [one.student for one in report.having(LineState.BESIDE)] == ["", "ben"]
     assert report.missing == {"lab_1_2": ("eve", "zoe")}
 
 
@@ -120,10 +120,10 @@ def test_canvas_marks_what_is_late_and_numbers_what_was_handed_in_again(
     )
     assert not why(report)
     assert lies(klass, "ada") == two
-    assert [one.label for one in report.having(State.EARLIER)] == [
+    assert [one.label for one in report.having(LineState.EARLIER)] == [
         "submissions.zip/lovelaceada_101_9001_lab_1_2.ipynb"
     ]
-    assert {one.student: one.late for one in report.having(State.PLACED)} == {
+    assert {one.student: one.late for one in report.having(LineState.PLACED)} == {
         "ada": False,
         "eve": True,
         "zoe": False,
@@ -232,7 +232,7 @@ def test_what_cannot_be_placed_is_listed_with_its_reason(klass: TinyClass, tmp_p
             )
         ],
     )
-    assert report.having(State.PLACED) == ()
+    assert report.having(LineState.PLACED) == ()
     assert report.exit_code == 2
     lines = dict(line.partition(": ")[::2] for line in why(report).splitlines())
     assert "may be ada, ada2" in lines["m.zip/Ada Lovelace_1_assignsubmission_file_lab_1_2.ipynb"]
@@ -254,13 +254,16 @@ def test_the_newest_counts_also_later_and_nothing_is_lost(klass: TinyClass, tmp_
     one, two, three = work(klass, 1), work(klass, 2), work(klass, 3)
     second = blackboard("b.zip", 15, two)
     assert placed(collect(klass.path, [second])).keys() == {"ada"}
-    assert (len(collect(klass.path, [second]).having(State.UNCHANGED)), lies(klass, "ada")) == (1, two)
+    assert (len(collect(klass.path, [second]).having(LineState.UNCHANGED)), lies(klass, "ada")) == (1, two)
     first = collect(klass.path, [blackboard("a.zip", 14, one)])
-    assert (len(first.having(State.EARLIER)), first.exit_code, lies(klass, "ada")) == (1, 0, two)
+    assert (len(first.having(LineState.EARLIER)), first.exit_code, lies(klass, "ada")) == (1, 0, two)
     last = collect(klass.path, [blackboard("c.zip", 16, three)])
-    assert (last.having(State.PLACED)[0].reason, lies(klass, "ada")) == ("instead of an earlier one", three)
+    assert (last.having(LineState.PLACED)[0].reason, lies(klass, "ada")) == (
+        "instead of an earlier one",
+        three,
+    )
     assert kept(klass) == sorted([one, two])
-    assert collect(klass.path, [second]).having(State.EARLIER)
+    assert collect(klass.path, [second]).having(LineState.EARLIER)
     assert lies(klass, "ada") == three
 
 
@@ -272,7 +275,7 @@ def test_what_is_kept_is_not_larger_than_what_was_sent(klass: TinyClass, tmp_pat
     sent = (tmp_path / "work.zip").read_bytes()
     write_zip(tmp_path / "a.zip", {"Lab_ada_attempt_2025-10-03-14-00-00_work.zip": sent})
     report = collect(klass.path, [tmp_path / "a.zip"])
-    assert len(report.having(State.NOT_PLACED)) == 5
+    assert len(report.having(LineState.NOT_PLACED)) == 5
     inbox = klass.path / ".autograder" / "inbox"
     assert sum(path.stat().st_size for path in inbox.glob("*.zip")) <= 3 * len(sent)
 
@@ -292,7 +295,7 @@ def test_two_files_of_which_nothing_says_which_is_newer_are_both_listed(
             )
         ],
     )
-    assert (len(report.having(State.PLACED)), len(report.having(State.NOT_PLACED))) == (0, 2)
+    assert (len(report.having(LineState.PLACED)), len(report.having(LineState.NOT_PLACED))) == (0, 2)
     assert "several different files" in why(report)
 
 
@@ -302,7 +305,7 @@ def test_a_notebook_that_nobody_collected_is_not_overwritten(klass: TinyClass, t
         klass.path,
         [write_zip(tmp_path / "m.zip", {"Ada Lovelace_1_assignsubmission_file_lab_1_2.ipynb": work(klass)})],
     )
-    (other,) = report.having(State.EARLIER)
+    (other,) = report.having(LineState.EARLIER)
     assert "was put there by hand and is graded" in other.reason
     assert lies(klass, "ada") == mine
 
@@ -330,7 +333,7 @@ def test_a_file_without_a_place_takes_no_time_from_an_exchange(klass: TinyClass,
     there.write_text("2025-10-03 14:00:00.000000 UTC")
     stranger = write_zip(tmp_path / "c.zip", {"nobody_999_9001_lab_1_2.ipynb": work(klass, 3)})
     assert [one.state for one in collect(klass.path, [stranger], zone=ZoneInfo("UTC")).outcomes] == [
-        State.NOT_PLACED
+        LineState.NOT_PLACED
     ]
     assert read_timestamp(there.parent) == there.read_text()
     assert not is_not_believed(there.parent)
@@ -379,13 +382,13 @@ def test_a_bomb_is_harmless(klass: TinyClass, tmp_path: Path) -> None:
     struct.pack_into("<I", data, place + 24, 10)
     bomb.write_bytes(data)
     report = collect(klass.path, [bomb])
-    assert report.having(State.PLACED) == ()
-    assert report.having(State.NOT_PLACED)
+    assert report.having(LineState.PLACED) == ()
+    assert report.having(LineState.NOT_PLACED)
     inner = zipped({"a/lab_1_2.ipynb": bomb.read_bytes(), "again.zip": bomb.read_bytes()})
     report = collect(
         klass.path, [write_zip(tmp_path / "n.zip", {"Ada Lovelace_1_assignsubmission_file_x.zip": inner})]
     )
-    assert {one.student for one in report.having(State.PLACED)} <= {"ada"}, (
+    assert {one.student for one in report.having(LineState.PLACED)} <= {"ada"}, (
         "what is no notebook is graded as such"
     )
 
@@ -414,7 +417,7 @@ def test_what_lies_in_a_students_own_zip_never_says_whose_it_is(
     report = collect(
         klass.path, [write_zip(tmp_path / "d.zip", {outer: inner, "zoe/lab_1_2.ipynb": work(klass)})]
     )
-    assert {one.student for one in report.having(State.PLACED)} <= {"ben", "zoe"}
+    assert {one.student for one in report.having(LineState.PLACED)} <= {"ben", "zoe"}
     assert not (klass.path / "submitted" / "ada").exists()
 
 
@@ -425,7 +428,7 @@ def test_folders_with_students_ids_or_names_are_taken_and_deeper_ones_say_nothin
     names = ("ada/lab_1_2/lab_1_2.ipynb", "Ben Bär/lab_1_2.ipynb", "guest/zoe/lab_1_2.ipynb")
     report = collect(klass.path, [write_zip(tmp_path / "p.zip", dict.fromkeys(names, one))])
     assert placed(report).keys() == {"ada", "ben"}
-    assert [other.label for other in report.having(State.NOT_PLACED)] == ["p.zip/guest/zoe/lab_1_2.ipynb"]
+    assert [other.label for other in report.having(LineState.NOT_PLACED)] == ["p.zip/guest/zoe/lab_1_2.ipynb"]
 
 
 @pytest.mark.parametrize("method", [zipfile.ZIP_BZIP2, zipfile.ZIP_LZMA])
@@ -480,8 +483,8 @@ def test_a_damaged_archive_is_one_line(klass: TinyClass, tmp_path: Path, damage:
         data[place + 8] |= 1
     (tmp_path / "m.zip").write_bytes(data)
     report = collect(klass.path, [tmp_path / "m.zip"])
-    assert report.having(State.PLACED) == ()
-    assert len(report.having(State.NOT_PLACED)) == 1
+    assert report.having(LineState.PLACED) == ()
+    assert len(report.having(LineState.NOT_PLACED)) == 1
     if damage == "encrypted":
         assert "encrypted" in why(report)
 
@@ -583,7 +586,7 @@ def test_times_of_a_download_are_in_the_zone_of_the_class(klass: TinyClass, tmp_
     klass.configure('c.NbGraderAPI.timezone = "Europe/Berlin"')
     name = "Lab_ada_attempt_2025-07-01-14-00-00_lab_1_2.ipynb"
     report = collect(klass.path, [write_zip(tmp_path / "b.zip", {name: work(klass)})])
-    assert report.having(State.PLACED)[0].when == datetime(2025, 7, 1, 12, tzinfo=UTC)
+    assert report.having(LineState.PLACED)[0].when == datetime(2025, 7, 1, 12, tzinfo=UTC)
 
 
 def test_the_time_is_kept_in_utc(klass: TinyClass, tmp_path: Path) -> None:
@@ -592,5 +595,5 @@ def test_the_time_is_kept_in_utc(klass: TinyClass, tmp_path: Path) -> None:
         [write_zip(tmp_path / "b.zip", {"Lab_ada_attempt_2025-07-01-14-00-00_lab_1_2.ipynb": work(klass)})],
         zone=BERLIN,
     )
-    assert report.having(State.PLACED)[0].when == datetime(2025, 7, 1, 12, tzinfo=UTC)
-    assert os.sep not in report.having(State.PLACED)[0].student
+    assert report.having(LineState.PLACED)[0].when == datetime(2025, 7, 1, 12, tzinfo=UTC)
+    assert os.sep not in report.having(LineState.PLACED)[0].student

@@ -11,7 +11,7 @@ from downloads import ROSTER, write_zip, zipped
 from test_collect import lies, placed, stamp, why, work
 
 from autograder.grading.collecting.collect import collect
-from autograder.grading.collecting.line import State
+from autograder.grading.collecting.line import LineState
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -64,7 +64,7 @@ def test_an_unknown_form_takes_two_cells(klass: TinyClass, tmp_path: Path) -> No
     assert (report.exit_code, placed(report).keys()) == (0, {"ada", "ben", "zoe"})
     assert (lies(klass, "ben"), stamp(klass, "zoe")[:16]) == (work(klass, 3), "2025-10-03 14:05")
     report = collect(klass.path, [unknown(klass, tmp_path)])
-    assert {one.state for one in report.outcomes} == {State.UNCHANGED}, (
+    assert {one.state for one in report.outcomes} == {LineState.UNCHANGED}, (
         "edited cells win over later downloads"
     )
     edit(klass, "x-zuse", student="ben", use="no")
@@ -99,7 +99,7 @@ def attempts(klass: TinyClass, tmp_path: Path) -> tuple[Path, Path]:
 
 
 def test_two_attempts_without_a_time_wait_and_one_cell_decides(klass: TinyClass, tmp_path: Path) -> None:
-    assert len(collect(klass.path, attempts(klass, tmp_path)).having(State.NOT_PLACED)) == 2
+    assert len(collect(klass.path, attempts(klass, tmp_path)).having(LineState.NOT_PLACED)) == 2
     assert not (klass.path / "submitted" / "ada").exists()
     edit(klass, "2.zip", use="ja")
     assert placed(collect(klass.path)).keys() == {"ada"}

@@ -15,7 +15,7 @@ from test_collected_table import edit
 from tiny_class import LISTENER, TALKER
 
 from autograder.grading.collecting.collect import collect
-from autograder.grading.collecting.line import State
+from autograder.grading.collecting.line import LineState
 from autograder.grading.collecting.reading import archives
 from autograder.grading.collecting.reading.lms_file_names import base_of
 from autograder.grading.rebuilding.submission import read_bytes
@@ -69,7 +69,7 @@ def test_the_archives_of_one_student_have_one_room(
     report = collect(klass.path, [in_moodle(klass, tmp_path / "m.zip", of_ben)])
     assert placed(report).keys() == {"zoe"}
     assert report.exit_code == 2
-    refused = [one for one in report.having(State.NOT_PLACED) if one.label.endswith(".zip")]
+    refused = [one for one in report.having(LineState.NOT_PLACED) if one.label.endswith(".zip")]
     assert [(one.student, one.label[-5:]) for one in refused] == [("ben", "2.zip"), ("ben", "3.zip")]
     assert "it has 1 files that unpack to 4 MB, and 98 files of 2 MB may still be unpacked" in why(report)
 
@@ -116,7 +116,7 @@ def test_an_archive_that_says_what_cannot_be_keeps_nobodys_work_from_being_colle
     of_ben = {"x.zip": hollow(zipped({"é.ipynb": work(klass)}), damage)}
     report = collect(klass.path, [in_moodle(klass, tmp_path / "m.zip", of_ben)])
     assert placed(report).keys() == {"zoe"}
-    assert [one.student for one in report.having(State.NOT_PLACED)] == ["ben"]
+    assert [one.student for one in report.having(LineState.NOT_PLACED)] == ["ben"]
 
 
 def test_many_small_archives_have_no_more_room_than_one(
@@ -127,7 +127,7 @@ def test_many_small_archives_have_no_more_room_than_one(
     of_ben = {f"{number}.zip": small for number in range(7)} | {"w.zip": zipped({"a.zip": small})}
     report = collect(klass.path, [in_moodle(klass, tmp_path / "m.zip", of_ben)])
     assert placed(report).keys() == {"zoe"}
-    assert [one.label[-5:] for one in report.having(State.NOT_PLACED) if one.label.endswith(".zip")] == [
+    assert [one.label[-5:] for one in report.having(LineState.NOT_PLACED) if one.label.endswith(".zip")] == [
         "5.zip", "6.zip", "w.zip",
     ]  # fmt: skip
 
@@ -192,7 +192,7 @@ def test_a_name_that_is_no_text_keeps_nobodys_work_from_being_collected(
     report = collect(klass.path, [download])
     assert placed(report) == {"ada": "lab_1_2.ipynb", "zoe": "lab_1_2.ipynb", "ben": "lab_1_2 ?.ipynb"}
     assert "download/ben/?/a.zip: " in why(report)
-    assert collect(klass.path, [download]).having(State.UNCHANGED)
+    assert collect(klass.path, [download]).having(LineState.UNCHANGED)
 
 
 @pytest.mark.parametrize("where", ["lab_1_2", "."])
@@ -255,7 +255,7 @@ def test_a_time_that_no_clock_shows_is_none(klass: TinyClass, tmp_path: Path, wh
         f"Participant 2,Ben Bär,,{when}\nParticipant 3,Zoë Zuse,,2025-10-03T12:00Z\n"
     )
     report = collect(klass.path, [in_moodle(klass, tmp_path / "m.zip", {"lab_1_2.ipynb": b"{}"}), times])
-    assert {one.student: one.when and one.when.year for one in report.having(State.PLACED)} == {
+    assert {one.student: one.when and one.when.year for one in report.having(LineState.PLACED)} == {
         "ben": None,
         "zoe": 2025,
     }
@@ -274,4 +274,4 @@ def test_a_long_text_in_an_lmss_list_keeps_nobodys_time_from_being_read(
         'Participant 3,Zoë Zuse,,"Friday, 3 October 2025, 2:05 PM",\n'
     )
     report = collect(klass.path, [in_moodle(klass, tmp_path / "m.zip", {}), worksheet])
-    assert [one.when and one.when.year for one in report.having(State.PLACED)] == [2025]
+    assert [one.when and one.when.year for one in report.having(LineState.PLACED)] == [2025]

@@ -10,7 +10,7 @@ from downloads import write_zip, zipped
 from test_collect import kept, lies, why, work
 
 from autograder.grading.collecting.collect import collect
-from autograder.grading.collecting.line import State
+from autograder.grading.collecting.line import LineState
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -58,7 +58,7 @@ def test_work_goes_before_a_hand_out(
     files = {fresh: untouched(klass), worked_on: work(klass, 3)}
     report = gathered(klass, tmp_path, files, inner=inner)
     assert (why(report), lies(klass, "ada")) == ("", work(klass, 3))
-    (earlier,) = report.having(State.EARLIER)
+    (earlier,) = report.having(LineState.EARLIER)
     assert earlier.label.endswith(fresh)
     assert "has answers and is graded; this file is as it was handed out" in earlier.reason
     assert kept(klass) == [files[fresh]]
@@ -129,7 +129,7 @@ def test_also_where_it_comes_in_a_download_of_its_own(klass: TinyClass, tmp_path
     report = collect(klass.path, zips[:2])
     assert (why(report), lies(klass, "ada")) == ("", work(klass, 3))
     (late,) = collect(klass.path, zips[2:]).outcomes
-    assert (late.state, lies(klass, "ada")) == (State.EARLIER, work(klass, 3))
+    assert (late.state, lies(klass, "ada")) == (LineState.EARLIER, work(klass, 3))
     assert "has answers and is graded; this file is as it was handed out" in late.reason
     assert len(kept(klass)) == 2
 

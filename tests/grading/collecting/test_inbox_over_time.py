@@ -25,7 +25,7 @@ from autograder.boxes.sandbox import why_impossible
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.collecting import apply, collected_csv, inbox
 from autograder.grading.collecting.collect import collect
-from autograder.grading.collecting.line import State
+from autograder.grading.collecting.line import LineState
 from autograder.grading.errors import ClassBusy, GradingError
 
 if TYPE_CHECKING:
@@ -292,7 +292,7 @@ def test_killed_at_ten_random_moments_nothing_is_lost(klass: TinyClass, tmp_path
         assert killed_at(copy.path, later, moment) == moment
         assert lies(copy, "ben") == work(klass, 2)
         report = collect(copy.path, [later])
-        assert not report.having(State.NOT_PLACED)
+        assert not report.having(LineState.NOT_PLACED)
         assert outcome(copy) == outcome(whole), f"killed at {moment}"
         assert not [*copy.path.rglob("*.new")]
 

@@ -15,7 +15,7 @@ from autograder.cli import cli
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.classes.new_class import release
 from autograder.grading.collecting.collect import collect
-from autograder.grading.collecting.line import State
+from autograder.grading.collecting.line import LineState
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -132,7 +132,7 @@ def test_blackboards_user_names_may_have_an_underscore(klass: TinyClass, tmp_pat
     assert placed(report).keys() == {"a_b", "ada"}
     (klass.path / "students.csv").write_text("id\nb\na_b\n")
     report = gather(klass, tmp_path, name.format("a_b"))
-    assert {one.student for one in report.having(State.PLACED)} <= {"a_b"}
+    assert {one.student for one in report.having(LineState.PLACED)} <= {"a_b"}
 
 
 def test_google_names_the_student_first(klass: TinyClass, tmp_path: Path) -> None:
@@ -241,7 +241,7 @@ def test_of_a_zip_of_the_whole_course_each_notebook_is_itself(
     assert lies(klass, "ada") == right
     third = klass.path / "submitted" / "ada" / "lab_1_3" / "lab_1_3.ipynb"
     assert third.exists() is (assignment == "")
-    beside = [one.reason for one in report.having(State.BESIDE) if not one.label.endswith("a.txt")]
+    beside = [one.reason for one in report.having(LineState.BESIDE) if not one.label.endswith("a.txt")]
     assert beside == ([NOT_THIS] if assignment else [])
 
 
@@ -249,9 +249,9 @@ def test_what_the_instructor_says_counts_where_nothing_else_does(klass: TinyClas
     add_assignment(klass, "lab_1_3")
     name = "Ada Lovelace_1_assignsubmission_file_{}.ipynb"
     report = gather(klass, tmp_path, name.format("homework"), assignment="lab_1_2")
-    assert [(one.student, one.assignment) for one in report.having(State.PLACED)] == [("ada", "lab_1_2")]
+    assert [(one.student, one.assignment) for one in report.having(LineState.PLACED)] == [("ada", "lab_1_2")]
     report = gather(klass, tmp_path, name.format("lab_1_3"), assignment="lab_1_2")
-    (beside,) = report.having(State.BESIDE)
+    (beside,) = report.having(LineState.BESIDE)
     assert "it is not for lab_1_2: it is the notebook of lab_1_3" in beside.reason
 
 

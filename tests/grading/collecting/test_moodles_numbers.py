@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from downloads import write_zip
 
 from autograder.grading.collecting.collect import collect
-from autograder.grading.collecting.line import State
+from autograder.grading.collecting.line import LineState
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -33,11 +33,11 @@ def test_whose_number_on_moodles_site_is_the_same_by_chance_gets_nobodys_work(
     )
     download = write_zip(tmp_path / "m.zip", dict.fromkeys(names, work))
     report = collect(tiny.path, [download])
-    assert [one.student for one in report.having(State.PLACED)] == ["eve"]
-    (guest,) = report.having(State.NOT_PLACED)
+    assert [one.student for one in report.having(LineState.PLACED)] == ["eve"]
+    (guest,) = report.having(LineState.NOT_PLACED)
     assert "grading worksheet" in guest.reason
     assert "556" in guest.reason
     worksheet = tmp_path / "Grades-lab.csv"
     worksheet.write_text(WORKSHEET)
-    placed = {one.student for one in collect(tiny.path, [download, worksheet]).having(State.PLACED)}
+    placed = {one.student for one in collect(tiny.path, [download, worksheet]).having(LineState.PLACED)}
     assert placed == {"jose"}

@@ -9,7 +9,7 @@ from downloads import ROSTER, write_zip, zipped
 from test_collect import lies, placed, why, work
 
 from autograder.grading.collecting.collect import collect
-from autograder.grading.collecting.line import State
+from autograder.grading.collecting.line import LineState
 from autograder.grading.collecting.records import CollectedRecords
 
 if TYPE_CHECKING:
@@ -86,7 +86,7 @@ def test_an_archive_of_which_nothing_is_taken_has_a_line(klass: TinyClass, tmp_p
     (tmp_path / "ada").mkdir()
     (tmp_path / "ada" / "work.zip").write_bytes(archive)
     report = collect(klass.path, [tmp_path / "ada"])
-    assert [one.student for one in report.having(State.NOT_PLACED)] == ["ada"]
+    assert [one.student for one in report.having(LineState.NOT_PLACED)] == ["ada"]
     assert "it contains no file, or only files that programs leave there" in why(report)
 
 
@@ -101,7 +101,7 @@ def test_a_students_table_is_no_list_of_the_instructors(klass: TinyClass, tmp_pa
     history = CollectedRecords(klass.path / ".autograder").get("lab_1_2", "ben")
     assert history is not None
     assert history.when is None
-    (beside,) = report.having(State.BESIDE)
+    (beside,) = report.having(LineState.BESIDE)
     assert (beside.student, beside.reason) == ("ada", "it is not a notebook")
 
 
@@ -116,7 +116,7 @@ def test_a_download_and_a_list_are_still_what_they_are(klass: TinyClass, tmp_pat
     ]
     report = collect(klass.path, sources)
     assert placed(report).keys() == {"ben"}
-    assert report.having(State.PLACED)[0].when is not None
+    assert report.having(LineState.PLACED)[0].when is not None
 
 
 def test_who_is_in_no_list_cannot_have_names_read_as_another_systems(
@@ -127,7 +127,7 @@ def test_who_is_in_no_list_cannot_have_names_read_as_another_systems(
     files |= {f"lab/stranger/barben_102_{number}_lab_1_2.ipynb": work(klass, 1) for number in range(9)}
     report = collect(klass.path, [write_zip(tmp_path / "repositories.zip", files)])
     assert placed(report).keys() == {"ada", "eve", "zoe"}
-    assert len(report.having(State.NOT_PLACED)) == 9
+    assert len(report.having(LineState.NOT_PLACED)) == 9
 
 
 @pytest.mark.parametrize("form", ["lab-1-2-{}", "lab-1-2-submissions/lab-1-2-{}"])
@@ -164,7 +164,7 @@ def test_who_is_called_as_another_hands_in_nothing_for_the_other(
     download = write_zip(tmp_path / "m.zip", {name: work(tiny, place) for place, name in enumerate(names)})
     report = collect(tiny.path, [download])
     assert placed(report) == {}
-    assert [one.student for one in report.having(State.NOT_PLACED)] == ["ada", "ada"]
+    assert [one.student for one in report.having(LineState.NOT_PLACED)] == ["ada", "ada"]
     assert "several people have the name of ada" in why(report)
     if "101" in names[0]:
         (tiny.path / "students.csv").write_text(

@@ -9,7 +9,7 @@ from downloads import write_zip
 from test_collect import why, work
 
 from autograder.grading.collecting.collect import collect
-from autograder.grading.collecting.line import State
+from autograder.grading.collecting.line import LineState
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -50,7 +50,7 @@ def test_the_cells_say_of_which_assignment_it_is(
 ) -> None:
     for target in ("ps1", "ps2"):
         report = gathered(klass, tmp_path, of(klass, target), name, target if assignment else "")
-        assert [one.assignment for one in report.having(State.PLACED)] == [target], why(report)
+        assert [one.assignment for one in report.having(LineState.PLACED)] == [target], why(report)
         there = klass.path / "submitted" / "ada" / target / "problem1.ipynb"
         assert there.read_text() == of(klass, target)
 
@@ -67,7 +67,7 @@ def test_where_cells_say_nothing_the_instructor_does(klass: TinyClass, tmp_path:
     report = gathered(klass, tmp_path, nameless, "problem1.ipynb")
     assert "(ps1, ps2): write it under assignment" in why(report)
     report = gathered(klass, tmp_path, nameless, "problem1.ipynb", "ps1")
-    assert [one.assignment for one in report.having(State.PLACED)] == ["ps1"]
+    assert [one.assignment for one in report.having(LineState.PLACED)] == ["ps1"]
 
 
 def test_of_an_assignment_of_several_notebooks_the_name_says_which(klass: TinyClass, tmp_path: Path) -> None:

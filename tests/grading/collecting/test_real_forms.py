@@ -40,7 +40,7 @@ from test_collect import lies, stamp, why, work
 
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.collecting.collect import collect
-from autograder.grading.collecting.line import State
+from autograder.grading.collecting.line import LineState
 from autograder.grading.collecting.reading.desk import read_list
 from autograder.grading.table.roster import read_students_csv
 
@@ -176,7 +176,7 @@ def test_gradescopes_export_is_collected_with_its_times_and_groups(tiny: TinyCla
     assert why(report).startswith(
         f"export.zip/{root}/submission_600000002/lab_1_2.ipynb: no student in the class is called 333"
     )
-    assert len(report.having(State.NOT_PLACED)) == 1
+    assert len(report.having(LineState.NOT_PLACED)) == 1
 
 
 STEALS = """\
@@ -268,4 +268,4 @@ def test_two_of_one_name_in_moodle_are_told_apart_by_the_worksheet(tiny: TinyCla
     sheet = tmp_path / "Grades.csv"
     sheet.write_text("Identifier,Full name,Email address,Grade\nParticipant 7,Ada Lovelace,b@u.example,\n")
     report = collect(tiny.path, [archive, sheet])
-    assert [one.student for one in report.having(State.PLACED)] == ["ada2"]
+    assert [one.student for one in report.having(LineState.PLACED)] == ["ada2"]

@@ -13,7 +13,7 @@ from test_where_it_goes import other_lab
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.collecting.collect import collect
 from autograder.grading.collecting.collected_csv import Table
-from autograder.grading.collecting.line import State
+from autograder.grading.collecting.line import LineState
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -47,7 +47,7 @@ def nameless(klass: TinyClass, points: int) -> str:
 def test_what_is_only_called_alike_does_not_settle_it(klass: TinyClass, tmp_path: Path) -> None:
     week(klass, tmp_path, nameless(klass, 1))
     report = week(klass, tmp_path, work(klass, 2))
-    assert [one.state for one in report.outcomes] == [State.PLACED]
+    assert [one.state for one in report.outcomes] == [LineState.PLACED]
     assert [one.label.rpartition(" ")[0] for one in waiting(klass)] == ["submissions.zip/ada/homework.ipynb"]
     week(klass, tmp_path, nameless(klass, 3))
     assert len(waiting(klass)) == 2, "neither says what it is: both may be work"
@@ -63,7 +63,7 @@ def test_collected_again_it_is_repeated_once(klass: TinyClass, tmp_path: Path) -
 def test_a_cell_settles_it(klass: TinyClass, tmp_path: Path) -> None:
     week(klass, tmp_path, nameless(klass, 1))
     edit(klass, "homework", assignment="lab_1_2")
-    assert [one.state for one in collect(klass.path).outcomes] == [State.PLACED]
+    assert [one.state for one in collect(klass.path).outcomes] == [LineState.PLACED]
     assert waiting(klass) == []
 
 
@@ -104,7 +104,7 @@ def test_every_line_that_waits_says_which_cell_to_edit(
     report = week(klass, tmp_path, texts.get(text, text), name)
     (line,) = waiting(klass)
     assert line.cell == f" (collected.csv, line 2, cell {column})"
-    assert f"under {column}" in report.having(State.NOT_PLACED)[0].reason
+    assert f"under {column}" in report.having(LineState.NOT_PLACED)[0].reason
 
 
 def test_the_order_of_one_system_says_nothing_of_a_file_from_elsewhere(
@@ -118,4 +118,4 @@ def test_the_order_of_one_system_says_nothing_of_a_file_from_elsewhere(
     assert (
         "nothing says whether it is newer than canvas.zip/lovelaceada_101_9001_lab_1_2.ipynb" in line.reason
     )
-    assert not report.having(State.EARLIER)
+    assert not report.having(LineState.EARLIER)

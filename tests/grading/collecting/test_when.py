@@ -13,7 +13,7 @@ from test_where_it_goes import MOODLE, gathered
 
 from autograder.cli import cli
 from autograder.grading.collecting.collect import collect
-from autograder.grading.collecting.line import State
+from autograder.grading.collecting.line import LineState
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -93,11 +93,11 @@ def test_a_newer_file_of_canvas_without_a_time_does_not_replace_what_has_one(
         assert "nothing says whether it is newer" in why(report)
         assert (lies(klass, "ada"), stamp(klass, "ada")[:10]) == (work(klass, 2), "2025-10-03")
     report = gathered(klass, tmp_path, {canvas.format(9001): work(klass, 1)})
-    assert [one.state for one in report.outcomes] == [State.EARLIER]
+    assert [one.state for one in report.outcomes] == [LineState.EARLIER]
     late = {canvas.format(9003): work(klass, 3)}
     gathered(klass, tmp_path, late, handed_in=datetime(2025, 10, 9, 14))
     assert (lies(klass, "ada"), stamp(klass, "ada")[:10]) == (work(klass, 3), "2025-10-09")
     report = gathered(klass, tmp_path, {canvas.format(9005): work(klass, 2)})
-    assert [one.state for one in report.outcomes] == [State.NOT_PLACED], (
+    assert [one.state for one in report.outcomes] == [LineState.NOT_PLACED], (
         "the first again, at a time that is unknown"
     )

@@ -24,7 +24,7 @@ from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.collecting import apply, collected_csv, records
 from autograder.grading.collecting.collect import collect
 from autograder.grading.collecting.collected_csv import Table
-from autograder.grading.collecting.line import State
+from autograder.grading.collecting.line import LineState
 from autograder.grading.exporting.export_files import export
 from autograder.grading.report_page.page import write_report
 from autograder.regular_files import write_whole
@@ -51,7 +51,7 @@ def gathered(
     return collect(klass.path, [write_zip(folder / "c.zip", files), *lists], zone=UTC, **options)
 
 
-def named(report: CollectReport, state: State) -> list[tuple[str, str]]:
+def named(report: CollectReport, state: LineState) -> list[tuple[str, str]]:
     return [(one.label.removeprefix("c.zip/"), one.student) for one in report.having(state)]
 
 
@@ -77,7 +77,9 @@ def test_a_zip_in_a_zip_is_opened_up_to_a_depth(klass: TinyClass, tmp_path: Path
     for _ in range(4):
         inner = zipped({"more.zip": inner})
     report = gathered(klass, tmp_path, {"bärben_102_9001_x.zip": inner})
-    assert named(report, State.NOT_PLACED) == [("bärben_102_9001_x.zip/more.zip/more.zip/more.zip", "ben")]
+    assert named(report, LineState.NOT_PLACED) == [
+        ("bärben_102_9001_x.zip/more.zip/more.zip/more.zip", "ben")
+    ]
 
 
 def test_who_fills_an_archive_harms_nobody_else(klass: TinyClass, tmp_path: Path) -> None:
@@ -88,7 +90,7 @@ def test_who_fills_an_archive_harms_nobody_else(klass: TinyClass, tmp_path: Path
     }
     report = gathered(klass, tmp_path, files)
     assert lies(klass, "ben") == work(klass, 3)
-    assert {student for _, student in named(report, State.NOT_PLACED)} == {"ada"}
+    assert {student for _, student in named(report, LineState.NOT_PLACED)} == {"ada"}
 
 
 @pytest.mark.parametrize(
@@ -110,14 +112,17 @@ def test_what_is_not_taken_is_named_with_its_student_the_reason_and_what_to_type
     }
     report = gathered(klass, tmp_path, files)
     assert report.exit_code == 2
-    assert named(report, State.NOT_PLACED) == [(f"lovelaceada_101_9001_{name}", "ada")]
+    assert named(report, LineState.NOT_PLACED) == [(f"lovelaceada_101_9001_{name}", "ada")]
     assert words in why(report)
 
 
 def test_beside_a_notebook_pictures_need_no_place_and_archives_do(klass: TinyClass, tmp_path: Path) -> None:
     ours = {"lovelaceada_101_9001_lab_1_2.ipynb": work(klass), "lovelaceada_101_9002_me.png": b"\x89PNG"}
     report = gathered(klass, tmp_path, ours)
-    assert (report.exit_code, named(report, State.BESIDE)) == (0, [("lovelaceada_101_9002_me.png", "ada")])
+    assert (report.exit_code, named(report, LineState.BESIDE)) == (
+        0,
+        [("lovelaceada_101_9002_me.png", "ada")],
+    )
     assert gathered(klass, tmp_path, ours | {"lovelaceada_101_9003_new.rar": b"Rar!"}).exit_code == 2
 
 
@@ -131,10 +136,10 @@ def test_the_notebook_of_one_assignment_gives_no_place_to_a_file_of_another(
         "lovelaceada_101_9003_lab_1_3.py": "print()",
     }
     report = gathered(klass, tmp_path, files)
-    assert [(one.label.rpartition("/")[2], one.reason) for one in report.having(State.BESIDE)] == [
+    assert [(one.label.rpartition("/")[2], one.reason) for one in report.having(LineState.BESIDE)] == [
         ("lovelaceada_101_9002_lab_1_2.py", "it is not a notebook")
     ]
-    assert named(report, State.NOT_PLACED) == [("lovelaceada_101_9003_lab_1_3.py", "ada")]
+    assert named(report, LineState.NOT_PLACED) == [("lovelaceada_101_9003_lab_1_3.py", "ada")]
     assert "it is not a notebook; to leave it out" in why(report)
 
 
@@ -192,8 +197,8 @@ def test_of_two_notebooks_the_one_with_the_exact_name_counts(klass: TinyClass, t
         }
         report = gathered(klass, tmp_path, files)
         assert (why(report), lies(klass, "ada")) == ("", work(klass, 3))
-        assert named(report, State.EARLIER) == [(MOODLE.format("Ada Lovelace", name), "ada")]
-        (earlier,) = report.having(State.EARLIER)
+        assert named(report, LineState.EARLIER) == [(MOODLE.format("Ada Lovelace", name), "ada")]
+        (earlier,) = report.having(LineState.EARLIER)
         assert earlier.reason.endswith("to have it graded instead, write yes under use")
     assert kept(klass) == [work(klass, 4)]
 
@@ -206,7 +211,7 @@ def test_two_files_of_one_name_in_an_archive_are_told_apart(klass: TinyClass, tm
             archive.writestr(MOODLE.format("Ada Lovelace", name), work(klass, points))
     report = collect(klass.path, [tmp_path / "c.zip"])
     assert lies(klass, "ada") == work(klass, 0)
-    assert len(report.having(State.EARLIER)) == 2
+    assert len(report.having(LineState.EARLIER)) == 2
     assert kept(klass) == sorted([work(klass, 1), work(klass, 2)])
 
 
@@ -234,13 +239,13 @@ def test_the_cells_say_which_assignment_it_is(klass: TinyClass, tmp_path: Path) 
     gathered(klass, tmp_path, {ada: work(klass, 3)}, assignment="lab_1_2")
     for name in ("lab_1_3.ipynb", "lab_1_2.ipynb", "homework.ipynb"):
         report = gathered(klass, tmp_path, {MOODLE.format("Ada Lovelace", name): other}, assignment="lab_1_2")
-        (beside,) = report.having(State.BESIDE)
+        (beside,) = report.having(LineState.BESIDE)
         assert "it is not for lab_1_2: it is the notebook of lab_1_3" in beside.reason
         assert lies(klass, "ada") == work(klass, 3)
     report = gathered(klass, tmp_path, {ada: other})
     assert "its name says lab_1_2 and its cells are those of lab_1_3" in why(report)
     report = gathered(klass, tmp_path, {MOODLE.format("Ada Lovelace", "homework.ipynb"): other})
-    assert [one.assignment for one in report.having(State.PLACED)] == ["lab_1_3"]
+    assert [one.assignment for one in report.having(LineState.PLACED)] == ["lab_1_3"]
 
 
 def test_a_notebook_without_a_place_is_named_whatever_else_its_student_has_handed_in(
@@ -252,8 +257,8 @@ def test_a_notebook_without_a_place_is_named_whatever_else_its_student_has_hande
     for name, text in odd.items():
         held = zipped(inner | {name: text})
         report = gathered(klass, tmp_path, {MOODLE.format("Ada Lovelace", "work.zip"): held})
-        assert [one.assignment for one in report.having(State.PLACED)] in ([], ["lab_1_2"])
-        (waits,) = report.having(State.NOT_PLACED)
+        assert [one.assignment for one in report.having(LineState.PLACED)] in ([], ["lab_1_2"])
+        (waits,) = report.having(LineState.NOT_PLACED)
         assert (report.exit_code, waits.label.endswith(f"work.zip/{name}")) == (2, True)
         assert f"{waits.label} {waits.key}" in {
             one.label for one in Table(ClassDirectory(klass.path)).waiting()
@@ -264,7 +269,7 @@ def test_a_second_copy_under_another_labs_name_waits(klass: TinyClass, tmp_path:
     other = other_lab(klass)
     held = zipped({"lab_1_2 (1).ipynb": other, "lab_1_3.ipynb": other})
     report = gathered(klass, tmp_path, {MOODLE.format("Ada Lovelace", "work.zip"): held})
-    assert [one.assignment for one in report.having(State.PLACED)] == ["lab_1_3"]
+    assert [one.assignment for one in report.having(LineState.PLACED)] == ["lab_1_3"]
     assert "its name says lab_1_2 and its cells are those of lab_1_3" in why(report)
 
 
@@ -277,7 +282,7 @@ def test_a_notebook_of_the_course_that_is_no_assignment_here_is_beside_the_work(
     held = zipped({"summary.ipynb": nbformat.writes(summary), "lab_1_2.ipynb": work})
     report = gathered(klass, tmp_path, {MOODLE.format("Ada Lovelace", "work.zip"): held})
     assert report.exit_code == 0
-    assert [one.label.rpartition("/")[2] for one in report.having(State.BESIDE)] == ["summary.ipynb"]
+    assert [one.label.rpartition("/")[2] for one in report.having(LineState.BESIDE)] == ["summary.ipynb"]
 
 
 def test_a_notebook_of_another_assignment_that_was_put_there_by_hand_is_refused_with_its_page(
@@ -356,7 +361,7 @@ def test_whatever_is_collected_in_any_order_and_again_gives_the_same(
         for archive in chance.sample(zips, 4) + chance.sample(zips, turn):
             report = collect(copy.path, [archive], zone=UTC)
             for one in report.outcomes:
-                assert one.reason or one.state in (State.PLACED, State.UNCHANGED), one
+                assert one.reason or one.state in (LineState.PLACED, LineState.UNCHANGED), one
         for line in Table(ClassDirectory(copy.path)).lines() if turn == 0 else ():
             if line["counts"] == "waits" and line["student"]:
                 # Of two attempts without a time, the first one counts until a person has said which.
@@ -409,7 +414,7 @@ def test_killed_at_any_write_nothing_is_lost_and_nothing_is_there_twice(
     report = gathered(klass, tmp_path, second)
     assert (lies(klass, "ada"), lies(klass, "ben")) == (work(klass, 2), work(klass, 1))
     assert (stamp(klass, "ada")[:10], stamp(klass, "ben")[:10]) == ("2025-10-04", "2025-10-03")
-    assert {student for _, student in named(report, State.NOT_PLACED)} == {"eve"}
+    assert {student for _, student in named(report, LineState.NOT_PLACED)} == {"eve"}
     assert {work(klass, 1), work(klass, 3)} <= set(kept(klass))
 
 

@@ -15,7 +15,7 @@ from autograder.judge.subjects.path_subject import PathSubject, as_words
 from autograder.kit.evidence import REPORTS
 from autograder.messages.checks import Check, Collect, Constructed, Judged, Output, Sources
 from autograder.messages.lines import Lines
-from autograder.messages.workspaces import Exited, Source
+from autograder.messages.workspaces import ProgramExited, Source
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "workspaces"))
 from graded import graders_judge, judged
@@ -127,6 +127,6 @@ def test_the_end_of_a_run_is_known_behind_all_that_was_sent_before(monkeypatch: 
     recorder.begin("part", {})
     recorder.take_in = lambda: recorder.record("log", "/rosout", text="hello")
     subject.start(recorder, (), {})
-    subject._take(Exited(run=1, code=0))
+    subject._take(ProgramExited(run=1, code=0))
     assert [event.kind for event in recorder.part().events] == ["log", "subject"]
     assert subject.ended

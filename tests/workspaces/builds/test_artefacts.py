@@ -10,7 +10,7 @@ import msgspec
 import pytest
 
 from autograder.workspaces.builds import artefacts, cache
-from autograder.workspaces.builds.artefacts import BadArtefacts, Entry, Kind, pack, unpack
+from autograder.workspaces.builds.artefacts import BadArtefacts, Kind, PackedEntry, pack, unpack
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -20,7 +20,7 @@ def packed(*entries: tuple[str, Kind, str | int]) -> bytes:
     """A packed folder: path, kind, and the size of a file or the target of a link."""
     return msgspec.msgpack.encode(
         [
-            Entry(path.encode(), kind, said.encode() if isinstance(said, str) else b"x" * said)
+            PackedEntry(path.encode(), kind, said.encode() if isinstance(said, str) else b"x" * said)
             for path, kind, said in entries
         ]
     )

@@ -10,7 +10,7 @@ import re2
 
 from autograder.grading.classes.class_directory import in_zone
 from autograder.grading.collecting.deciding.has_work import has_work
-from autograder.grading.collecting.line import Line, Place, State
+from autograder.grading.collecting.line import Line, LineState, Place
 from autograder.grading.rebuilding.desk import why_unreadable
 
 if TYPE_CHECKING:
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from autograder.grading.collecting.apply import Submitted
     from autograder.grading.collecting.inbox import Inbox
 
-_Why = tuple[Line, State, str]
+_Why = tuple[Line, LineState, str]
 _ONE_NUMBER = ("canvas", "moodle", "brightspace")
 """The systems in which users may change their names, but have one number in all files of a download."""
 _CELL = re2.compile(r"(?:under|the cell) (use|student|assignment|notebook|handed_in)\b")
@@ -48,7 +48,7 @@ def decide(lines: Iterable[Line], looks: Looks) -> list[Line]:
     groups: dict[Place, list[Line]] = defaultdict(list)
     for line in sorted(lines, key=lambda one: (one.key, one.assignment)):
         if line.use == "no":
-            decided.append(replace(line, state=State.LEFT_OUT, reason="no is written under use"))
+            decided.append(replace(line, state=LineState.LEFT_OUT, reason="no is written under use"))
         elif line.is_soft:
             soft.append(line)
         elif line.reason:
@@ -62,7 +62,9 @@ def decide(lines: Iterable[Line], looks: Looks) -> list[Line]:
             replace(line, state=state, reason=reason)
             for line, state, reason in _of_group(place, group, looks)
         ]
-    came = {(one.student, one.assignment) for one in decided if one.state in (State.PLACED, State.EARLIER)}
+    came = {
+        (one.student, one.assignment) for one in decided if one.state in (LineState.PLACED, LineState.EARLIER)
+    }
     came |= {(student, "") for student, _ in came}
     return decided + [_beside(line, came) for line in soft]
 
@@ -70,7 +72,7 @@ def decide(lines: Iterable[Line], looks: Looks) -> list[Line]:
 def _beside(line: Line, came: set[tuple[str, str]]) -> Line:
     """Return the line of a file, such as a picture, that waits only as long as its student has no notebook."""
     if line.lms == "list" or (line.student and (line.student, line.assignment) in came):
-        return replace(line, state=State.BESIDE)
+        return replace(line, state=LineState.BESIDE)
     return replace(line, reason=_with_cell(line.reason))
 
 
@@ -96,28 +98,31 @@ def _of_group(place: Place, group: list[Line], looks: Looks) -> Iterator[_Why]:
         if best:
             # A later correction of a file does not change the time at which its student handed it in.
             times = [one.when for one in group if one.when and lying]
-            yield replace(best, when=best.when or max(times, default=None)), State.PLACED, ""
+            yield replace(best, when=best.when or max(times, default=None)), LineState.PLACED, ""
         why = (
             "was put there by hand and is graded" if lying else "is graded, because yes is written under use"
         )
         for one in group:
             if one not in chosen:
                 same = best and one.content == best.content
-                yield one, *((State.UNCHANGED, "") if same else (State.EARLIER, f"{chosen[0].label} {why}"))
+                yield (
+                    one,
+                    *((LineState.UNCHANGED, "") if same else (LineState.EARLIER, f"{chosen[0].label} {why}")),
+                )
         return
     for one in by_hand:
-        yield one, State.EARLIER, "it was in submitted before: write yes under use to put it there again"
+        yield one, LineState.EARLIER, "it was in submitted before: write yes under use to put it there again"
     pool = [one for one in group if not one.is_by_hand]
     for sift in (_people, _unreadable):
         doubts = sift(place, pool, looks)
-        yield from ((one, State.NOT_PLACED, reason) for one, reason in doubts)
+        yield from ((one, LineState.NOT_PLACED, reason) for one, reason in doubts)
         doubtful = {one.key for one, _ in doubts}
         pool = [one for one in pool if one.key not in doubtful]
     if pool:
         best, others = _best(place, pool, looks)
         yield from others
         if best:
-            yield best, State.PLACED, ""
+            yield best, LineState.PLACED, ""
 
 
 def _people(place: Place, pool: Sequence[Line], _: Looks) -> list[tuple[Line, str]]:
@@ -181,22 +186,22 @@ def _best(place: Place, files: Sequence[Line], looks: Looks) -> tuple[Line | Non
             f"{place[0]} has several different files for {place[1]}, and nothing says which is the newest: "
             "write yes under use for the one that is to be graded, or the times under handed_in"
         )
-        return None, [(one, State.NOT_PLACED, reason) for one in files]
+        return None, [(one, LineState.NOT_PLACED, reason) for one in files]
     others: list[_Why] = []
     for one in files:
         is_older = work[one.key] < work[first.key] or (one.lms == first.lms and 0 < one.order < first.order)
         if one.content == first.content:
-            others += [(one, State.UNCHANGED, "")] if one is not first else []
+            others += [(one, LineState.UNCHANGED, "")] if one is not first else []
         elif one in best:
             what_to_do = "write yes under use to have this file graded, or no"
             reason = f"nothing says whether it is newer than {first.label}, which is graded now: {what_to_do}"
-            others.append((one, State.NOT_PLACED, reason))
+            others.append((one, LineState.NOT_PLACED, reason))
         elif first.when and not one.when and not is_older:
             at = f"{first.label}, handed in {in_zone(first.when, looks.directory.time_zone)}"
             reason = f"nothing says whether it is newer than {at}: write its time under handed_in"
-            others.append((one, State.NOT_PLACED, reason))
+            others.append((one, LineState.NOT_PLACED, reason))
         else:
-            others.append((one, State.EARLIER, f"{first.label} {_why_it_counts(first, one, work)}"))
+            others.append((one, LineState.EARLIER, f"{first.label} {_why_it_counts(first, one, work)}"))
     return first, others
 
 

@@ -38,7 +38,7 @@ _DOWNLOAD = re2.compile(r"^(?:gradebook_.*_\d{4}(?:-\d\d){5}(?: ?\(\d+\))?|\D+_\
 
 
 @dataclass(frozen=True)
-class Source:
+class NamedSource:
     """A download, or the files of one student.
 
     Attributes:
@@ -85,7 +85,7 @@ def own_of(paths: Sequence[Path], student_of: StudentOf) -> set[Path]:
     return formed if formed - downloads else set()
 
 
-def note_on(source: Source, student_of: StudentOf, form: str) -> str:
+def note_on(source: NamedSource, student_of: StudentOf, form: str) -> str:
     """Return a sentence about how a path was interpreted, if its name leaves that open; otherwise an empty text."""
     if not source.files:
         return f"{source.path} {EMPTY}"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from autograder.kit.draft import Draft
 from autograder.kit.model import Finding
-from autograder.kit.recipes.service_server import AT_ONCE, Asks, Server
+from autograder.kit.recipes.service_server import AT_ONCE, Asks, ServerSeen
 
 SINGLE = 3
 """Calls one by one; after them come several at once, and one more."""
@@ -19,7 +19,7 @@ door = Draft(
 door.asks("service", 2, "Serves visit, with the right type", asks.serves)
 
 
-def told(seen: Server) -> list[str]:
+def told(seen: ServerSeen) -> list[str]:
     """Return the messages of all answers, in the order of the calls."""
     return [str(answer["message"]) for _, answer in sorted(seen.answers.items())]
 
@@ -30,14 +30,14 @@ def due(number: int) -> list[str]:
 
 
 @door.criterion("counts", 4, "Counts who comes")
-def counts(seen: Server, _: Server) -> Finding:
+def counts(seen: ServerSeen, _: ServerSeen) -> Finding:
     """The calls one by one are answered with 1, 2, 3."""
     first = told(seen)[:SINGLE]
     return Finding(first == due(SINGLE), ", ".join(due(SINGLE)), ", ".join(first) or "no answer")
 
 
 @door.criterion("together", 2, "Answers several calls at once, each with a number of its own")
-def together(seen: Server, _: Server) -> Finding:
+def together(seen: ServerSeen, _: ServerSeen) -> Finding:
     """All calls together have all numbers, the simultaneous ones in any order."""
     wanted, rest = due(SINGLE + AT_ONCE + 1), told(seen)[SINGLE:]
     return Finding(
@@ -46,7 +46,7 @@ def together(seen: Server, _: Server) -> Finding:
 
 
 @door.criterion("success", 2, "Says that all went well")
-def success(seen: Server, _: Server) -> Finding:
+def success(seen: ServerSeen, _: ServerSeen) -> Finding:
     """The field success is true in each answer."""
     said = [answer["success"] for answer in seen.answers.values()]
     return Finding(bool(said) and all(said), "success is true", f"success was {said[:1] or 'never told'}")
