@@ -12,12 +12,25 @@ import binascii
 from collections.abc import Iterable, Mapping
 from typing import Any
 
+import re2
+
 IMAGES = ("image/png", "image/jpeg")
 TRACEBACK_LINES = 200
 OUTPUT_BYTES = 32
 """The minimum number of bytes that is counted for an output, an update or a line of a traceback. Otherwise a million
 empty ones would stay below the limit, but fill the memory and take long to render.
 """
+
+_ESCAPE, _COLOUR = "\x1b", "\x1b["
+_COLOUR_BYTES = 32
+"""The number of bytes that is counted for each color code in addition to its own. A page needs an element of about 130
+characters for the text behind each code.
+"""
+_COLOURS = re2.compile(r"\x1b\[[^@-~\n]*[@-~]?")
+_LONG_COLOUR = re2.compile(r"\x1b\[[^@-~\n]{41,}[@-~]?")
+"""Matches a color code that no program uses. nbconvert takes quadratic time for the numbers in one code."""
+_NO_COLOUR = "\x1b[m"
+"""The shortest color code. Its ``[`` ends any unfinished code in front of it, so no longer code can result."""
 
 _CLOSING_LINE = 200
 """The maximum number of bytes that a desk itself adds to an output that it had to cut."""
@@ -161,12 +174,22 @@ class OutputCollector:
         return False
 
     def _afford(self, text: str) -> str:
+        if _COLOUR in text:
+            text = self._afford_colours(_LONG_COLOUR.sub(_NO_COLOUR, text))
         size = len(text.encode())
         granted = self._notebook.take(self._own.take(size))
         if granted == size:
             return text
         self._dropped += size - granted
         return text.encode()[:granted].decode(errors="ignore")
+
+    def _afford_colours(self, text: str) -> str:
+        """Return the text; but without its colors if the text with all its color codes would exceed a budget."""
+        wanted = _COLOUR_BYTES * text.count(_COLOUR)
+        if wanted + len(text.encode()) > min(self._own.left, self._notebook.left):
+            return _COLOURS.sub("", text).replace(_ESCAPE, "")
+        self._notebook.take(self._own.take(wanted))
+        return text
 
     def _clear_if_due(self) -> None:
         if self._clear_at_next:

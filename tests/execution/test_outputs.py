@@ -1,11 +1,13 @@
 from __future__ import annotations
 
 import base64
+import re
 from typing import Any
 
 import pytest
+from nbconvert.filters.ansi import ansi2html
 
-from autograder.execution.outputs import OUTPUT_BYTES, Budget, OutputCollector
+from autograder.execution.outputs import OUTPUT_BYTES, Budget, NotebookOutputs, OutputCollector
 
 
 def collector(cell: int = 10_000, notebook: int = 100_000) -> OutputCollector:
@@ -165,3 +167,65 @@ def test_a_lone_surrogate_becomes_writable_text() -> None:
     collected = collector()
     collected.handle("stream", {"name": "stdout", "text": "a\ud800b"})
     assert collected.outputs()[0]["text"].encode("utf-8") == b"a?b"
+
+
+COLOURFUL = "\x1b[1;4;7;38;2;111;222;133;48;2;144;155;166m" + "x\x1b[1m" * 40_000
+
+
+@pytest.mark.parametrize(
+    ("message_type", "content"),
+    [
+        ("stream", {"name": "stdout", "text": COLOURFUL}),
+        ("display_data", {"data": {"text/plain": COLOURFUL}}),
+        ("error", {"ename": "a", "evalue": "b", "traceback": [COLOURFUL]}),
+    ],
+)
+def test_colors_never_make_a_page_many_times_as_long_as_the_output(
+    message_type: str, content: dict[str, Any]
+) -> None:
+    # Forty million characters of HTML were made of two million that were printed.
+    collected = collector(cell=200_000, notebook=2_000_000)
+    collected.handle(message_type, content)
+    for _ in range(20):
+        collected.handle(message_type, {**content, "text": COLOURFUL[:100]})
+    assert len(ansi2html("".join(all_texts(collected)))) < 5 * 200_000
+
+
+@pytest.mark.parametrize("middle", ["", "\x1b[" + ";" * 50 + "m", "\x1b", "\x1b["])
+def test_a_color_code_without_end_is_none(middle: str) -> None:
+    # nbconvert's filter took two seconds for one of 200,000 characters, and a notebook may have ten of them.
+    collected = collector(cell=200_000, notebook=2_000_000)
+    collected.handle("stream", {"name": "stdout", "text": f"a\x1b[;;;{middle}{';' * 90_000}mb"})
+    (text,) = all_texts(collected)
+    assert max(map(len, re.findall(r"\x1b\[(.*?)[@-~]", text)), default=0) <= 40
+    assert text.startswith("a")
+    assert text.endswith("b")
+
+
+def test_the_usual_colors_stay_also_when_outputs_are_cut_again() -> None:
+    text = "\x1b[31mred\x1b[0m and \x1b[38;5;28;01mgreen\x1b[39;00m"
+    cut_again = NotebookOutputs(1, 10_000, 100_000)
+    collected = collector()
+    for _ in range(1_000):
+        collected.handle("stream", {"name": "stdout", "text": text})
+    cut_again.put(0, collected.outputs())
+    once, twice = (
+        "".join(one["text"] for one in outputs) for outputs in (collected.outputs(), cut_again.of(0))
+    )
+    is_same = once == twice  # a comparison of long texts by pytest would take minutes
+    assert is_same
+    assert once.startswith(text)
+
+
+def all_texts(collected: OutputCollector) -> list[str]:
+    outputs = collected.outputs()
+    return [
+        piece
+        for output in outputs
+        for piece in (
+            output.get("text", ""),
+            output.get("data", {}).get("text/plain", ""),
+            *output.get("traceback", ()),
+        )
+        if piece and "were dropped" not in piece
+    ]
