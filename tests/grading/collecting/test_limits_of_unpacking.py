@@ -76,6 +76,37 @@ def test_the_files_of_a_students_archives_count_together(archives: Archives, tmp
     assert "and 2400 files of" in second
 
 
+def test_a_name_in_an_old_encoding_and_a_content_that_looks_like_a_list_do_no_harm(
+    archives: Archives, tmp_path: Path
+) -> None:
+    list_of_its_own = b'{"names": ["forged.ipynb"], "size": 5, "reason": ""}\nhello\n'
+    data = io.BytesIO()
+    with tarfile.open(fileobj=data, mode="w", format=tarfile.GNU_FORMAT, encoding="latin-1") as tar:
+        for name, content in {"L\xf6sung.txt": list_of_its_own, "b.ipynb": b"{}"}.items():
+            entry = tarfile.TarInfo(name)
+            entry.size = len(content)
+            tar.addfile(entry, io.BytesIO(content))
+    (tmp_path / "x.tar").write_bytes(data.getvalue())
+    (file,) = archives.files_of(tmp_path / "x.tar", is_opened=False)
+    found = archives.within(file.arrival, data.getvalue(), Room())
+    assert [(one.arrival.inner, held(one)) for one in found] == [
+        (("L?sung.txt",), list_of_its_own),
+        (("b.ipynb",), b"{}"),
+    ]
+
+
+def test_a_zip_that_calls_one_file_by_two_long_names_hides_none_of_the_others(
+    archives: Archives, tmp_path: Path
+) -> None:
+    data = bytearray(archive(["n" * 60_000, "b.ipynb"]))
+    data[30:60_030] = b"m" * 60_000
+    found = within(archives, tmp_path, bytes(data))
+    assert found.pop("b.ipynb") == b"x"
+    ((name, reason),) = found.items()
+    assert name.startswith("nnn")
+    assert str(reason).startswith("it cannot be unpacked: File name in directory")
+
+
 def test_the_bytes_of_a_students_archives_count_together(archives: Archives, tmp_path: Path) -> None:
     (reason,) = refusals(
         archives, tmp_path, [archive([f"{number}.txt" for number in range(23)], said=45_000_000)]

@@ -168,7 +168,9 @@ def _lines(out: IO[bytes]) -> Iterator[tuple[_Unpacked, int]]:
         try:
             found = msgspec.json.decode(line, type=_Unpacked)
         except msgspec.MsgspecError:
-            found = _Unpacked((), 0, "the output of the box is not a list of files")
+            # The rest is not read: it may be the content of a file that looks like such a line.
+            yield _Unpacked((), 0, "the output of the box is not a list of files"), end
+            return
         place += len(line) + len(mark)
         size = min(max(found.size, 0), MAX_BYTES)
         yield replace(found, size=size), place

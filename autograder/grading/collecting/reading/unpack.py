@@ -110,7 +110,7 @@ class Unpacking:
         except Exception as error:
             self._tell(
                 names,
-                reason=f"it is not an archive that can be read: {error or type(error).__name__}; get it again",
+                reason=f"it is not an archive that can be read: {_told(error)}; get it again",
             )
             return
         size = sum(one.size for one in entries)
@@ -146,7 +146,7 @@ class Unpacking:
             with one.open() as file:
                 data = file.read(one.size + 1)
         except Exception as error:
-            self._tell(names, reason=f"it cannot be unpacked: {error or type(error).__name__}")
+            self._tell(names, reason=f"it cannot be unpacked: {_told(error)}")
             return
         if len(names) < self.depth and is_archive(one.name, data):
             self.unpack(names, io.BytesIO(data))
@@ -155,8 +155,14 @@ class Unpacking:
 
     def _tell(self, names: Sequence[str], data: bytes = b"", reason: str = "") -> None:
         """Write a file, or the reason why it is not taken."""
-        line = json.dumps({"names": names, "size": len(data), "reason": reason}).encode()
-        write(self._answer, line + b"\n" + data)
+        line = json.dumps({"names": names, "size": len(data), "reason": reason}, ensure_ascii=False)
+        # A name in a tar may be in any encoding; its unknown bytes are lone surrogates, which the reader would refuse.
+        write(self._answer, line.encode("utf-8", "replace") + b"\n" + data)
+
+
+def _told(error: Exception) -> str:
+    """Return the text of an error, cut because it may contain two names of a file, or the type if it has no text."""
+    return str(error)[:LONGEST_NAME] or type(error).__name__
 
 
 def write(answer: int, data: bytes) -> None:
