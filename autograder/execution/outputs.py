@@ -185,9 +185,12 @@ class OutputCollector:
 
     def _afford_colours(self, text: str) -> str:
         """Return the text; but without its colors if the text with all its color codes would exceed a budget."""
+        left = min(self._own.left, self._notebook.left)
         wanted = _COLOUR_BYTES * text.count(_COLOUR)
-        if wanted + len(text.encode()) > min(self._own.left, self._notebook.left):
-            return _COLOURS.sub("", text).replace(_ESCAPE, "")
+        if wanted + len(text.encode()) > left:
+            # Search only what may be kept, and count it, because a search takes long.
+            plain, rest = _COLOURS.sub("", text[:left]).replace(_ESCAPE, ""), text[left:]
+            wanted, text = min(left, len(text)) - len(plain), plain + rest.replace(_ESCAPE, "")
         self._notebook.take(self._own.take(wanted))
         return text
 
