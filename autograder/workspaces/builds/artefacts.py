@@ -17,7 +17,7 @@ import stat
 import sys
 from enum import StrEnum
 from pathlib import Path, PurePosixPath
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated
 
 import msgspec
 
@@ -26,6 +26,10 @@ if TYPE_CHECKING:
 
 MAX_FILES = 5_000
 MAX_BYTES = 64_000_000
+MOST_ENTRIES = 100_000
+"""The maximum number of entries to decode. Millions of tiny ones fit into an archive, but take a gigabyte of memory.
+The box of a build cannot have so many files.
+"""
 BLOCK = 4_096
 """Bytes that are added to the size of each file and folder, so that thousands of empty files exceed the limit, too."""
 MAX_NAME = 240
@@ -72,6 +76,9 @@ class PackedEntry(msgspec.Struct, frozen=True, array_like=True):
     path: bytes
     kind: Kind
     data: bytes = b""
+
+
+_Entries = Annotated[list[PackedEntry], msgspec.Meta(max_length=MOST_ENTRIES)]
 
 
 def pack(install: Path) -> bytes:
@@ -124,7 +131,7 @@ def unpack(packed: bytes, folder: Path, most: int = MAX_BYTES) -> None:
         raise BadArtefacts("the result of the build could not be packed")
     folder.mkdir(mode=0o755)
     try:
-        _write(msgspec.msgpack.decode(packed, type=list[PackedEntry]), folder, most)
+        _write(msgspec.msgpack.decode(packed, type=_Entries), folder, most)
     except (msgspec.MsgspecError, OSError) as error:
         if getattr(error, "errno", None) in _OF_THIS_MACHINE:
             raise

@@ -128,6 +128,12 @@ def test_too_much_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
         unpack(packed(*((name, Kind.FOLDER, 0) for name in "abc")), tmp_path / "files")
 
 
+def test_millions_of_entries_are_not_even_read(tmp_path: Path) -> None:
+    said = msgspec.msgpack.encode([[b"a", "file"]] * (artefacts.MOST_ENTRIES + 1))
+    with pytest.raises(BadArtefacts, match="length"):
+        unpack(said, tmp_path / "install")
+
+
 def test_a_full_disk_is_no_fault_of_the_build(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def write(*_: object) -> int:
         raise OSError(errno.ENOSPC, "No space left on device")
