@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import base64
 import binascii
+import itertools
 import struct
 from typing import TYPE_CHECKING
 
@@ -18,6 +19,10 @@ if TYPE_CHECKING:
 MOST_POINTS = 100_000_000
 """The maximum number of pixels of all pictures on a notebook's page: a dozen 4K screenshots, or 400 MB in a
 browser.
+"""
+_MOST_PARTS = 100_000
+"""The maximum number of parts of a picture to look at: chunks, blocks or segments. A GIF of 10 MB has 50,000. A file of
+millions of empty ones would keep the grader busy for seconds.
 """
 _PNG = b"\x89PNG\r\n\x1a\n"
 _NO_SIZE = {0xC4, 0xC8, 0xCC}
@@ -72,7 +77,9 @@ def points_of(encoded: str) -> int | None:
 def _points_of_png(data: bytes) -> int | None:
     width, height = struct.unpack_from(">4x4sII", data, 8)[1:] if data[12:16] == b"IHDR" else (0, 0)
     frames, place = 1, 8
-    while data[place + 4 : place + 8] not in (b"", b"IDAT"):
+    for _ in _parts():
+        if data[place + 4 : place + 8] in (b"", b"IDAT"):
+            break
         if data[place + 4 : place + 8] == b"acTL":
             (frames,) = struct.unpack_from(">I", data, place + 8)
         place += 12 + int.from_bytes(data[place : place + 4])
@@ -82,6 +89,7 @@ def _points_of_png(data: bytes) -> int | None:
 def _points_of_gif(data: bytes) -> int | None:
     width, height, flags = struct.unpack_from("<HHB", data, 6)
     place, frames = 13 + _colors(flags), 0
+    parts = _parts()
     while place < len(data) and data[place] != 0x3B:
         if data[place] == 0x2C:
             left, top, wide, high, flags = struct.unpack_from("<HHHHB", data, place + 1)
@@ -90,10 +98,16 @@ def _points_of_gif(data: bytes) -> int | None:
             place += 11 + _colors(flags)
         else:
             place += 2
-        while place < len(data) and data[place]:
+        while next(parts) and place < len(data) and data[place]:
             place += 1 + data[place]
         place += 1
     return width * height * frames or None
+
+
+def _parts() -> Iterator[bool]:
+    """Yield True for each part of a picture that may be looked at, and then raise an error."""
+    yield from itertools.repeat(True, _MOST_PARTS)
+    raise ValueError("the picture has too many parts")
 
 
 def _colors(flags: int) -> int:
@@ -102,8 +116,8 @@ def _colors(flags: int) -> int:
 
 
 def _points_of_jpeg(data: bytes) -> int | None:
-    place = 2
-    while place < len(data):
+    place, parts = 2, _parts()
+    while next(parts) and place < len(data):
         kind = data[place + 1] if data[place] == 0xFF else 0xFF
         if kind == 0xFF or kind in _ALONE:
             place += 1 if kind == 0xFF else 2
@@ -133,8 +147,8 @@ def _points_of_webp(data: bytes) -> int | None:
 
 def _chunks(data: bytes) -> Iterator[tuple[bytes, int]]:
     """Yield the type of each WebP chunk, and the index at which its content starts."""
-    place = 12
-    while place + 8 <= len(data):
+    place, parts = 12, _parts()
+    while next(parts) and place + 8 <= len(data):
         yield data[place : place + 4], place + 8
         size = int.from_bytes(data[place + 4 : place + 8], "little")
         place += 8 + size + size % 2

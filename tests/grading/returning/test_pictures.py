@@ -86,6 +86,22 @@ def test_what_is_cut_off_or_of_another_kind_has_no_size(picture: bytes) -> None:
     assert points_of("no base64") is None
 
 
+@pytest.mark.parametrize(
+    "picture",
+    [
+        png()[:-12] + chunk(b"tEXt", b"") * 100_000 + chunk(b"IDAT", b""),
+        gif()[:-1] + b"\x21\xf9\x00" * 100_000 + b"\x3b",
+        gif()[:-1] + b"\x21\xf9" + b"\x01a" * 100_000 + b"\x00\x3b",
+        b"\xff\xd8" + b"\xff" * 100_000 + jpeg()[2:],
+        webp(b"VP8L", b"\x2f" + bytes(8)) + (b"JUNK" + bytes(4)) * 100_000,
+    ],
+    ids=["png", "gif", "blocks of a gif", "jpeg", "webp"],
+)
+def test_a_file_of_countless_empty_parts_is_no_picture(picture: bytes) -> None:
+    # Each byte of ten million was looked at on its own, four times for a page.
+    assert points_of(encoded(picture)) is None
+
+
 def outputs_of(*pictures: bytes) -> list[str]:
     """What is shown of pictures that cells have shown: the types of the first output of each."""
     notebook = nbformat.v4.new_notebook()
