@@ -214,6 +214,9 @@ def _package(file: Path, budget: ByteBudget) -> Package:
         raise BadPackage(f"{shown} cannot be read: {error.strerror}") from error
     if len(text) > MAX_PACKAGE_XML:
         raise BadPackage(f"{shown} is larger than {MAX_PACKAGE_XML // 1000} kB")
+    if b"\0" in text:
+        # Such a text is in UTF-16, where the next line would find no entity. Tools of ROS read UTF-8 only.
+        raise BadPackage(f"{shown} is not valid: save it in UTF-8")
     if b"<!ENTITY" in text:
         raise BadPackage(f"{shown} declares an entity with <!ENTITY; write what it stands for in its place")
     try:
