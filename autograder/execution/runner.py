@@ -31,6 +31,8 @@ if TYPE_CHECKING:
     from autograder.boxes.limits import Limits
 
 
+_KERNEL_GONE = (Ended.KERNEL_DIED, *LIMITS)
+"""The ways in which a cell may end that usually end the kernel, too."""
 _TERMINAL = ("%%bash", "%%sh", "%%script")
 """The magics with which a cell that stands for a terminal begins."""
 
@@ -161,7 +163,8 @@ class _Run:
         checks = [index for index in code if self._cells[index].check is not None]
         recent = [index for index in code if index > (checks[-1] if checks else -1)]
         if all(runs[index].ended is Ended.DONE or runs[index].ended is Ended.NOT_RUN for index in recent):
-            recent = [index for index in code if index not in checks]
+            # An earlier check is to blame only if the kernel ended in it.
+            recent = [index for index in code if index not in checks or runs[index].ended in _KERNEL_GONE]
         return [(_title(self._cells[index]), runs[index]) for index in recent]
 
     def failed(self, reason: str, seconds: float) -> Execution:

@@ -136,6 +136,12 @@ def test_a_kernel_that_ends_is_named_with_its_cell(run: Run, end: str) -> None:
     assert end in execution.verdicts[2].diagnosis.text  # type: ignore[union-attr]
 
 
+def test_a_kernel_that_ends_in_one_check_is_named_in_the_next(run: Run) -> None:
+    execution = run(["x = 1", check("exit()  # in a check"), check()])
+    assert key(execution) == "kernel_died"
+    assert "exit()  # in a check" in execution.verdicts[2].diagnosis.text  # type: ignore[union-attr]
+
+
 def test_sys_exit_ends_the_cell_and_not_the_notebook(run: Run) -> None:
     execution = run(["import sys; sys.exit()", check()], passed())
     assert [cell.ended for cell in execution.cells] == [Ended.RAISED, Ended.DONE]
