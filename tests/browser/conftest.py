@@ -13,6 +13,7 @@ import pytest
 from environment.system_packages import CHROMIUM_NAMES, find_program
 
 sys.path.insert(0, str(Path(__file__).parent))
+from open_notebook import LIMIT, opened_page
 from server_of_a_test import jupyter_server
 
 if TYPE_CHECKING:
@@ -21,8 +22,6 @@ if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
 
 ROOT = Path(__file__).resolve().parents[2]
-LIMIT = 180.0
-"""Seconds after which a test gives up waiting for something that a quiet machine shows within ten."""
 CHROMIUM_OPTIONS = (
     "--headless",
     "--no-sandbox",
@@ -79,10 +78,5 @@ def browser(chromium: str) -> Iterator[Browser]:
 @pytest.fixture
 def page(browser: Browser) -> Iterator[Page]:
     """An empty page of a browser that knows nothing of any page before."""
-    context = browser.new_context(viewport={"width": 1300, "height": 1000})
-    context.set_default_timeout(LIMIT * 1000)
-    page = context.new_page()
-    yield page
-    if folder := os.environ.get("SCREENSHOTS"):
-        page.screenshot(path=Path(folder) / "end.png")
-    context.close()
+    with opened_page(browser) as page:
+        yield page

@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import re
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from playwright.sync_api import Locator, Page
+    from collections.abc import Iterator
+
+    from playwright.sync_api import Browser, Locator, Page
+
+LIMIT = 180.0
+"""Seconds after which a test gives up waiting for something that a quiet machine shows within ten."""
 
 
 class OpenNotebook:
@@ -43,6 +49,17 @@ class OpenNotebook:
         """Choose from the menu bar."""
         self.page.locator(".lm-MenuBar-item", has_text=name).click()
         self.page.get_by_role("menuitem", name=entry, exact=True).click()
+
+
+@contextlib.contextmanager
+def opened_page(browser: Browser) -> Iterator[Page]:
+    """An empty page of a browser that knows nothing of any page before."""
+    context = browser.new_context(viewport={"width": 1300, "height": 1000})
+    context.set_default_timeout(LIMIT * 1000)
+    page = context.new_page()
+    yield page
+    look(page, "end")
+    context.close()
 
 
 def look(page: Page, name: str) -> None:

@@ -13,10 +13,12 @@ import pytest
 from autograder.cards.bundle import waiting_bundle
 
 sys.path.insert(0, str(Path(__file__).parent))
-from open_notebook import OpenNotebook, look
+from open_notebook import OpenNotebook, look, opened_page
 
 if TYPE_CHECKING:
-    from playwright.sync_api import Page
+    from collections.abc import Iterator
+
+    from playwright.sync_api import Browser, Page
 
 pytestmark = [pytest.mark.browser, pytest.mark.ros, pytest.mark.slow]
 IDLE = "Python 3 (ipykernel) | Idle"
@@ -36,10 +38,30 @@ def restart(page: Page) -> None:
     page.locator(".jp-Dialog .jp-mod-accept").click()
 
 
-def test_check_runs_what_a_new_kernel_lacks_and_a_card_ends_with_its_kernel(page: Page, lab: str) -> None:
+@pytest.fixture(scope="module")
+def page(browser: Browser, lab: str, chapters: Path) -> Iterator[Page]:
+    """The notebook of lab 1.2, opened once; it was saved while a check of its listener went on."""
+    file = chapters / "01_ros2_fundamentals" / "lab_1_2.ipynb"
+    notebook = nbformat.read(file, as_version=4)
+    cell = next(one for one in notebook.cells if one.source.startswith('check("lab_1_2.listener"'))
+    data = waiting_bundle("lab_1_2.listener", "Checking: run 2 of your code, 3.0 s …")
+    cell.outputs = [nbformat.v4.new_output("display_data", data)]
+    file.write_text(nbformat.writes(notebook), encoding="utf-8")
+    with opened_page(browser) as page:
+        page.goto(lab.format("lab/tree/01_ros2_fundamentals/lab_1_2.ipynb"))
+        yield page
+
+
+def test_a_card_that_was_saved_while_its_check_went_on_says_so(page: Page) -> None:
     from playwright.sync_api import expect
 
-    page.goto(lab.format("lab/tree/01_ros2_fundamentals/lab_1_2.ipynb"))
+    card = OpenNotebook(page).cell(r'^check\("lab_1_2\.listener"').locator(".agc")
+    expect(card).to_contain_text("The notebook was closed during this check")
+
+
+def test_check_runs_what_a_new_kernel_lacks_and_a_card_ends_with_its_kernel(page: Page) -> None:
+    from playwright.sync_api import expect
+
     notebook = OpenNotebook(page)
     expect(page.locator("#jp-main-statusbar")).to_contain_text(IDLE)
     notebook.write(r"^class TalkerNode", SLOW.strip())
@@ -59,17 +81,3 @@ def test_check_runs_what_a_new_kernel_lacks_and_a_card_ends_with_its_kernel(page
     checked.locator(".jp-cell-toolbar").get_by_text("Check", exact=True).click()
     expect(checked.locator(".agc-failed")).to_contain_text("What to do next")
     expect(notebook.cell(r"^import time")).to_contain_text(re.compile(r"ROS 2 is up"))
-
-
-def test_a_card_that_was_saved_while_its_check_went_on_says_so(page: Page, lab: str, chapters: Path) -> None:
-    from playwright.sync_api import expect
-
-    file = chapters / "01_ros2_fundamentals" / "lab_1_2.ipynb"
-    notebook = nbformat.read(file, as_version=4)
-    cell = next(one for one in notebook.cells if one.source.startswith('check("lab_1_2.listener"'))
-    data = waiting_bundle("lab_1_2.listener", "Checking: run 2 of your code, 3.0 s …")
-    cell.outputs = [nbformat.v4.new_output("display_data", data)]
-    file.write_text(nbformat.writes(notebook), encoding="utf-8")
-    page.goto(lab.format("lab/tree/01_ros2_fundamentals/lab_1_2.ipynb"))
-    card = OpenNotebook(page).cell(r'^check\("lab_1_2\.listener"').locator(".agc")
-    expect(card).to_contain_text("The notebook was closed during this check")
