@@ -21,8 +21,8 @@ TERMINATED = 143
 
 def main() -> None:
     """Run the command line. A closed pipe, Ctrl-C or SIGTERM ends it quietly, with everything that it has started."""
-    # Python has read this variable at its start. A student's program must not inherit it, because such a program
-    # imports modules from its own folder, as usual.
+    # PYTHONSAFEPATH was needed only at the start of this process. A student's program must not inherit it, because with
+    # it, Python would not import modules from the program's own folder.
     os.environ.pop(SAFE_PATH, None)
     from autograder.cli import cli
 
@@ -47,9 +47,9 @@ def why_missing(error: ImportError) -> str:
     """Return what to type to get a module that this installation left out; empty for any other module."""
     top = (error.name or "").partition(".")[0]
     if top == "autograder" and not Path(__file__).with_name("grading").is_dir():
-        return "this is the students' part of the course: that command is not in it"
+        return "this copy of the course is for students and does not contain this command"
     if top == "rclpy":
-        return f"ROS 2 was not found: source a Jazzy, or type: {installing('ros')}"
+        return f"ROS 2 was not found: source the setup script of ROS 2 Jazzy, or type: {installing('ros')}"
     with contextlib.suppress(metadata.PackageNotFoundError):
         for line in metadata.requires(PACKAGE) or ():
             name, _, marker = line.partition(";")

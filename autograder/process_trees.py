@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 _PR_SET_PDEATHSIG = 1  # linux/prctl.h
 _PR_SET_DUMPABLE = 4
 _PR_SET_CHILD_SUBREAPER = 36
-# Loaded now, because loading a library between fork and exec is not safe.
+# Load libc here, because loading a library between fork and exec is not safe.
 _libc = ctypes.CDLL(None, use_errno=True)
 
 
@@ -175,8 +175,9 @@ def end_below(pid: int) -> None:
     while living := known(one for one in descendants(pid) if _lives(one)) - left:
         send(living, signal.SIGSTOP)
         left |= {process for process in living if not _signal(process, signal.SIGKILL)}
-        # The first process of a sandbox ends only after all its processes were waited for (pid_namespaces(7)). This
-        # process must wait for those that were started from outside and whose parent has ended.
+        # The first process of a sandbox can end only after all processes of the sandbox were waited for
+        # (pid_namespaces(7)). Some were started from outside, and their parent has ended: they are now children of this
+        # process, which waits for them here.
         if pid != os.getpid() or not _reap(_children(pid)):
             time.sleep(0.005)
 

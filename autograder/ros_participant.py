@@ -1,4 +1,4 @@
-"""Names that DDS shows for unnamed nodes, and a way not to miss the answers to a new participant's first announcement.
+"""Keeps a new DDS participant from losing the answers to its first announcement, and recognizes unnamed nodes.
 
 Fast DDS 2.14 announces a new participant before it has registered the participant's receivers. Existing participants
 answer within 0.1 ms, and only once. If a receiving thread reads such an answer too early, the answer is lost, and the

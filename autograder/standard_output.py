@@ -1,7 +1,7 @@
 """Keeps standard output free for results, although Fast DDS prints warnings there; and reads lines with a limit.
 
-Fast DDS writes its log to standard output (StdoutConsumer in fastdds/dds/log). One such line between two lines of
-JSON makes them unreadable, and it appears only in rare cases.
+Fast DDS writes its log to standard output (StdoutConsumer in fastdds/dds/log). A line of this log between two lines of
+JSON would keep a program from reading the JSON.
 """
 
 from __future__ import annotations

@@ -116,7 +116,8 @@ class HeldFolder:
     def __init__(self, prefix: str) -> None:
         sweep(prefix)
         while True:
-            # Repeat this if another process has removed the new folder as left behind, before it was locked.
+            # Before the new folder is locked, another process may take it for an abandoned one and remove it. In that
+            # case, make another folder.
             try:
                 self.path = fresh_folder(prefix)
                 self._lock = os.open(self.path, os.O_RDONLY | os.O_DIRECTORY)
@@ -165,8 +166,8 @@ def _base() -> Path:
         if _is_safe(own):
             return own
     raise UnsafeTemporaryFolder(
-        f"every user can replace what is made in {usual}: set TMPDIR to a folder of your own, "
-        f"or have the mode corrected: chmod 1777 {usual}"
+        f"every user can replace files in {usual}: set TMPDIR to a folder of your own, "
+        f"or correct the folder's permissions: chmod 1777 {usual}"
     )
 
 

@@ -93,7 +93,7 @@ def _of_check(kind: NotebookKind, points: float, run: CellRun, verdict: Verdict 
         if output["output_type"] == "execute_result"
     ]
     if not values or not _is_number(values[-1], verdict.score):
-        # Unmodified nbgrader reads partial credit from the value of the cell.
+        # The value of the cell must be the score, because unmodified nbgrader reads partial credit from this value.
         yield f"has the value {values[-1] if values else 'nothing'} instead of its score, {verdict.score:g}"
 
 

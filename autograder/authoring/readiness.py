@@ -56,8 +56,8 @@ def _of_answers(listed: Sequence[Answer]) -> Iterator[str]:
     few = [f"{there[kind]} {kind}" for kind, enough in ENOUGH.items() if there[kind] < enough]
     if few:
         yield (
-            f"answers: the bank has only {' and '.join(few)} ones; a new exercise should have {ENOUGH['right']} right "
-            f"ones in different styles and {ENOUGH['wrong']} wrong ones before students meet it"
+            f"answers: the bank has only {' and '.join(few)} answers; before students get a new exercise, write at "
+            f"least {ENOUGH['right']} right answers in different styles and {ENOUGH['wrong']} wrong answers"
         )
     for answer in listed:
         if answer.diagnoses and not answer.file.name.startswith(answer.diagnoses[0]):
@@ -130,6 +130,6 @@ def _of_linters(lab: Path) -> Iterator[str]:
             if (
                 words[0] == "format" and done.returncode == 1
             ):  # its output is a long comparison, cut into lines
-                yield f"ruff: the format differs. Type: {programs[name]} format --config={_SETTINGS} {lab}"
+                yield f"ruff: a file is not formatted. Type: {programs[name]} format --config={_SETTINGS} {lab}"
             else:
                 yield from (f"{name}: {line}" for line in (done.stdout + done.stderr).splitlines())

@@ -218,7 +218,7 @@ def _package(file: Path, budget: ByteBudget) -> Package:
         # Such a text is in UTF-16, where the next line would find no entity. Tools of ROS read UTF-8 only.
         raise BadPackage(f"{shown} is not valid: save it in UTF-8")
     if b"<!ENTITY" in text:
-        raise BadPackage(f"{shown} declares an entity with <!ENTITY; write what it stands for in its place")
+        raise BadPackage(f"{shown} declares an entity with <!ENTITY: replace the entity by its text")
     try:
         root = ElementTree.fromstring(text)
     except UNREADABLE as error:

@@ -112,7 +112,7 @@ class Session:
         except BadSources as error:
             return str(error)
         except NotUnderstood:
-            return "a file has not the form of one"
+            return "a message that was sent as a file is not a file"
         return ""
 
     def _interrupt(self, number: int) -> None:
@@ -221,7 +221,7 @@ class _ProgramRun:
     def _pass_on(self, program: RunningProgram) -> None:
         left = MAX_OUTPUT
         for text in output_lines(program, lambda: not self._cancelled.is_set()):
-            left -= len(text) + 1  # an empty line counts, too, because it has to be sent
+            left -= len(text) + 1  # count the line's end, so that empty lines use up the limit, too
             if left > 0:
                 self._lines.say(messages.ProgramOutput(self.number, text))
 

@@ -140,7 +140,9 @@ def read_file(file: str | Path, name: str, largest: int, folder: int | None = No
     if data.startswith(_MACHINE_CODE):
         return None
     if len(data) > largest:
-        raise BadSources(f"{name} has more than {largest // 1000} kB: a workspace for a check holds text")
+        raise BadSources(
+            f"{name} is larger than {largest // 1000} kB, the limit for a file in a check: move it out of the workspace"
+        )
     return Source(name, data, executable)
 
 
@@ -197,12 +199,12 @@ def checked(sources: Iterable[Source]) -> list[Source]:
     for source in sources:
         check_path(source.path)
         if source.path in taken:
-            raise BadSources(f"{source.path} is there twice")
+            raise BadSources(f"{source.path} was sent twice")
         taken[source.path] = source
     for path in taken:
         above = (str(parent) for parent in PurePosixPath(path).parents)
         if any(taken[name].data is not None for name in above if name in taken):
-            raise BadSources(f"{path} would be inside a file, not in a folder")
+            raise BadSources(f"{path} cannot be written, because one of its parent folders is a file")
     return [source for source in _bounded(list(taken.values())) if _is_source(source)]
 
 
@@ -230,7 +232,7 @@ def receive(lines: Lines, count: int, path: str, folder: Path) -> None:
         Hangup: The connection was closed.
     """
     if not 0 <= count <= MAX_FILES:
-        raise BadSources("there is too much in src")
+        raise BadSources(f"src has too many files: a check accepts at most {MAX_FILES}")
     taken: list[Source] = []
     room = MAX_HELD
     for _ in range(count):
@@ -259,7 +261,7 @@ def check_path(path: str) -> None:
     if any(
         part in ("", ".", "..") or len(part.encode("utf-8", "surrogatepass")) > MAX_NAME for part in parts
     ):
-        raise BadSources(f"{shown} is no path inside a workspace")
+        raise BadSources(f"{shown} is not a path inside a workspace")
     if not path.isprintable():
         raise BadSources(f"the path {shown} has characters that cannot be shown")
 
@@ -273,6 +275,6 @@ def _bounded(sources: list[Source]) -> list[Source]:
 
 def _too_much() -> BadSources:
     return BadSources(
-        f"there is too much in src: at most {MAX_FILES} files, {MAX_FILE // 1000} kB each and "
-        f"{MAX_BYTES // 10**6} MB together are taken for a check"
+        f"src is too large: a check accepts at most {MAX_FILES} files, {MAX_FILE // 1000} kB for each file, and "
+        f"{MAX_BYTES // 10**6} MB for all files together"
     )

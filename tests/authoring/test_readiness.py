@@ -132,7 +132,7 @@ def test_a_difference_in_format_is_one_line(lab: Path) -> None:
         (lab / "battery.py").read_text().replace("heard = Hears", "heard =   Hears")
     )
     forget()
-    assert [line.partition(".")[0] for line in told()] == ["ruff: the format differs"]
+    assert [line.partition(".")[0] for line in told()] == ["ruff: a file is not formatted"]
 
 
 def test_what_is_not_installed_is_told(lab: Path, monkeypatch: pytest.MonkeyPatch) -> None:

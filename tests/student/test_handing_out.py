@@ -131,7 +131,7 @@ def test_it_lists_its_exercises_and_says_what_it_cannot_do(handed_out: Path) -> 
     grading = run(handed_out, "grade", "class")
     assert (grading.returncode, grading.stderr) == (
         2,
-        "autograder: this is the students' part of the course: that command is not in it\n",
+        "autograder: this copy of the course is for students and does not contain this command\n",
     )
     again = run(handed_out, "hand-out", "more")
     assert again.returncode == 2

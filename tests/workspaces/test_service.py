@@ -515,7 +515,7 @@ def test_sources_that_no_build_takes_are_refused_with_the_reason(
     monkeypatch.setenv(own_builds.GRADERS, str(sockets.notebook))
     monkeypatch.chdir(lab)
     assert colcon_in_class.main(["build"]) == 1
-    assert "a workspace for a check holds text" in capsys.readouterr().out
+    assert "the limit for a file in a check: move it out of the workspace" in capsys.readouterr().out
 
 
 def test_the_judge_may_be_gone_when_the_grader_has_trouble(

@@ -284,7 +284,7 @@ def test_of_far_too_much_that_is_sent_nothing_is_kept(one: Source, tmp_path: Pat
         count = 40
         sent = sender.submit(here.sendall, encode(one) * count)
         tracemalloc.start()
-        with pytest.raises(BadSources, match="too much in src"):
+        with pytest.raises(BadSources, match="src is too large"):
             sources.receive(Lines(there), count, "ros2_ws", tmp_path)
         most = tracemalloc.get_traced_memory()[1]
         tracemalloc.stop()

@@ -220,10 +220,9 @@ class ScriptedActionServer:
     def say_status(self) -> None:
         """Publish the current goal's status on the action's status topic.
 
-        The server does this by itself if the status changes or the client requests the result, but not if it accepts a
-        goal. The reason is that a client must learn from the answer, not from the status, whether its goal was
-        accepted. A client that reads the status instead finds UNKNOWN, the first status of a goal handle of rclpy, so
-        it is not right by chance.
+        The server calls this itself when the status changes or the client requests the result, but not when it accepts
+        a goal. A client has to learn from the server's answer whether its goal was accepted. A client that reads the
+        status instead finds UNKNOWN, the first status of rclpy's goal handles, and so cannot pass by chance.
         """
         line = GoalStatus(goal_info=GoalInfo(goal_id=self._goal_id), status=self._status)
         self._statuses.publish(GoalStatusArray(status_list=[line]))

@@ -31,8 +31,8 @@ _JOINED = (
     socket.inet_aton(_GROUP) + socket.inet_aton(_LOOPBACK),
 )
 _PLACE = 31
-"""The participant index whose port is listened on. Fast DDS announces to indexes 0 to 31 (rmw_fastrtps,
-participant.cpp), and a new participant takes the lowest free index.
+"""The judge listens on the port of the participant with this index. Fast DDS announces to indexes 0 to 31
+(rmw_fastrtps, participant.cpp), and a new participant takes the lowest free index, so this port is usually free.
 """
 _RTPS = b"RTPS"
 _PREFIX = slice(8, 16)
@@ -41,8 +41,8 @@ identifier counts the participants of a process.
 """
 _LARGEST = 65_536
 MOST = 1_000
-"""The maximum number of processes to remember, and of messages to read at once: a flood must neither fill the memory
-nor keep the judge from other work.
+"""The maximum number of processes to remember, and of messages to read at once. It is limited so that a flood of
+messages neither fills the memory nor keeps the judge from other work.
 """
 
 
@@ -95,7 +95,11 @@ class Announcements:
 
 
 def process_of(node: Node) -> bytes:
-    """Return the DDS id of the process that made a node; empty if the node has no subscription to ``/rosout``."""
+    """Return the DDS id of the process that made a node.
+
+    The id is part of the identifier of the node's subscription to ``/rosout``. Without this subscription, the result is
+    empty.
+    """
     infos = node.get_subscriptions_info_by_topic("/rosout")
     own = (bytes(info.endpoint_gid) for info in infos if info.node_name == node.get_name())
     return next((identifier[: _PREFIX.stop - _PREFIX.start] for identifier in own), b"")

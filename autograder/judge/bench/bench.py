@@ -39,11 +39,7 @@ T = TypeVar("T")
 
 
 def _of_a_part(made: T | None) -> T:
-    """Return ``made``, which is None only before the scenario's first part.
-
-    Raises:
-        RuntimeError: No part has begun yet.
-    """
+    """Return ``made``. Raise an error if ``made`` is None because the scenario has not begun a part."""
     if made is None:
         raise RuntimeError("a scenario begins with bench.part(...)")
     return made
@@ -74,7 +70,7 @@ class TestBench:
         misnamed: Mapping[str, Mapping[str, str]] | None = None,
     ) -> None:
         self._misnamed = misnamed or {}
-        """Misnamed endpoints by their names in the task. The judge uses each under the subject's name, ``real``."""
+        """Misnamed endpoints. The keys are the names in the task; ``real`` is the name that the subject uses."""
         self.pace = pace
         self.random = random
         self.reference = reference
@@ -88,8 +84,8 @@ class TestBench:
         self._recorder = Recorder(hurry)
         self._wire: Wire | None = None
         self._decoys: DecoyNodes | None = None
-        # A notebook's kernel announces one participant for all runs, so announcements would not tell one run from the
-        # next.
+        # Announcements show that a program has made a node. They would not show this for a notebook, whose kernel
+        # announces one participant for all runs.
         self._announcements = None if subject.shares_participant else Announcements(domain_id)
         self._older_processes: set[bytes] = set()
         self._open = contextlib.ExitStack()
@@ -134,7 +130,8 @@ class TestBench:
     def keep(self, name: str) -> bool:
         """If the subject ended by itself in this part of the first look, reuse the part's record, and return True.
 
-        But return False if the part's inputs say how long a function has to wait, because the pace then matters.
+        Do not reuse the record if the part tells a function how many seconds to wait (``patience_sec``). Such a wait
+        depends on the pace, so the part has to be run again.
         """
         known = self.before.part(name) if self.before else Part(name)
         if known.ending is None or patience(known) is not None:
@@ -211,7 +208,7 @@ class TestBench:
         return self._announcements is not None and bool(self._announcements.heard() - self._older_processes)
 
     def release(self) -> None:
-        """Spin the node of a notebook's class, which was only constructed so far."""
+        """Start spinning the node of a notebook's class. Until this call, only the constructor has run."""
         self._subject.release()
 
     def press_ctrl_c(self, within: float) -> bool:
@@ -232,7 +229,7 @@ class TestBench:
         return self._recorder.wait(lambda: self._subject.ended, within)
 
     def await_endpoint(self, role: str, name: str) -> bool:
-        """Wait until the subject has this endpoint, matched with the judge's. Return False if the time is over before.
+        """Wait until the subject has this endpoint, matched with the judge's. Return False if that takes too long.
 
         If a notebook's class has not made the endpoint in the constructor, spin its node and wait again.
         """
@@ -274,7 +271,7 @@ class TestBench:
     # --- counterparts --------------------------------------------------------------------------------------
 
     def listen(self, topic: str, type_name: str, *, latched: bool = False) -> None:
-        """Subscribe with the QoS of the course's listener; if ``latched``, with one that also receives old messages."""
+        """Subscribe with the QoS of the course's listener. If ``latched``, also receive messages sent earlier."""
         at = self._real(topic)
         subscription = RecordedSubscription(
             self.wire, self._recorder, topic, type_name, at=at, latched=latched
@@ -355,7 +352,11 @@ class TestBench:
         return server
 
     def _get_ready_to_serve(self, name: str) -> None:
-        """Wait until existing clients are discovered, because unknown ones get no answer. Then record ``serving``."""
+        """Wait until the existing clients are discovered, then record the event ``serving``.
+
+        Without this wait, an existing client would get no answer, because a service cannot answer a client that it has
+        not discovered.
+        """
         self._recorder.take_in()
         self._recorder.record("serving", name)
 
@@ -377,7 +378,10 @@ class TestBench:
         return self._time.run(seconds, until=until, quiet=quiet, step=step)
 
     def pass_time(self, seconds: float, role: str, name: str) -> None:
-        """Make ``seconds`` pass fast for a node in real time. If the node accepts no fast clock, wait instead."""
+        """Make timers fire sooner in the node with this endpoint, as if ``seconds`` had passed.
+
+        The node gets a simulated clock for this (:meth:`NodeClock.lend`). If it refuses the clock, wait ``seconds``.
+        """
         self._time.lend(seconds, role, self._real(name))
 
     def let_wait(self, seconds: float) -> None:
@@ -385,7 +389,7 @@ class TestBench:
         self._recorder.wait(lambda: self._subject.ended, seconds, wall=True)
 
     def settle(self) -> None:
-        """Wait until the subject has handled the messages that it received, except nodes that do not answer."""
+        """Wait until the subject's nodes have handled all received messages. Skip nodes that do not answer."""
         self._time.settle()
 
     def await_attention(self) -> None:

@@ -120,7 +120,7 @@ def expected_hashes(type_name: str, package: str) -> dict[str, str]:
         described = next(part for part in parts if part["type_name"] == f"{type_name}{suffix}")
         if any(field["type"]["nested_type_name"] for field in described["fields"]):
             raise LookupError(
-                f"{type_name} contains other interfaces, whose descriptions would have to be part of the hash"
+                f"{type_name} contains other interfaces, so its type hash cannot be computed here"
             )
         moved = {**described, "type_name": f"{package}/{kind}/{name}{suffix}"}
         hashes[side] = type_hash({"type_description": moved, "referenced_type_descriptions": []})

@@ -46,14 +46,15 @@ class Settling:
 
 
 APPEAR = 12.0
-"""Time limit, in seconds of patience, for a running subject to appear on the graph.
+"""Time limit for a running subject to appear on the graph, in seconds that get longer on a busy machine.
 
-It is generous, because a slow start is not a mistake; a program usually needs a quarter of a second.
+A program usually appears within a quarter of a second. The limit is much longer, because a slow start is not a mistake.
 """
 AT_WORK = 2
-"""The maximum number of times in a part that the time limit :data:`APPEAR` starts again because the subject has started
-more processes: a command may build its package before it runs the program. A program that forks without end would
-restart the limit forever without this maximum.
+"""The maximum number of times in a part that the time limit :data:`APPEAR` starts again.
+
+The limit starts again when the subject has started more processes, because a command may build a package before it runs
+the program. Without this maximum, a program that forks without end would restart the limit forever.
 """
 MATCH = 5.0
 """Time limit in seconds for two compatible endpoints to be matched."""
@@ -118,7 +119,7 @@ class Presence:
     # --- waiting -------------------------------------------------------------------------------------------
 
     def await_endpoint(self, role: str, name: str) -> bool:
-        """Wait until the subject's endpoint is on the graph and matched, if the judge has a matching endpoint."""
+        """Wait until the subject's endpoint is on the graph and, if an endpoint of the judge fits, matched with it."""
         self.await_interface(
             lambda interface: name in interface.get(role, {}) or name in self._met().get(role, {})
         )
@@ -131,7 +132,7 @@ class Presence:
         }
         counterpart = counterparts.get(role, {}).get(name)
         if counterpart is None or counterpart.type_name != self._recorder.part().endpoints(role)[name]:
-            return True  # no endpoint of the judge can match it
+            return True  # the judge has no endpoint that could match the subject's
         return self._recorder.wait(
             lambda: counterpart.matched > 0 or self._subject.ended or self._mismatched(counterpart.topic),
             MATCH,

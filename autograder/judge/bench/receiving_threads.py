@@ -21,7 +21,9 @@ if TYPE_CHECKING:
 PAUSE = 0.001
 """Seconds between two checks of a thread."""
 TURNS = 2
-"""The number of rounds to wait. A sleeping thread may depend on another thread, which finishes after its own round."""
+"""The number of rounds to wait. In the first round, a thread may finish its work and wake another thread. The second
+round waits for that thread.
+"""
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 MAX_EVENTS = 20_000
 """The maximum number of events in one part, so that a flood does not fill the memory."""
 MAX_SAID = 1_000_000
-"""The maximum number of characters of output and log in one part. If a subject says more, the newest are kept."""
+"""The maximum number of characters of output and log in one part. If a subject writes more, the oldest are dropped."""
 MAX_TEXT = 50_000
 """The maximum number of characters in a text, and of items in a list: far more than in any message of the course, and
 just enough for a stack.
@@ -24,7 +24,8 @@ MAX_TEXTS = 20_000_000
 """The maximum number of characters in all texts of a part. Of later texts only the beginning is kept."""
 BEGINNING = 100
 ITEM = 32
-"""The number of characters that each item of a list counts as, because the item and its number take that much memory.
+"""The number of characters that each item of a list adds to the size of an event. Without it, a long list of numbers
+would have the size 0 although it takes memory.
 """
 MAX_NAME = 300
 """The maximum number of characters in a name; DDS allows 255."""

@@ -41,9 +41,9 @@ PATIENT_ANSWER = 1.5
 TURNS = 3
 """The number of rounds of an executor after which it has called the timers that are due at a new time.
 
-An executor receives the time in one round and calls the timers in the next. One more is needed if it checks its
-subscriptions just before the time arrives, and its services just after the request has arrived: then the first round
-handles only the request.
+An executor receives the time in one round and calls the timers in the next. But a round may handle only the request: if
+the executor checks its subscriptions just before the time arrives, and its services just after the request has arrived.
+Then a third round is needed.
 """
 FIRST = 100.0
 """The simulated time at the start, in seconds. The jump to this time distorts the first interval, which is therefore
@@ -104,11 +104,11 @@ class NodeClock:
         return ask(self._recorder, self._get, _QUESTION, ANSWER_LIMIT, turns=TURNS) is not None
 
     def lend(self, seconds: float, until: Callable[[], bool]) -> bool:
-        """Make a node in real time follow simulated time for some seconds, so that its timers fire sooner.
+        """Make a node that runs in real time follow a simulated clock for some seconds, so that its timers fire sooner.
 
-        This shows within milliseconds what a program's timers would do in the next seconds. The node loses nothing that
-        it has begun, because its clock continues from its current time and then follows real time again. But code that
-        uses no ROS clock, such as a thread that sleeps, does not get faster.
+        This shows within milliseconds what a program's timers would do in the next seconds. The simulated clock begins
+        at the current time, and the node returns to real time at the end, so nothing that the node has begun is lost.
+        But code that uses no ROS clock, such as a thread that sleeps, does not get faster.
 
         Args:
             seconds: The maximum number of simulated seconds.

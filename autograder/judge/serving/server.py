@@ -29,8 +29,8 @@ if TYPE_CHECKING:
 REFUSE_LIMIT = 0.5
 """Seconds to wait for a notebook's request before the notebook is refused."""
 CLOSE_LIMIT = 10.0
-"""Seconds that a check may still take after its cell has ended. This is short, because then the kernel usually ends,
-too.
+"""Seconds that a check may still take after its cell has ended. The limit is short, because the kernel usually ends
+soon after such a cell, and with the kernel the subject.
 """
 
 
@@ -67,7 +67,7 @@ class JudgeServer:
             if self._controlled and (order is None or self._child is not None):
                 _refuse(
                     connection,
-                    "no check is expected now: a check counts once, and only while its cell is running",
+                    "no check is expected now: each check cell may request its check once, while it is running",
                 )
                 return
             limit = max(

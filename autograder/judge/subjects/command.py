@@ -89,7 +89,10 @@ def check_and_keep(
 
 
 def as_run(exercise: Exercise, command: Sequence[str], cwd: Path | None) -> Sequence[str]:
-    """Return the command to run. If a path is given instead of a command, this is a runner followed by the path."""
+    """Return the command that runs the subject.
+
+    If ``command`` is the path of a workspace or launch file, this is ``python -m autograder.workspaces`` with the path.
+    """
     runner = python_child("-m", "autograder.workspaces", exercise.id).command
     if is_path(exercise, command, cwd):
         return [*runner, command[0]]

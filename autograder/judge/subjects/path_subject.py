@@ -27,8 +27,8 @@ if TYPE_CHECKING:
 STOP_LIMIT = 15.0
 """Time limit in seconds of wall time for the workspace service to end a run."""
 PATIENCE = 60.0
-"""Seconds of wall time. A scenario that stops during a build after at least this time has waited for the build in vain.
-A scenario that stops earlier has seen enough.
+"""If a scenario stops while the build is still running, and more than these seconds have passed since the start, then
+the build took too long and the judge has failed. If a scenario stops earlier, it did not need the build.
 """
 MAX_TEXT = 4_000
 """The maximum length of a line, in characters."""

@@ -34,7 +34,7 @@ class Subject(Protocol):
         """True until the packages of a workspace are built for the first time; False if nothing has to be built."""
 
     def renew(self) -> None:
-        """Use a new participant for the next run: an old one would discover the judge's new one only slowly."""
+        """Use a new participant for the next run. An old one discovers the judge's new participant only slowly."""
 
     def knows(self, *, there: set[Endpoint], gone: set[Endpoint]) -> bool:
         """Wait until the next run's participant has discovered the judge's new endpoints, and lost the removed ones.

@@ -50,9 +50,9 @@ def limited(seconds: float = LIMIT) -> Iterator[None]:
         seconds: Limit in seconds of processor time.
 
     Raises:
-        Undecided: The time is over, or the parent process has sent ``SIGNAL``. The block ignores the signal in its
-            first second of processor time: then the subject's output is not what makes the check late, and the check
-            must end without a verdict.
+        Undecided: The time is over, or the parent process has sent ``SIGNAL`` after the block used at least
+            :data:`SURE` seconds of processor time. The block ignores an earlier signal: the check is late for a reason
+            other than the subject's output, so it must end without a verdict.
     """
     if threading.current_thread() is not threading.main_thread():
         yield  # only the main thread can handle signals, so elsewhere there is no limit
@@ -73,7 +73,7 @@ def limited(seconds: float = LIMIT) -> Iterator[None]:
 
 
 def _no_longer(before: signal.Handlers | Callable[..., object] | int | None) -> None:
-    """Switch the limit off, also if the signal arrives again meanwhile."""
+    """Switch the limit off, even if the signal arrives again meanwhile."""
     while True:
         try:
             signal.setitimer(signal.ITIMER_VIRTUAL, 0.0)

@@ -29,7 +29,7 @@ class ExerciseFailed(JudgeFailed):
 
 @contextlib.contextmanager
 def of_exercise(exercise: Exercise) -> Iterator[None]:
-    """Replace an exception from an exercise's scenario, criteria or mistakes by one that says what to do about it.
+    """Turn an exception in an exercise's own code into an :class:`ExerciseFailed`, which says what to do about it.
 
     Raises:
         ExerciseFailed: The code in the block raised an exception, and code of the exercise or of the kit called it.

@@ -30,7 +30,8 @@ if TYPE_CHECKING:
 MAX_BYTES = 400_000
 """The maximum size of the evidence of one check, in compressed bytes."""
 MAX_RAW_BYTES = 8_000_000
-"""The maximum size in bytes before compression. It is needed for endless repetition, which is small after compression.
+"""The maximum size in bytes before compression. Without it, evidence full of repetitions could be huge, because it is
+small after compression.
 """
 _GZIP = 31
 """The value of zlib's ``wbits`` for a gzip header with the largest window."""
@@ -101,8 +102,8 @@ def pack(verdict: Verdict, evidence: Evidence, digest: str, *, at: float) -> byt
     cut = ""
     if sheet.left_out:
         cut = (
-            f"the last {sheet.left_out} of {sheet.lines} lines are missing: the evidence of one check may have "
-            f"{MAX_BYTES} bytes, or {MAX_RAW_BYTES} before it is compressed"
+            f"the last {sheet.left_out} of {sheet.lines} lines are missing: the evidence of one check is limited to "
+            f"{MAX_RAW_BYTES} bytes, and to {MAX_BYTES} bytes after compression"
         )
     return sheet.end({"cut": cut})
 
@@ -149,7 +150,7 @@ def unpack(data: bytes) -> Kept:
         unzip = zlib.decompressobj(_GZIP)
         text = unzip.decompress(data, 2 * MAX_RAW_BYTES)
         if not unzip.eof:
-            raise NoEvidence("the evidence is cut off, or longer than it may be")
+            raise NoEvidence("the end of the evidence is missing, or the evidence is larger than allowed")
         first, *rows, last = [restored(json.loads(line)) for line in text.splitlines()]
         return msgspec.convert({**first, **last, "looks": _looks(rows)}, type=Kept)
     except (zlib.error, ValueError, TypeError, LookupError, RecursionError) as error:

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from autograder.kit.evidence import Event, Evidence, Part, Reference
 
 MAX_MOMENTS = 80
-"""The maximum number of moments in a verdict: all important ones and, of the less important ones, the first."""
+"""The maximum number of moments in a verdict. All important moments are kept, and the first of the other moments."""
 MOST_MOMENTS = 120
 """The maximum number of moments if more than :data:`MAX_MOMENTS` are important, as when a program sends goals forever.
 """
@@ -33,7 +33,7 @@ EXPECTED = 5
 """The maximum number of missing messages that a failed card shows for each topic, beginning with the first."""
 
 _INPUTS = ("sent", "asked")
-"""The kinds of events that give the subject something: a message of the judge's, or a call of a service."""
+"""The kinds of events that are inputs for the subject: the judge sent a message, or called the subject's service."""
 
 _ENDS = {
     "publisher": "your publisher is here",
@@ -198,7 +198,7 @@ def _lanes(events: Sequence[Event]) -> list[str]:
 
 
 def _first_unlike(events: Sequence[Event], part: Part, reference: Reference) -> Event | None:
-    """Return the first message that is unlike all of the reference solution's on its topic; None if there is none."""
+    """Return the first message with fields that the reference solution did not send on this topic; None if none."""
     known = next((other for other in reference.parts if other.name == part.name), None)
     for event in events:
         if event.kind == "message" and known is not None:

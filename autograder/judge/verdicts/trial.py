@@ -103,7 +103,7 @@ def _check(
 ) -> Checked:
     began = time.monotonic()
     crowded, delivered = False, delivers()
-    # A student may be waiting for a check cell, but not for a grader's check.
+    # Hurry only if a student may be waiting, that is, in a check cell that no grader runs.
     waited_for = subject.in_a_notebook and not marks_crowded
     hurry = Hurry(is_building=lambda: subject.is_building) if waited_for else _no_hurry
     subject.begin(domain_id)
@@ -117,8 +117,8 @@ def _check(
         with limited():
             verdict = judge(exercise, evidence, seed)
         names = {} if verdict.passed or exercise.runner else misnamed(evidence, verdict)
-        # A wrong name should fail only one criterion. So in a new look, the judge uses the subject's names, to decide
-        # the others.
+        # A wrong name should fail only one criterion. So the judge looks again and uses the subject's names, with which
+        # it can decide the other criteria.
         if names:
             look_at = partial(look_at, names=names)
             try:
@@ -132,7 +132,7 @@ def _check(
             again = exercise.second_look and (seen.doubtful or not verdict.passed)
             again = again and not _is_explained(exercise, evidence, verdict, names)
         if again:
-            if not marks_crowded:  # a submission must not learn its verdict
+            if not marks_crowded:  # code of a submission must not learn the verdict
                 subject.tell_so_far(_so_far(verdict))
             try:
                 with Crowding() as crowding:
@@ -257,8 +257,8 @@ def _with_name(finding: Finding, wrong: Event | None) -> Finding:
 def diagnose(exercise: Exercise, evidence: Evidence) -> tuple[Diagnosis, str]:
     """Return the diagnosis of the first known mistake in the evidence, and the traceback that shows it, if any.
 
-    Other tracebacks are not returned, because a student would take them for the mistake, although they may come from
-    another run and a correct line.
+    Other tracebacks are not returned. They may come from another run and a correct line, but a student would take them
+    for the mistake.
     """
     found = _recognised(exercise, evidence)
     if found is not None:

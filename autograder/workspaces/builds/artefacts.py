@@ -169,7 +169,8 @@ def check_room(size: int, most: int, number: int = 0) -> None:
     """
     if number > MAX_FILES or size > most:
         raise BadArtefacts(
-            f"the build made too much: {MAX_FILES} files and folders, and {most // 1000} kB are left for it"
+            f"the build is too large: it may have at most {MAX_FILES} files and folders, and {most // 1000} kB of "
+            "space are left for it"
         )
 
 
@@ -178,7 +179,7 @@ def _take(entry: PackedEntry, place: Path) -> None:
         place.mkdir(parents=True, exist_ok=True)
         return
     if os.path.lexists(place):
-        raise BadArtefacts(f"{os.fsdecode(entry.path)!r:.80} is there twice")
+        raise BadArtefacts(f"{os.fsdecode(entry.path)!r:.80} occurs twice in the result of the build")
     if entry.kind is Kind.OTHER:
         raise BadArtefacts(f"{os.fsdecode(entry.path)!r:.80} is neither a file nor a folder")
     place.parent.mkdir(parents=True, exist_ok=True)
@@ -220,9 +221,9 @@ def _copy(link: PurePosixPath, links: Mapping[PurePosixPath, PurePosixPath], fol
         target = links.get(target, target)
     place, source = folder / link, folder / target
     if target in links or not source.is_file():
-        raise BadArtefacts(f"{str(link)!r} is a link that leads to no file of the build")
+        raise BadArtefacts(f"{str(link)!r} is a link that does not lead to a file of the build")
     if os.path.lexists(place):
-        raise BadArtefacts(f"{str(link)!r} is there twice")
+        raise BadArtefacts(f"{str(link)!r} occurs twice in the result of the build")
     place.parent.mkdir(parents=True, exist_ok=True)
     shutil.copy(source, place)
     return place.stat().st_size

@@ -288,5 +288,5 @@ def _log(built: Built, place: Path) -> str:
     """Return the output of a build as text. Long lines are cut, so that any output can be parsed quickly."""
     text = built.output.decode("utf-8", "replace").replace(f"{place}/", "")
     if built.returncode is None:
-        text += "\nerror: the build took more memory, processes or processor time than a build may take"
+        text += "\nerror: the build used more memory, processes or processor time than is allowed"
     return "\n".join(line[:MAX_LINE] for line in text.splitlines())

@@ -74,7 +74,7 @@ def root() -> Path:
 
 
 def graders_root() -> Path:
-    """Return the folder for the grader's builds of the course's packages, of which a box sees only those it needs."""
+    """Return the folder for the grader's builds of the course's packages. A box sees only the builds that it needs."""
     return _own(platformdirs.user_cache_path(_NAME) / "graded-builds")
 
 
@@ -127,7 +127,7 @@ def entry(key: str, base: Path, cancelled: Callable[[], bool] = lambda: False) -
     """Lock the entry with a key during a ``with`` block, so that no other process makes this build at the same time.
 
     If the entry has no finished build, it is an empty folder, in which the caller makes the build. At the end of the
-    block, it is removed unless the caller has called :meth:`CachedBuild.finish`.
+    block, the entry is removed unless the caller has called :meth:`CachedBuild.finish`.
 
     Args:
         key: The key of the build.
@@ -240,6 +240,7 @@ def _remove(base: Path, folder: Path, used: float | None) -> bool:
             return False  # another process has locked the entry
         if not _is_at(lock, file) or _last_use(folder) != used:
             return False  # another process has just removed, made or used the entry
+
         # Remove the marker of a complete build first, so that the entry counts as an interrupted build if the removal
         # of the other files fails.
         (folder / _MARKER).unlink(missing_ok=True)

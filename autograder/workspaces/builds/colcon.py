@@ -108,7 +108,7 @@ def failed(found: Build, log: str) -> Build:
 
 
 def look(workspace: Path) -> Build:
-    """Return the description of a workspace that is not built: its packages, or why there is none to build.
+    """Return the description of a workspace that is not built: its packages, or why it has no usable package.
 
     Args:
         workspace: The workspace folder, which contains ``src``.
@@ -127,11 +127,11 @@ def look(workspace: Path) -> Build:
 
 
 def choose(found: Build, targets: Targets | None) -> tuple[list[Package], Build]:
-    """Return the packages to build, and the workspace.
+    """Return the packages to build, and the description of the workspace.
 
-    If the workspace contains a target, unusable packages do not matter. If it contains none of the targets, all its
-    packages are to be built. But if one of them is then unusable, no packages are returned, and the workspace's
-    ``trouble`` is set.
+    The packages to build are the targets that the workspace contains, and the packages on which these depend. If the
+    workspace contains no target, all its packages have to be built. In that case, one unusable package is enough for
+    the build to fail: no packages are returned, and the description contains the ``trouble``.
     """
     chosen = needed(found.packages, targets(found)) if targets is not None else []
     if chosen or not found.unusable:

@@ -171,7 +171,8 @@ def without_workspaces(environment: Mapping[str, str], workspace: Path) -> dict[
 def merge(lent: Iterable[Path], own: Iterable[Path], install: Path) -> None:
     """Copy the course's prefixes (``lent``) into a new install folder, and add the student's files (``own``).
 
-    If both have a file with the same path, the course's is taken in ``lib`` (programs, modules), else the student's.
+    If both have a file with the same path, the course's file is used in ``lib`` (programs and modules), and the
+    student's file is used everywhere else.
     """
     students = {prefix.name: prefix for prefix in own}
     for prefix in lent:

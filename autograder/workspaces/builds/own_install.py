@@ -2,7 +2,7 @@
 
 This is decided by comparing two times: when a file's content or name last changed (``st_ctime``), and when the
 package's last `colcon build` began. The times can be compared because both come from the same file system, and so from
-the same clock; and no program can set the first one. Comparing contents instead would not be enough, because `install`
+the same clock; and no program can set ``st_ctime``. Comparing contents instead would not be enough, because `install`
 has no copy of setup.py or CMakeLists.txt. But a newer file that equals its installed copy counts as unchanged, because
 running a cell that writes a program changes the file's time even if the program stays the same.
 
@@ -106,7 +106,7 @@ def _left_over(workspace: Path, package: Package) -> Iterator[Path]:
     launches = [prefix / file for file in launch_files(prefix)]
     yield from (file for file in launches if str(file) not in recorded)
     linked = _linked(prefix)
-    # In a copied workspace, the links still lead into the original workspace. Yield the folders to which they lead.
+    # In a copied workspace, the links still lead into the original workspace, so Python would import its modules.
     yield from (folder for folder in linked if not folder.is_relative_to(package.folder))
     modules = [] if linked else [(f, m) for f in python_folders(prefix) for m in f.rglob("*.py")]
     shared = prefix / "share" / package.name

@@ -259,7 +259,7 @@ def test_the_builds_of_one_notebook_have_so_much_room_and_no_more(
     assert first.ok
     second = made(narrow, workspace, "# other sources\n")
     assert not second.ok
-    assert "kB are left for it" in second.log
+    assert "kB of space are left for it" in second.log
     assert sum(file.stat().st_size for file in cache.rglob("*") if file.is_file()) < 450_000
     assert made(GradedBuilds(cache, jobs), workspace).ok  # somebody else has room
     assert not made(narrow, workspace).ok  # and who has none gets no build from the cache, either
