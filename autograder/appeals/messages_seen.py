@@ -28,8 +28,10 @@ if TYPE_CHECKING:
     from autograder.kit.evidence import Event, Part
 
 _ENDS = {"message": "publisher", "sent": "subscription"}
-"""The kinds of events that are messages on topics, each with the role of the subject's endpoint. The subject has
-published a ``message``. The judge has published a message that was ``sent``, and the subject subscribes to its topic.
+"""For each kind of event that is a message on a topic, the subject's endpoint on this topic.
+
+An event of the kind ``message`` was published by the subject. One of the kind ``sent`` was published by the judge, for
+the subject to receive.
 """
 _OF_CALLS = (
     "asked", "answered", "request", "response", "goal", "goal_sent", "goal_answer", "goal_answered", "feedback",
@@ -122,13 +124,13 @@ def _in_cdr(kind: Any, fields: Mapping[str, Any]) -> bytes:
 
 
 def _channel_in_cdr(file: MessageFile, topic: str, type_name: str) -> tuple[int, Any] | None:
-    """Add a channel for a topic's messages, in CDR, to the MCAP file; None if the message type is not installed.
+    """Declare a topic in the MCAP file (as a *channel* of MCAP), for messages in ROS's encoding, CDR.
 
-    Return the number of the channel and the class of the messages.
+    Return the number of the channel and the class of the messages; None if the message type is not installed.
     """
     try:
-        # Look for the definition first: it fails for a name that is not a message type. Looking for the class would
-        # import any module that the file names.
+        # Look for the definition first, because this fails if the name in the file is not that of a message type. To
+        # find the class, Python imports the module with this name, which could be any module.
         text = definition(type_name)
         kind = interface(type_name)
     except LookupError:

@@ -23,10 +23,10 @@ if TYPE_CHECKING:
 WIDTH = 600
 """The width in pixels of the narrowest picture in which nothing overlaps. Narrower windows scroll."""
 HALF_WIDTH = 430
-"""Like WIDTH, but for a check with many parts, so that a wide card can show two pictures side by side."""
+"""The same width for a check with many parts. It is small enough for two pictures side by side on a wide card."""
 
 _MANY = 8
-"""If a lane has more moments than this, labels that are not essential all stay on one level, so that the lane stays
+"""If a lane has more moments than this, labels that may be left out are drawn on one level only, so that the lane stays
 readable.
 """
 _LEVELS = 4
@@ -265,7 +265,8 @@ def _flags(wishes: Sequence[_Wish]) -> list[_Flag | None]:
             wish = wishes[index]
             if not wish.label or wish.needed is not needed:
                 continue
-            # The first label may get an extra level, because the other labels leave out the words that it contains.
+            # Allow one more level for the first label: the others leave out words that they share with it, so it must
+            # be shown if possible.
             levels = len(wishes) + 1 if needed else (1 if many else _LEVELS) + (index == 0)
             before = wishes[index - 1].x if index else 0.0
             flag = _place(wish, levels, placed, free_left=0.0 if many else wish.x - before)

@@ -27,8 +27,8 @@ MAX_LANES = 8
 _MAX_PARTS = 12
 _LAST = {OTHER_LANES: 1, "log": 2, "printed": 3, OWN_LANE: 4}
 _TOGETHER = 3
-"""If a lane has more moments than this at one simulated time, times do not show the order of the moments: a step of the
-simulated clock does not cause so many.
+"""The maximum number of moments of a lane at one simulated time, for which the axis still shows times. If there are
+more, one step of the simulated clock cannot have caused them all, and the axis numbers the moments instead.
 """
 
 
@@ -66,14 +66,14 @@ class TrafficPart:
 
     @functools.cached_property
     def stands_still(self) -> bool:
-        """True if times do not show the order, because all moments are at (nearly) the same time."""
+        """True if too many moments have the same time, so that the axis has to show their order instead of times."""
         if len({moment.t for moment in self.moments}) == 1:
             return True
         together = Counter((one.lane, one.t) for one in self.moments if one.direction != "expected")
         return self.simulated and max(together.values(), default=0) > _TOGETHER
 
     def when(self, index: int) -> str:
-        """Return the time of a moment, ``"0.500 s"``; if all times are the same, its number, ``"no. 3"``."""
+        """Return the time of a moment, such as ``"0.500 s"``; if :attr:`stands_still`, its number, ``"no. 3"``."""
         if self.stands_still and len(self.moments) > 1:
             return f"no. {index + 1}"
         return f"{self.moments[index].t:.3f} s"
@@ -124,7 +124,7 @@ def traffic(timeline: Sequence[Moment], *, at_most: int) -> Traffic:
 
 def _part(title: str, simulated: bool, moments: list[Moment], share: int) -> TrafficPart:
     ordered = _few_lanes(sorted(moments, key=lambda moment: moment.t))
-    if len(ordered) <= share + 2:  # leaving out only one or two moments would not be worth it
+    if len(ordered) <= share + 2:  # do not leave out only one or two moments
         return TrafficPart(title, simulated, tuple(ordered))
     # Keep both ends: the beginning shows the pattern and the end shows the outcome. The middle only repeats the
     # pattern, so it is left out, except for important moments.

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 _MAX_COLUMNS = 4_000
 """The maximum length of a printed line, in characters. Lines about ordinary appeals have at most half as many."""
 _MAX_LINES = 100
-"""The maximum number of differences to print, and of notes. Exercises have far fewer criteria."""
+"""The maximum number of differences to print, and also of notes. A damaged file could cause any number of them."""
 
 
 def _fail(message: str) -> NoReturn:

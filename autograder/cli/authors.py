@@ -34,7 +34,7 @@ def build(only_check: bool) -> None:
     help="Write the pages about failed notebooks into this folder.",
 )
 def execute(notebooks: tuple[str, ...], jobs: int | None, reports: Path | None) -> None:
-    """Run every notebook: masters must earn full marks; students' notebooks no points, without an error."""
+    """Run every notebook: masters must earn full marks. Students' notebooks must earn no points and cause no error."""
     from autograder import course
     from autograder.authoring.executing import execute_command
     from autograder.authoring.execution_plan import NothingToExecuteError
@@ -180,7 +180,7 @@ def site(edition: str, folder: Path | None, quick: bool) -> None:
     root = course.root()
     folder = (folder or root / "site").absolute()
     if folder.exists() and any(folder.iterdir()) and not (folder / "searchindex.js").is_file():
-        fail(f"{folder} contains other files than a site: choose another folder with --to FOLDER")
+        fail(f"{folder} contains files that are not part of a site: choose another folder with --to FOLDER")
     try:
         problems = build_site(root, folder, edition, outputs=not quick, tell=click.echo)
     except CannotHandOut as error:

@@ -1,8 +1,8 @@
-"""Adds cells to a notebook with which it runs outside of ``./course lab``, for example in Colab.
+"""Adds two cells to each notebook, so that it can also run outside of ``./course lab``, for example in Colab.
 
-One cell contains links to such services, the other sets the course up. They come after the text at the top of the
-notebook. In ``./course lab``, and when a class is graded, they do nothing. They are only added if the course's folder
-contains the code that sets it up (:data:`PART`).
+One cell contains links that open the notebook in such a service, the other sets up the course there. They come after
+the text at the top of the notebook. In ``./course lab``, and when a class is graded, they do nothing. They are added
+only if the course's folder contains the code for the set-up (:data:`PART`).
 """
 
 from __future__ import annotations

@@ -98,7 +98,7 @@ def parse_master(path: Path) -> list[MasterCell]:
     try:
         notebook = myst_to_notebook(text, add_source_map=True)
     except MystMetadataParsingError as error:
-        raise MasterError(path, None, f"{error}.", "Look at the YAML options there.") from error
+        raise MasterError(path, None, f"{error}.", "Correct the YAML options on that line.") from error
     except (ValidationError, AttributeError) as error:
         reason = str(error).split("\n", 1)[0]
         problem = f"Jupyter refuses the header: {reason}."
@@ -131,7 +131,7 @@ def _cell(path: Path, node: Any, place: int, lines: list[str]) -> MasterCell:
         raise MasterError(path, place, "A chapter cannot contain raw cells.", "Make it Markdown or code.")
     kind, grade_id = _options(path, node.metadata, place)
     if not node.source.strip():
-        raise MasterError(path, place, "An empty code cell.", "Fill it or delete it.")
+        raise MasterError(path, place, "An empty code cell.", "Write code in it, or delete it.")
     return MasterCell(kind, node.source, place, _body_line(node.source, place, lines), grade_id)
 
 

@@ -33,7 +33,8 @@ class _Element:
 
     Attributes:
         source: The text of the element in setup.py, which is written back unchanged.
-        text: The value of the element; the same as ``source`` if the value cannot be found without running setup.py.
+        text: The value of the element, such as ``talker = my_robot_pkg.talker:main``; the same as ``source`` if only
+            running setup.py would give the value.
         above: The comments on the lines above the element.
         behind: The comment at the end of the element's line.
     """
@@ -270,7 +271,7 @@ def _comments(text: str, programs: ast.List) -> dict[int, str]:
 
 
 def _value(node: ast.expr, names: Mapping[str, object]) -> str | None:
-    """Return the value of an expression of constants and known variables as text; None for any other expression."""
+    """Return the value of an expression as text; None if more than constants and the given names is needed."""
     match node:
         case ast.Constant(value=value):
             return str(value)

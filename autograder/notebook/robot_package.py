@@ -34,9 +34,9 @@ def complete_package(workspace: str | Path = "ros2_ws", source: Path | None = No
     package = Path(workspace) / "src" / PACKAGE
     try:
         source = source or course.root() / course.SOLUTIONS / "ros2_ws" / "src" / PACKAGE
-    except course.NoCourse:  # in a sandbox there is no course folder
+    except course.NoCourse:  # the sandbox of a submission sees no course folder
         return "This notebook is graded alone: if your package lacks a program, the check takes the course's own."
-    if not source.is_dir():  # the files that students get contain no solutions
+    if not source.is_dir():  # students' copy of the course contains no solutions
         return _what_is_missing(package)
     if not (package / "package.xml").is_file():
         shutil.copytree(source, package, dirs_exist_ok=True)

@@ -63,7 +63,7 @@ class JournalEntry:
 
 
 def place(folder: Path) -> Path:
-    """Return the path of the journal for a folder of notebooks. If the folder is read-only, it is in the user's home.
+    """Return the path of the journal for a folder of notebooks: there or, if it is read-only, in the user's home.
 
     Args:
         folder: The folder that JupyterLab shows.

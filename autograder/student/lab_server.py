@@ -163,7 +163,7 @@ class OpenedNotebooks(AsyncLargeFileManager):
     async def get(self, path: str, *args: Any, **options: Any) -> dict[str, Any]:
         """Return the model of a file or folder, with the file's content if that is requested."""
         model: dict[str, Any] = await super().get(path, *args, **options)  # type: ignore[no-untyped-call]
-        # A notebook that is damaged or comes from another program is shown unchanged.
+        # Change only notebooks of the usual form, not those that are damaged or come from another program.
         match model:
             case {
                 "type": "notebook",

@@ -47,7 +47,7 @@ class NotebookStanding:
         path: The path relative to the folder of the notebooks; empty if the file does not exist.
         exercises: The exercises, in the order in which they are done.
         read: True if the student has marked it as read.
-        touched: True if there is something to reset, because it was checked, marked or changed.
+        touched: True if the notebook can be reset, because the student has checked, marked or changed something in it.
         worked: The Unix time in seconds at which the student last checked, marked, reset or saved it; 0 for never.
     """
 
@@ -154,7 +154,8 @@ def standing(root: Path, folder: Path, entries: Sequence[JournalEntry]) -> Stand
 def _following(notebooks: Sequence[NotebookStanding]) -> NotebookStanding | None:
     """Return the notebook to continue with; None if all are done.
 
-    This is the notebook last worked on or, if that is done, the next one that is not. The first follows the last.
+    This is the notebook that the student last worked on. If that is done, it is the next notebook that is not done, in
+    reading order; after the last notebook, the search goes on with the first.
     """
     times = [notebook.worked for notebook in notebooks]
     here = times.index(max(times)) if times else 0
@@ -185,7 +186,7 @@ def _chapter(
 
 
 def _is_changed(notebook: Path, lab: Path) -> bool:
-    """Return True if a notebook was changed since it was released. This is known only in a hand-out."""
+    """Return True if a notebook differs from the released one; False if the released one does not exist."""
     released = course.released(lab)
     return notebook.is_file() and released.is_file() and notebook.read_bytes() != released.read_bytes()
 

@@ -23,7 +23,9 @@ if TYPE_CHECKING:
     from types import FrameType
 
 _SYNCHRONOUS_IDLE = "\x16"
-"""The control character SYN, which terminals ignore. It is a single byte, so it is never split between two reads."""
+"""The character that :func:`let_log_lines_arrive` writes to the pipe: SYN, which terminals ignore. It is a single byte,
+so it is never split between two reads.
+"""
 _LIMIT = 1.0
 _one_at_a_time = threading.Lock()
 

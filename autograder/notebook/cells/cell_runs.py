@@ -1,8 +1,8 @@
 """Tells which cell of the notebook is running, and whether this cell has run before.
 
 JupyterLab sends the id of the cell with each request to run it (``cellId`` in the request's metadata, which IPython
-passes to ``pre_run_cell``). Other front ends, such as nbclient and the console, send no id. There the text of the cell
-identifies it.
+passes to ``pre_run_cell``). Other front ends, such as nbclient and the console, send no id. For these, the text of a
+cell serves as its identifier.
 """
 
 from __future__ import annotations

@@ -22,7 +22,7 @@ from autograder.notebook.cells.cell_output import last_student_line, notebook_sh
 _ENTRY_POINTS = "entry_points"
 """The name of the list that a cell passes to ``package_files.add_entry_points``."""
 _DEFINED = re.compile(rf"^(?:(?:class|(?:async\s+)?def)\s+(\w+)|({_ENTRY_POINTS})\s*=)", re.MULTILINE)
-"""Matches definitions, also in a cell that Python cannot parse."""
+"""Matches the beginning of a definition in the text of a cell, even if Python cannot parse the cell."""
 _CHECKED = r"^[^#\n]*\b(?:check|watch)\(.*\b{}\b"
 
 
@@ -141,7 +141,7 @@ def _here(error: BaseException) -> str:
 def _packages_of_types() -> tuple[str, ...]:
     try:
         return course.interfaces()
-    except (OSError, course.NoCourse, course.BrokenChapter):  # a grader's kernel has no course folder
+    except (OSError, course.NoCourse, course.BrokenChapter):  # a grader's kernel sees no course folder
         return ()
 
 
@@ -159,8 +159,8 @@ class StaleCodeError(Exception):
 def raise_if_stale(subject: Any) -> None:
     """Refuse to check a class or function that is older than its cell. Outside a notebook, do nothing.
 
-    A check of files is never refused, because the student may have corrected them in an editor. It only prints a
-    warning.
+    A check of files is never refused, because the student may have corrected the files in an editor. In that case this
+    function only prints a warning.
 
     Raises:
         StaleCodeError: The subject, or a class or function that it uses, is older than its cell.
@@ -170,7 +170,7 @@ def raise_if_stale(subject: Any) -> None:
     if isinstance(subject, (str, Path)):
         if why := _cells.why_missing(_ENTRY_POINTS):
             print(
-                f"{why} So setup.py does not have its entry points. Correct that cell and run it, then check again."
+                f"{why} So setup.py lacks the entry points of that cell. Correct the cell and run it, then check again."
             )
         return
     for name in (getattr(subject, "__name__", ""), *sorted(_names_read(subject))):

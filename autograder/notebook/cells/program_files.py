@@ -75,7 +75,13 @@ Statement = tuple[ast.stmt, str]
 
 
 def _definition(name: str, cells: list[str], there: set[str]) -> list[Statement]:
-    """Return the newest definition of a name, after the statements it needs, and add their names to ``there``."""
+    """Return the newest definition of a name, and before it the imports and helpers that it uses.
+
+    Args:
+        name: The name.
+        cells: The texts of the cells that have run, the oldest first.
+        there: The names that the program defines already. The names of the returned statements are added to it.
+    """
     for source in reversed(cells):
         statements = _statements(source)
         found = next(
@@ -100,7 +106,7 @@ def _definition(name: str, cells: list[str], there: set[str]) -> list[Statement]
 
 
 def _statements(source: str) -> list[Statement]:
-    """Return the statements at the top level of a cell; none if Python cannot parse it, as with a magic."""
+    """Return the statements at the top level of a cell; none if Python cannot parse the cell, such as a magic."""
     try:
         body = ast.parse(source).body
     except (SyntaxError, ValueError):
@@ -142,7 +148,8 @@ def _used(node: ast.stmt) -> set[str]:
 def load_ipython_extension(shell: Any) -> None:
     """Define the magic ``%%program``.
 
-    A grader's kernel calls this, because it imports this module before its shell exists.
+    In a grader's kernel, this module is imported before IPython's shell exists. So IPython calls this function later,
+    when it loads its extensions.
     """
     shell.register_magic_function(program, "cell", "program")
 

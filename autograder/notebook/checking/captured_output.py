@@ -107,7 +107,7 @@ def _no_input_for(captured: Callable[[], bool], usual: Callable[..., str]) -> Ca
 
     def ask(*arguments: Any, **options: Any) -> str:
         if captured():
-            raise EOFError("EOF when reading a line")  # Python's input() raises the same text
+            raise EOFError("EOF when reading a line")  # the text of Python's own EOFError
         return usual(*arguments, **options)
 
     return ask

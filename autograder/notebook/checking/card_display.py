@@ -189,7 +189,7 @@ class CardDisplay:
 
 
 def _dated(shown: _Shown, notice: str) -> dict[str, str]:
-    """Return the content of a card that is on the page, with a notice that the card is out of date."""
+    """Return the HTML and text of a shown card, with a notice that the card is out of date."""
     return bundle.mimebundle(shown.verdict, before=shown.before, notice=notice)
 
 

@@ -161,7 +161,7 @@ def converse(link: JudgeLink, exercise: str, subject: Any, card: CardPlace) -> V
                         place.ensure(fresh=order.fresh)
                         link.say(messages.EndpointsMet(place.sees(order.there, order.gone, order.within)))
                     case messages.Start():
-                        # A workspace or launch file runs in a new process, with its own DDS participant.
+                        # Only a class or function runs in this kernel's context. A path runs in a new process.
                         if not is_path(subject):
                             place.ensure(fresh=order.fresh)
                         number = order.run
@@ -181,7 +181,7 @@ def converse(link: JudgeLink, exercise: str, subject: Any, card: CardPlace) -> V
                         link.say(messages.Stacks(number, captured.stacks()))
                     case messages.Stop() if run is not None:
                         if not run.stop():
-                            place.renew()  # the run has not ended, and keeps the old context, which the judge ignores
+                            place.renew()  # the run still uses the old context, so the next run gets a new one
                         link.say(messages.Stopped(number))
                         card.doing(f"the judge examines run {number}")
                         run = None

@@ -29,9 +29,9 @@ if TYPE_CHECKING:
 _GLOBAL_EXECUTOR = "__executor"
 """The name of the variable in ``rclpy/__init__.py`` that contains rclpy's global executor."""
 MEETING = 0.5
-"""Time limit in seconds of wall time for discovering the judge. If it is over, the run begins nevertheless."""
+"""Time limit in seconds of wall time for discovering the judge. After that, the run begins without it."""
 MEETING_POLL = 0.002
-"""Seconds between two tests whether the judge has been discovered."""
+"""Seconds to sleep between two tests of whether the judge has been discovered."""
 
 
 class CheckContext:
@@ -107,7 +107,7 @@ class CheckContext:
             time.sleep(MEETING_POLL)
 
     def sees(self, there: Sequence[Endpoint], gone: Sequence[Endpoint], within: float) -> bool:
-        """Wait until this participant sees all endpoints in ``there`` and none in ``gone``. Return False if too late.
+        """Wait until this participant sees all endpoints in ``there`` and none in ``gone``; False at the time limit.
 
         An endpoint and its node are announced separately. For an endpoint in ``there``, both must be known.
 

@@ -1,7 +1,7 @@
 """Connects a notebook to the judge, and starts a judge process if no grader has started one.
 
-The messages are defined in :mod:`autograder.messages.checks`. Apart from them, the judge uses no code of this package,
-because a student can change everything that runs in the notebook.
+Notebook and judge share only the definitions of the messages (:mod:`autograder.messages.checks`). The judge imports
+nothing from :mod:`autograder.notebook`, and trusts nothing in the kernel, because a student can change all of it.
 """
 
 from __future__ import annotations
@@ -81,7 +81,7 @@ class OwnJudge:
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,
-            # in a new session, because interrupting the kernel must not interrupt the judge
+            # a new session, because an interrupt of the kernel must not reach the judge
             start_new_session=True,
         )
         self._pid = os.getpid()

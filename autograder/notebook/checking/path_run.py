@@ -52,7 +52,7 @@ class PathRun:
         self._reader.start()
 
     def release(self) -> None:
-        """Do nothing, because a process is never held back."""
+        """Do nothing: a process runs on by itself after :meth:`start`. Only a node waits for this call."""
 
     def interrupt(self) -> None:
         """Send Ctrl-C to the process, as in a terminal."""

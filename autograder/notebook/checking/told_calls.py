@@ -30,7 +30,7 @@ TOLD: tuple[tuple[Any, str, type[Looked | Called]], ...] = (
 ``wait_for_service`` and ``call``, use these methods, too.
 """
 LOOKS_TOLD = 10
-"""The maximum number of reports per run that the subject has looked for a server. A loop without a pause looks
+"""How often per run the judge is told, at most, that the subject looks for a server. A loop without a pause looks
 thousands of times a second.
 """
 
@@ -50,7 +50,7 @@ class ToldCalls:
         self._looks = 0
 
     def begin_run(self) -> None:
-        """Reset the count of reported looks for a server, before the next run."""
+        """Before a run, set back to 0 how often the judge was told that the subject looked for a server."""
         self._looks = 0
 
     def __enter__(self) -> Self:

@@ -57,7 +57,7 @@ class WatchMode:
     _here: contextvars.Context = field(default_factory=contextvars.copy_context)
 
     def is_defined_anew(self, subject: Any) -> bool:
-        """Return True if the argument is a class or function other than the newest one so far."""
+        """Return True if ``subject`` is a class or function, and is not the one that is watched so far."""
         return subject is not self.subject and (inspect.isclass(subject) or inspect.isfunction(subject))
 
     def begin(self, subject: Any) -> None:
@@ -99,7 +99,7 @@ class WatchMode:
         self._here.run(keep, verdict)
 
     def settle(self, verdict: Verdict) -> None:
-        """Show the verdict on this card. The subject needs no further check."""
+        """Show the verdict on this card, and record that the subject has been checked."""
         before = self._verdict.score if self._verdict else None
         self._verdict, self.due = verdict, False
         self._here.run(update_card, self._handle, bundle.mimebundle(verdict, before=before, short=True))
@@ -132,8 +132,8 @@ class Watches:
         self._link: JudgeLink | None = None
         self._giving_way = False
         self._lock = threading.Lock()
-        # These events occur around every execution, also silent ones of front ends, and before IPython's other events
-        # after a cell.
+        # Use these two events and not pre_run_cell and post_run_cell, because a front end's silent executions trigger
+        # only these, and post_execute comes before post_run_cell.
         shell.events.register("pre_execute", self._give_way)
         shell.events.register("post_execute", self._go_on)
         atexit.register(self._give_way)  # stop the check before ROS is shut down

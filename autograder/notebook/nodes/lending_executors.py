@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 
 def report_goal_errors(task: Any, arguments: tuple[Any, ...], report: GoalErrorReport) -> tuple[Any, ...]:
-    """Return changed arguments for a task that executes a goal, so that errors are reported; else the same arguments.
+    """Return the arguments for a task of rclpy, changed to report errors if the task executes an action's goal.
 
     rclpy itself catches an error in the execute callback and prints the traceback to standard error, among other lines
     (``ActionServer._execute_goal`` in ``rclpy/action/server.py``). With the changed arguments, the error is reported

@@ -184,8 +184,8 @@ class SpinThreads:
         """Wait for the running callbacks. Return False if one has not returned within ``grace`` seconds."""
         deadline = time.monotonic() + grace
         while True:
-            # No answers are received any more, so a callback that waits for one would wait forever. Repeat this,
-            # because a callback may have begun to wait only now.
+            # No answers are received any more, so a callback that waits for one would wait forever. Release it. The
+            # loop repeats the release, because another callback may have begun to wait only now.
             for node in self._nodes:
                 release_waiting_calls(node)
             left = deadline - time.monotonic()
@@ -268,7 +268,7 @@ class SpinThreads:
             while not self._stop.is_set():
                 try:
                     work = self._next_work()
-                except Exception as error:  # such as InvalidHandle, if a node is being destroyed
+                except Exception as error:  # for example InvalidHandle, while a node is being destroyed
                     failed_waits += 1
                     if failed_waits == _MAX_FAILED_WAITS:
                         self._on_failure(SpinFailure(error, goes_on=False))
@@ -302,7 +302,8 @@ class SpinThreads:
 
     def _run_queued_work(self) -> None:
         while (work := self._to_workers.get()) is not None:
-            # Do this before the task runs: while a callback awaits something, rclpy offers its task again and again.
+            # Remove the task before it runs: if its callback awaits something, rclpy offers the task again, and it
+            # must then be queued again.
             self._queued.discard(work.task)
             if not self._stop.is_set():
                 self._run(work)

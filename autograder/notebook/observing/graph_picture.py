@@ -221,7 +221,8 @@ class _Drawing:
         if self._layout.extent[0] + 2 * _MARGIN > _PAGE:
             sizes = {key: (float(_HEIGHT), label.width) for key, label in labels.items()}
             down = lay_out(sizes, arrows, _GAP_ALONG_DOWN)
-            # The page shrinks a picture that is too wide, and its text becomes too small. So choose the narrower one.
+            # The page shrinks a picture that is too wide, and the text in it becomes too small. So choose the narrower
+            # layout.
             if down.extent[1] < self._layout.extent[0]:
                 self._down, self._layout = True, down
 

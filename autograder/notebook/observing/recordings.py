@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 LOOK_AGAIN = 0.05
 """Seconds between two checks for new messages and new topics."""
 DEPTH = 1000
-"""The maximum number of messages on a topic between two checks; further messages would be lost."""
+"""The maximum number of messages on a topic between two checks; if more arrive, some of them are lost."""
 _EVERY_NODE = ("/rosout", "/parameter_events")
 
 
@@ -94,9 +94,8 @@ class Recording:
 
     def __enter__(self) -> Self:
         """Start recording."""
-        self._node = hidden_node(
-            "_recorder"
-        )  # first, because this fails if ROS is not started: then no file must be overwritten
+        # Make the node before the file is opened: if ROS is not started, this fails, and no file is overwritten.
+        self._node = hidden_node("_recorder")
         try:
             self._file: IO[bytes] = self._path.open("wb")
         except OSError:
@@ -163,7 +162,7 @@ class Recording:
 
 
 def _as_offered(node: Node, topic: str) -> QoSProfile:
-    """Return the strictest QoS that is compatible with all publishers of a topic, so that no message is lost."""
+    """Return the strictest QoS for a subscription that is compatible with every publisher of a topic."""
     offered = [info.qos_profile for info in node.get_publishers_info_by_topic(topic)]
     reliable = all(profile.reliability is ReliabilityPolicy.RELIABLE for profile in offered)
     kept = all(profile.durability is DurabilityPolicy.TRANSIENT_LOCAL for profile in offered)

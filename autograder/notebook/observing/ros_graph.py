@@ -24,7 +24,7 @@ READER = "_graph_reader"
 """The name of the node that reads the graph. It begins with an underscore, so that ROS hides the node."""
 
 PATIENCE = 2.0
-"""Time limit in seconds for two successive readings that are equal. After that, the last reading is used."""
+"""Seconds after which the last reading of the graph is used, even if no two successive readings were equal."""
 SETTLING = 0.05
 """Seconds between two readings that are compared. The wait is needed because a node's endpoints are announced one by
 one.

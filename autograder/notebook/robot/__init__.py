@@ -16,7 +16,7 @@ def start_robot() -> LiveRobot:
     Running the cell again restarts the robot. ``.stop()`` or the end of the kernel ends it. The picture is kept up to
     date for half an hour; ``.show()`` shows a new picture.
     """
-    # imported here, because it imports many message types, which only notebooks with the robot need
+    # Import this here: it imports many message types, which only notebooks with the robot need.
     from autograder.notebook.robot.starting import LiveRobot
 
     robot = LiveRobot()

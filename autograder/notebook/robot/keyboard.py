@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 NAME = "keyboard"
 """The name of the node that publishes the commands. ``draw_graph`` shows it next to the robot."""
 _DISCOVERY = 1.0
-"""If no robot is discovered within this time, in seconds, no robot is running."""
+"""Time limit in seconds for discovering the robot. After that, the student is told that no robot listens."""
 
 
 @dataclass(frozen=True)

@@ -137,7 +137,7 @@ class Moved:
 
 
 def move(pose: Pose, velocity: Velocity, seconds: float, room: Walls) -> Moved:
-    """Return the pose of the robot after turning and rolling for some seconds. A wall stops it."""
+    """Return the pose and velocity of the robot after turning and rolling for some seconds. A wall stops it."""
     speed = velocity.within_limits()
     pieces = max(1, math.ceil(abs(speed.forward) * seconds / _STEP))
     here = pose

@@ -78,7 +78,7 @@ class RobotNode(Node):
         return self._state
 
     def play(self, scene: Scene) -> None:
-        """Let a scene drive the robot, instead of an earlier scene. Commands and goals from other nodes come first."""
+        """Let a scene drive the robot, instead of an earlier scene. Commands and goals take precedence over it."""
         self._scene = scene
 
     @property

@@ -109,7 +109,7 @@ def test_a_check_of_files_says_that_the_cell_with_the_entry_points_failed(
     told, unbroken, asked = said((broken, files), (broken, "entry_points = []", files), (question, files))
     assert "Your cell that defines entry_points" in told
     assert "SyntaxError in line 2, unterminated string literal" in told
-    assert "So setup.py does not have its entry points" in told
+    assert "So setup.py lacks the entry points of that cell" in told
     assert "the judge was asked" in told
     assert "So setup.py" not in unbroken
     assert "instead of '='. So setup.py" in asked
