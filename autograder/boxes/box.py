@@ -27,7 +27,7 @@ class Box:
         name: The name of this box, unique among the boxes of its supervisor.
         pid: The PID of the box's first process, as seen from the host.
         pidfd: A pidfd of the box's first process, which a fork server needs to enter the box; -1 for a command that
-            ended at once. The supervision closes it.
+            ended at once. ``supervision`` closes it.
         guarded: True if the guard's limits apply to every process that enters the box.
         supervision: The connection to the supervisor, through which this box is ended.
     """
@@ -40,7 +40,7 @@ class Box:
 
     @property
     def lost(self) -> bool:
-        """True if the supervisor, and so the box, was lost. If so, exit codes say nothing about the student's code."""
+        """True if the supervisor has ended, and with it this box. An exit code then says nothing about student code."""
         return self.supervision.lost
 
     def end(self) -> int:

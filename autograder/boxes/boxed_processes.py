@@ -24,7 +24,7 @@ _START_SECONDS = 60.0
 _CLOSING_SECONDS = 10.0
 """Seconds for which a command may still run after it closed its output."""
 _ITS_TIME = 1e6
-"""Time limit in seconds, longer than any check, because the judge decides how long a program runs."""
+"""Time limit in seconds for a program of a check. The judge ends the program earlier, so the limit is never reached."""
 
 
 class ForkedProcess:
@@ -76,7 +76,7 @@ class ForkedProcess:
 
     @property
     def lost(self) -> bool:
-        """True if the supervisor or box ended first. If so, the exit status says nothing about the student's code."""
+        """True if the supervisor or the box ended before the process, so that the process has no status of its own."""
         self._look(0.0)
         return self._lost or (self._box is not None and self._box.lost)
 

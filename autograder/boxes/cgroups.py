@@ -162,7 +162,7 @@ def _settings(kind: str, version: int, memory_bytes: int, processes: int) -> Ite
 
 
 def _write(file: Path, value: str) -> None:
-    # Not every kernel has the file that limits swap.
+    # The file that limits swap is missing if the kernel does not count swap. Then there is nothing to limit.
     if file.exists():
         file.write_text(value)
 

@@ -111,7 +111,7 @@ class Desk:
 
 
 def _box_in(folder: Path, started: contextlib.ExitStack) -> Box | None:
-    """Return the box for desk processes, or None if no box can be made here. ``started`` ends the box."""
+    """Return the box for desk processes, or None if none can be made here. The box ends when ``started`` is closed."""
     if shutil.which("bwrap") is None:
         return None
     supervisors = ForkServer(BESIDE, SUPERVISOR_MODULE, folder / "supervisors")
@@ -128,7 +128,7 @@ class KeptDesk:
 
     Args:
         module: The module that a desk process runs.
-        attempts: The maximum number of desks that one call of :meth:`ask` tries, because a desk may be lost.
+        attempts: The maximum number of desks that one call of :meth:`ask` tries, each after the loss of the one before.
         rehearse: Called with each new desk before its first file, to test it. It may raise ``ChannelClosed``.
     """
 

@@ -119,8 +119,8 @@ def _begin(entrance: Entrance, descriptors: Sequence[int], run: Run) -> None:
             descriptors = descriptors[1:]
             filters = filter_for_boxes(hidden_memory=entrance.hidden_memory)
             give_up_rights(b"" if entrance.reader_seconds else filters)
-        # Call this only after giving up rights, which clears the setting (prctl(2)). The parent's id is not passed,
-        # because the parent is in another PID namespace.
+        # Call this only now, because giving up rights clears the setting to die with the parent (PR_SET_PDEATHSIG,
+        # prctl(2)). The parent's id is not passed, because the parent is in another PID namespace.
         die_with_parent()
         signal.signal(signal.SIGINT, signal.default_int_handler)
         if entrance.reader_seconds:
@@ -151,8 +151,9 @@ def give_up_rights(filters: bytes) -> None:
 def _limit_processor_time(seconds: int) -> None:
     """Set the limit on processor time, at which SIGXCPU ends this process.
 
-    The process cannot catch or block SIGXCPU, because the filters of readers and desks refuse the calls for it. SIGKILL
-    follows only a second later, because at the limit it would look as if the machine were out of memory.
+    The process cannot catch or block SIGXCPU, because the filters of readers and desks refuse the calls for it. Linux
+    sends SIGKILL only a second later. It must not come first, because the grader takes SIGKILL to mean that the machine
+    is out of memory.
     """
     resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds + 1))
 

@@ -155,7 +155,7 @@ def _child(mode: str, module: Any, listener: socket.socket, connection: socket.s
 
 
 def preload(modules: Iterable[str]) -> None:
-    """Import modules, and skip missing ones, which the code that needs them will report."""
+    """Import modules, and skip those that cannot be imported. Code that needs such a module reports the error later."""
     for name in modules:
         with contextlib.suppress(Exception):
             importlib.import_module(name)
@@ -204,7 +204,7 @@ class ForkServer:
         extra: Mapping[str, str] | None = None,
         words: Sequence[str] = (),
     ) -> None:
-        raise_own()  # this process will send descriptors to the server, so no box may use up the number in transit
+        raise_own()  # so that no box can keep this process from sending descriptors to the server
         self.address = str(address)
         with socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET) as listener:
             listener.bind(self.address)

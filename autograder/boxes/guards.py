@@ -4,8 +4,8 @@ With cgroups, the operating system itself refuses or ends a process at a limit. 
 box's ``/proc`` several times a second, and ends a box that exceeds a limit. A program may exceed a limit faster than it
 is checked, so each single process also has limits of its own, which the operating system enforces. The checks also read
 the largest amount of memory that a process ever had, so the verdict is the same whichever limit a process reaches
-first. The limit on processor time is always enforced by checks, even with cgroups, because a late check does no harm
-there.
+first. The limit on processor time is always enforced by checks, even with cgroups, because a box that exceeds it for a
+moment harms nothing.
 """
 
 from __future__ import annotations
@@ -34,7 +34,8 @@ INTERVAL = 0.25
 _SIZE = re2.compile(r"(?m)^(\w+):[ \t]+(\d+) kB$")
 _TICKS = os.sysconf("SC_CLK_TCK")
 _PAGES = re2.compile(r"(?m)^(?:TCP|UDP): .*\bmem (\d+)$")
-"""Matches the memory that waits in the sockets of all networks, in pages. The lines include IPv6 and UDP-Lite sockets.
+"""Matches, in ``/proc/net/sockstat``, the memory of data that waits in sockets: of all networks together, in pages. The
+numbers include sockets of IPv6 and of UDP-Lite.
 """
 _PROTOCOLS = ("udp", "udp6", "tcp", "tcp6")
 _SOCKETS = re2.compile(r"(?m)^sockets: used (\d+)$")
@@ -95,8 +96,8 @@ class BoxGuard:
         """Return the limit that the last check found exceeded, or None. The caller must end a box that exceeds a limit.
 
         Args:
-            at_once: True to check again now, if only this watch enforces the limit on memory. Otherwise a check is
-                made every ``INTERVAL`` seconds.
+            at_once: True to check again now, unless a cgroup limits the memory. Otherwise this method checks again
+                only if the last check is older than ``INTERVAL`` seconds.
         """
         now = time.monotonic()
         due = now >= self._next_look or (at_once and not self._memory)
@@ -313,7 +314,10 @@ def _memory_of(process: str) -> tuple[int, int]:
 
 
 def _exact_memory_of(process: str) -> tuple[int, int]:
-    """Measure memory, counting a page that several processes share only once, for which the kernel needs more time."""
+    """Measure the memory of a process exactly: pages that several processes share are divided among them.
+
+    The kernel needs more time for this than for :func:`_memory_of`.
+    """
     try:
         sizes = _sizes_in(Path(process, "smaps_rollup"))
     except PermissionError:

@@ -54,11 +54,12 @@ class Limits:
         beside_bytes: The memory limit in bytes while other submissions run. A submission that needs more is executed
             again, alone, so this limit never decides a result.
         beside: True while other submissions run.
-        judge_bytes: Memory in bytes for the judge's process and for each of its checks. A subject that sends too much
-            reaches it.
+        judge_bytes: The memory limit in bytes for the judge's process and for each of its checks. The judge reaches it
+            if a subject sends too much.
         processes: The maximum number of processes and threads of a box.
         open_files: The maximum number of open files, sockets and pipes of one process.
-        all_open_files: The same for all processes of a box; also the maximum number of sockets in the box's network.
+        all_open_files: The maximum number of open files, sockets and pipes of all processes of a box; also the maximum
+            number of sockets in the box's network.
         file_locks: The maximum number of file parts that all processes of a box may lock; a database locks five.
         socket_bytes: The maximum number of bytes that may wait in the sockets of a box's network. This is needed
             because the machine has one limit for all boxes; if it is used up, no box receives messages any more.

@@ -132,7 +132,9 @@ AF_UNIX is not here because it has no protocols. AF_VSOCK is left out on purpose
 machine past every network namespace.
 """
 _SOL_SOCKET, _SOCKET_FILTERS = 1, (26, 50, 51, 52)
-"""SOL_SOCKET; then SO_ATTACH_FILTER, SO_ATTACH_BPF and the two filters of SO_REUSEPORT (asm-generic/socket.h)."""
+"""The level and the options of ``setsockopt`` that attach a filter to a socket: SOL_SOCKET; SO_ATTACH_FILTER,
+SO_ATTACH_BPF and the two filters of SO_REUSEPORT (asm-generic/socket.h).
+"""
 _TERMINAL_TRICKS = (0x5412, 0x541C)
 """TIOCSTI, which types into a terminal, and TIOCLINUX, which pastes into a console (asm-generic/ioctls.h)."""
 _OTHERS_WAIT = (fcntl.F_SETLEASE, fcntl.F_NOTIFY, 1040)
@@ -284,12 +286,12 @@ def _where(call: int, decide: Sequence[_Instruction]) -> list[_Instruction]:
 
 
 def _load(argument: int) -> _Instruction:
-    """Return an instruction to load the low half of an argument, because the kernel ignores the rest of a flag."""
+    """Return an instruction to load the low 32 bits of an argument. In an argument with flags, only these matter."""
     return (_LOAD, 0, 0, _ARGUMENTS + 8 * argument)
 
 
 def _only_if(argument: int, value: int) -> list[_Instruction]:
-    """Return instructions that allow the call, but go on to the next instruction if an argument has this value."""
+    """Return instructions that allow a call unless an argument has this value; then, the next instructions decide."""
     return [_load(argument), (_JUMP_EQUAL, 1, 0, value), (_RETURN, 0, 0, _ALLOW)]
 
 

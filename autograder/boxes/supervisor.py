@@ -118,7 +118,7 @@ class _Supervisor:
 
     def _open(self, scratch: str, size: int, inodes: int, files: str) -> None:
         syscalls.leave_the_host()
-        die_with_parent()  # again, because the change of rights cleared this setting
+        die_with_parent()  # again, because entering the user namespace has cleared this setting
         syscalls.bring_loopback_up()
         place = Path(scratch)
         furnish(place, size, inodes)

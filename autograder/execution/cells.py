@@ -86,7 +86,8 @@ class Execution:
         trouble: A failure of the grader itself; empty if there was none. With such a failure, no result is final.
         seconds: The duration in seconds of wall time, including the start of the kernel.
         start_seconds: The part of ``seconds`` until kernel and judge were ready.
-        as_typed: The indexes of the cells whose text takes too long to render on a page.
+        as_typed: The indexes of the text cells that a page shows as plain text, because rendering their Markdown takes
+            too long.
         crowded_out: True if the notebook may have failed only because other work ran at the same time.
         cpu_seconds: The processor time in seconds that was used in the student's boxes; 0 if it is not counted.
         evidence: The evidence for the judge's verdicts, by exercise, packed. Grading does not unpack it.
@@ -104,5 +105,5 @@ class Execution:
 
     @property
     def says_nothing(self) -> bool:
-        """True if the notebook should run again, alone, because other work may have used resources that it lacked."""
+        """True if the notebook should run again, alone: the grader failed, or other work may have used up resources."""
         return bool(self.trouble) or self.crowded_out

@@ -3,7 +3,7 @@
 If a student's function has an endless loop, each cell that uses the function hangs, and each would take its whole time
 limit. So only the first such cell gets its full limit, later ones a short one. A function is blamed for a hang only if
 the cell that hung is a cell of the master (which ends with every right answer) and uses nothing else that the student
-defined. A check is never left out, and a check that reaches its verdict at the usual speed counts as usual.
+defined. A check is never left out: if it reaches its verdict within the short limit, the verdict counts as usual.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ class Hangs:
 
     @classmethod
     def of(cls, cells: Iterable[Cell]) -> Hangs:
-        """Return an empty record for these cells."""
+        """Return a record for the notebook with these cells, in which nothing has hung yet."""
         own = (cell.source for cell in cells if cell.kind is CellType.CODE and cell.own)
         return cls(frozenset(name for source in own for name in _defined(source)))
 

@@ -204,7 +204,7 @@ class Kernel:
 
     def _died(self) -> Ended:
         """Collect the last outputs of a kernel that has ended. Return how the cell that ran has ended."""
-        self.kill()  # also ends programs that the cell has started and that hold the kernel's sockets open
+        self.kill()  # end the programs that the cell has started, too: they hold the kernel's sockets open
         if not self._desk_failed:
             self._ask(Do.DRAIN, wall_time(_DESK_SECONDS), of_living=False)
         if self._desk_failed:
@@ -231,7 +231,8 @@ class Kernel:
 
         Args:
             left: Returns the seconds that are left.
-            of_living: False if the kernel has ended already. Then neither this nor an exceeded limit ends the wait.
+            of_living: False if the kernel has ended already. Then the wait goes on until the desk answers or ends, or
+                the time is up.
         """
         waiting = select.poll()
         waiting.register(self._desk_says, select.POLLIN)
@@ -289,7 +290,7 @@ class Kernel:
 
 
 def _listener(path: Path) -> socket.socket:
-    """Return a listening Unix socket. ZeroMQ is not used to make it, because it would do so inside the box."""
+    """Return a listening Unix socket. The grader makes it; ZeroMQ in the kernel would make it inside the box."""
     listener = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
     listener.bind(str(path))
     listener.listen(8)

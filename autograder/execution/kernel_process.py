@@ -91,8 +91,8 @@ def _rehearse() -> None:
         app.initialize([])
         assert app.shell is not None
         app.shell.run_cell("import asyncio\n%time 1 + 1\nassert asyncio")
-        # Restore the streams before the folder is removed, because by now they belong to that kernel, which has no
-        # client.
+        # The rehearsed kernel has replaced the standard streams by its own, which send text to a client that does not
+        # exist. Restore the streams of this process.
         sys.stdout, sys.stderr = sys.__stdout__, sys.__stderr__
 
 
@@ -167,7 +167,8 @@ class _GivenSockets(IPKernelApp):
             s.setsockopt(zmq.USE_FD, descriptor)
             s.bind(f"ipc://{self.address}-{port}")
             s.setsockopt(zmq.USE_FD, -1)
-        # Use an address inside the process, because the debugger's socket connects to the shell channel's last address.
+        # Bind also to an address inside the process: the debugger's socket connects to the last address of the shell
+        # channel's socket.
         s.bind(f"inproc://channel-{port}")
         return port
 

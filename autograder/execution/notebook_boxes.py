@@ -188,7 +188,7 @@ class UnboxedPlace:
         *,
         programs: bool = False,
     ) -> None:
-        del programs  # not needed, because there is only one network, the host's
+        del programs  # without boxes, all processes are on the host's network
         self._addresses, self._folder, self._judge, self._limits = addresses, folder, judge, limits
         self.guard = NoGuard()
         self._started: list[ForkedProcess] = []

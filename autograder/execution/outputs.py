@@ -166,7 +166,10 @@ class OutputCollector:
         return safe
 
     def _has_room(self, outputs: int = 1) -> bool:
-        """Charge the minimum size of outputs to the budgets, except for the first. Return True if enough was left."""
+        """Subtract the minimum size of these outputs from the budgets. Return True if enough was left.
+
+        Nothing is subtracted for the first output of a cell.
+        """
         size = outputs * OUTPUT_BYTES if self._outputs and not self._clear_at_next else 0
         if self._notebook.take(self._own.take(size)) == size:
             return True

@@ -195,7 +195,8 @@ class _Fork:
 def _be(command: Sequence[str], standard_path: Sequence[str]) -> NoReturn:
     """Run a Python script in this process, until the interpreter ends."""
     script, *_ = command
-    signal.signal(signal.SIGINT, signal.SIG_DFL)  # as in a new process, in which Python has not started yet
+    # In a new process, Ctrl-C has its default action until Python installs its handler.
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
     signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
     signal.signal(signal.SIGINT, signal.default_int_handler)
     if os.environ.get("PYTHONFAULTHANDLER"):
@@ -213,7 +214,7 @@ def _be(command: Sequence[str], standard_path: Sequence[str]) -> NoReturn:
 def _open_standard_streams() -> None:
     """Open the streams as Python does when it starts (config_init_stdio, create_stdio in Python/pylifecycle.c)."""
     at_once = bool(os.environ.get("PYTHONUNBUFFERED"))
-    if at_once:  # this also makes the lines of ROS's log unbuffered, which C code writes
+    if at_once:  # C code writes ROS's log lines, so C's buffer has to be switched off, too
         libc = ctypes.CDLL(None)
         libc.setvbuf(ctypes.c_void_p.in_dll(libc, "stdout"), None, _UNBUFFERED, ctypes.c_size_t(0))
     for name, number, errors in (("stdout", 1, None), ("stderr", 2, "backslashreplace")):

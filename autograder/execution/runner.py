@@ -158,7 +158,10 @@ class _Run:
         return Execution(tuple(runs), self._verdicts, self._trouble, seconds, start_seconds)
 
     def _what_led_to(self, check: int, runs: list[CellRun]) -> list[tuple[str, CellRun]]:
-        """Return the code cells since the last check with their titles; if none of them failed, all earlier ones."""
+        """Return the code cells that may have kept a check from beginning, each with its title.
+
+        These are the cells since the previous check. If none of them failed, return all earlier cells except checks.
+        """
         code = [index for index in range(check) if self._cells[index].kind is CellType.CODE]
         checks = [index for index in code if self._cells[index].check is not None]
         recent = [index for index in code if index > (checks[-1] if checks else -1)]
