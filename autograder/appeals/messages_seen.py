@@ -176,7 +176,7 @@ def _message(look: KeptLook, part: Part, event: Event) -> dict[str, Any]:
 
 
 def _types(kept: Kept) -> dict[tuple[str, str], str]:
-    """Return the types of the topics in the evidence; the keys are pairs of a kind of event and a topic."""
+    """Return the message types in the evidence, each with its kind of event and topic as the key."""
     return {
         (kind, topic): str(type_name)
         for look in kept.looks

@@ -134,7 +134,7 @@ class Finished:
         returncode: As in :class:`subprocess.Popen`: the exit code, or a negative number if a signal ended it. None if
             the command was stopped at its time limit.
         output: Standard output and standard error, in the order of arrival, cut to the allowed number of bytes.
-        cut: True if output was dropped, because it exceeded that number.
+        cut: True if output was dropped, because there was more than the allowed number of bytes.
     """
 
     returncode: int | None
@@ -204,9 +204,9 @@ class Running:
     def interrupt(self) -> None:
         """Send Ctrl-C as a terminal does: to the whole process group at once.
 
-        If the processes got it one by one, a program could end, and `ros2 run` with it, before Ctrl-C reached `ros2
-        run`. The box does not end, although its first process is in the group, too: a PID namespace's first process
-        ignores signals for which it has no handler (pid_namespaces(7)).
+        If the processes got the signal one by one, a program could end, and `ros2 run` with it, before Ctrl-C reached
+        `ros2 run`. The box does not end, although its first process is in the group, too: a PID namespace's first
+        process ignores signals for which it has no handler (pid_namespaces(7)).
         """
         signal_group(self.pid, signal.SIGINT)
 

@@ -141,7 +141,7 @@ def _begin(entrance: Entrance, descriptors: Sequence[int], run: Run) -> None:
 
 
 def give_up_rights(filters: bytes) -> None:
-    """Drop all capabilities, let no executed program gain any, and install a filter of system calls."""
+    """Drop all capabilities, keep executed programs from gaining any, and install a filter of system calls."""
     syscalls.drop_capabilities()
     syscalls.filter_system_calls(filters)
     # After a change of rights, a process cannot read its own /proc/self, as programs do, unless it is made dumpable.

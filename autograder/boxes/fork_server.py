@@ -43,7 +43,7 @@ BESIDE, INSIDE = "beside", "inside"
 FOLDER_PREFIX = "autograder-held-"
 """The prefix of the names of the fork servers' folders.
 
-Older versions used another prefix and no lock. Their folders are left alone.
+Folders of older versions have another prefix and no lock, so they are never removed.
 """
 _LIBRARY_FOLDERS = 8
 """The maximum number of folders for libraries, which is more than any workspace of the course needs."""
@@ -103,7 +103,7 @@ def main(arguments: list[str]) -> None:
     module = importlib.import_module(name)
     module.prepare(*words)
     gc.collect()
-    # Objects that exist now are not collected in the children, so that their memory stays shared.
+    # Exclude the objects that exist now from garbage collection in the children, so that their memory stays shared.
     gc.freeze()
     # The exit status of a child is not needed, so no zombie has to be kept.
     signal.signal(signal.SIGCHLD, signal.SIG_IGN)

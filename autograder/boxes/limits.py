@@ -128,8 +128,8 @@ BUILD_LIMITS = Limits(
 
 
 _MOST_OPEN_FILES = 1 << 20
-"""The highest limit on open files to set. Some systems allow a billion, with which programs that loop over all possible
-descriptors would take too long.
+"""The highest limit on open files that is set, even if the system allows more. With a billion, as some systems allow, a
+program that loops over all possible descriptors would take too long.
 """
 
 

@@ -53,7 +53,7 @@ class Enclosure:
         files: Files to put into the notebook's folder, by relative path.
         scratch_bytes: The maximum size in bytes of all files that the boxes write into the scratch together.
         scratch_inodes: The maximum number of files, folders and links in the scratch.
-        guard: Enforces the limits, for the commands of this enclosure together with all other boxes of the guard.
+        guard: Enforces the limits on this enclosure's commands, together with the other boxes that have this guard.
 
     Raises:
         NoSandbox: The supervisor could not make the namespaces.

@@ -102,7 +102,8 @@ _DESKS: Mapping[str, Mapping[str, int]] = {
 }  # fmt: skip
 """The system calls that the desk of a Jupyter kernel may make in addition to those of a reader.
 
-With them the desk waits for its existing connections and uses them. It opens no connections and starts no processes.
+With these calls, the desk waits for messages on its existing connections, and reads and writes there. It opens no
+connections and starts no processes.
 """
 _FUTEX = {"x86_64": 202, "aarch64": 98}
 _FUTEX_WAKE = (1, 129)

@@ -20,7 +20,7 @@ as_json_option = click.option("--json", "as_json", is_flag=True, help="Print the
 
 
 def print_json(value: Any) -> None:
-    """Print a value as one line of JSON, without characters that control a terminal. Bytes must already be JSON."""
+    """Print a value as one line of JSON, without characters that control a terminal. Bytes are taken to be JSON."""
     import msgspec
 
     from autograder.cards.readable import printable_json

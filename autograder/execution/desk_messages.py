@@ -56,7 +56,7 @@ class Do(StrEnum):
 
 
 class DeskOrder(msgspec.Struct, frozen=True):
-    """One order. The desk answers each order once. When a new order comes, it answers the one before at once.
+    """One order. The desk answers each order once. If a new order comes first, the desk answers the earlier at once.
 
     Attributes:
         number: Counted from 1; the answer has the same number. The answer 0 says that the kernel is ready.

@@ -56,7 +56,10 @@ class Hangs:
             self._hung.setdefault(used[0], title)
 
     def before(self, cell: Cell) -> tuple[str, str] | None:
-        """Return a name in the cell whose function or class hung before, and the title of the cell that hung."""
+        """Return the name of a function or class that hung before and that the cell uses; None if there is none.
+
+        The second value is the title of the cell in which this function or class hung.
+        """
         if not self._hung:
             return None  # nothing has hung, as in nearly every notebook, so no cell has to be parsed
         return next(((name, self._hung[name]) for name in self._used(cell) if name in self._hung), None)

@@ -127,7 +127,7 @@ class _Desk:
         return self._ended(self._reply)
 
     def _ended(self, reply: Mapping[str, Any]) -> Said:
-        """Wait for a cell's last outputs, which come through another socket. Return how the cell ended."""
+        """Wait for a cell's last outputs, which may arrive after the kernel's answer. Return how the cell ended."""
         until = time.monotonic() + _LONGEST_LAST_OUTPUT_S
         self._wait(lambda: self._idle or time.monotonic() > until, _LAST_OUTPUT_S)
         if _asks_to_exit(reply):

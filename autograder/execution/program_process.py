@@ -42,8 +42,8 @@ _UNBUFFERED = 2
 _HEAD = 1024
 """The number of bytes to read of a script to get its first line."""
 _FOR_THE_LOADER = "LD_LIBRARY_PATH"
-"""A variable that the loader reads once, when a process starts (ld.so(8)). The loader opens the folders that the
-variable names at each search.
+"""The environment variable with the loader's search path (ld.so(8)). The loader reads it only when a process starts.
+The folders in it are opened at each search.
 """
 _OF_PROCESSORS = "glibc-hwcaps"
 """A folder that the loader searches first, but only if it existed at the loader's first search (ld.so(8))."""

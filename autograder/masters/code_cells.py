@@ -33,7 +33,7 @@ BEGIN = "### BEGIN SOLUTION"
 END = "### END SOLUTION"
 TODO = "# TODO: "
 COPIED = "# copied from this notebook: "
-"""The beginning of a stub line that is replaced with code from the notebook when its cell runs
+"""The beginning of a stub line that is replaced with code from the notebook when the student runs the cell
 (:mod:`autograder.notebook.cells.program_files`).
 """
 ONE_THING = "A cell may ask for one thing only: split it into two cells."

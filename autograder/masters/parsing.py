@@ -1,7 +1,7 @@
 """Parses the text of a master into a list of cells, with their kinds and line numbers.
 
 Students copy code from earlier cells into the programs of a package. In a master, a line ``### COPY`` names the code,
-which is then copied automatically, so that the two cannot differ::
+which is then copied automatically, so that copy and original cannot differ::
 
     ### BEGIN SOLUTION
     # TODO: copy your class TalkerNode here.

@@ -261,7 +261,7 @@ def _elements(text: str, tree: ast.Module, programs: ast.List) -> tuple[list[_El
 
 
 def _comments(text: str, programs: ast.List) -> dict[int, str]:
-    """Return the comments inside a list in setup.py, in order; the keys are line numbers, counted from 1."""
+    """Return the comments inside a list in setup.py, each with its line number (counted from 1) as the key."""
     first, last = programs.lineno, programs.end_lineno or programs.lineno
     return {
         token.start[0]: token.string

@@ -136,7 +136,7 @@ def entries(journal: Path | None) -> list[JournalEntry]:
 
 
 def best(lines: Iterable[JournalEntry]) -> dict[str, JournalEntry]:
-    """Return the best check of each exercise since its notebook was last reset; the first if there are several."""
+    """Return the best check of each exercise since its notebook was last reset; of equally good ones, the first."""
     found: dict[str, dict[str, JournalEntry]] = {}
     for entry in lines:
         if entry.kind == "reset":

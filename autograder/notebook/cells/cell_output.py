@@ -152,8 +152,8 @@ def point_at_raising_lines() -> None:
 
     IPython finds the line of a frame in two ways: a precise one for short files, and a faster one for long files. The
     faster way shows the line that the frame ran last, which is in the ``finally`` block if there is one (Python's data
-    model, "Traceback objects"). IPython 9 takes each cell for a long file, because a cell has no file. This function
-    makes IPython count the cell's lines. Outside IPython it does nothing.
+    model, "Traceback objects"). IPython 9 treats each cell as a long file, because it cannot read a cell's lines from a
+    file. This function makes IPython count the cell's lines. Outside IPython it does nothing.
     """
     if notebook_shell() is None:
         return

@@ -44,7 +44,7 @@ class CellWatch:
         if self._shell is None:
             return
         self._shell.events.register("pre_run_cell", self._cell_begins)
-        # The cell that imports this module is already running, so there is no event for it.
+        # No event announces the cell that imports this module, because it is already running. So note it here.
         parent = self._parent_request()
         cell_id = parent.get("metadata", {}).get("cellId")
         self._set_current(cell_id, parent.get("content", {}).get("code", ""))

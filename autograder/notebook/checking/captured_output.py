@@ -1,9 +1,9 @@
 """Sends a subject's log lines and output to the judge during a check, instead of printing them below the cell.
 
 Only the output of threads that started during the check is captured, so a demonstration node that still runs in the
-background is not taken for the subject. Text that the subject writes to the kernel's original streams is captured, too:
-a handler of Python's ``logging`` keeps the stream that existed when its cell was run, and so does ``from sys import
-stdout``.
+background is not taken for the subject. Text that the subject writes to the kernel's original streams is captured, too.
+A subject may have kept such a stream from before the check, for example with ``from sys import stdout`` or in a handler
+of Python's ``logging``.
 
 If the subject calls ``input()``, it gets an EOFError, like a program without a terminal. Otherwise JupyterLab would
 show an input box, and no other cell could run until the student had answered.

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 _GLOBAL_EXECUTOR = "__executor"
 """The name of the variable in ``rclpy/__init__.py`` that contains rclpy's global executor."""
 MEETING = 0.5
-"""Time limit in seconds of wall time for discovering the judge. After that, the run begins without it."""
+"""Time limit in seconds of wall time for discovering the judge. After that, the run begins anyway."""
 MEETING_POLL = 0.002
 """Seconds to sleep between two tests of whether the judge has been discovered."""
 

@@ -42,7 +42,7 @@ class PathRun:
 
         Args:
             arguments: If the exercise has several programs, the name of one and its arguments; otherwise nothing.
-            options: Empty for a path.
+            options: Always empty, because only a function or a node has options.
         """
         del options
         # The process gets its own session, so that interrupting the kernel does not end it. The judge decides when it

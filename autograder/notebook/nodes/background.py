@@ -295,8 +295,8 @@ def _undo_earlier_run(run: WatchedRun) -> None:
 def _make_room(newcomer: NodeIdentity) -> None:
     """Before a node is made, destroy a node with the same name from another cell. Otherwise messages would come twice.
 
-    If both nodes existed, rcl would warn, and destroying one of them would end the log of both. Two nodes with the same
-    name that the same run of a cell makes stay, because a lab of the course shows what two servers with one name do.
+    If both nodes existed, rcl would warn, and destroying one of them would end the log of both. If one run of a cell
+    makes two nodes with the same name, both stay, because a lab of the course shows what two servers with one name do.
     """
     for made in _made.alive():
         if made.identity == newcomer and made.run != _cells.current:

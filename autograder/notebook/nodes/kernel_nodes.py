@@ -187,7 +187,8 @@ def release_waiting_calls(node: Node) -> None:
 
 
 def _pending_answers(node: Node) -> Iterator[Future]:
-    # Clients of rclpy keep their pending futures in dictionaries (rclpy/client.py, rclpy/action/client.py).
+    # Look into the dictionaries in which rclpy's clients keep the futures of the answers for which they wait
+    # (rclpy/client.py, rclpy/action/client.py).
     for client in (*_parts(node, "clients"), *_parts(node, "waitables")):
         for name, requests in vars(client).items():
             if name.startswith("_pending_") and isinstance(requests, dict):

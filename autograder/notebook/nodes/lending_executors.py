@@ -88,7 +88,7 @@ class Taken:
 
 
 class LendingExecutor(Executor):
-    """The common part of this module's two executors, which extends rclpy's."""
+    """An executor that lends its nodes. This module's two executors inherit from it, and from an executor of rclpy."""
 
     on_taken: Callable[[Taken], None] | None = None
     """Called when another executor has taken a node, in the thread that has taken it."""
@@ -161,7 +161,7 @@ def _global_executor_holding(node: Node) -> Executor | None:
 
 
 def _return_afterwards(borrower: Executor, node: Node, owner: LendingExecutor) -> None:
-    """Make the executor that borrows a node return it to the owner when it removes the node."""
+    """Change the executor that borrows a node: when it removes the node, it gives the node back to the owner."""
     loans: dict[int, LendingExecutor] | None = borrower.__dict__.get(_LOANS)
     if loans is None:
         loans = {}

@@ -43,7 +43,9 @@ def svg_page(width: float, height: float, head: str, style: str, body: str) -> s
 
 
 def as_image(svg: str, words: str, attributes: str = "") -> str:
-    """Return a picture as an ``img`` element with a data URL. JupyterLab removes SVG elements from untrusted output.
+    """Return a picture as an ``img`` element with a data URL.
+
+    The picture is not embedded as an SVG element, because JupyterLab removes such elements from untrusted output.
 
     Args:
         svg: The picture as SVG.

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 SAYS_EVERY = 5
 """The number of simulation steps between two messages about the position."""
 METRES = 0.1
-"""The radius in meters of the arc for the number 1; other numbers multiply it."""
+"""The radius in meters of the arc for the number 1. For any other number, the radius is multiplied by this number."""
 _TOUR = ((2.5, 2.4), (3.6, 2.0))
 """The points on the robot's way to the door, in meters."""
 _QUARTER = math.pi / 2
