@@ -133,7 +133,7 @@ def join(opened: Iterable[int]) -> None:
 def usable() -> Mapping[str, Controller]:
     """Return the controllers in ``_KINDS`` for which groups can be made here.
 
-    It also removes groups that a killed grader left behind.
+    This function also removes groups that a killed grader left behind.
     """
     found = {}
     for kind in _KINDS:

@@ -37,8 +37,8 @@ if TYPE_CHECKING:
     from autograder.boxes.box import Box
 
 MEMORY_BYTES = 700_000_000
-"""The maximum address space of a desk process, in bytes. A notebook of 50 MB with a picture and an emoji takes two
-thirds of it.
+"""The maximum address space of a desk process, in bytes. The worst notebook of 50 MB takes two thirds of it: a large
+picture in text form and one emoji, which makes Python store each character of the text in four bytes.
 """
 _WALL_SECONDS = 600.0
 """Time limit in seconds of wall time. A desk cannot sleep, so the limit of processor time usually ends it earlier."""

@@ -272,7 +272,7 @@ class Kernel:
         return answer
 
     def _desk_ended(self, error: Exception) -> None:
-        """End a kernel whose desk has failed, and find out whether the system killed the desk or the messages did."""
+        """End a kernel whose desk has failed, and record if it was the system that killed the desk."""
         self._desk_failed = True
         has_ended = isinstance(error, Hangup) and not isinstance(error, TooLong)
         if has_ended and self._desk.wait(_DESK_SECONDS):

@@ -36,7 +36,7 @@ class LeaveStubs(ClearSolutions):
             try:
                 cell.source = find_region(cell.source).unsolved
             except CellError:
-                # An instructor's own notebook, written for stock nbgrader, has solutions of another form.
+                # Clear the solution as nbgrader does: this is an instructor's own notebook, written for stock nbgrader.
                 pass
             else:
                 return cell, resources

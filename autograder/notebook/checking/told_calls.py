@@ -50,7 +50,7 @@ class ToldCalls:
         self._looks = 0
 
     def begin_run(self) -> None:
-        """Before a run, set back to 0 how often the judge was told that the subject looked for a server."""
+        """Reset the counter that :data:`LOOKS_TOLD` limits. Call this before each run."""
         self._looks = 0
 
     def __enter__(self) -> Self:

@@ -91,7 +91,7 @@ class LendingExecutor(Executor):
     """An executor that lends its nodes. This module's two executors inherit from it, and from an executor of rclpy."""
 
     on_taken: Callable[[Taken], None] | None = None
-    """Called when another executor has taken a node, in the thread that has taken it."""
+    """Called after a node was moved to another executor, in the thread that moved it."""
     on_goal_error: GoalErrorReport | None = None
     """Called with the error of an action server's execute callback."""
 
