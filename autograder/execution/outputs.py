@@ -23,14 +23,16 @@ empty ones would stay below the limit, but fill the memory and take long to rend
 
 _ESCAPE, _COLOUR = "\x1b", "\x1b["
 _COLOUR_BYTES = 32
-"""The number of bytes that is counted for each color code in addition to its own. A page needs an element of about 130
-characters for the text behind each code.
+"""The number of bytes that a color code counts in addition to its length, because a page needs an HTML element of about
+130 characters for the text after each code.
 """
 _COLOURS = re2.compile(r"\x1b\[[^@-~\n]*[@-~]?")
 _LONG_COLOUR = re2.compile(r"\x1b\[[^@-~\n]{41,}[@-~]?")
-"""Matches a color code that no program uses. nbconvert takes quadratic time for the numbers in one code."""
+"""Matches a color code that is longer than any in use. nbconvert takes quadratic time for the numbers in a code."""
 _NO_COLOUR = "\x1b[m"
-"""The shortest color code. Its ``[`` ends any unfinished code in front of it, so no longer code can result."""
+"""The shortest color code, which replaces long ones. Its ``[`` ends an unfinished code in front of it, so that the two
+do not form a new long code.
+"""
 
 _CLOSING_LINE = 200
 """The maximum number of bytes that a desk itself adds to an output that it had to cut."""
@@ -187,11 +189,11 @@ class OutputCollector:
         return text.encode()[:granted].decode(errors="ignore")
 
     def _afford_colours(self, text: str) -> str:
-        """Return the text; but without its colors if the text with all its color codes would exceed a budget."""
+        """Subtract the color codes of a text from the budgets. Return the text; without colors if they are too many."""
         left = min(self._own.left, self._notebook.left)
         wanted = _COLOUR_BYTES * text.count(_COLOUR)
         if wanted + len(text.encode()) > left:
-            # Search only what may be kept, and count it, because a search takes long.
+            # Search only the part that may be kept, because a search takes long. Subtract also what is removed from it.
             plain, rest = _COLOURS.sub("", text[:left]).replace(_ESCAPE, ""), text[left:]
             wanted, text = min(left, len(text)) - len(plain), plain + rest.replace(_ESCAPE, "")
         self._notebook.take(self._own.take(wanted))
