@@ -160,13 +160,13 @@ class _Run:
     def _what_led_to(self, check: int, runs: list[CellRun]) -> list[tuple[str, CellRun]]:
         """Return the code cells that may have kept a check from beginning, each with its title.
 
-        These are the cells since the previous check. If none of them failed, return all earlier cells except checks.
+        These are the cells since the previous check. If none of them failed, return all earlier cells, but of the
+        checks only those in which the kernel ended.
         """
         code = [index for index in range(check) if self._cells[index].kind is CellType.CODE]
         checks = [index for index in code if self._cells[index].check is not None]
         recent = [index for index in code if index > (checks[-1] if checks else -1)]
         if all(runs[index].ended is Ended.DONE or runs[index].ended is Ended.NOT_RUN for index in recent):
-            # An earlier check is to blame only if the kernel ended in it.
             recent = [index for index in code if index not in checks or runs[index].ended in _KERNEL_GONE]
         return [(_title(self._cells[index]), runs[index]) for index in recent]
 
