@@ -282,42 +282,42 @@ class ForkServers:
         of_judges: Mapping[str, str] | None = None,
         interfaces: Sequence[str] = (),
     ) -> None:
-        self._folder = HeldFolder(FOLDER_PREFIX)
-        place = self._folder.path
         of_judges = {**(environment or {}), **(of_judges or {})}
-        self._kernels = ForkServer(INSIDE, KERNEL_MODULE, place / "kernels", log, environment, interfaces)
-        self._judges = ForkServer(INSIDE, judge_module, place / "judges", log, of_judges)
-        self._supervisors = self._programs = None
-        if boxed:
-            self._supervisors = ForkServer(BESIDE, SUPERVISOR_MODULE, place / "supervisors", log)
-            self._programs = _of_programs(place / "programs", log, environment)
-        self.addresses = Addresses(
-            self._supervisors.address if self._supervisors else "",
-            self._kernels.address,
-            self._judges.address,
-            self._programs.address if self._programs else "",
-        )
+        self._servers: list[ForkServer] = []
+        with contextlib.ExitStack() as started:
+            folder = HeldFolder(FOLDER_PREFIX)
+            started.callback(folder.remove)
+            place = folder.path
+
+            def kept(server: ForkServer) -> str:
+                self._servers.append(server)
+                started.callback(server.stop)
+                return server.address
+
+            kernels = kept(ForkServer(INSIDE, KERNEL_MODULE, place / "kernels", log, environment, interfaces))
+            judges = kept(ForkServer(INSIDE, judge_module, place / "judges", log, of_judges))
+            supervisors = programs = ""
+            if boxed:
+                programs = kept(_of_programs(place / "programs", log, environment))
+                # The supervisors are started last, so they are stopped first, and end their boxes in an orderly way.
+                supervisors = kept(ForkServer(BESIDE, SUPERVISOR_MODULE, place / "supervisors", log))
+            self.addresses = Addresses(supervisors, kernels, judges, programs)
+            self._open = started.pop_all()
 
     @property
     def alive(self) -> bool:
         """True if all fork servers still run."""
-        return all(process.alive for process in self._all())
+        return all(server.alive for server in self._servers)
 
     def stop(self) -> None:
         """End the fork servers, and all boxes, kernels and judges that they started. This may be called twice."""
-        for process in self._all():
-            process.stop()
-        self._folder.remove()
+        self._open.close()
 
     def __enter__(self) -> Self:
         return self
 
     def __exit__(self, *_: object) -> None:
         self.stop()
-
-    def _all(self) -> list[ForkServer]:
-        every = (self._supervisors, self._kernels, self._judges, self._programs)
-        return [server for server in every if server is not None]
 
 
 def _of_programs(address: Path, log: int | None, environment: Mapping[str, str] | None) -> ForkServer:

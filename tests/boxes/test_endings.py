@@ -7,6 +7,7 @@ import resource
 import signal
 import subprocess
 import sys
+import tempfile
 import time
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -14,13 +15,15 @@ from typing import TYPE_CHECKING
 import psutil
 import pytest
 
+from autograder.boxes import fork_server
 from autograder.boxes.boxed_processes import ForkedProcess
 from autograder.boxes.enter_box import Entrance
 from autograder.boxes.environment import box_environment
-from autograder.boxes.fork_server import BESIDE, INSIDE, SUPERVISOR_MODULE, ForkServer
+from autograder.boxes.fork_server import BESIDE, INSIDE, SUPERVISOR_MODULE, ForkServer, ForkServers
 from autograder.boxes.limits import open_files_of_a_box
 from autograder.boxes.mounts import WORK
 from autograder.boxes.sandbox import Enclosure
+from tests.boxes.fork_servers import NO_JUDGE
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -36,6 +39,7 @@ WORKER = """
 import sys, time
 from pathlib import Path
 from autograder.boxes.sandbox import Enclosure
+from tests.boxes.fork_servers import NO_JUDGE
 enclosure = Enclosure(sys.argv[1], Path(sys.argv[2]))
 running = enclosure.start(["sh", "-c", sys.argv[3]])
 print("up", flush=True)
@@ -152,3 +156,20 @@ def test_who_sends_descriptors_to_a_server_may_have_more_in_transit_than_a_box(t
         assert open_files_of_a_box(10**9) <= now / 2
     finally:
         resource.setrlimit(resource.RLIMIT_NOFILE, (soft, hard))
+
+
+def test_fork_servers_of_which_one_cannot_start_leave_no_process_and_no_folder(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    def none_left(*_: object) -> None:
+        raise OSError("no process left")
+
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    monkeypatch.setattr(fork_server, "_of_programs", none_left)
+    before = psutil.Process().children()
+    # The error is kept, because with it everything would go that was not stopped.
+    with pytest.raises(OSError, match="no process left") as kept:
+        ForkServers(NO_JUDGE, boxed=True)
+    assert psutil.Process().children() == before
+    assert not list(tmp_path.iterdir())
+    del kept
