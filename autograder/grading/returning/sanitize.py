@@ -96,7 +96,8 @@ def visible(text: str) -> str:
 def make_harmless(notebook: NotebookNode, as_they_are: Collection[int] = ()) -> NotebookNode:
     """Remove everything from a student's texts and outputs that a browser could execute or load, or that misleads.
 
-    The text of the master's cells and the outputs of its check cells, which show verdicts, stay unchanged.
+    The text of the master's cells and the outputs of its check cells, which show verdicts, stay unchanged; but pictures
+    that are too large are removed everywhere.
 
     Args:
         notebook: A rebuilt or graded notebook. It is changed.
@@ -127,8 +128,10 @@ def make_harmless(notebook: NotebookNode, as_they_are: Collection[int] = ()) -> 
                 cell.metadata["magics_language"] = (
                     "text"  # for the language "text", nbconvert does not highlight code
                 )
-        if cell.cell_type == CellType.CODE and not (is_check(cell) and is_the_masters(cell)):
-            cell.outputs = [_with_pictures_that_fit(harmless_output(o), pictures) for o in cell.outputs]
+        if cell.cell_type == CellType.CODE:
+            shows_verdict = is_check(cell) and is_the_masters(cell)
+            outputs = cell.outputs if shows_verdict else map(harmless_output, cell.outputs)
+            cell.outputs = [_with_pictures_that_fit(output, pictures) for output in outputs]
     return notebook
 
 

@@ -146,6 +146,16 @@ def test_many_pictures_have_one_budget() -> None:
     assert "picture left out: too large" in notebook.cells[-1].source
 
 
+def test_a_picture_that_tests_show_counts_too() -> None:
+    # The outputs of a check cell stay as they are, because they show the verdict; but an answer may draw among them.
+    drawn = nbformat.v4.new_output("display_data", {"image/png": encoded(png(16_000, 16_000))})
+    card = nbformat.v4.new_output("display_data", {"text/html": "<article></article>", "text/plain": "card"})
+    cell = nbformat.v4.new_code_cell("assert draw()", outputs=[card, drawn])
+    cell.metadata["nbgrader"] = {"grade": True, "locked": True, "solution": False, "grade_id": "test"}
+    shown = make_harmless(nbformat.v4.new_notebook(cells=[cell])).cells[0].outputs
+    assert [",".join(sorted(output.data)) for output in shown] == ["text/html,text/plain", "text/plain"]
+
+
 def test_a_picture_is_not_stretched_over_kilometers() -> None:
     address = "data:image/png;base64," + encoded(png())
     shown = harmless_markdown(f'<div><img src="{address}" height=99999999 width=300></div>')
