@@ -99,7 +99,7 @@ def _text(type_name: str) -> str:
 
 
 def _types_in(text: str, package: str) -> Iterator[str]:
-    """Yield the types of those fields that are messages: their names begin with a capital, or name a package."""
+    """Yield the types of the fields that are messages. Such a type begins with a capital letter or with a package."""
     for line in text.splitlines():
         field = _FIELD.match(line)
         if field is None or not (field[1][0].isupper() or "/" in field[1]):

@@ -341,7 +341,7 @@ def _prctl(option: int, value: int) -> bool:
 
 
 def _end_as(code: int) -> None:
-    """End this process with an exit code; if the code is negative, by that signal, without a core file."""
+    """End this process with an exit code. A code of -N means: end by signal N, without a core file."""
     if code < 0:
         _prctl(_PR_SET_DUMPABLE, 0)
         signal.signal(-code, signal.SIG_DFL)

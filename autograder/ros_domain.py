@@ -85,7 +85,7 @@ def claim_free_domain(candidates: Iterable[int] | None = None) -> DomainClaim:
         return DomainClaim(domain, holder)
     raise NoFreeDomainError(
         f"all {len(domains)} ROS domains tried are in use on this host: "
-        f"close some kernels, or choose one yourself by setting {DOMAIN_VARIABLE}"
+        f"close some kernels, or choose a domain yourself by setting {DOMAIN_VARIABLE}"
     )
 
 

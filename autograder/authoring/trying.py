@@ -224,7 +224,7 @@ def _fit(wanted: Sequence[Answer]) -> None:
 
 
 def _given(exercise_id: str) -> Iterator[str]:
-    """Yield a line for each criterion for which the notebook earns points as students get it, without their work."""
+    """Yield a line for each criterion that a notebook meets as students get it, before they write anything."""
     verdict = recording.unsolved(exercise_id)
     for one in verdict.criteria if verdict is not None else ():
         if one.passed:

@@ -154,7 +154,7 @@ class Collect(Message, frozen=True):
 
 
 class Meet(Message, frozen=True):
-    """A request to wait until the participant sees the judge's new endpoints, and the removed ones no longer.
+    """A request to wait until the participant sees the judge's new endpoints and no longer sees the removed ones.
 
     Attributes:
         fresh: True to make a new context first.

@@ -84,7 +84,7 @@ def _program_plan(package: str, program: str, arguments: Sequence[str]) -> Plan:
 
 
 def _missing(made: Build, package: str, wanted: str, there: Iterable[str]) -> str:
-    """Return ``package`` if it was not built, ``wanted`` if ``there`` does not contain it, else an empty text."""
+    """Return the missing name: ``package`` if it was not built, ``wanted`` if it is not in ``there``; else empty."""
     if not any(prefix.name == package for prefix in made.prefixes):
         return package
     return "" if wanted in there else wanted

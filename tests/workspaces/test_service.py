@@ -351,7 +351,7 @@ def test_a_path_that_leads_out_is_refused(sockets: ServiceSockets, jobs: FakeJob
     judge.lines.say(messages.CheckRequest("lab_1_1.hello", 7, "ros2_ws", 1))
     judge.lines.say(messages.Source("../evil", b""))
     judge.lines.hear(messages.ServiceReady)
-    assert "no path inside" in reports(judge.run())[-1]["line"]
+    assert "is not a path inside" in reports(judge.run())[-1]["line"]
     assert not jobs.builds
 
 

@@ -43,7 +43,7 @@ FEEDBACK_MATCH = 3.0
 
 
 class ScriptedActionServer:
-    """An action server that accepts all goals, or refuses all. Its methods work on the goal that was accepted last.
+    """An action server that accepts all goals, or refuses all goals. Its methods use the goal that was accepted last.
 
     Attributes:
         services: The full names of the action's services.
@@ -104,7 +104,7 @@ class ScriptedActionServer:
         made.set()
 
     def await_goal(self, within: float) -> bool:
-        """Wait until a goal has arrived and was answered. Return False if none came within ``within`` seconds.
+        """Wait until a goal has arrived and was answered. Return False if no goal came within ``within`` seconds.
 
         This also waits until the client's subscription to feedback is discovered, because earlier feedback would be
         lost.
@@ -124,7 +124,7 @@ class ScriptedActionServer:
         return self._await("cancel", within, wall=True)
 
     def await_result_request(self, within: float) -> bool:
-        """Wait for a request for a goal's result. Return False if none came within ``within`` seconds."""
+        """Wait for a request for a goal's result. Return False if no request came within ``within`` seconds."""
         return self._await("result_request", within)
 
     def send_feedback(self, **fields: Any) -> None:

@@ -253,10 +253,10 @@ class Presence:
             self._recorder.wait(lambda: self._subject.ended, MATCH)
 
     def note_short_life(self) -> bool:
-        """If a subject has ended and the graph never showed its node, record that the subject had made a node.
+        """If a subject has ended and the graph never showed its node, record that the subject had announced a node.
 
         Returns:
-            True if the subject has ended and had made a node. The result does not depend on the speed of discovery.
+            True if the subject has ended and had announced a node, no matter whether the judge discovered the node.
         """
         if not self._subject.ended or not self._announced():
             return False

@@ -21,7 +21,7 @@ MAX_TEXT = 50_000
 just enough for a stack.
 """
 MAX_TEXTS = 20_000_000
-"""The maximum number of characters in all texts of a part. Of later texts only the beginning is kept."""
+"""The maximum number of characters in all texts of a part. After that, only the beginning of each text is kept."""
 BEGINNING = 100
 ITEM = 32
 """The number of characters that each item of a list adds to the size of an event. Without it, a long list of numbers

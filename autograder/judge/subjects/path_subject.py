@@ -206,5 +206,5 @@ class PathSubject(InOwnProcesses):
 
 
 def as_words(text: str) -> str:
-    """Return a line of a program's output, with a space before it if it looks like a report of the runner."""
+    """Return a line of a program's output. If it looks like a report of the runner, put a space before it."""
     return f" {text[:MAX_TEXT]}" if text.startswith(REPORTS) else text[:MAX_TEXT]

@@ -160,7 +160,7 @@ def _check(
 def _is_explained(
     exercise: Exercise, evidence: Evidence, verdict: Verdict, names: Mapping[str, object]
 ) -> bool:
-    """Return True if the failed criteria need no second look, because a mistake is certain that explains them."""
+    """Return True if no second look is needed, because the evidence proves a mistake that explains all failures."""
     failed = sum(not criterion.passed for criterion in verdict.criteria)
     return is_certain(exercise, evidence) and not (names and failed > len(names))
 

@@ -170,7 +170,7 @@ class Builds:
         return self._entry(found, self._keyed(order))
 
     def _keyed(self, order: BuildOrder, *words: str) -> BuildOrder:
-        """Return the build request with its key for the cache: a hash of the request and of ``words``."""
+        """Return the build request with its key for the cache: a hash of the request and of other facts (``words``)."""
         return replace(
             order,
             key=key(

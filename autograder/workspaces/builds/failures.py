@@ -72,7 +72,7 @@ def _is_a_library(file: str) -> bool:
 
 
 def _place(error: re2.Match[str], log: str) -> str:
-    """Return the file and line in the package that caused a CMake error, even if the error is in a library's file."""
+    """Return the package's file and line that caused a CMake error, even if CMake names a library's file."""
     stack = _CALL_STACK.match(log, error.end())
     own = _CALL.search(stack["calls"].strip().splitlines()[-1].strip()) if stack else None
     place = own or error
