@@ -237,9 +237,9 @@ def _start(command: list[str]) -> int:
 
 
 def reaped(wanted: int) -> int | None:
-    """Wait for all children that have already ended.
+    """Reap all children that have already ended (waitpid(2)).
 
-    Return the exit code of the wanted child; None if that child still runs or was waited for earlier.
+    Return the exit code of the wanted child; None if that child still runs or was reaped earlier.
     """
     code: int | None = None
     with contextlib.suppress(ChildProcessError):
@@ -326,7 +326,7 @@ def _mentions(pid: int, place: bytes) -> bool:
 
 
 def _reap(children: Iterable[int]) -> bool:
-    """Wait for those of the given children that have already ended. Return True if there were any."""
+    """Reap the given children that have already ended (waitpid(2)). Return True if there were any."""
     reaped = False
     for child in children:
         with contextlib.suppress(ChildProcessError):

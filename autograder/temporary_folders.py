@@ -102,8 +102,8 @@ def remove_tree(folder: Path) -> None:
 class HeldFolder:
     """A new private folder for temporary files. Folders left by killed processes are removed first.
 
-    A killed process cannot clean up, so the next process that needs such a folder does. A lock on the folder shows
-    whether its creator is alive; the system releases the lock when a process ends, however it ends.
+    A killed process cannot remove its folder, so the next process that makes a folder of this kind does so. A lock on
+    the folder shows whether its creator is alive; the system releases the lock when a process ends, however it ends.
 
     Args:
         prefix: The beginning of the names of all folders of this kind. Folders of this user with this prefix are

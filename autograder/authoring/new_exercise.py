@@ -173,7 +173,7 @@ def _chapter(root: Path, name: str | None) -> Path:
     if name is None:
         if not there:
             raise CannotMake(
-                f"{root / course.SOLUTIONS} has no chapter yet: add a name for a new one, such as --chapter "
+                f"{root / course.SOLUTIONS} contains no chapter yet: add the name of a new chapter, such as --chapter "
                 "01_my_chapter"
             )
         return there[-1].folder

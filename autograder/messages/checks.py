@@ -66,7 +66,7 @@ class _RunMessage(Message, frozen=True):
 
 
 class Started(_RunMessage, frozen=True):
-    """The function was called. ``accepted`` are those options of :class:`Start` for which it has a parameter."""
+    """The function was called. ``accepted`` lists the options of :class:`Start` for which it has a parameter."""
 
     accepted: list[str]
 

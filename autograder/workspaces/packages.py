@@ -236,7 +236,7 @@ def _package(file: Path, budget: ByteBudget) -> Package:
 
 
 def _validate(file: Path, shown: str) -> None:
-    # Check package.xml here: colcon silently treats a package with an invalid one as a plain Python package.
+    # Check package.xml here: if it is invalid, colcon silently treats the package as a plain Python package.
     try:
         from catkin_pkg.package import InvalidPackage, parse_package
     except ImportError:

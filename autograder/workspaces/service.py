@@ -3,8 +3,8 @@
 The service runs in the grader's executor, outside all boxes, and has two Unix sockets:
 
 * The **judge's** socket, which the student's box cannot see. One connection is one check. The judge sends the sources
-  that it got from the notebook. The service writes and reads them, and has them built and run. It tells the judge
-  what the workspace contains, how the build ended, which processes were started, and what the programs print.
+  that it got from the notebook. The service writes these into files, has them built, and runs the programs. It tells
+  the judge what the workspace contains, how the build ended, which processes were started, and what the programs print.
 * The **notebook's** socket, only for builds: `colcon build` in the student's box lets the service make the build.
 
 The messages on both sockets are defined in :mod:`autograder.messages.workspaces`.

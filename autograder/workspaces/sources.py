@@ -1,4 +1,4 @@
-"""The sources of a build, read once into memory, from where both the build's key and the files to build are taken.
+"""Reads the sources of a build once into memory, for both the build's key and the files that are built.
 
 In this way a build depends on nothing that its key does not cover. Links, pipes, devices, unreadable files, and files
 that tools or compilers make are not sources. Times, the order of files in a folder, and permissions (except the one to

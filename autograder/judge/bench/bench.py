@@ -253,7 +253,7 @@ class TestBench:
         return self._presence.await_sign_of_life(within)
 
     def await_any_endpoint(self, roles: tuple[str, ...]) -> graph.Interface:
-        """Wait until the subject has an endpoint of one of these roles. Return its whole interface at that time."""
+        """Wait until the subject has an endpoint of one of these roles. Return all its endpoints at that time."""
         return self._presence.await_interface(lambda interface: any(interface[role] for role in roles))
 
     def watch_graph(self, condition: Callable[[Evidence], bool], within: float) -> bool:

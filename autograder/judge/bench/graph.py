@@ -1,4 +1,4 @@
-"""Queries for the subject's nodes and endpoints, that is, for those on the ROS graph that are not the judge's.
+"""Queries for the subject's nodes and endpoints: everything on the ROS graph that does not belong to the judge.
 
 rclpy has no event for changes of the graph, so callers repeat these queries. A query takes well under a millisecond.
 """

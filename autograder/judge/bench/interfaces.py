@@ -21,9 +21,7 @@ if TYPE_CHECKING:
     from rclpy.node import Node
 
 _SIDES = {"request": "rq{service}Request", "response": "rr{service}Reply"}
-"""The DDS topics of a service in rmw_fastrtps: one announces the type hash of the request, the other that of the
-response.
-"""
+"""The DDS topics of a service in rmw_fastrtps, by the part of the service type whose hash the topic announces."""
 
 
 class UnknownInterface(LookupError):

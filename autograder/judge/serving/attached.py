@@ -83,7 +83,7 @@ def imports() -> None:
     for name in ("subjects.command_subject", "subjects.remote_subject", "verdicts.trial"):
         importlib.import_module(f"autograder.judge.{name}")
 
-    # Skip broken exercises: one that its author is still writing must not stop the others.
+    # Skip broken exercises: an unfinished exercise must not prevent checks of other exercises.
     exercises.unbroken()
     for name in (*_INTERFACES, *course.interface_modules()):
         with contextlib.suppress(ImportError):

@@ -264,9 +264,9 @@ def _missed(part: Part, reference: Reference, title: str, start: float | None) -
 
 
 def _given_the_same(part: Part, known: Part) -> bool:
-    """Return True if the contents of all inputs, which may be random, are those of the reference solution's run.
+    """Return True if the subject got the same inputs as the reference solution; inputs may be random.
 
-    If the subject ended early, only the inputs that it got are compared.
+    If the subject ended early, only the inputs that it got before are compared.
     """
     mine, theirs = (
         [(e.kind, e.name, e.data.get("fields")) for e in one.events if e.kind in _INPUTS]

@@ -67,8 +67,8 @@ class OwnBuilds(Builds):
 class StudentsBuilds(OwnBuilds):
     """Finds builds for a student's own check: the student's build if it is up to date, else a new one.
 
-    If sources were changed since the student's build, the check builds them, because only the sources are handed in and
-    the grader of a class builds them, too. The card then names the changed files.
+    If sources were changed since the student's build, the check builds the changed sources, because students hand in
+    only sources, and the grader of a class builds these. The card then names the changed files.
     """
 
     def _find_or_make(self, found: Build, chosen: Sequence[Package], order: BuildOrder) -> Build:

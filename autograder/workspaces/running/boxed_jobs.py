@@ -205,7 +205,7 @@ def _wait(running: Running, over: Callable[[], bool]) -> tuple[int | None, bool]
 
 
 def _covers(hidden: Sequence[Path], folder: Path) -> list[Bind]:
-    """Return mounts that hide each of these files and folders behind an empty one."""
+    """Return mounts that hide each of these files and folders behind an empty file or folder."""
     if not hidden:
         return []
     empty_folder, empty_file = folder / "empty", folder / "empty-file"
