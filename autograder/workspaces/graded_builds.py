@@ -35,8 +35,8 @@ ROOM = 32_000_000
 class GradedBuilds(Builds):
     """The builds for one execution of a submission.
 
-    For a package that only defines interfaces, a build made in advance is used even if the sources differ in comments
-    and spaces, as students' sources often do.
+    For a package that only defines interfaces, a build made in advance is used even if the student's sources differ in
+    comments and spaces.
 
     Args:
         folder: The folder for the builds of this execution. Only the grader can write to it.

@@ -35,8 +35,8 @@ LAUNCH_FILES = (".py", ".xml", ".yaml", ".yml")
 """File name extensions of launch files."""
 FOR_BUILDS = 150.0
 """Seconds that are added to an exercise's time limit because a command may build its package first. A failed command is
-judged twice. In the first part of each look, the judge waits for the program up to twice as long as usual, and up to
-three times that on an overloaded machine (`autograder/judge/bench/presence.py`).
+judged twice. In the first part of each look, the judge waits up to twice as long as usual for the program. On an
+overloaded machine, this may take three times as long (`autograder/judge/bench/presence.py`).
 """
 SPARE = 10.0
 """Seconds after an exercise's time limit at which its judge is assumed to have died."""

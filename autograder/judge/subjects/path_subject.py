@@ -27,8 +27,8 @@ if TYPE_CHECKING:
 STOP_LIMIT = 15.0
 """Time limit in seconds of wall time for the workspace service to end a run."""
 PATIENCE = 60.0
-"""If a scenario stops while the build is still running, and more than these seconds have passed since the start, then
-the build took too long and the judge has failed. If a scenario stops earlier, it did not need the build.
+"""The minimum time that a scenario waits for a build, in seconds of wall time. If the scenario stops later and the
+build is still running, the build took too long. If the scenario stops earlier, it did not need the build.
 """
 MAX_TEXT = 4_000
 """The maximum length of a line, in characters."""

@@ -32,9 +32,9 @@ class NotRecordable(RuntimeError):
 def record(exercise: Exercise, subject: Subject, *, domain_id: int) -> Reference:
     """Record the reference solution's endpoints, then run the scenario on it.
 
-    If the solution fails in a look, the cause may be a busy machine, on which a goal may end before it is canceled, or
-    the first message may be lost. So the scenario is run again, unless the mistake is certain or the time limit of a
-    check is over.
+    If the solution fails in a look, the cause may be a busy machine: a goal may have ended before it was canceled, or
+    the first message may have been lost. So the scenario is run again, unless the mistake is certain or the time limit
+    of a check is over.
 
     Returns:
         The recording of the first look in which the solution was right; if there is none, of the last look.

@@ -231,8 +231,8 @@ def _astray(part: Part, reference: Reference, title: str, start: float | None) -
 def _missed(part: Part, reference: Reference, title: str, start: float | None) -> Iterator[Moment]:
     """Yield the reference solution's first messages that the subject did not send, if both had the same inputs.
 
-    The time of a message is counted from the input before it. But if the task has no inputs, it asks only for
-    intervals, so the times are counted from the subject's first message or, if there is none, from the first log line.
+    The time of a message is counted from the input before the message. If the task has no inputs, only intervals
+    matter. The times are then counted from the subject's first message; if it sent none, from its first log line.
     """
     known = next(
         (one for one in reference.parts if one.name == part.name and one.inputs == part.inputs), None

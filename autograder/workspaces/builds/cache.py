@@ -2,8 +2,8 @@
 
 A build is made at its final path, because files in an install folder contain that path. While it is made, the entry is
 locked, and at the end, a marker file is written. So an entry without a marker is an interrupted build, which is removed
-and made again. If the process that makes a build is killed (as JupyterLab kills a kernel to restart it), the build is
-ended, too, but the lock is released only when no process of the build can write any more.
+and made again. The process that makes a build may be killed, for example if JupyterLab restarts the kernel. The build
+then ends as well, and the lock is released once no process of the build can write any more.
 """
 
 from __future__ import annotations

@@ -3,12 +3,12 @@
 This is decided by comparing two times: when a file's content or name last changed (``st_ctime``), and when the
 package's last `colcon build` began. The times can be compared because both come from the same file system, and so from
 the same clock; and no program can set ``st_ctime``. Comparing contents instead would not be enough, because `install`
-has no copy of setup.py or CMakeLists.txt. But a newer file that equals its installed copy counts as unchanged, because
-running a cell that writes a program changes the file's time even if the program stays the same.
+has no copy of setup.py or CMakeLists.txt. But a newer file that equals its installed copy counts as unchanged. For
+example, running a cell that writes a program changes the file's time even if the program stays the same.
 
 `colcon` never removes what an earlier build has installed. So an `install` folder may have a module or program that the
 sources do not have. Such a folder is not used, because the grader of a class builds from the sources alone and would
-not have this module or program. Nor is a folder used if it contains a launch file that the last build did not install,
+not have this module or program. A folder with a launch file that the last build did not install is not used, either,
 because `ros2 launch` refuses a name that it finds twice.
 """
 
