@@ -118,13 +118,13 @@ def test_what_is_packed_is_unpacked(tmp_path: Path) -> None:
 
 
 def test_too_much_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    with pytest.raises(BadArtefacts, match="too much"):
+    with pytest.raises(BadArtefacts, match="too large"):
         unpack(packed(("a", Kind.FILE, 11)), tmp_path / "bytes", most=2 * artefacts.BLOCK + 10)
     copies = [(name, Kind.LINK, "a") for name in "bcd"]
-    with pytest.raises(BadArtefacts, match="too much"):
+    with pytest.raises(BadArtefacts, match="too large"):
         unpack(packed(("a", Kind.FILE, 3), *copies), tmp_path / "copies", most=5 * artefacts.BLOCK + 10)
     monkeypatch.setattr(artefacts, "MAX_FILES", 2)
-    with pytest.raises(BadArtefacts, match="too much"):
+    with pytest.raises(BadArtefacts, match="too large"):
         unpack(packed(*((name, Kind.FOLDER, 0) for name in "abc")), tmp_path / "files")
 
 
@@ -148,9 +148,9 @@ def test_empty_files_and_folders_take_room_too(tmp_path: Path) -> None:
     unpack(few, tmp_path / "few", most=10 * artefacts.BLOCK)
     assert cache.size_of(tmp_path / "few") == 10 * artefacts.BLOCK
     many = packed(*((f"{number}", Kind.FILE, 0) for number in range(10)))
-    with pytest.raises(BadArtefacts, match="too much"):
+    with pytest.raises(BadArtefacts, match="too large"):
         unpack(many, tmp_path / "many", most=10 * artefacts.BLOCK)
     # A file's path makes folders that the archive does not list.
     deep = packed(("/".join("abcdefghijk"), Kind.FILE, 0))
-    with pytest.raises(BadArtefacts, match="too much"):
+    with pytest.raises(BadArtefacts, match="too large"):
         unpack(deep, tmp_path / "deep", most=10 * artefacts.BLOCK)
