@@ -85,7 +85,7 @@ def write_files(files: Mapping[str, bytes], folder: Path) -> Path:
 
 
 def remove_tree(folder: Path) -> None:
-    """Remove a folder, even if the rights to do so were taken away from its files."""
+    """Remove a folder, even if its files and folders are write-protected."""
 
     def make_writable(function: Callable[[str], Any], name: str, _: Any) -> None:
         path = Path(name)

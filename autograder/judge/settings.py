@@ -63,7 +63,7 @@ def prepare_judge(*, boxed: bool = False) -> None:
 
 
 def subject_environment(domain_id: int, *, boxed: bool = False) -> dict[str, str]:
-    """Return the environment variables for a command as the subject: the user's own, with the domain of the check."""
+    """Return the environment variables for a command: the user's own variables, and the ROS domain of the check."""
     environment = {name: value for name, value in os.environ.items() if name not in OF_THE_JUDGE}
     if typed := environment.pop(TYPED_PYTHONPATH, ""):
         environment["PYTHONPATH"] = os.pathsep.join(filter(None, (typed, environment.get("PYTHONPATH"))))
@@ -76,9 +76,9 @@ def subject_environment(domain_id: int, *, boxed: bool = False) -> dict[str, str
 
 
 def provide_log_folder() -> None:
-    """Create a folder for ROS logs unless ``ROS_LOG_DIR`` names one. It is removed when this process ends.
+    """Create a folder for ROS logs unless ``ROS_LOG_DIR`` names one. The folder is removed when this process ends.
 
-    This is needed because rclpy does not start without a folder: rcl_logging_spdlog reports "Failed opening file".
+    Without a folder for logs, rclpy does not start: rcl_logging_spdlog reports "Failed opening file".
     """
     if not os.environ.get(_LOG_FOLDER):
         folder, owner = HeldFolder("autograder-ros-logs-"), os.getpid()

@@ -39,7 +39,7 @@ MAX_BYTES = 100_000_000
 MAX_PACKAGES = 50
 """The maximum number of packages to read; a workspace of the course has a few."""
 MAX_PACKAGE_XML = 20_000
-"""The maximum size of a package.xml in bytes; real ones have a few thousand.
+"""The maximum size of a package.xml in bytes; a usual file has a few thousand.
 
 The limit is needed because validating takes quadratic time. Entities (``<!ENTITY``) are refused, because they let two
 thousand bytes expand to eight million.
@@ -121,7 +121,7 @@ class Package:
 
 
 def find_packages(src: Path) -> tuple[list[Package], list[str]]:
-    """Return the packages below ``src`` that colcon would build, by name, and for each unusable one what is wrong."""
+    """Return the packages below ``src`` that colcon would build, sorted by name; and what is wrong with each other."""
     packages, unusable, budget = [], [], ByteBudget(MAX_LOOK)
     files = sorted(islice(_package_files(src), MAX_PACKAGES + 1))
     if len(files) > MAX_PACKAGES:

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from autograder.judge.subjects.subject import Subject
 
 SETTLED = {Pace.FAST: 1.0, Pace.REAL_TIME: 3.0}
-"""Seconds without a change of the graph, by pace, after which a command is assumed to have made all its endpoints."""
+"""If the graph has not changed for this many seconds, a command is assumed to have made all its endpoints. By pace."""
 GRAPH_LOOK = 0.02
 """Seconds between two queries of the graph whose results are recorded."""
 T = TypeVar("T")
@@ -245,7 +245,7 @@ class TestBench:
         return self._misnamed[name]["real"] if name in self._misnamed else name
 
     def await_node(self) -> bool:
-        """Wait for a node of the subject on the graph. Return True even if the subject had one and has ended."""
+        """Wait for a node of the subject on the graph. Also return True if the subject had a node but has ended."""
         return self._presence.await_node()
 
     def await_sign_of_life(self, within: float) -> bool:
@@ -301,7 +301,7 @@ class TestBench:
         self._there |= self._decoys.plant(name, publishes=publishes, subscribes=subscribes)
 
     def serve(self, service: str, type_name: str, answer: Answer, *, hold: int = 0) -> RecordedServer:
-        """Offer a service until the part ends. The answer to request number ``hold`` waits for ``release()``."""
+        """Offer a service until the part ends. Hold back the answer to request number ``hold`` until ``release()``."""
         self._get_ready_to_serve(service)
         at = self._real(service)
         server = RecordedServer(self.wire, self._recorder, service, type_name, answer, at=at, hold=hold)
@@ -310,7 +310,7 @@ class TestBench:
         return server
 
     def call(self, service: str, type_name: str) -> RecordedCaller:
-        """Create a client of the subject's service, which is removed when the part ends."""
+        """Create a client of the subject's service. The client is removed when the part ends."""
         caller = RecordedCaller(
             self.wire,
             self._recorder,
@@ -323,7 +323,7 @@ class TestBench:
         return caller
 
     def call_action(self, action: str, type_name: str) -> RecordedActionClient:
-        """Create a client of the subject's action, which is removed when the part ends."""
+        """Create a client of the subject's action. The client is removed when the part ends."""
         caller = RecordedActionClient(
             self.wire,
             self._recorder,

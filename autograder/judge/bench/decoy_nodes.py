@@ -36,7 +36,7 @@ class DecoyNodes:
     def plant(
         self, name: str, *, publishes: Mapping[str, str], subscribes: Mapping[str, str]
     ) -> set[Endpoint]:
-        """Put a node on the graph that publishes and subscribes to these topics, with the usual QoS, but is not spun.
+        """Put a node on the graph, with publishers and subscriptions for these topics. The node is not spun.
 
         Returns:
             The identifiers of the node's endpoints on these topics.

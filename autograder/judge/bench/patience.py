@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 CROWDED = 4.0
-"""The maximum number of runnable threads per processor with which time limits keep their length."""
+"""The number of runnable threads per processor from which on time limits get longer."""
 SLOWEST = 3.0
 """The maximum factor by which a busy machine makes a time limit longer."""
 _LOOK_EVERY = 0.1

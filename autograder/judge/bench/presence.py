@@ -101,7 +101,7 @@ class Presence:
         return graph.subject_nodes(self._node, self._subject.keeper)
 
     def counterparts(self) -> list[graph.NodeName]:
-        """Return the subject's nodes that use the judge's topics; all its nodes if the judge has no topic.
+        """Return the subject's nodes that use the judge's topics; all of the subject's nodes if the judge has no topic.
 
         This waits up to a second until the names of these nodes are discovered.
         """
@@ -139,7 +139,7 @@ class Presence:
         )
 
     def await_node(self) -> bool:
-        """Wait for a node of the subject on the graph. Return True even if the subject had one and has ended."""
+        """Wait for a node of the subject on the graph. Also return True if the subject had a node but has ended."""
         nodes: list[graph.NodeName] = []
 
         def there() -> bool:

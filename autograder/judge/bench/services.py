@@ -99,8 +99,8 @@ class RecordedServer:
 ROOM_FOR_ALL = qos_profile_parameters
 """A QoS profile for services with a queue of 1,000 (rclpy, ``qos.py``) instead of 10.
 
-If two servers share a name, more than ten answers may come at once. In a shorter queue, chance would decide which are
-lost.
+If two servers share a name, more than ten answers may come at once. In a shorter queue, chance would decide which
+answers are lost.
 """
 
 

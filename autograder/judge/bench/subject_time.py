@@ -33,8 +33,8 @@ if TYPE_CHECKING:
     from autograder.judge.subjects.subject import Subject
 
 ANSWER_LIMIT = 0.5
-"""Time limit in seconds of wall time for a spinning node to answer. If a node does not answer, simulated time is not
-used for it.
+"""Time limit in seconds of wall time for a spinning node to answer. Simulated time is not used for a node that does not
+answer.
 """
 PATIENT_ANSWER = 1.5
 """Time limit in seconds of wall time for an answer. A node that has not answered by then counts as not spun."""
@@ -162,7 +162,7 @@ def _is_there(future: Any, limit: float) -> bool:
 
 
 def answers(wire: Wire, recorder: Recorder, node: NodeName, limit: float = PATIENT_ANSWER) -> bool:
-    """Return True if a node answers a request for a parameter in time, as every node can that is spun."""
+    """Return True if a node answers a request for a parameter in time. Every node that is spun can answer."""
     client = wire.node.create_client(GetParameters, f"{node.full}/get_parameters")
     try:
         return ask(recorder, client, _QUESTION, limit) is not None

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 InvalidHandle = rclpy_implementation.InvalidHandle
-"""The errors that rclpy raises about an entity that was destroyed meanwhile."""
+"""The errors that rclpy raises if an entity is destroyed while another thread uses it."""
 
 
 TAKEN_IN = 5.0

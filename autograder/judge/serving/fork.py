@@ -1,4 +1,4 @@
-"""Run a check in a child process, so that the parent can report it if the child crashes or hangs."""
+"""Run a check in a child process, so that the parent can report a crash or a hang of the child."""
 
 from __future__ import annotations
 

@@ -122,7 +122,7 @@ class JudgeServer:
 
 
 def _refuse(connection: socket.socket, why: str) -> None:
-    """Read a request, then refuse it. If it were unread at closing, the refusal would be lost (unix(7), ECONNRESET)."""
+    """Read a request, then refuse it. If the request stayed unread, closing would lose the refusal (unix(7))."""
     with contextlib.suppress(OSError):
         connection.settimeout(REFUSE_LIMIT)
         connection.recv(65536)

@@ -128,7 +128,7 @@ class CommandSubject(InOwnProcesses):
         die_with_parent()
 
     def release(self) -> None:
-        """Do nothing, because a command is never held back."""
+        """Do nothing, because a command runs from its start on."""
 
     def interrupt(self) -> None:
         """Send SIGINT to the command's process group, as Ctrl-C in a terminal does."""

@@ -102,7 +102,7 @@ class PathSubject(InOwnProcesses):
         self._say(workspaces.StartProgram(self._run, tuple(map(str, arguments))))
 
     def release(self) -> None:
-        """Do nothing, because a program is never held back."""
+        """Do nothing, because a program runs from its start on."""
 
     def interrupt(self) -> None:
         """Have the workspace service send Ctrl-C to the program."""

@@ -53,7 +53,7 @@ class Subject(Protocol):
         """Start a run."""
 
     def release(self) -> None:
-        """Spin the node of a run that was held back after the constructor."""
+        """Spin the node of this run. Before this call, only the node's constructor has run."""
 
     def interrupt(self) -> None:
         """Send Ctrl-C, as a terminal does. If the run ends after that, it counts as ended by itself."""
@@ -68,7 +68,7 @@ class Subject(Protocol):
 
     @property
     def may_make_more(self) -> bool:
-        """True if the run is held back, and the node's timer or thread may make more endpoints once it is released."""
+        """True if the node is not spun yet, and its timer or thread may make more endpoints after :meth:`release`."""
 
     def processes(self) -> frozenset[int]:
         """Return the ids of the running processes that the subject has started; none if they are not known."""

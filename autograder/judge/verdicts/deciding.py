@@ -30,7 +30,7 @@ The signal's exception may be lost, because Python prints and drops an exception
 callback of the garbage collector.
 """
 SURE = 1.0
-"""Seconds of processor time. If a verdict has taken longer, the cause is the subject's output, not a busy machine."""
+"""If a verdict has taken this many seconds of processor time, the cause is the subject's output, not a busy machine."""
 SIGNAL = signal.SIGVTALRM
 """The signal that stops the computation of a verdict. At other times the judge ignores this signal."""
 

@@ -47,7 +47,7 @@ def of_exercise(exercise: Exercise) -> Iterator[None]:
 
 
 def _where(error: Exception, exercise: Exercise) -> str:
-    """Return the file and line in the exercise (else in the kit) at which the exception was raised; empty if none."""
+    """Return the file and line of the exercise's code, or else of the kit's, that raised the error; empty if none."""
     frames = traceback.extract_tb(error.__traceback__)
     for folder in (exercises.path(exercise.id).parent, KIT):
         for frame in reversed(frames):

@@ -118,7 +118,7 @@ class _Sheet:
         self.lines = self.left_out = 0
 
     def write(self, row: Any) -> None:
-        """Add a line, unless this line or an earlier one exceeds the limit."""
+        """Add a line. Leave it out if this line or an earlier line exceeds the limits."""
         self.lines += 1
         if self.left_out or not self._add(_line(row)):
             self.left_out += 1

@@ -99,7 +99,7 @@ def _interface(exercise: Exercise, subject: Subject, domain_id: int) -> dict[str
 
 
 def _programs(exercise: Exercise) -> list[tuple[str, ...]]:
-    """Return a tuple of arguments for each program of the exercise; one empty tuple if it has only one subject."""
+    """Return the arguments of each of the exercise's programs; a single empty tuple if it has only one subject."""
     runner = exercise.runner
     return [(name,) for name in runner.programs] if isinstance(runner, RunsPrograms) else [()]
 

@@ -141,14 +141,14 @@ def _said_at(event: Event) -> float:
 
 
 def _time(event: Event, start: float | None) -> float:
-    """Return the event's position on the time axis in seconds: simulated time since ``start``, or wall time if None."""
+    """Return the event's seconds on the time axis: simulated time since ``start``; wall time if ``start`` is None."""
     if start is None:
         return round(_said_at(event), 3)
     return 0.0 if event.sim is None else round(event.sim - start, 3)
 
 
 def _began(event: Event) -> bool:
-    """Return True if the event only says that the subject has started or was constructed, which is not shown."""
+    """Return True if the event only says that the subject was started or constructed. Such events are not shown."""
     return event.kind == "subject" and event.name in ("started", "constructed")
 
 
@@ -276,7 +276,7 @@ def _given_the_same(part: Part, known: Part) -> bool:
 
 
 def _after_inputs(known: Part) -> Iterator[tuple[int, Event, float]]:
-    """Yield each message with the number of the inputs before it, and the seconds since the last of them."""
+    """Yield each message with the number of inputs before it, and the seconds since the last of these inputs."""
     given, last = 0, 0.0
     for event in known.events:
         if event.kind in _INPUTS:

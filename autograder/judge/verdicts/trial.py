@@ -248,7 +248,7 @@ def judge(exercise: Exercise, evidence: Evidence, seed: str) -> Verdict:
 
 
 def _with_name(finding: Finding, wrong: Event | None) -> Finding:
-    """Return a criterion's finding, changed to failed if a wrong name costs this criterion."""
+    """Return a criterion's finding. If this is the criterion that a wrong name should fail, change it to failed."""
     if wrong is None or not finding.passed:
         return finding
     return Finding(False, f"the name {wrong.name}", f"the name {wrong.data['real']}")
