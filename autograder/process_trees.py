@@ -196,14 +196,16 @@ def keep(parent: int, command: list[str]) -> int:
     """
     adopt_orphans()
     parent_ends = os.pidfd_open(parent)
-    if os.getppid() != parent:  # The parent has ended, and another process may have its process id.
+    if (
+        os.getppid() != parent
+    ):  # The parent has ended, and another process may now have the parent's process id.
         return 1
     signalled, on_signal = os.pipe2(os.O_NONBLOCK | os.O_CLOEXEC)
     signal.set_wakeup_fd(on_signal, warn_on_full_buffer=False)
     for number in (signal.SIGCHLD, signal.SIGTERM, signal.SIGINT):
         signal.signal(
             number, lambda *_: None
-        )  # A handler is used, because the command would inherit SIG_IGN.
+        )  # Use a handler that does nothing. The command would inherit SIG_IGN, but inherits no handler.
     child = _start(command)
     code: int | None = None
     try:

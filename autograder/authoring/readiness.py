@@ -127,9 +127,7 @@ def _of_linters(lab: Path) -> Iterator[str]:
                 text=True,
                 check=False,
             )
-            if (
-                words[0] == "format" and done.returncode == 1
-            ):  # its output is a long comparison, cut into lines
+            if words[0] == "format" and done.returncode == 1:  # ruff's output would be a long diff
                 yield f"ruff: a file is not formatted. Type: {programs[name]} format --config={_SETTINGS} {lab}"
             else:
                 yield from (f"{name}: {line}" for line in (done.stdout + done.stderr).splitlines())

@@ -70,7 +70,7 @@ def subject_environment(domain_id: int, *, boxed: bool = False) -> dict[str, str
     environment.update(boxed_ros_environment() if boxed else ros_environment())
     environment["ROS_DOMAIN_ID"] = str(domain_id)
     environment["PYTHONUNBUFFERED"] = "1"
-    # A Python program that hangs prints the stacks of its threads when it is aborted.
+    # With this variable, a Python program that hangs prints the stacks of its threads when the judge aborts it.
     environment["PYTHONFAULTHANDLER"] = "1"
     return environment
 

@@ -62,7 +62,7 @@ def build_ahead(folder: Path, jobs: Jobs) -> None:
     ]
     if (own := reference_workspace()).is_dir():
         every.append(lambda: builds.build(look(own), None, name=COURSE))
-    # Notebooks that start at the same time begin with different packages.
+    # Begin with a different package in each thread, so that notebooks that start at the same time share the work.
     first = threading.get_native_id() % max(1, len(every))
     for build in (*every[first:], *every[:first]):
         # If a build takes too long, skip it: each submission with this package then builds it for itself.

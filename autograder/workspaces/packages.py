@@ -121,7 +121,10 @@ class Package:
 
 
 def find_packages(src: Path) -> tuple[list[Package], list[str]]:
-    """Return the packages below ``src`` that colcon would build, sorted by name; and what is wrong with each other."""
+    """Return the packages below ``src`` that colcon would build, sorted by name.
+
+    The second result contains a sentence for each unusable package, which says what is wrong with it.
+    """
     packages, unusable, budget = [], [], ByteBudget(MAX_LOOK)
     files = sorted(islice(_package_files(src), MAX_PACKAGES + 1))
     if len(files) > MAX_PACKAGES:
@@ -215,7 +218,7 @@ def _package(file: Path, budget: ByteBudget) -> Package:
     if len(text) > MAX_PACKAGE_XML:
         raise BadPackage(f"{shown} is larger than {MAX_PACKAGE_XML // 1000} kB")
     if b"\0" in text:
-        # Such a text is in UTF-16, where the next line would find no entity. Tools of ROS read UTF-8 only.
+        # Refuse UTF-16, which contains zero bytes: the tools of ROS read only UTF-8, and "<!ENTITY" could not be found.
         raise BadPackage(f"{shown} is not valid: save it in UTF-8")
     if b"<!ENTITY" in text:
         raise BadPackage(f"{shown} declares an entity with <!ENTITY: replace the entity by its text")

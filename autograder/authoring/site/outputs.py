@@ -83,9 +83,9 @@ def execute_in_new_kernel(client: NotebookClient, folder: Path, lines: Path, **v
     client.timeout, client.kernel_name = LIMIT, "python3"
     client.resources = {"metadata": {"path": str(folder)}}
     environment = {**os.environ, **variables, journal.VARIABLE: str(lines)}
-    # If this variable is set, ipykernel does not show rclpy's log lines in the cells.
+    # Remove this variable, because with it ipykernel does not show rclpy's log lines in the cells.
     environment.pop("PYTEST_CURRENT_TEST", None)
-    # rclpy also writes the log lines to the kernel's standard output and error, where no reader sees them.
+    # rclpy also writes the log lines to the kernel's standard output and error. Drop this copy, which no reader sees.
     client.execute(env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
 
 

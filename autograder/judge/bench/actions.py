@@ -317,7 +317,7 @@ class RecordedActionClient(Client):
         known = [goal_text(goal) for goal in self._goals]
         heard = goal_text(message.goal_id)
         number = known.index(heard) if heard in known else -1
-        # The time at which the server sent the message does not depend on how busy the judge is (rmw_message_info_t).
+        # Record the time of sending (rmw_message_info_t), which does not depend on how busy the judge is.
         sent = info["source_timestamp"] / 1e9
         self._recorder.record(
             "feedback_heard", self._name, goal=number, fields=to_data(message.feedback), sent=sent

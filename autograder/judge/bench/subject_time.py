@@ -339,8 +339,8 @@ class SubjectTime:
     def _clock_taken_over(self) -> SimulatedClock | None:
         """Return a clock that the subject follows; None if the subject has no node, or does not follow the clock."""
         if any(self._wire.node.count_publishers(topic) > 1 for topic in self._presence.subscriptions):
-            # Several publishers may belong to nodes with the same name. Their parameter services then have the same
-            # names, too, so one of the nodes would stay in real time.
+            # Do not use simulated time for several publishers. They may belong to nodes with the same name, whose
+            # parameter services have the same names, too. Then one of the nodes would stay in real time.
             self._doubt()
             return None
         node = next(iter(self._presence.counterparts()), None)

@@ -138,6 +138,6 @@ class LogReader:
     def _hear(self, line: Any) -> None:
         sent = line.stamp.sec + line.stamp.nanosec / 1e9
         if sent < self._recorder.began_at:
-            return  # a late line of an earlier part, logged by a node of the same participant
+            return  # ignore a late line of an earlier part, which a node of the same participant logged
         text, level = line.msg, int(line.level)
         self._recorder.record("log", line.name, text=text, level=level, sent=sent, arrived=time.time())

@@ -68,7 +68,7 @@ _INTERFACES = (
     "rosgraph_msgs.msg",
     "action_msgs.msg",
     "action_msgs.srv",
-    # Every node offers a service of this type, and loading the type costs 5 ms of processor time.
+    # Every node offers a service from this package. Loading its type costs 5 ms of processor time, so do it in advance.
     "type_description_interfaces.msg",
     "type_description_interfaces.srv",
 )

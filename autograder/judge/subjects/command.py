@@ -78,7 +78,7 @@ def check_and_keep(
         verdict, checked = checked_here(exercise, command, chosen, cwd, box)
         return msgspec.json.encode(Report(verdict, evidence=_packed(checked)))
 
-    settings.provide_log_folder()  # created in the parent, because the child exits without removing it
+    settings.provide_log_folder()  # before the fork, because a child exits without removing its folders
     outcome = Child(report, exercise.limit + FOR_BUILDS + SPARE).result()
     if outcome.data is None:
         advice = f"Run `{COMMAND} doctor`."

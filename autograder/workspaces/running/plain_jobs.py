@@ -54,7 +54,7 @@ class PlainJobs:
             (BUILD_SECONDS, MAX_LOG_BYTES) if self._handed_in else (OWN_BUILD_SECONDS, sys.maxsize)
         )
         environment = {**without_workspaces(self.environment, order.workspace), **order.variables}
-        # With this variable, setuptools would print a warning in every log.
+        # Remove this variable, because with it setuptools would print a warning in every log.
         environment.pop("PYTHONDONTWRITEBYTECODE", None)
         start = PlainProgram if self._handed_in else OwnSession
         with start(command, environment, entry.folder, (entry.lock,)) as colcon:
