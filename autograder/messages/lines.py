@@ -85,7 +85,7 @@ class Lines:
 
     @classmethod
     def with_parent(cls, largest: int = sys.maxsize) -> Self:
-        """Connect to the parent process, which started this one with a socket as its standard input.
+        """Connect to the parent process, which started this process with a socket as its standard input.
 
         Children of this process get an empty standard input instead. So the connection ends when this process ends.
         """

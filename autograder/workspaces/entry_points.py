@@ -1,4 +1,4 @@
-"""Entry points in a setup.py: their format, and what is wrong with an invalid one."""
+"""Entry points in a setup.py: their format, and what is wrong with an invalid entry point."""
 
 from __future__ import annotations
 

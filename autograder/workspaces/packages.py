@@ -148,7 +148,7 @@ def launch_files(folder: Path) -> list[Path]:
 
 
 def workspace_of(file: Path, beside: Iterable[Path]) -> Path | None:
-    """Return the workspace that contains a launch file, else one in the folders ``beside``; None if there is neither.
+    """Return the workspace that contains a launch file, else a workspace in the folders ``beside``; else None.
 
     Args:
         file: The launch file.
@@ -161,7 +161,7 @@ def workspace_of(file: Path, beside: Iterable[Path]) -> Path | None:
 
 
 def needed(packages: Iterable[Package], targets: Iterable[str]) -> list[Package]:
-    """Return the packages that are targets or on which a target depends, directly or indirectly. The order is kept."""
+    """Return the targets and all packages on which they depend, even indirectly, in the order of ``packages``."""
     there = list(packages)
     dependencies: dict[str, set[str]] = {}
     for package in there:

@@ -116,7 +116,7 @@ class Preparation:
     def _launched(
         self, command: Sequence[str], file: Path | None, made: Build | None, course: Build | None
     ) -> Prepared:
-        """Return a launch that finds the student's build first, then the course's.
+        """Return a launch that finds the student's build first, then the course's build.
 
         But if the student's package lacks programs of the course's package, a copy of the course's build with the
         student's files added comes first.

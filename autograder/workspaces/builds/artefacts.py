@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 MAX_FILES = 5_000
 MAX_BYTES = 64_000_000
 MOST_ENTRIES = 100_000
-"""The maximum number of entries to decode. Millions of tiny ones fit into an archive, but take a gigabyte of memory.
+"""The maximum number of entries to decode. Millions of tiny entries fit into an archive, but take a gigabyte of memory.
 The box of a build cannot have so many files.
 """
 BLOCK = 4_096

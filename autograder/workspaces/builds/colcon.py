@@ -173,7 +173,7 @@ def command(packages: Iterable[Package], folder: Path, cmake: Sequence[str] = ()
 
 
 def _log_of(log: str, package: str) -> str:
-    """Return the part of colcon's output that is about one package; all of it if there is no such part."""
+    """Return the part of colcon's output that is about one package; the whole output if it has no such part."""
     if package:
         found = re2.search(rf"(?ms)^--- output: {re2.escape(package)}\n(.*?)^---$", log)
         if found:

@@ -139,7 +139,7 @@ def with_prefixes(
 
 
 def relocated(environment: Mapping[str, str], here: Path, there: Path) -> dict[str, str]:
-    """Return the environment with the path ``here`` replaced by ``there``, for a process that sees the folder there."""
+    """Return the environment with the path ``here`` replaced by ``there``, at which a process sees the same folder."""
     old, new = f"{here}{os.sep}", f"{there}{os.sep}"
     return {
         name: os.pathsep.join(
@@ -222,7 +222,7 @@ def _replace(old: Path, new: Path) -> None:
 
 
 def rename_paths(folder: Path, old: str, new: str) -> None:
-    """Replace a path by another one in all text files of a folder, such as setup scripts and CMake files."""
+    """Replace a path by another path in all text files of a folder, such as setup scripts and CMake files."""
     for root, _, names in os.walk(folder):
         for file in (Path(root, name) for name in names):
             content = file.read_bytes()

@@ -59,7 +59,7 @@ class BoxedJobs:
         return box_environment()
 
     def place(self, name: str, entry: Path) -> Path:
-        """Return the path of a build's folder inside a box: it is in the home folder."""
+        """Return the path of a build's folder inside a box. The path is below the home folder."""
         del entry
         return HOME / name
 

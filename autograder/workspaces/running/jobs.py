@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 BUILD_SECONDS = 170.0
 """The time limit of a build, in seconds of wall time. An interface package takes five seconds on two idle cores.
 
-An exercise waits longer than this, so that a build on a busy machine is never mistaken for a failed one.
+An exercise waits longer than this, so that a build on a busy machine is never mistaken for a failed build.
 """
 MAX_LOG_BYTES = 1_000_000
 """The maximum number of bytes that are kept of a build's output."""

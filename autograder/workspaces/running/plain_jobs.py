@@ -40,12 +40,12 @@ class PlainJobs:
         self._handed_in = handed_in
 
     def place(self, name: str, entry: Path) -> Path:
-        """Return the entry's own path: without a box, jobs see it there."""
+        """Return the path of the entry. Without a box, jobs see the entry at its own path."""
         del name
         return entry
 
     def tree(self, sources: Path) -> Path:
-        """Return the sources' own path: without a box, programs see them there."""
+        """Return the path of the sources. Without a box, programs see the sources at their own path."""
         return sources
 
     def build(self, order: BuildOrder, command: Sequence[str], entry: CachedBuild) -> Built:
