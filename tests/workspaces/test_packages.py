@@ -141,7 +141,7 @@ def test_a_package_file_is_not_longer_than_it_looks(
     (workspace / "src" / "tiny_pkg" / "package.xml").write_text(content, encoding)
     monkeypatch.setattr(packages, "MAX_LOOK", 0)  # of many packages, the last are not validated
     assert trouble_in(workspace / "src") == "tiny_pkg/package.xml " + (
-        "declares an entity with <!ENTITY; write what it stands for in its place"
+        "declares an entity with <!ENTITY: replace the entity by its text"
         if encoding == "utf-8"
         else "is not valid: save it in UTF-8"
     )
