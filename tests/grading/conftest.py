@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import shutil
 import sys
 from pathlib import Path
@@ -10,7 +11,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from autograder.grading import batch
-from autograder.grading.rebuilding import task_making
+from autograder.grading.rebuilding import desk, task_making
 
 sys.path.insert(0, str(Path(__file__).parent))
 sys.path.insert(0, str(Path(__file__).parent / "collecting"))
@@ -20,6 +21,13 @@ from tiny_class import FakeEngine, TinyClass, make_tiny_class
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
+
+    from autograder.boxes.desk import Desk, KeptDesk
+
+SMALL = 100_000
+"""Bytes of a file that is kept in the memory of the tests, with what it holds."""
+_document_of = desk.document_of
+_once = functools.lru_cache(maxsize=300)(desk.document_of)
 
 
 @pytest.fixture(scope="session")
@@ -53,6 +61,18 @@ def _one_course_version() -> Iterator[None]:
     with pytest.MonkeyPatch.context() as patch:
         for part in (task_making, batch):
             patch.setattr(part, "course_version", lambda: "test")
+        yield
+
+
+@pytest.fixture(scope="module", autouse=True)
+def each_file_is_read_once() -> Iterator[None]:
+    """A desk knows nothing but the bytes of a file, so it returns the same for the same bytes."""
+
+    def document(asked: Desk | KeptDesk, data: bytes) -> bytes:
+        return (_once if len(data) < SMALL else _document_of)(asked, data)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(desk, "document_of", document)
         yield
 
 

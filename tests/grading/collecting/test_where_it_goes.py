@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import functools
 import io
 import random
 import shutil
@@ -27,7 +26,6 @@ from autograder.grading.collecting.collect import collect
 from autograder.grading.collecting.collected_csv import Table
 from autograder.grading.collecting.line import LineState
 from autograder.grading.exporting.export_files import export
-from autograder.grading.rebuilding import desk
 from autograder.grading.report_page.page import write_report
 from autograder.regular_files import write_whole
 
@@ -349,13 +347,6 @@ def outcome(klass: TinyClass) -> tuple[object, ...]:
     return there, Table(ClassDirectory(klass.path)).lines()
 
 
-@pytest.fixture
-def each_file_is_read_once(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A desk knows nothing but the bytes of a file, so it returns the same for the same bytes."""
-    monkeypatch.setattr(desk, "document_of", functools.cache(desk.document_of))
-
-
-@pytest.mark.usefixtures("each_file_is_read_once")
 @pytest.mark.parametrize("seed", range(12))
 def test_whatever_is_collected_in_any_order_and_again_gives_the_same(
     klass: TinyClass, tmp_path: Path, seed: int

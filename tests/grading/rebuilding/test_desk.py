@@ -59,6 +59,11 @@ def taken_over(hostile: Desk, monkeypatch: pytest.MonkeyPatch) -> Desk:
     return hostile
 
 
+@pytest.fixture(scope="module", autouse=True)
+def each_file_is_read_once() -> None:
+    """Here each file is read each time: the desks themselves are tested."""
+
+
 def notebook(act: str) -> bytes:
     cell = {"cell_type": "code", "source": "x = 1", "metadata": {}}
     return json.dumps({"nbformat": 4, "metadata": {"do": f"hostile: {act}"}, "cells": [cell]}).encode()
