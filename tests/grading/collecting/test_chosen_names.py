@@ -11,6 +11,7 @@ from test_collect import lies, placed, why, work
 from test_lms_file_names import add_assignment
 from test_real_forms import METADATA, STEALS, gradescope_export
 
+from autograder.boxes import desk
 from autograder.grading.collecting.collect import collect
 from autograder.grading.collecting.line import LineState
 from autograder.grading.collecting.records import CollectedRecords
@@ -116,11 +117,14 @@ def test_a_list_in_a_students_folder_is_no_list_of_gradescopes(klass: TinyClass,
     )
 
 
-def test_a_list_that_takes_gigabytes_to_read_is_a_line_that_waits(klass: TinyClass, tmp_path: Path) -> None:
-    """50 MB of YAML took 4.6 GB of memory; now the memory of the desk ends that."""
+def test_a_list_that_takes_gigabytes_to_read_is_a_line_that_waits(
+    klass: TinyClass, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """50 MB of YAML took 4.6 GB of memory; now the memory of the desk ends that, and a smaller one ends it sooner."""
+    monkeypatch.setattr(desk, "MEMORY_BYTES", 200_000_000)
     files = gradescope_export("assignment_1_export/", work(klass, 1), work(klass, 2))
     (name,) = (name for name in files if name.endswith(".yml"))
-    files[name] += "a: b\n" * 3_000_000
+    files[name] += "a: b\n" * 1_000_000
     report = collect(klass.path, [write_zip(tmp_path / "export.zip", files)])
     assert placed(report) == {}
     assert "submission_metadata.yml: it is too large, or not a list that can be read" in why(report)
