@@ -28,12 +28,14 @@ os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
-TOGETHER = ("tests/attacks", "tests/boxes", "tests/execution")
-"""Folders whose tests share what takes long to make, so that one process runs them all."""
+TOGETHER = ("tests/attacks", "tests/boxes", "tests/execution", "tests/notebook/checking")
+"""Folders whose tests share what takes long to make, or mostly wait, so that one process runs them all."""
 APART = ("tests/authoring/test_recording.py", "tests/authoring/test_new_exercise.py")
 """Files with long tests that share nothing, so that several processes take them."""
 LONGEST = (
     "tests/judge/test_bank.py",
+    # It waits for four minutes, and needs a processor for half a minute of them.
+    "tests/notebook/checking",
     "tests/attacks",
     "tests/authoring/test_notebooks.py",
     "tests/grading/cluster/test_cluster.py",
@@ -44,6 +46,8 @@ LONGEST = (
     "tests/grading/running/test_executor.py",
     "tests/browser",
     "tests/boxes",
+    "tests/execution",
+    "tests/judge/verdicts/test_misnamed.py",
     "tests/workspaces/test_graded_notebooks.py",
     "tests/environment/ros2_command/test_graph.py",
     "tests/grading/classes/test_class_lock.py",
