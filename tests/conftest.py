@@ -48,6 +48,7 @@ LONGEST = (
     "tests/boxes",
     "tests/execution",
     "tests/judge/verdicts/test_misnamed.py",
+    "tests/test_handed_out_answers.py",
     "tests/workspaces/test_graded_notebooks.py",
     "tests/environment/ros2_command/test_graph.py",
     "tests/grading/classes/test_class_lock.py",

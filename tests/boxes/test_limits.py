@@ -131,12 +131,13 @@ import fcntl, struct, time
 file = open("locked", "w+")
 for part in range(400):
     fcntl.fcntl(file, fcntl.F_SETLK, struct.pack("hhqqi4x", fcntl.F_WRLCK, 0, 2 * part, 1, 0))
-time.sleep(4)
+time.sleep({})
 """
-    execution = run(lock, file_locks=300)
+    execution = run(lock.format(4), file_locks=300)
     assert (execution.cells[0].ended, key(execution)) == (Ended.TOO_MANY_LOCKS, "too_many_locks")
     assert "locked more parts of files" in execution.verdicts[1].diagnosis.text  # type: ignore[union-attr]
-    assert run(lock, file_locks=500).cells[0].ended is Ended.DONE
+    # Two of the watch's looks fall into half a second.
+    assert run(lock.format(0.5), file_locks=500).cells[0].ended is Ended.DONE
 
 
 def test_connections_that_nobody_accepts_have_no_descriptor(run: Run) -> None:
