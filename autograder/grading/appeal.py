@@ -114,7 +114,7 @@ def _why_nothing(
                     f"If an older version of the course graded the check, type: {again} --again"
                 )
     return (
-        f"No check of {exercise_id} by {student!r} was graded in this class. Its assignments are: "
+        f"No check of {exercise_id} by {student!r} was graded in this class. The class's assignments are: "
         f"{', '.join(directory.assignments()) or 'none'}. To list a student's graded checks: "
         f"{course_command('attempts', directory.path, 'STUDENT')}"
     )

@@ -124,8 +124,8 @@ def grade(
         batch = _Batch(directory, store, console, roster, asked, feedback=feedback, dry_run=dry_run)
         batch.collect()
         batch.plan(again)
-        # This raises an error if no worker can execute notebooks. It comes before grades are set to zero, so that the
-        # error leaves the class unchanged.
+        # Find the workers before grades are set to zero: if no worker can execute notebooks, the error leaves the class
+        # unchanged.
         execute = stack.enter_context(backend) if batch.unsettled else None
         if not dry_run:
             batch.take_back()
@@ -217,8 +217,8 @@ class _Batch:
         )
         if older:
             self._notices.append(
-                f"{older} submissions had been graded with another version of the course; to see whose points this run "
-                f"has changed: `{COMMAND} compare`; to see them before a run: `{COMMAND} grade --dry-run`"
+                f"{older} submissions had been graded with another version of the course. To see whose points have "
+                f"changed, type `{COMMAND} compare` after the run, or `{COMMAND} grade --dry-run` before a run"
             )
         if again:
             self._store.forget_results(work.submission for work in self._works)
@@ -343,7 +343,7 @@ class _Batch:
         work.written = True
 
     def _take_known(self, work: Work) -> None:
-        """Take the results that earlier runs stored. If they are complete, enter the submission in the gradebook."""
+        """Take the results that earlier runs stored. If none is missing then, enter the submission in the gradebook."""
         known = self._store.results(*work.key)
         for task in self._tasks_of(work.submission) if known else ():
             if (key := task.key()) in known:

@@ -209,7 +209,7 @@ def would_change(
             kept = entry.cells.get(cell.notebook, {}).get(cell.name)
             before = kept.judged if kept else None
             if before != row.score:
-                note = "the points by a person stay" if kept and kept.by_hand is not None else ""
+                note = "the points that a person gave stay" if kept and kept.by_hand is not None else ""
                 found.append(Difference(*work.key, row.exercise, before, row.score, "", row.diagnosis, note))
         then = _foreseen(work, entry, by_exercise, due.get(work.submission.assignment))
         if then.is_late or entry.penalty:
@@ -244,5 +244,5 @@ def _foreseen(
 
 def without_grade(row: Row) -> Row:
     """Return a row with zero points for a result that could not be entered into the gradebook."""
-    reason = "The result could not be entered into the gradebook; it has zero points there."
+    reason = "The result could not be entered into the gradebook; the exercise has zero points there."
     return replace(row, score=0.0, state="not_checked", diagnosis="not_written_down", reason=reason)

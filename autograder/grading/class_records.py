@@ -51,7 +51,7 @@ class Attempt:
 
 @dataclass(frozen=True)
 class Entered:
-    """The results of a submission that were last entered into the gradebook. A run skips it if it is unchanged since.
+    """The results of a submission that were last entered into the gradebook. A run skips an unchanged submission.
 
     Attributes:
         fingerprint: The hash of all files that influence the grades, from :class:`Fingerprints`.

@@ -160,7 +160,7 @@ class ClassStore:
             book.executemany("DELETE FROM result WHERE (student, assignment) = (?, ?)", names)
 
     def evidence(self, student: str, exercise: str) -> KeptEvidence | None:
-        """Return the evidence for a check's points in the gradebook, or else the newest; None if nothing is stored."""
+        """Return the evidence for a check's points in the gradebook, or the newest evidence; None if there is none."""
         for assignment, notebook, task, course, checks, cells in self._rows(
             "SELECT assignment, notebook, task, course, checks, cells FROM evidence WHERE student = ?"
             f" ORDER BY assignment, notebook, {_NOT_ENTERED}",
@@ -174,7 +174,10 @@ class ClassStore:
     # -- entries in the gradebook
 
     def enter(self, submission: Submission, attempt: Attempt, entered: Entered | None) -> None:
-        """Record an attempt, and what the gradebook now contains. If ``entered`` is None, the next run grades again."""
+        """Record an attempt, and the results that are now in the gradebook.
+
+        If ``entered`` is None, the next run grades the submission again.
+        """
         names = (submission.student, submission.assignment)
         with self._step() as book:
             book.execute(
@@ -212,7 +215,7 @@ class ClassStore:
         self._note(submission, "shown", shown)
 
     def forget_entered(self, submissions: Iterable[Submission]) -> None:
-        """Delete the records of what the gradebook contains. Call this before setting those grades to zero."""
+        """Delete the records of submissions' grades. Call this before setting the grades in the gradebook to zero."""
         with self._step() as book:
             names = ((one.student, one.assignment) for one in submissions)
             book.executemany("DELETE FROM entered WHERE (student, assignment) = (?, ?)", names)

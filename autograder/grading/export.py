@@ -23,8 +23,8 @@ _NUMBERS = ("raw_score", "late_submission_penalty", "score", "max_score")
 class SafeCsvExport(ExportPlugin):
     """Writes one line for each student and assignment, with the columns of nbgrader's ``CsvExportPlugin``.
 
-    It replaces nbgrader's plug-in for two reasons: that plug-in does not quote commas and line breaks in names, and it
-    writes a name that is a formula so that a spreadsheet executes it.
+    nbgrader's own plug-in does not quote commas and line breaks in names. It also writes a name such as ``=1+1``
+    unchanged, and a spreadsheet would execute this name as a formula.
     """
 
     def export(self, gradebook: Gradebook) -> None:

@@ -142,12 +142,12 @@ def _take_over(converter: object) -> None:
     """
     ours = {Autograde: _OurAutograde, GenerateFeedback: _OurFeedback}.get(type(converter))
     if ours is not None:
-        # nbgrader offers no option for the class of its converter.
+        # The object's class is replaced because nbgrader has no option for the class of its converter.
         converter.__class__ = ours
 
 
 class SubmissionExporter(NotebookExporter):
-    """The exporter for ``autograde`` in a class's configuration. Its constructor lets the package take over."""
+    """The exporter for ``autograde`` in a class's configuration. Making it replaces nbgrader's converter."""
 
     def __init__(self, *args: Any, **kw: Any) -> None:
         initialise: Any = super().__init__
@@ -156,7 +156,7 @@ class SubmissionExporter(NotebookExporter):
 
 
 class FeedbackExporter(PageExporter):
-    """The exporter for ``generate_feedback`` in a class's configuration. Its constructor lets the package take over."""
+    """The exporter for ``generate_feedback`` in a class's configuration. Making it replaces nbgrader's converter."""
 
     def __init__(self, *args: Any, **kw: Any) -> None:
         initialise: Any = super().__init__

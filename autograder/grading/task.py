@@ -50,7 +50,7 @@ class Task:
     boxed: bool = True
 
     def beside_others(self, beside: bool) -> Task:
-        """Return the task with the memory limit for running beside other tasks (if True), or for running alone."""
+        """Return the task with the memory limit for running beside other tasks, or alone if ``beside`` is False."""
         return replace(self, limits=replace(self.limits, beside=beside))
 
     @property

@@ -154,7 +154,7 @@ def check_unplaced(said: str, class_: list[Pupil], waiting: tuple[str, ...] = WA
     what_to_type = {
         "py": "it is not a notebook",
         "other lab": "say --assignment own",
-        "tar.gz": "it is not an archive that can be read",
+        "tar.gz": "the archive cannot be read",
     }
     for pupil in class_:
         if pupil.oddity in waiting:

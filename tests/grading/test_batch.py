@@ -311,7 +311,7 @@ def test_a_submission_folder_that_is_a_link_is_refused(tiny: TinyClass, fake_eng
 def test_an_assignment_that_does_not_exist_is_refused(tiny: TinyClass, fake_engine: FakeEngine) -> None:
     (tiny.path / "submitted" / "ada" / "tyni").mkdir(parents=True)
     report = tiny.grade()
-    assert "its assignments: lab_1_2" in report.refused[0].reason
+    assert "the class's assignments: lab_1_2" in report.refused[0].reason
 
 
 def test_plain_files_and_hidden_ones_are_nobodys_work(tiny: TinyClass, fake_engine: FakeEngine) -> None:
@@ -406,7 +406,7 @@ def test_a_source_that_nbgrader_cannot_prepare_stops_the_run(
     source = tiny.path / "source" / "lab_1_2" / "lab_1_2.ipynb"
     source.write_text(source.read_text().replace("### END SOLUTION", ""))
     tiny.submit("ada")
-    with pytest.raises(MasterUnusable, match="cannot be prepared as nbgrader does it"):
+    with pytest.raises(MasterUnusable, match="cannot be prepared with nbgrader's steps"):
         tiny.grade()
 
 

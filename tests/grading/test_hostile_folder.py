@@ -166,7 +166,7 @@ def test_a_class_that_a_student_has_handed_in_is_not_used(
     monkeypatch.chdir(handed_in)
     done = CliRunner().invoke(cli, [command, "."])
     assert done.exit_code == 2
-    assert f"Use the class around it: {tiny.path}" in done.output
+    assert f"Use the class that contains it: {tiny.path}" in done.output
     assert hostile.marks() == ""
 
 

@@ -215,7 +215,7 @@ def test_one_student_of_plain_nbgrader_is_graded_alone(tiny: TinyClass, fake_eng
     Autograde(coursedir=course, config=config).start()
     assert fake_engine.ran == ["ben"]
     course.student_id = "eve"
-    with pytest.raises(NbGraderException, match=r"eve.*: it is a link; put the folder itself in its place"):
+    with pytest.raises(NbGraderException, match=r"eve.*: the path is a link; replace the link by the folder"):
         Autograde(coursedir=course, config=config).start()
     assert fake_engine.ran == ["ben"]
 
@@ -239,7 +239,9 @@ def test_a_command_of_plain_nbgrader_ends_with_the_exit_code_of_ours(
     assert done.returncode == 2, done.stderr
     assert "Traceback" not in done.stderr
     reason = (
-        "it is a link; put the folder itself in its place" if command == "autograde" else "rename the folder"
+        "the path is a link; replace the link by the folder"
+        if command == "autograde"
+        else "rename the folder"
     )
     assert reason in done.stderr
 

@@ -212,7 +212,7 @@ def test_a_students_folder_that_may_not_be_read(
     monkeypatch.setattr(Path, "iterdir", refuse)
     report = tiny.grade()
     assert [(r.path, r.reason) for r in report.refused] == [
-        (locked, "it could not be read: Permission denied")
+        (locked, "the folder could not be read: Permission denied")
     ]
     assert report.exit_code == 2
     assert tiny.scores("ada")[TALKER] == 10
@@ -266,7 +266,9 @@ def test_a_pipe_in_the_place_of_a_student_is_named(tiny: TinyClass, fake_engine:
     tiny.submit("ada")
     os.mkfifo(tiny.path / "submitted" / "eve")
     report = tiny.grade()
-    assert [refused.reason for refused in report.refused] == ["it is neither a folder nor a file; remove it"]
+    assert [refused.reason for refused in report.refused] == [
+        "the path is neither a folder nor a file; remove it"
+    ]
     assert tiny.scores("ada")[TALKER] == 10
 
 

@@ -1,8 +1,7 @@
 """Warns before grading if a master has changed since a class got its source notebook from that master.
 
 A class has its own copy of each notebook, in ``source``. But the judge uses the exercises of the current course, so it
-may expect something that the copy does not ask for. Changes of other cells than graded cells and answer cells are not
-found.
+may expect something that the copy does not ask for. Only changes of graded cells and answer cells are found.
 """
 
 from __future__ import annotations

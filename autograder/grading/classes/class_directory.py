@@ -33,8 +33,8 @@ if TYPE_CHECKING:
 CONFIG_NAME = "nbgrader_config.py"
 STATE_NAME = ".autograder"
 COURSE_NAME = "course"
-"""The name of a file in the class's state folder, with the path of the course's top folder, which an installed package
-cannot find otherwise.
+"""The name of a file in the class's state folder. The file contains the path of the course's top folder, because an
+installed package cannot find that folder otherwise.
 """
 SUFFIX = ".ipynb"
 _LONGEST_NAME = 100
@@ -120,8 +120,7 @@ class ClassDirectory:
             )
         url = str(config.CourseDirectory.get("db_url") or "sqlite:")
         if not url.startswith("sqlite:") and not config.CourseDirectory.get("course_id"):
-            # nbgrader stores the course's id as a foreign key. The id is set because, without an id, only SQLite
-            # accepts this key.
+            # nbgrader stores the course's id as a foreign key. If no id is set, only SQLite accepts this key.
             raise ClassIncomplete(
                 f"A gradebook on a database server needs a name of the course. Add a line to "
                 f'{self.path / CONFIG_NAME}: c.CourseDirectory.course_id = "ros2"'
@@ -240,7 +239,8 @@ class ClassDirectory:
                     known = ", ".join(notebooks) or "none"
                     refused.append(
                         RefusedFile(
-                            folder, f"the class has no assignment with this name (its assignments: {known})"
+                            folder,
+                            f"the class has no assignment with this name (the class's assignments: {known})",
                         )
                     )
         return taken, refused
@@ -257,9 +257,10 @@ class ClassDirectory:
 
     @contextlib.contextmanager
     def lock(self) -> Iterator[None]:
-        """Lock the class during the block, so that only one process grades it. First clean up if another was killed.
+        """Lock the class during the block, so that only one process grades it.
 
-        Even if this process is killed, its lock ends.
+        If the previous holder of the lock was killed, remove its unfinished files before the block. The lock ends with
+        this process, even if the process is killed.
 
         Raises:
             ClassBusy: Another process holds the lock.
@@ -281,7 +282,8 @@ class ClassDirectory:
 def refuse_students_folder(folder: Path) -> None:
     """Raise an error if a folder is inside a class's folder for students' files.
 
-    Otherwise, a student could hand in a class directory whose configuration file, a program, would then be run.
+    Otherwise, a student could hand in a class directory, and a command would run its configuration file, which is a
+    program.
 
     Raises:
         ClassIncomplete: The folder is among students' files, in the class that the message names.
@@ -290,7 +292,7 @@ def refuse_students_folder(folder: Path) -> None:
     for outer in place.parents:
         if place.relative_to(outer).parts[0] in _STUDENTS_FILES and (outer / CONFIG_NAME).is_file():
             raise ClassIncomplete(
-                f"{folder} is among students' files, so it cannot be a class. Use the class around it: "
+                f"{folder} is among students' files, so it cannot be a class. Use the class that contains it: "
                 f"{outer}"
             )
 
@@ -332,7 +334,7 @@ def _folders(parent: Path, refused: list[RefusedFile]) -> list[Path]:
         if entry.name.startswith("."):
             continue
         if entry.is_symlink():
-            refused.append(RefusedFile(entry, "it is a link; put the folder itself in its place"))
+            refused.append(RefusedFile(entry, "the path is a link; replace the link by the folder"))
         elif entry.is_dir():
             reason = reason_against_name(entry.name)
             if reason:
@@ -340,7 +342,7 @@ def _folders(parent: Path, refused: list[RefusedFile]) -> list[Path]:
             else:
                 found.append(entry)
         elif not entry.is_file():
-            refused.append(RefusedFile(entry, "it is neither a folder nor a file; remove it"))
+            refused.append(RefusedFile(entry, "the path is neither a folder nor a file; remove it"))
     return found
 
 
@@ -350,5 +352,5 @@ def _entries(parent: Path, refused: list[RefusedFile]) -> list[Path]:
     except FileNotFoundError:
         return []
     except OSError as error:
-        refused.append(RefusedFile(parent, f"it could not be read: {error.strerror}"))
+        refused.append(RefusedFile(parent, f"the folder could not be read: {error.strerror}"))
         return []

@@ -52,8 +52,8 @@ def held(path: Path, of: Path) -> Iterator[bool]:
     """Hold the lock of a class during the block. Yield True if the previous holder was killed.
 
     The lock is a POSIX record lock, which the system releases when the process ends, and which child processes do not
-    inherit. The holder writes its name into the file, and removes the name at the end. So if a file is not locked but
-    contains a name, its holder was killed.
+    inherit. The holder writes its process id and host into the file, and removes them at the end. So if a file is not
+    locked but contains a process id, the holder was killed.
 
     Args:
         path: The lock file, which is created if it does not exist.

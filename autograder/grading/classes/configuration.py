@@ -42,7 +42,7 @@ _MAY_BE: Mapping[str, Mapping[str, tuple[Any, ...]]] = {
     "HTMLExporter": {
         "filters": ({"markdown2html": "autograder.grading.returning.page_exporter.markdown_to_html"},)
     },
-    # nbgrader's exchange uses the last three options.
+    # nbgrader's exchange uses include, max_file_size and max_dir_size.
     "CourseDirectory": dict.fromkeys(
         ("root", "db_url", "course_id", "include", "max_file_size", "max_dir_size"), (_ANYTHING,)
     ),

@@ -92,7 +92,7 @@ class NewClass:
 
     Attributes:
         path: The class directory.
-        assignments: The assignments of the class, whose notebooks as students get them are in ``release/``.
+        assignments: The assignments of the class. The notebooks for students are in ``release/``.
         timezone: The name of the class's time zone.
     """
 
@@ -109,7 +109,7 @@ class NewClass:
                 f"Hand out       {COMMAND} hand-out FOLDER makes the folder for students",
                 f"Collect        {course_command('collect', self.path)} DOWNLOAD (files as your LMS lets you "
                 "download them)",
-                f"or put them in {self.path / 'submitted'}/<student>/<assignment>/<assignment>.ipynb",
+                f"or put notebooks in {self.path / 'submitted'}/<student>/<assignment>/<assignment>.ipynb",
                 f"Then           {course_command('grade', self.path)}",
             )
         )
@@ -181,7 +181,7 @@ def _check_place(path: Path, course_root: Path) -> None:
     if place.is_relative_to(repository) and place != repository / DEMO_NAME:
         raise ClassExists(
             f"{path} lies inside the course's repository, where students' work could be committed "
-            f"by mistake. Choose a place outside of {repository}."
+            f"by mistake. Choose a folder outside of {repository}."
         )
 
 

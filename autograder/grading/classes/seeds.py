@@ -50,6 +50,6 @@ def seed_for(secret: bytes, student: str, assignment: str, notebook: str, work: 
         work: A hash of the submitted cells, so that a changed submission gets different inputs. Otherwise a student
             could copy inputs from the feedback into the next submission.
     """
-    # With the lengths in the message, ("ab", "c") and ("a", "bc") give different seeds.
+    # The hashed message contains the lengths of the names, so that ("ab", "c") and ("a", "bc") give different seeds.
     message = "".join(f"{len(part)}:{part};" for part in (student, assignment, notebook, work))
     return hmac.new(secret, message.encode(), hashlib.sha256).hexdigest()[:32]

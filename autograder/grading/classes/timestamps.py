@@ -15,16 +15,16 @@ if TYPE_CHECKING:
 TIMESTAMP = "timestamp.txt"
 """The name of nbgrader's timestamp file, which lies next to the notebooks of a submission."""
 SECRET = "submission_secret.txt"
-"""The name of a file that nbgrader's exchange writes next to collected notebooks, and from which nbgrader knows for
-which student a feedback page is.
+"""The name of a file that nbgrader's exchange writes next to collected notebooks. From this file, nbgrader knows to
+which student a feedback page belongs.
 """
 _LONGEST = 200
 _HEX = frozenset("0123456789abcdef")
 _EARLIEST = datetime(2024, 5, 23)
 """The earliest accepted time: the release day of ROS 2 Jazzy."""
 _AHEAD = timedelta(days=1)
-"""A submission time may be later than this machine's clock by at most this, because it may come from another
-machine.
+"""The maximum time by which a submission time may be later than this machine's clock. The submission time may come from
+another machine, whose clock differs.
 """
 
 
@@ -52,7 +52,7 @@ def _text(path: Path) -> str | None:
 def companions(folder: Path) -> dict[str, bytes]:
     """Return the contents of the files that nbgrader copies from a submission to ``autograded`` and ``feedback``.
 
-    They are copied because without these files, `nbgrader release_feedback` does not know for which student a page is.
+    Without these files, `nbgrader release_feedback` would not know to which student a feedback page belongs.
     """
     found = {}
     stamp = read_timestamp(folder)

@@ -150,7 +150,7 @@ class _Carrier:
 
     async def _introduce(self, address: str, name: str, threads: int) -> None:
         try:
-            # ``run`` does not need a free thread of the worker, so a busy worker answers, too.
+            # Dask's ``run`` needs no free thread of the worker, so even a busy worker sends its offer.
             asking = self._client.run(calls.offer_as_json, threads, workers=[address])
             said = (await asyncio.wait_for(asking, _OFFER_SECONDS))[address]
         except TimeoutError:

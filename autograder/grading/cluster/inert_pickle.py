@@ -22,7 +22,7 @@ _PLAIN |= {"set", "str", "tuple"}
 
 
 class Inert(Exception):
-    """Base class of the stand-ins for objects in a pickle. The class of a stand-in has the real name, but no code."""
+    """Base class of the stand-ins for objects in a pickle. A stand-in's class has the real name, but no code."""
 
     def __call__(self, *_: Any, **__: Any) -> Any:
         """Do nothing."""

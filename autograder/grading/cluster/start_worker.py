@@ -34,7 +34,7 @@ _SETTINGS = {
 
 
 def offer(slots: int) -> Offer:
-    """Return this machine's offer to a cluster: the version of its course, and whether it can make boxes.
+    """Return this machine's offer to a cluster: the course version, and whether the machine can make boxes.
 
     Args:
         slots: The number of notebooks to execute at the same time.
@@ -86,7 +86,7 @@ async def _work(address: str, name: str, slots: int, folder: str, tell: Callable
             address,
             name=name,
             nthreads=slots,
-            memory_limit=0,  # Dask sees only its own process; submissions run in others, with limits of their own
+            memory_limit=0,  # no limit by Dask: submissions run in other processes, with limits of their own
             dashboard=False,
             local_directory=folder,
             death_timeout=_CONNECT_SECONDS,

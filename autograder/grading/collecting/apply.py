@@ -1,6 +1,6 @@
-"""Changes the folder ``submitted`` so that it contains the notebooks that count.
+"""Writes the notebooks to grade into the folder ``submitted``, and removes notebooks that are no longer to be graded.
 
-A file that ``collect`` did not write there is never replaced or removed.
+A file in ``submitted`` that ``collect`` did not write is never replaced or removed.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ class Submitted:
         return self._directory.path / "submitted" / student / assignment / f"{notebook}{SUFFIX}"
 
     def content(self, place: Place) -> str:
-        """Return the hash of the file at a place; empty if there is no readable file."""
+        """Return the hash of a notebook in ``submitted``; empty if it does not exist or cannot be read."""
         try:
             data = _existing_file(self.path(place))
         except UnreadableSubmission:
@@ -73,11 +73,11 @@ class Submitted:
                         receiving.delivery = delivery
 
     def bring(self, lines: Iterable[Line]) -> dict[Place, tuple[LineState, str]]:
-        """Write each notebook that counts into ``submitted``, and remove notebooks that no longer count.
+        """Write each notebook to grade into ``submitted``, and remove notebooks that are no longer to be graded.
 
         Returns:
-            What happened at each place, with the reason: ``PLACED`` (written), ``UNCHANGED`` (it was there),
-            ``EARLIER`` (removed) or ``NOT_PLACED`` (it could not be written).
+            What happened to each notebook, with the reason: ``PLACED`` (written), ``UNCHANGED`` (already there),
+            ``EARLIER`` (removed) or ``NOT_PLACED`` (could not be written).
 
         Raises:
             OSError: A file could not be written.
@@ -138,14 +138,17 @@ class Submitted:
                 yield place, LineState.EARLIER, ""
             else:
                 write_whole(self.path(place), self._inbox.read(line.content))
-                yield place, LineState.PLACED, "instead of an earlier one" if content else ""
+                yield place, LineState.PLACED, "instead of an earlier file" if content else ""
         if history != old and (now or old != History({})):
             self._records.put(assignment, student, history)
         if now or changes:
             self._stamp(student, assignment, history)
 
     def _stamp(self, student: str, assignment: str, history: History) -> None:
-        """Write nbgrader's file with the time of handing in; remove it, and empty folders, if the time is unknown."""
+        """Write the time of handing in into nbgrader's timestamp file.
+
+        If the time is unknown, remove the file, and the folders that are then empty.
+        """
         stamp = self._directory.path / "submitted" / student / assignment / TIMESTAMP
         text = f"{timestamp_text(history.when)}\n".encode() if history.when else b""
         if text:
@@ -166,7 +169,7 @@ def _existing_file(path: Path) -> bytes | None:
     """Return the bytes of the file at a path; None if there is no file.
 
     Raises:
-        UnreadableSubmission: Something other than an ordinary file is at that place.
+        UnreadableSubmission: The path is not an ordinary file, or a folder in it is a link.
     """
     for place in (path.parent.parent, path.parent, path):
         if place.is_symlink():

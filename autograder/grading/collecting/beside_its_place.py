@@ -15,20 +15,25 @@ if TYPE_CHECKING:
 
 
 def put_right(directory: ClassDirectory) -> Iterator[str]:
-    """Rename students' folders whose accents a Mac has stored as characters of their own; yield a sentence about each.
+    """Rename students' folders in whose names a Mac has stored accents as separate characters (Unicode NFD).
 
-    They are renamed because both forms of a name look the same, so an instructor could not find the fault.
+    Yield a sentence about each renamed folder. An instructor could not find the fault, because both forms of a name
+    look the same.
     """
     for folder in _folders(directory.path / "submitted"):
         composed = folder.with_name(unicodedata.normalize("NFC", folder.name))
         if composed != folder and not composed.exists():
             with contextlib.suppress(OSError):
                 folder.rename(composed)
-                yield f"the folder {composed.name} was renamed: a Mac had stored its accents as characters of their own"
+                yield f"the folder {composed.name} was renamed: a Mac had stored its accents as separate characters"
 
 
 def beside_their_place(directory: ClassDirectory) -> tuple[list[RefusedFile], list[str]]:
-    """Return one misplaced file of each folder that has any, and a sentence for each folder with needless files."""
+    """Find the notebooks and zips in ``submitted`` that are not graded.
+
+    Returns two lists. The first has one such file of each folder whose notebook is missing or that should contain none.
+    The second has a sentence for each folder that contains the right notebook, too.
+    """
     submitted = directory.path / "submitted"
     notebooks = {name: directory.notebooks(name) for name in directory.assignments()}
     students = _folders(submitted)
@@ -48,7 +53,7 @@ def beside_their_place(directory: ClassDirectory) -> tuple[list[RefusedFile], li
         others = [one for one in others if one.is_file() and not one.is_symlink()]
         if not others:
             continue
-        more = f", nor are {len(others) - 1} more files here" if others[1:] else ""
+        more = f", nor are {len(others) - 1} more files in this folder" if others[1:] else ""
         missing = next((place for place in places if not place.exists()), None)
         if names and not missing:
             notices.append(
@@ -56,14 +61,14 @@ def beside_their_place(directory: ClassDirectory) -> tuple[list[RefusedFile], li
             )
             continue
         place = (
-            f"the notebook for grading here: {missing}"
+            f"rename the notebook to grade to {missing}"
             if missing
-            else f"it into {submitted}/STUDENT/ASSIGNMENT"
+            else f"move the file into {submitted}/STUDENT/ASSIGNMENT"
         )
         refused.append(
             RefusedFile(
                 others[0],
-                f"it is not graded in this place{more}: put {place}, or hand it to `{COMMAND} collect`",
+                f"the file is not graded in this place{more}: {place}, or give the file to `{COMMAND} collect`",
             )
         )
     return refused, notices

@@ -1,4 +1,4 @@
-"""Takes files into the inbox of a class, decides which of them count, and writes those into ``submitted``."""
+"""Takes files into the inbox of a class, decides which of them are graded, and writes these into ``submitted``."""
 
 from __future__ import annotations
 
@@ -109,7 +109,7 @@ class _Collecting:
         with self._inbox.receiving() as receiving, Archives(self._directory.state) as archives:
             lists = [path for path in paths if path.suffix.lower() == ".csv" and path.is_file()]
             own = own_of([path for path in paths if path not in lists], self._knowing())
-            if own:  # a student may have made a list that lies next to the student's own file
+            if own:  # next to a student's own file, a list may come from a student, too, so it is not read as a list
                 own, lists = own.union(lists), []
             arrivals = [self._list(file, receiving) for path in lists for file in archives.files_of(path)]
             student_of = self._knowing()
@@ -129,7 +129,7 @@ class _Collecting:
         return receiving.delivery
 
     def _knowing(self) -> StudentOf:
-        """Return what finds students: by students.csv, the lists in the inbox, and the lists of this command."""
+        """Return a ``StudentOf`` that knows students.csv, the lists in the inbox, and the lists of this command."""
         known = [entry for entries in entries_of(self._inbox).values() for entry in entries]
         is_notebook = AssignmentOf(self._directory).is_notebook
         options = self._options
@@ -194,7 +194,9 @@ class _Collecting:
         notes = [*self._notes, *self._directory.named_cells.notes]
         notes += self._roster.excused_from_nothing(self._directory.assignments(), self._roster.students)
         if not self._roster.students:
-            notes.append("the class has no students.csv: folders have the names that the LMS uses")
+            notes.append(
+                "the class has no students.csv, so students' folders have the names that the LMS uses"
+            )
         return CollectReport(
             self._directory.path,
             tuple(sorted(outcomes, key=lambda one: one.label)),
@@ -206,14 +208,17 @@ class _Collecting:
 
 
 def _hindered(one: Line, results: Mapping[Place, tuple[LineState, str]]) -> Line:
-    """Return the line, which waits for a person if its file could not be written into ``submitted``."""
+    """Return the line, changed to ``NOT_PLACED`` if the file could not be written into ``submitted``."""
     state, reason = results.get(one.place, (LineState.PLACED, ""))
     is_hindered = one.state == LineState.PLACED and state == LineState.NOT_PLACED
     return replace(one, state=state, reason=reason) if is_hindered else one
 
 
 def _taken(file: File, receiving: Receiving) -> tuple[Arrival, bytes]:
-    """Read a file and keep its bytes. Return what is known about the file, or why it cannot be read; and the bytes."""
+    """Store the bytes of a file in the inbox, and return the file's arrival and the bytes.
+
+    If the file cannot be read, the arrival contains the reason, and the bytes are empty.
+    """
     try:
         data = file.read()
     except NotTaken as error:

@@ -60,7 +60,7 @@ _TURNS = re2.compile(r"(?i)^(?:[\d.,]|[a-zäéû]{3,9}[ .-]*\d+$|(?:true|false|w
 
 @dataclass(frozen=True)
 class Waiting:
-    """A line of the table that waits for a person.
+    """A line of the table that waits for the decision of a person.
 
     Attributes:
         label: The name of the file, with the key of its line.
@@ -78,7 +78,7 @@ class Waiting:
 
     @property
     def cell(self) -> str:
-        """Return, in brackets, which line of ``collected.csv`` a person has to edit, and which column of it."""
+        """Return, in parentheses, the line and the column of ``collected.csv`` that a person has to edit."""
         return f" ({NAME}, line {self.line}, cell {cell_in(self.reason) or 'use'})"
 
     @property
@@ -102,7 +102,7 @@ class Table:
         self._locale = _locale_of(self._zone.key)
 
     def edits(self) -> dict[str, Edit]:
-        """Return everything that people have written into the table and ``collect`` has already read."""
+        """Return what people had written into the table when ``collect`` last read it, by the key of the line."""
         try:
             return msgspec.json.decode(self._edits_file.read_bytes(), type=dict[str, Edit])
         except (OSError, msgspec.MsgspecError):
@@ -132,7 +132,7 @@ class Table:
         try:
             data = self.path.read_bytes()
         except OSError:
-            missing = [f"there was no {NAME}: it is written again, with all that was edited before"]
+            missing = [f"{NAME} was missing: it is written again, with everything that was edited before"]
             return edits, missing if self._newest else []
         rows, stamp = _rows(data)
         if rows is None:
@@ -169,7 +169,7 @@ class Table:
             value, old = self._value(column, written), self._value(column, was)
             if value is None:
                 what = "neither yes nor no" if column == "use" else "not a time: write 2026-01-31 14:05"
-                notes.append(f"{NAME}, the line of {key}: {written!r} under {column} is {what}")
+                notes.append(f"{NAME}, line of {key}, column {column}: {written!r} is {what}")
             elif value.casefold() != (old or "").casefold():
                 edit = replace(edit, **{column: value})
         return edit
@@ -187,7 +187,7 @@ class Table:
         day, _, clock = written.strip().replace(",", "").partition(" ")
         for form in _CLOCKS if when is None else ():
             with contextlib.suppress(ValueError, IndexError):
-                # In 3/4/2026, the country of the class decides which number is the month.
+                # In a date such as 3/4/2026, the country of the class decides which number is the month.
                 when = datetime.combine(parse_date(day, self._locale), datetime.strptime(clock, form).time())
         found = in_utc(when, self._zone)
         return found.isoformat() if found else ""
@@ -222,7 +222,7 @@ class Table:
         return text.getvalue().encode("utf-8-sig", "replace")
 
     def _row(self, several: Sequence[Line], edit: Edit) -> list[str]:
-        """Return the row for a file. If it is the work of a group, ``several`` has a line for each student."""
+        """Return the row for a file. For the work of a group, ``several`` has a line for each student."""
         first = (LineState.NOT_PLACED, LineState.PLACED)
         line = min(several, key=lambda one: first.index(one.state) if one.state in first else len(first))
         when = f"{line.when.astimezone(self._zone):%Y-%m-%d %H:%M:%S %z}" if line.when else ""
@@ -257,7 +257,7 @@ class Table:
         return path.read_bytes() if path.exists() else b""
 
     def lines(self) -> list[dict[str, str]]:
-        """Return the lines that ``collect`` wrote last, each by column."""
+        """Return the lines of the table that ``collect`` wrote last, each as a dictionary by column."""
         return _rows(self._read_copy(self._newest), whole=True)[0] or []
 
     def earlier(self) -> Counter[tuple[str, str]]:
@@ -270,7 +270,7 @@ class Table:
         )
 
     def waiting(self) -> list[Waiting]:
-        """Return the waiting lines that ``collect`` wrote last."""
+        """Return the lines that wait for a person, from the table that ``collect`` wrote last."""
         return [
             Waiting(row["file"], row["reason"], row["student"], row["assignment"], number)
             for number, row in enumerate(self.lines(), 2)
@@ -279,7 +279,9 @@ class Table:
 
 
 def _rows(data: bytes, *, whole: bool = False) -> tuple[list[dict[str, str]] | None, int]:
-    """Return the lines of a table as dictionaries, whichever spreadsheet saved it, and the number of the table.
+    """Return the lines of a table as dictionaries, and the number of the table.
+
+    Any spreadsheet program may have saved the table.
 
     The cell ``file`` is shortened to the key of the line, unless ``whole`` is true. If no line names the columns, None
     is returned instead of lines.

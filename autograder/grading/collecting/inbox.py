@@ -39,7 +39,7 @@ class Arrival:
         parts: The path inside the zip. For a file inside a student's archive, the path of that archive.
         inner: The path inside the student's archive; the student chose this path.
         content: The hash of the bytes; empty if they could not be read.
-        refused: Why the bytes could not be read; empty if they were.
+        refused: The reason why the bytes could not be read; empty if they could be read.
         levels: The number of names, from the top of the path, that may name a student.
         is_own: True if the instructor named this file or folder as the work of one student.
         is_list: True if the file is a list made by the system and not a student's work.
@@ -176,7 +176,7 @@ class Receiving:
         self.new: set[str] = set()
 
     def keep(self, data: bytes) -> str:
-        """Keep these bytes and return their hash."""
+        """Store these bytes in the inbox, and return their hash."""
         content = hashlib.sha256(data).hexdigest()
         if content not in self._inbox and content not in self.new:
             self.new.add(content)

@@ -9,23 +9,25 @@ from enum import StrEnum
 from autograder.grading.collecting.inbox import BY_HAND
 
 Place = tuple[str, str, str]
-"""The place of a notebook in ``submitted``: student, assignment and notebook."""
+"""The place of a notebook in ``submitted``: the student's id, and the names of the assignment and the notebook."""
 
 
 class LineState(StrEnum):
-    """The state of a file after collecting. Each file has exactly one of these."""
+    """The state of a file after collecting. Each file has exactly one state."""
 
     PLACED = "placed"
-    """The file counts: it is in ``submitted``. In a report, it also means that this command has written the file."""
+    """The file is graded, and is in ``submitted``. In a report, the state also means that this command has written the
+    file.
+    """
     UNCHANGED = "unchanged"
-    """A file with the same bytes counts. In a report, it may also mean that the file itself was in ``submitted``
-    before.
+    """Another file with the same bytes is graded. In a report, the state may also mean that the file itself is graded,
+    and was in ``submitted`` before this command.
     """
     EARLIER = "earlier"
-    """Another file counts, so this file is kept as an earlier attempt."""
+    """Another file is graded, so this file is kept as an earlier attempt."""
     BESIDE = "beside"
-    """The file is not one of the notebooks to collect, and its student has handed in such a notebook; or it is a page
-    of the LMS.
+    """The file is not a notebook to collect, and needs no decision: its student has also handed in a notebook, or the
+    LMS made the file.
     """
     NOT_PLACED = "not placed"
     """The file waits for a person, because it may be a student's work."""
@@ -49,15 +51,15 @@ class Line:
         late: True if the system marks the file as late.
         use: ``yes`` or ``no``, as a person wrote it; empty if no person did.
         state: The decision about the file.
-        reason: Why the file does not count, and what to do.
+        reason: Why the file is not graded, and what to do.
         is_soft: True if the file, such as a picture, needs no attention once a notebook of its student was collected.
         lms, number, name, file: The system, and the student and the file as the system calls them. Feedback for the
             system uses these names.
         is_named: True if the file has the name of the notebook.
         is_sure: True if a number of the system identifies the student, not just a name that students may choose.
         came_in: The downloads that contained the file.
-        rank: If a file came several times, the line with the lowest rank is preferred. It is lower if the command named
-            the system, and higher if the command named the assignment.
+        rank: If a file came several times, the line with the lowest rank is preferred. The rank is lower if the command
+            named the system, and higher if the command named the assignment.
     """
 
     key: str

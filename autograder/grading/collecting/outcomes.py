@@ -39,5 +39,5 @@ class CollectReport:
 
     @property
     def exit_code(self) -> int:
-        """The command's exit code: 0 if every file is settled; 2 if a line of these files waits for a person."""
+        """The command's exit code: 2 if a person has to decide about one of the files; otherwise 0."""
         return 2 if self.having(LineState.NOT_PLACED) else 0

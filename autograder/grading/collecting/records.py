@@ -1,4 +1,4 @@
-"""The records of collected work, stored in the class. If a class has any, only the times in the records are trusted."""
+"""The records of collected work, stored in the class. If a class has records, only the times in them are trusted."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class History:
         return max((one.when for one in self.now.values() if one.when is not None), default=None)
 
     def written(self, notebook: str) -> set[str]:
-        """Return the hashes of the files that ``collect`` has written to a notebook's place."""
+        """Return the hashes of the files that ``collect`` has written into ``submitted`` as this notebook."""
         ours = self.now.get(notebook)
         return {self.replaced.get(notebook, ""), ours.content if ours and not ours.is_by_hand else ""} - {""}
 

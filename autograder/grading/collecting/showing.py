@@ -34,7 +34,7 @@ def show(report: CollectReport, console: Console | None = None) -> None:
 def _lines(report: CollectReport) -> Iterator[str]:
     for one in report.having(LineState.PLACED):
         when = f", handed in {one.when:%Y-%m-%d %H:%M} {one.when.tzinfo}" if one.when else ""
-        late = ", late as the LMS says" if one.late else ""
+        late = ", late according to the LMS" if one.late else ""
         again = f", {one.reason}" if one.reason else ""
         yield f"placed       {one.student}/{one.assignment}: {one.label}{when}{late}{again}"
     for state in (LineState.EARLIER, LineState.BESIDE, LineState.LEFT_OUT, LineState.NOT_PLACED):
@@ -54,7 +54,7 @@ def _lines(report: CollectReport) -> Iterator[str]:
     if untimed:
         marked = any(one.late and one.student in untimed for one in report.outcomes)
         yield (
-            "note         nothing says when these were handed in"
+            "note         for these students, the time of handing in is unknown"
             + (", though the LMS marks some of them as late" if marked else "")
             + ", so they have no late penalty: write the time under handed_in in collected.csv"
         )
@@ -65,7 +65,8 @@ def _lines(report: CollectReport) -> Iterator[str]:
     if counts[LineState.NOT_PLACED]:
         yield (
             f"note         {counted(report.waiting, 'line')} of {report.path / 'collected.csv'} to decide: write the "
-            f"student or the assignment, or yes or no under use, and type {course_command('collect', report.path)}. "
+            f"student or the assignment there, or yes or no under use; then type "
+            f"{course_command('collect', report.path)}. "
             "If many names have the same form, --from or --names can describe it"
         )
     if counts[LineState.PLACED]:

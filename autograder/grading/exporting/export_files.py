@@ -60,9 +60,11 @@ def export(
             filled in.
     """
     if columns and not into:
-        raise GradingError("--column names a column of --into: name that list, too, or leave --column out.")
+        raise GradingError(
+            "--column names a column of the list in --into: add --into LIST, or leave out --column."
+        )
     directory = ClassDirectory(path)
-    # While a grading run is in progress, grades that were set to zero look like results.
+    # The lock excludes a grading run: grades that the run has set to zero would look like results.
     with directory.lock():
         table = read_table(directory, sections)
         table = replace(table, absent=0.0) if absent_zero else table
@@ -74,13 +76,16 @@ def export(
             check_known(list(columns or ()), wanted, "assignment")
             wanted = list(columns or ()) or wanted
             filled, notices = lms_gradebooks.filled_in(into, to, table, wanted, columns or {})
-            purpose = f"{to.capitalize()}: the list that you exported there, now with the points of {', '.join(wanted)}"
+            purpose = f"{to.capitalize()}: your exported list, now with the points of {', '.join(wanted)}"
         parts = [(into.name, filled, purpose)] if into else _files(directory, table, to, wanted, notices)
         for name, data, purpose in parts:
             with clear_place_errors(folder / name, "--output"):
                 write_whole(folder / name, data)
             written.append((folder / name, purpose))
-    notices += [f"{one.label} waits, so no points come from it: {one.sentence}" for one in table.unplaced]
+    notices += [
+        f"{one.label} was not graded, so no points of it are exported: {one.sentence}"
+        for one in table.unplaced
+    ]
     notices += [
         f"{name} is left out of all students' points: {reason}" for name, reason in table.unusable.items()
     ]
@@ -126,7 +131,7 @@ def _files(
         text = gradebook(to, table, records, assignments)
         yield f"{to}.csv", text.encode(), LAYOUTS[to].purpose
     else:
-        notices.append(f"{to.upper()} takes no points from a file, so only students' pages are written")
+        notices.append(f"{to.upper()} cannot import points from a file, so only feedback pages are written")
     for assignment in assignments if to in feedback_zips.WAYS else ():
         data, unknown = feedback_zips.feedback_zip(directory, table, records, assignment, to)
         if data:
@@ -134,6 +139,6 @@ def _files(
             yield f"feedback-{to}-{assignment}.zip", data, purpose
         if unknown:
             notices.append(
-                f"no feedback on {assignment} in the zip for {', '.join(unknown)}: their work was not collected from "
-                f"{to.capitalize()}, so its names for these pages are unknown"
+                f"the zip has no feedback on {assignment} for {', '.join(unknown)}: their work was not collected from "
+                f"{to.capitalize()}, so the names that {to.capitalize()} gives to these pages are unknown"
             )

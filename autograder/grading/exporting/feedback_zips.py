@@ -1,9 +1,9 @@
-"""Feedback as one zip in the format that an LMS can read, in which a page has the name of the file that it is about.
+"""Packs feedback pages into a zip, with the names by which an LMS finds the students.
 
 Each LMS finds the student of a page as follows. Moodle (*Upload multiple feedback files in a zip*): by the folder
-``<name>_<number>_assignsubmission_file``. Canvas (*Upload submissions*): by the numbers of the student and of the
-file in the name that it gave the file. Brightspace, Sakai and ILIAS (from memory): by the folder that they gave the
-student.
+``<name>_<number>_assignsubmission_file``. Canvas (*Upload submissions*): by the numbers of the student and of the file,
+which are in the file name that Canvas made. Brightspace, Sakai and ILIAS (from memory): by the name of the student's
+folder, which the LMS made.
 """
 
 from __future__ import annotations

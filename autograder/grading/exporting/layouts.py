@@ -1,4 +1,4 @@
-"""The formats of the files that learning management systems (LMS) import into their gradebooks; one row each.
+"""The formats of the files that learning management systems (LMS) import into their gradebooks.
 
 Canvas reads ``Student, ID, SIS User ID, SIS Login ID, Section``, then a column for each assignment, and in the second
 line the points possible (https://community.canvaslms.com, "How do I import grades in the Gradebook?"). Moodle's
@@ -75,7 +75,7 @@ LAYOUTS = {
 
 
 def known_there(records: CollectedRecords, assignment: str, student: str, lms: str) -> Line | None:
-    """Return the line with the LMS's names for a student; None if the student's work did not come from that LMS."""
+    """Return the line of ``collected.csv`` with a student's names in this LMS; None if the work came from elsewhere."""
     history = records.get(assignment, student)
     found = [one for one in history.now.values() if one.lms == lms] if history else []
     return found[-1] if found else None
@@ -111,7 +111,7 @@ def gradebook(lms: str, table: ClassTable, records: CollectedRecords, assignment
 def _facts(
     table: ClassTable, records: CollectedRecords, id_: str, lms: str, assignments: Sequence[str]
 ) -> dict[str, str]:
-    """Return the possible contents of a student's cells, by key. ``there`` and ``user`` are names in the LMS."""
+    """Return the possible contents of a student's cells, by key. ``there`` and ``user`` come from the LMS."""
     student = table.roster.students[id_]
     own = student.lms.get(lms, "")
     collected = (known_there(records, name, id_, lms) for name in assignments)

@@ -63,7 +63,7 @@ def filled_in(
         )
     if kind.lms != lms:
         raise GradingError(
-            f"The list is {kind.lms.capitalize()}'s, and not for --to {lms}: type --to {kind.lms}"
+            f"The list comes from {kind.lms.capitalize()}, but --to names {lms}: type --to {kind.lms}"
         )
     if kind.points != EACH and len(assignments) != 1:
         raise GradingError(
@@ -126,7 +126,7 @@ _KINDS = ("number", "login", "name")
 
 
 def _column(header: Sequence[str], kind: ListForm, assignment: str, called: str) -> int:
-    """Return the index of the column for an assignment, to whose name Canvas adds a number: ``lab_1_2 (815)``.
+    """Return the index of an assignment's column. Canvas adds a number to the name of a column: ``lab_1_2 (815)``.
 
     Raises:
         GradingError: The list has no such column, or the column names the student.
@@ -148,7 +148,7 @@ def _without_number(name: str) -> str:
 
 
 def _letters(name: str) -> str:
-    """Return the letters and digits of a name, in which the names of an assignment and of its column differ least."""
+    """Return the letters and digits of a name, by which the names of an assignment and of a column are compared."""
     return re2.sub(r"[\W_]+", "", _without_number(name)).casefold()
 
 
@@ -156,7 +156,7 @@ def _who(table: ClassTable, kind: ListForm, values: Sequence[str]) -> tuple[Stud
     """Return the student of a line, and the rank of the matching value; a lower rank is a more certain match."""
     columns: list[tuple[str, tuple[str, ...]]] = [(value, _KINDS) for value in values]
     if kind.is_numbered:
-        # A number of the LMS may be another student's id in the class, so it is compared with ids last.
+        # A number of the LMS may be another student's id in the class, so the number is compared with ids last.
         columns = [(values[0], _KINDS[:1]), *columns[1:], (values[0], _KINDS[1:])]
     for place, (value, kinds) in enumerate(columns):
         for way in kinds if value else ():

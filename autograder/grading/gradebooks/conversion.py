@@ -151,7 +151,7 @@ def _with_results(nb: NotebookNode, task: Task, execution: Execution) -> Noteboo
 
 
 def _with_rubrics(cells: Sequence[NotebookNode]) -> Iterator[NotebookNode]:
-    """Yield the cells, and below each answer that a person grades a cell with the instructor's notes for grading."""
+    """Yield the cells. Below each answer that a person grades, add a cell with the instructor's notes for grading."""
     for cell in cells:
         known = cell.metadata.pop("autograder", {})
         yield cell

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 
 class NotWritten(RuntimeError):
-    """The points could not be written to the gradebook, or differ there from the judge's, as the message says."""
+    """The points could not be written to the gradebook, or the gradebook does not contain the judge's points."""
 
 
 class Writer:

@@ -63,7 +63,7 @@ def _master(source: Path, data: bytes, steps: tuple[str, ...]) -> NotebookNode:
         except (
             Exception
         ) as error:  # nbgrader's preprocessors raise various errors, for example if END SOLUTION is missing
-            raise MasterUnusable(f"{source} cannot be prepared as nbgrader does it: {error}") from error
+            raise MasterUnusable(f"{source} cannot be prepared with nbgrader's steps: {error}") from error
     _check_cells(source, notebook)
     for cell in notebook.cells:
         if is_answer(cell):

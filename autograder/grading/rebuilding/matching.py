@@ -121,7 +121,7 @@ class _Matching:
             self._take(next((name for name in same if name not in self.places), ""), place)
 
     def by_given_part(self) -> None:
-        """Match an answer that defines no names, such as a text, with a cell that contains its given part."""
+        """Match an answer that defines no names, such as a text, with a cell that contains the question above it."""
         for missing in self._missing():
             if not missing.is_answer or _defines(missing) or not self._is_telling(missing):
                 continue
@@ -132,8 +132,8 @@ class _Matching:
     def elsewhere(self) -> dict[str, list[int]]:
         """Return, for each answer cell without a match, the submitted cells that define the same names.
 
-        Even a given cell may have the answer: if a student wrote the answer there, it no longer matches the master's
-        cell.
+        A given cell in which a student wrote the answer is found, too: with the answer, the cell no longer matches the
+        master's cell.
         """
         code = {
             place: cell.source

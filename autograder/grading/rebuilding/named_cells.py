@@ -53,7 +53,7 @@ class NamedCells:
 
     @functools.cached_property
     def _graded(self) -> dict[str, str]:
-        """Return the assignment for each name and id of a graded cell, if it occurs in only one assignment."""
+        """Return the assignment for each name and id of a graded cell that only one assignment uses."""
         cells = [(assignment, cell) for (assignment, _), own in self._sources.items() for cell in own]
         often = Counter(
             mark for mark, _ in {(mark, assignment) for assignment, cell in cells for mark in _marks(cell)}

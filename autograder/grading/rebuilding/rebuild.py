@@ -66,8 +66,8 @@ def rebuild_unreadable(master: NotebookNode, problem: str) -> NotebookNode:
 def is_of_another(master: NotebookNode, submitted: Sequence[SubmittedCell]) -> bool:
     """Return True if the cells belong to a different master.
 
-    This is so if the master does not know most of the cells' names, and the notebook has none of the master's graded
-    cells. The other names may be known although the master is different, because labs share names.
+    That is the case if this master knows fewer than half of the cells' names, and the notebook has none of its graded
+    cells. Even then, some names may be known, because labs share names.
     """
     names = {cell.grade_id for cell in submitted if cell.grade_id}
     ours = {grade_id(cell) for cell in master.cells}
@@ -99,13 +99,13 @@ class _Sorting:
         for name, cell in self._master.items():
             if name not in late:
                 if name in self._chosen or is_check(cell):
-                    # A deleted check is put back after the cells that the student added, because it may need what they
-                    # define.
+                    # A deleted check is put back after the cells that the student added, because the check may need
+                    # names that these cells define.
                     built += pending
                     pending = []
                 built.append(self._filled(name, cell))
-            # A deleted cell of another kind is put back before the cells that the student added: they may change what
-            # it defines.
+            # A deleted cell of another kind is put back before the cells that the student added, because these may
+            # redefine its names.
             pending += [_extra(extra) for extra in extras.get(name, [])]
             for check in [check for check, anchor in late.items() if anchor == name]:
                 built += [*pending, nbformat_nodes.copied(self._master[check])]
@@ -251,8 +251,8 @@ class _Sorting:
             answer = self._submitted[self._chosen[name]]
             filled.update(source=answer.source, attachments=_attachments(answer))
         elif is_answer(cell) and self._may_be_answered_elsewhere(name):
-            # The cell gets a note that sends a person to the other cells. It does not get the stub, because the stub
-            # would overwrite the student's definitions.
+            # The missing answer cell gets a note that sends a person to the other cells. The stub would overwrite the
+            # student's definitions in these cells.
             filled["source"] = _ELSEWHERE if cell.cell_type == CellType.MARKDOWN else f"# {_ELSEWHERE}"
         return filled
 

@@ -22,8 +22,8 @@ class ShownPictures:
     """Finds the pictures that text cells show: attached by the student, or otherwise from the master.
 
     Args:
-        given: For each cell of the master, its text as students receive it, and its attachments. An attachment that no
-            such text shows belongs to a solution, and is left out.
+        given: For each cell of the master, its text as students receive it, and its attachments. An attachment that
+            none of these texts shows belongs to a solution, and is left out.
     """
 
     def __init__(self, given: Iterable[tuple[str, Mapping[str, Mapping[str, str]]]]) -> None:

@@ -136,7 +136,11 @@ def reason_against_file(path: Path) -> str:
 
 @contextlib.contextmanager
 def _opened(path: Path) -> Iterator[IO[bytes]]:
-    """Open an ordinary file. Check its type before, because opening a device may have effects, and after opening."""
+    """Open an ordinary file.
+
+    The type of the file is checked before opening it, because opening a device may have effects; and again afterwards,
+    because the file may have been replaced.
+    """
     try:
         _check(path, path.lstat())
         with opened(path) as file:

@@ -157,8 +157,7 @@ class _Grid:
         """Return a grid with one row, which consists of the widest cell of each column."""
         student = next(iter(self.students))
         by_width = sorted(self.results.values(), key=lambda row: cell_len(_cell(row, self.diagnoses).plain))
-        # The rows are sorted by width, and a dict keeps the last value for a key, so it keeps the widest cell of each
-        # column.
+        # The rows are sorted by width, and a dict keeps the last value for each key: the widest cell of each column.
         results = {(student, row.assignment, row.exercise): row for row in by_width}
         return replace(self, students={student: self.students[student]}, results=results)
 

@@ -55,7 +55,7 @@ _ALTERNATIVE = re2.compile(r"(?i)\salt=")
 
 
 class Remembered:
-    """A cache of texts that are made from values. The least recently used text is dropped first.
+    """A cache of rendered texts, by the values from which they are made. The least recently used is dropped first.
 
     Args:
         characters: The maximum length of all texts together.
@@ -121,7 +121,7 @@ class PageExporter(HTMLExporter):
         self._set_filter("markdown2html", markdown_to_html)
 
     def default_filters(self) -> Iterator[tuple[str, Any]]:
-        """Yield nbconvert's filters and those that only this page's template uses, as pairs of name and function."""
+        """Yield nbconvert's filters and the filters that this page's template adds, as pairs of name and function."""
         filters: Any = super().default_filters
         yield from filters()
         yield "without_scripts", without_scripts
@@ -149,13 +149,13 @@ class PageExporter(HTMLExporter):
         """The resources that nbconvert gives to a template, such as style sheets; the same for every notebook."""
         initialise: Any = self._init_resources
         names = {"notebook": "", "score": 0.0, "max_score": 0.0, "late_penalty": 0.0}
-        # nbconvert searches custom/custom.css in `config_dir`, or, if that is not set, in the current folder.
+        # Set `config_dir`, because nbconvert would otherwise read custom/custom.css in the current folder.
         resources: dict[str, Any] = initialise({"nbgrader": names, "config_dir": str(_OURS)})
         shown: Any = WidgetsDataTypeFilter(notebook_metadata={}, parent=self, resources=resources)
         self._set_filter("filter_data_type", shown)
         convert: Any = (
             TemplateExporter.from_notebook_node
-        )  # HTMLExporter's own method would parse the whole page again
+        )  # not HTMLExporter's own method, which would parse the whole page again
         _, resources = convert(self, nbformat_nodes.notebook([], {}), resources)
         return resources
 

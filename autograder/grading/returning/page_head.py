@@ -25,8 +25,8 @@ if TYPE_CHECKING:
     from autograder.grading.gradebooks.gradebook_reading import CellEntry
 
 WAITS = "waits_for_a_person"
-"""The key in a cell's nbgrader metadata, if the cell has no final points, of a remark for the student, such as "waits
-for your instructor".
+"""The key of a remark for the student, such as "waits for your instructor", in a cell's nbgrader metadata. Only a cell
+without final points has a remark.
 """
 _FOR_A_PERSON, _TRIED_AGAIN = "waits for your instructor", "could not be checked, and is tried again"
 _BEGIN, _END = '<div id="toc">', "</div>"
@@ -61,8 +61,8 @@ def cards_first(notebook: NotebookNode) -> list[tuple[bool, bool]]:
     """Move the check cells to the top of a notebook, because their outputs are the cards.
 
     Returns:
-        For each cell a pair of booleans, with which a page folds blocks of given cells: whether such a block begins
-        with this cell, and whether it ends with this cell.
+        For each cell, two booleans: True if a block of given cells begins with the cell, and True if a block of given
+        cells ends with the cell. The page folds these blocks.
     """
     notebook.cells = sorted(notebook.cells, key=lambda cell: not is_check(cell))
     given = [is_the_masters(cell) and not is_check(cell) for cell in notebook.cells]

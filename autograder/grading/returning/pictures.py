@@ -40,7 +40,10 @@ class PixelBudget:
         self._left = MOST_POINTS
 
     def fit(self, encoded: Iterable[str]) -> bool:
-        """Count the pixels of base64 pictures; but if they would exceed the limit, count none and return False."""
+        """Count the pixels of base64 pictures, and return True.
+
+        If the pixels would exceed the limit, count none and return False.
+        """
         wanted = sum(points_of(picture) or 0 for picture in encoded)
         if wanted > self._left:
             return False

@@ -2,8 +2,8 @@
 
 A student can craft a text that keeps parsers of Markdown and code busy for minutes. So a desk
 (:mod:`autograder.boxes.desk`) renders the texts first as a trial, in the same steps as nbconvert's page template and
-with a limit of processor time. Pages and formgrader show the texts that the desk did not finish as typed, and cut them
-(:func:`autograder.grading.returning.sanitize.make_harmless`).
+with a limit of processor time. If the desk did not finish a text, pages and formgrader show the text as it was typed,
+and cut it (:func:`autograder.grading.returning.sanitize.make_harmless`).
 """
 
 from __future__ import annotations

@@ -74,4 +74,4 @@ def render(kind: CellType, text: str) -> None:
         piece = strip_files_prefix(clean(markdown2html_mistune(harmless_markdown(text))))
     else:
         return  # pages show a cell of any other type as typed
-    BeautifulSoup(piece, "html.parser")  # as from_notebook_node in nbconvert/exporters/html.py does
+    BeautifulSoup(piece, "html.parser")  # nbconvert's HTMLExporter parses the page, too

@@ -126,7 +126,7 @@ def make_harmless(notebook: NotebookNode, as_they_are: Collection[int] = ()) -> 
                 cell.update(nbformat_nodes.cell(CellType.MARKDOWN, as_typed(cell.source)) | {"id": cell.id})
             elif place in as_they_are:
                 cell.metadata["magics_language"] = (
-                    "text"  # for the language "text", nbconvert does not highlight code
+                    "text"  # so that nbconvert shows the code without highlighting
                 )
         if cell.cell_type == CellType.CODE:
             shows_verdict = is_check(cell) and is_the_masters(cell)
@@ -166,7 +166,7 @@ def harmless_markdown(source: str, figures: tuple[str, ...] = ()) -> str:
         looking = _Looking(figures)
         rendered = MarkdownWithMath(renderer=looking).render(source)
         if visible(plain := unescape(rendered)) != plain:
-            return as_typed(source)  # an HTML entity may also change the writing direction
+            return as_typed(source)  # an HTML entity changes the writing direction
         cleaned = clean(rendered)
         if looking.is_plain and cleaned.count("&lt;") == rendered.count("&lt;"):
             return source

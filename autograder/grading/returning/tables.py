@@ -10,7 +10,8 @@ from dataclasses import dataclass
 
 import re2
 
-# Matches the tags of tables as nh3 writes them: the values of attributes are in double quotes and contain none.
+# Matches the tags of tables as nh3 writes them: the values of attributes are in double quotes, and contain no double
+# quotes.
 _OF_TABLES = re2.compile(r"""<(/?table|tr|td|th)\b((?: [a-z]+="[^"]*")*)>""")
 _SPAN = re2.compile(r' (colspan|rowspan)="([0-9]+)"')
 

@@ -192,7 +192,7 @@ class Dispatcher:
                 yield self._done.pop()
 
     def _give_out(self, jobs: Iterator[_Job], on_start: Callable[[Task], None]) -> None:
-        """Give a task to every free slot. No tasks are queued at a worker, because they would be lost if it ended."""
+        """Give a task to every free slot. No tasks are queued at a worker: they would be lost if the worker ended."""
         for address, worker in self._workers.items():
             while len(worker.flights) < worker.slots and len(self._flights) < _MOST_IN_FLIGHT:
                 job = self._next_for(address, worker, jobs)
@@ -207,8 +207,8 @@ class Dispatcher:
         """Return the next task for a worker; None if there is no task for it now.
 
         If a worker ended while it ran a task, the task may be the cause. So a worker runs at most one such task at a
-        time, and if possible not one that it ran before. A task that must run alone waits until no other tasks are left
-        and the worker is idle.
+        time, if possible one that this worker has not tried before. A task that must run alone waits until no other
+        tasks are left and the worker is idle.
         """
         held = [self._flights[number].job for number in worker.flights]
         if any(job.alone for job in held):
@@ -291,11 +291,11 @@ class Dispatcher:
             self._refuse(
                 address,
                 name,
-                f"its version of the course is {offer.version:.16}, and here it is {course_version()}. "
+                f"the worker's version of the course is {offer.version:.16}, and here it is {course_version()}. "
                 "Bring both machines to the same commit and start the worker again",
             )
         elif self._boxed and offer.obstacle:
-            self._refuse(address, name, f"it has no sandbox: {offer.obstacle[:500]}")
+            self._refuse(address, name, f"the worker has no sandbox: {offer.obstacle[:500]}")
         else:
             self._workers[address] = _Worker(name, offer.slots)
 
@@ -331,7 +331,8 @@ class Dispatcher:
         if worker.troubles >= _MOST_TROUBLES and len(self._workers) > 1:
             # For example, a worker with a full disk would fail on each notebook at once, and then get the next one.
             self._turn_out(
-                flight.worker, f"it failed on {worker.troubles} notebooks in a row: {execution.trouble}"
+                flight.worker,
+                f"the worker failed on {worker.troubles} notebooks in a row: {execution.trouble}",
             )
 
     def _comes_again(self, job: _Job, execution: Execution) -> bool:
@@ -365,7 +366,7 @@ class Dispatcher:
             return
         for held in self._workers[address].flights:
             self._flights[held].job.attempts -= 1  # does not count: the worker is at fault, not the notebook
-        self._turn_out(address, f"it sent an impossible answer: {reason}. Check that machine")
+        self._turn_out(address, f"the worker sent an impossible answer: {reason}. Check that machine")
 
     def _turn_out(self, address: str, reason: str) -> None:
         """Give no more tasks to an accepted worker, and give the tasks that it was running to other workers."""
@@ -379,7 +380,7 @@ class Dispatcher:
                 if flight.worker == ADDRESS:
                     self._lost(number, "the execution has not ended in time")
                     continue
-                self._turn_out(flight.worker, "it has not answered in time. Start it again")
+                self._turn_out(flight.worker, "the worker has not answered in time. Start it again")
 
     def _lost(self, number: int, reason: str) -> None:
         job = self._land(number).job
@@ -406,14 +407,14 @@ class Dispatcher:
 
 
 def _most_seconds(task: Task) -> float:
-    # Twice the limit, because the time limits of cells get longer while the machine is overloaded.
+    # Wait for twice the limit, because the time limits of cells get longer while the machine is overloaded.
     return 2 * task.limits.longest + _EXTRA_SECONDS
 
 
 def _could_not_be_asked(reason: str) -> str:
     if "No module named" in reason:
         return (
-            f"it does not have the autograder ({reason}). Start it with `{COMMAND} worker`, "
+            f"the worker does not have the autograder ({reason}). Start it with `{COMMAND} worker`, "
             "or with the Python of the course's .venv"
         )
-    return f"it could not be asked what it offers ({reason})"
+    return f"the worker could not be asked for its offer ({reason})"

@@ -123,7 +123,7 @@ class ProcessLink:
             except Hangup:
                 reason = f"its process ended{self._last_words()}"
             except (msgspec.MsgspecError, ValueError, MemoryError) as error:
-                reason = f"its process sent an invalid message: {error}"
+                reason = f"the process sent an invalid message: {error}"
             with self._changing:
                 if self._closing or said_nothing >= _STARTS or not self._starts_again(reason):
                     self._news.put(Broken(reason))

@@ -135,7 +135,7 @@ def patiently(seconds: float) -> Left:
 
 
 class _Judges:
-    """Gives each check a judge on the network of its subject, of which only one is alive at a time.
+    """Gives each check a judge on the network of its subject. Only one judge is alive at a time.
 
     :meth:`close` returns None if the notebook never requested the check, and raises an error if the judge failed.
 

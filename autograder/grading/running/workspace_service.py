@@ -106,7 +106,8 @@ def served(
         jobs = PlainJobs(kernel_environment(folder / "home", {}), handed_in=True)
         ros = ros_environment()
         sockets = ServiceSockets(arrangement.judges_socket, None)
-    # Output comes without delay, and a program that hangs can be asked for the stacks of its threads.
+    # PYTHONUNBUFFERED: output comes without delay. PYTHONFAULTHANDLER: a program that hangs can print the stacks of its
+    # threads.
     variables = {**ros, "PYTHONUNBUFFERED": "1", "PYTHONFAULTHANDLER": "1"}
     return WorkspaceService(sockets, jobs, builds, variables, folder, ahead)
 

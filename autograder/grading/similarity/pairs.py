@@ -151,7 +151,8 @@ def _common_passages(one: Compared, other: Compared) -> list[Passage]:
         if not blocks:
             break
         for here, there, length in blocks:
-            # These two numbers occur in only one answer each, so no later comparison finds the passage again.
+            # Replace the passage by one number in the first answer and by another in the second, so that no later
+            # comparison finds the passage again.
             first[here : here + length] = [_FOUND_IN_ONE] * length
             second[there : there + length] = [_FOUND_IN_OTHER] * length
             sides = zip(one.own[here : here + length], other.own[there : there + length], strict=True)

@@ -97,8 +97,8 @@ class ClassTable:
     def score(self, student: str, assignment: str = "") -> float | None:
         """Return a student's points for an assignment, or for all, after weights and the late penalty.
 
-        The result is ``absent`` if the student handed in nothing. For one assignment, it is None if one of its checks
-        could not be made, because the sum of the others would look like the final points.
+        The result is ``absent`` if the student handed in nothing. For one assignment, the result is None if a check of
+        the assignment could not be made, because the sum of the other points would look like the final points.
         """
         rows = self.of(student, assignment)
         return None if assignment and any(row.is_unchecked for row in rows) else self.points(rows)

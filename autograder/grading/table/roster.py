@@ -17,7 +17,8 @@ if TYPE_CHECKING:
 
 NAME = "students.csv"
 LMS = ("canvas", "moodle", "blackboard", "brightspace", "github", "gradescope", "sakai", "ilias")
-"""Learning management systems. ``students.csv`` may have a column for each, with the student's id or user name there.
+"""Learning management systems. ``students.csv`` may have a column for each system, with the students' ids or user names
+in the system.
 """
 _OWN = ("id", "first_name", "last_name", "email", "section", "excused")
 

@@ -105,7 +105,7 @@ def _with_points(row: Row, kept: CellEntry) -> Row:
 
 
 _IS_GRADED = ("passed", "failed", WAITS, BY_HAND)
-"""The states after a finished run, in which alone a cell can wait for a person."""
+"""The states of a cell after a finished run. A cell in another state cannot wait for a person."""
 
 
 def _state(cell: GradedCell, kept: CellEntry) -> str:

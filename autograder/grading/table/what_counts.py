@@ -1,4 +1,4 @@
-"""Reads from ``class.toml`` which weights exercises and assignments have, and which do not count."""
+"""Reads from ``class.toml`` the weights of exercises and assignments, and which of them do not count."""
 
 from __future__ import annotations
 

@@ -208,7 +208,7 @@ def test_workers_that_forge_are_turned_out_by_name_and_run_nothing_here(
     for name, words in {
         "pickler": "the answer is not an execution",
         "large": "the answer has 400000",
-        "object": "it sent an impossible answer",
+        "object": "the worker sent an impossible answer",
         "forger": "1000 of 10 points",
     }.items():
         line = next(line for line in said.getvalue().splitlines() if f"The worker {name} " in line)
@@ -225,7 +225,7 @@ def test_a_worker_of_another_version_is_refused_by_name_and_the_batch_goes_on(
         report = graded_on(cluster, unboxed, said)
     assert report.exit_code == 0
     assert unboxed.scores("ada")[TALKER] == 4
-    assert "its version of the course is yesterday, and here it is test" in said.getvalue()
+    assert "the worker's version of the course is yesterday, and here it is test" in said.getvalue()
     assert "The worker old (tcp://127.0.0.1:" in said.getvalue()
 
 
@@ -236,7 +236,10 @@ def test_where_nobody_can_execute_anything_the_class_stays_as_it_is(
     tiny.submit("ada", 4)
     tiny.grade(judge=with_fake_judge)
     sandboxing._off.clear()
-    with cluster.worker("bare"), pytest.raises(NoWorkers, match=rf"bare .*it has no sandbox: {UNBOXED}"):
+    with (
+        cluster.worker("bare"),
+        pytest.raises(NoWorkers, match=rf"bare .*the worker has no sandbox: {UNBOXED}"),
+    ):
         graded_on(cluster, tiny)
     with pytest.raises(NoWorkers, match="has no workers"):
         tiny.grade(scheduler=cluster.address, again=True)

@@ -36,8 +36,11 @@ def test_two_numbered_ones_need_a_decision(tiny: TinyClass, fake_engine: FakeEng
     path.with_name("lab_1_2 (2).ipynb").write_bytes(path.read_bytes())
     path.rename(path.with_name("lab_1_2 (1).ipynb"))
     report = tiny.grade()
-    assert "lab_1_2 (1).ipynb: it is not graded in this place, nor are 1 more files here" in refused(report)
-    assert f"put the notebook for grading here: {path}" in refused(report)
+    assert (
+        "lab_1_2 (1).ipynb: the file is not graded in this place, nor are 1 more files in this folder"
+        in refused(report)
+    )
+    assert f"rename the notebook to grade to {path}" in refused(report)
     assert report.exit_code == 2
 
 
@@ -46,7 +49,7 @@ def test_one_folder_too_high_is_named_and_stays_there(tiny: TinyClass, fake_engi
     high = path.rename(path.parent.parent / "lab_1_2.ipynb")
     report = tiny.grade()
     assert (
-        f"lab_1_2.ipynb: it is not graded in this place: put it into {tiny.path}/submitted/STUDENT"
+        f"lab_1_2.ipynb: the file is not graded in this place: move the file into {tiny.path}/submitted/STUDENT"
         in refused(report)
     )
     assert (report.exit_code, high.exists()) == (2, True)
@@ -60,7 +63,7 @@ def test_loose_files_and_zips_are_named(tiny: TinyClass, fake_engine: FakeEngine
     (tiny.path / "submitted" / "moodle.zip").write_bytes(zipped({"a": "b"}))
     report = tiny.grade()
     assert {one.path.name for one in report.refused} == {"lab_1_2.ipynb", "work.zip"}
-    assert "nor are 1 more files here" in refused(report)
+    assert "nor are 1 more files in this folder" in refused(report)
     assert "./course collect" in refused(report)
 
 
@@ -121,8 +124,8 @@ def test_nothing_is_moved_into_a_neighbours_folder_through_a_link(
     one.parent.symlink_to(neighbours)
     report = tiny.grade()
     assert not list(neighbours.iterdir())
-    assert "lab_1_2.ipynb: it is not graded in this place" in refused(report)
-    assert "lab_1_2: it is a link" in refused(report)
+    assert "lab_1_2.ipynb: the file is not graded in this place" in refused(report)
+    assert "lab_1_2: the path is a link" in refused(report)
 
 
 @pytest.mark.parametrize("folder", ["ada/lab_1_2", "ada"])

@@ -103,8 +103,8 @@ def test_a_folder_that_may_be_one_students_is_said_to_be_taken_for_a_download(
     report = collect(klass.path, [source])
     assert placed(report).keys() == {"ada", "ben"}
     assert report.notes == (
-        f"{source} was taken for a download, in which names identify the students: if one student sent it, rename it "
-        "to the student's id",
+        f"{source} was taken for a download, in which names identify the students: if one student sent the file, "
+        "rename it to the student's id",
     )
 
 
@@ -127,7 +127,7 @@ def test_a_list_that_takes_gigabytes_to_read_is_a_line_that_waits(
     files[name] += "a: b\n" * 1_000_000
     report = collect(klass.path, [write_zip(tmp_path / "export.zip", files)])
     assert placed(report) == {}
-    assert "submission_metadata.yml: it is too large, or not a list that can be read" in why(report)
+    assert "submission_metadata.yml: the file is too large, or not a known list" in why(report)
 
 
 @pytest.mark.parametrize("name", ["x" * 1_001, "..\\x", "a/../../x", "x/" * 600 + "x"])
@@ -156,8 +156,9 @@ def test_what_one_system_reads_as_nobodys_is_not_anothers_student(klass: TinyCla
     file.write_text(work(klass, 1))
     report = collect(klass.path, [file])
     assert placed(report) == {}
-    assert "its name fits several systems, which mean different students or times by it (ben): write" in why(
-        report
+    assert (
+        "the file's name fits several systems, and would mean another student or time in each (ben): write"
+        in why(report)
     )
     assert "no student in the class is called mallory" in why(collect(klass.path, [file], form="canvas"))
     download = write_zip(tmp_path / "s.zip", {f"lab/{IN_BOTH}": work(klass), "lab/zusezoe_105_1_x.png": "x"})
@@ -251,7 +252,7 @@ def test_of_files_named_one_by_one_two_people_of_one_name_are_told_apart(
     files = folder(tmp_path / "d", {name: work(tiny, place) for place, name in enumerate(names)})
     report = collect(tiny.path, sorted(files.iterdir()))
     assert (placed(report), len(report.having(LineState.NOT_PLACED))) == ({}, 2)
-    assert "several people have the name of ada, with the numbers 101, 999" in why(report)
+    assert "several people in the LMS have the name of ada; their numbers are 101, 999" in why(report)
     (tiny.path / "students.csv").write_text("id,first_name,last_name,canvas\nada,Ada,Lovelace,101\n")
     report = collect(tiny.path)
     assert (placed(report).keys(), lies(tiny, "ada")) == ({"ada"}, work(tiny, 0))
@@ -288,7 +289,7 @@ def test_whose_number_a_list_says_is_not_held_up_by_who_takes_the_name(
     assert placed(collect(tiny.path, [download])) == {}
     report = collect(tiny.path, [download, sheet])
     assert lies(tiny, "ada") == work(tiny, 0)
-    assert "with the numbers 1, 2" in why(report)
+    assert "their numbers are 1, 2" in why(report)
 
 
 # -- what honest instructors met

@@ -240,8 +240,11 @@ def test_what_cannot_be_placed_is_listed_with_its_reason(klass: TinyClass, tmp_p
         "no student in the class is called Guest User"
         in lines["m.zip/Guest User_2_assignsubmission_file_lab_1_2.ipynb"]
     )
-    assert "write it under assignment" in lines["m.zip/Ben Bär_3_assignsubmission_file_homework.ipynb"]
-    assert "does not say whose it is" in lines["m.zip/readme.ipynb"]
+    assert (
+        "write the assignment under assignment"
+        in lines["m.zip/Ben Bär_3_assignsubmission_file_homework.ipynb"]
+    )
+    assert "does not identify a student" in lines["m.zip/readme.ipynb"]
     assert not list((klass.path / "submitted").iterdir())
     again = collect(klass.path, [tmp_path / "m.zip"], assignment="lab_1_2")
     assert placed(again).keys() == {"ben"}
@@ -259,7 +262,7 @@ def test_the_newest_counts_also_later_and_nothing_is_lost(klass: TinyClass, tmp_
     assert (len(first.having(LineState.EARLIER)), first.exit_code, lies(klass, "ada")) == (1, 0, two)
     last = collect(klass.path, [blackboard("c.zip", 16, three)])
     assert (last.having(LineState.PLACED)[0].reason, lies(klass, "ada")) == (
-        "instead of an earlier one",
+        "instead of an earlier file",
         three,
     )
     assert kept(klass) == sorted([one, two])
@@ -306,7 +309,7 @@ def test_a_notebook_that_nobody_collected_is_not_overwritten(klass: TinyClass, t
         [write_zip(tmp_path / "m.zip", {"Ada Lovelace_1_assignsubmission_file_lab_1_2.ipynb": work(klass)})],
     )
     (other,) = report.having(LineState.EARLIER)
-    assert "was put there by hand and is graded" in other.reason
+    assert "was put into submitted by hand and is graded" in other.reason
     assert lies(klass, "ada") == mine
 
 
@@ -361,7 +364,7 @@ def test_names_that_lead_out_and_links_go_nowhere(klass: TinyClass, tmp_path: Pa
     before = outside(tmp_path)
     report = collect(klass.path, [tmp_path / "in" / "m.zip"])
     assert placed(report).keys() == {"ada"}, "the folders above it are nothing but a name"
-    assert "it is a link" in why(report)
+    assert "the file is a link" in why(report)
     there = {path for path in outside(tmp_path) - before if not path.startswith("class/submitted")}
     assert there <= {"class/students.csv", "class/collected.csv"}
     folder = tmp_path / "Ada Lovelace_1_assignsubmission_file"
@@ -510,7 +513,9 @@ def test_without_a_list_of_students_folders_have_the_names_of_the_lms(
         [write_zip(tmp_path / "c.zip", {"lovelaceada_101_9001_lab_1_2.ipynb": work(tiny)})],
     )
     assert placed(report).keys() == {"lovelaceada"}
-    assert "the class has no students.csv: folders have the names that the LMS uses" in report.notes
+    assert (
+        "the class has no students.csv, so students' folders have the names that the LMS uses" in report.notes
+    )
 
 
 @pytest.mark.parametrize(
@@ -555,7 +560,7 @@ def test_the_command_says_everything(klass: TinyClass, tmp_path: Path) -> None:
     result = CliRunner().invoke(cli, ["collect", str(klass.path), str(archive)])
     assert result.exit_code == 2, result.output
     assert "placed       ada/lab_1_2" in result.output
-    assert "late as the LMS says" in result.output
+    assert "late according to the LMS" in result.output
     assert (
         "not placed   c.zip/guest_999_9002_lab_1_2.ipynb: no student in the class is called guest"
         in result.output

@@ -60,7 +60,7 @@ def test_work_goes_before_a_hand_out(
     assert (why(report), lies(klass, "ada")) == ("", work(klass, 3))
     (earlier,) = report.having(LineState.EARLIER)
     assert earlier.label.endswith(fresh)
-    assert "has answers and is graded; this file is as it was handed out" in earlier.reason
+    assert "has answers and is graded; this file has no answers" in earlier.reason
     assert kept(klass) == [files[fresh]]
 
 
@@ -85,7 +85,7 @@ def test_a_later_file_that_is_not_a_notebook_replaces_no_work(
         for number, part in enumerate(parts)
     ]
     assert (lies(klass, "ada"), kept(klass)) == (work(klass, 3), [damaged])
-    assert "Other work of ada is graded: ask for this file again" in why(reports[-1])
+    assert "Another file of ada is graded: ask for this file again" in why(reports[-1])
     third = {name.format(5): work(klass, 5)}
     assert collect(klass.path, [write_zip(tmp_path / "new.zip", third)]).exit_code == 0
     assert lies(klass, "ada") == work(klass, 5)
@@ -130,7 +130,7 @@ def test_also_where_it_comes_in_a_download_of_its_own(klass: TinyClass, tmp_path
     assert (why(report), lies(klass, "ada")) == ("", work(klass, 3))
     (late,) = collect(klass.path, zips[2:]).outcomes
     assert (late.state, lies(klass, "ada")) == (LineState.EARLIER, work(klass, 3))
-    assert "has answers and is graded; this file is as it was handed out" in late.reason
+    assert "has answers and is graded; this file has no answers" in late.reason
     assert len(kept(klass)) == 2
 
 

@@ -174,8 +174,8 @@ def test_a_cell_that_is_not_clear_changes_nothing_and_has_a_sentence(
     collect(klass.path, [blackboard(klass, tmp_path, ada=(3, 1))])
     edit(klass, "ada", use="maybe", handed_in="soon")
     said = " ".join(collect(klass.path).notes)
-    assert "'maybe' under use is neither yes nor no" in said
-    assert "'soon' under handed_in is not a time" in said
+    assert "column use: 'maybe' is neither yes nor no" in said
+    assert "column handed_in: 'soon' is not a time" in said
     assert (lies(klass, "ada"), stamp(klass, "ada")[:10]) == (work(klass, 1), "2025-10-03")
     edit(klass, "ada", student="nobody-at-all")
     assert "students.csv has no student nobody-at-all" in why(collect(klass.path))

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 UTC = ZoneInfo("UTC")
 
 NOT_THIS = (
-    "it is not for lab_1_2: it is the notebook of lab_1_3; to have it there, write lab_1_3 under "
+    "the file is the notebook of lab_1_3, not of lab_1_2; to collect the file for lab_1_3, write lab_1_3 under "
     "assignment in collected.csv"
 )
 
@@ -94,7 +94,7 @@ def test_what_students_call_their_files_in_google_classroom_says_nothing(
         "Ada_Lovelace/lab_1_2.ipynb",  # as programs do that fetch the work through Classroom's API
     )
     assert placed(report).keys() == {"ada"}
-    assert why(report).count("its name does not say whose it is") == 2
+    assert why(report).count("the file's name does not identify a student") == 2
 
 
 def test_a_time_that_nobody_can_read_is_a_cell_to_write(klass: TinyClass, tmp_path: Path) -> None:
@@ -252,7 +252,7 @@ def test_what_the_instructor_says_counts_where_nothing_else_does(klass: TinyClas
     assert [(one.student, one.assignment) for one in report.having(LineState.PLACED)] == [("ada", "lab_1_2")]
     report = gather(klass, tmp_path, name.format("lab_1_3"), assignment="lab_1_2")
     (beside,) = report.having(LineState.BESIDE)
-    assert "it is not for lab_1_2: it is the notebook of lab_1_3" in beside.reason
+    assert "the file is the notebook of lab_1_3, not of lab_1_2" in beside.reason
 
 
 def test_a_flat_brightspace_download_has_times_too(klass: TinyClass, tmp_path: Path) -> None:

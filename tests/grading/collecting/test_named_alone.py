@@ -87,7 +87,7 @@ def test_an_archive_of_which_nothing_is_taken_has_a_line(klass: TinyClass, tmp_p
     (tmp_path / "ada" / "work.zip").write_bytes(archive)
     report = collect(klass.path, [tmp_path / "ada"])
     assert [one.student for one in report.having(LineState.NOT_PLACED)] == ["ada"]
-    assert "it contains no file, or only files that programs leave there" in why(report)
+    assert "the archive contains no file, or only files that programs leave there" in why(report)
 
 
 def test_a_students_table_is_no_list_of_the_instructors(klass: TinyClass, tmp_path: Path) -> None:
@@ -165,7 +165,7 @@ def test_who_is_called_as_another_hands_in_nothing_for_the_other(
     report = collect(tiny.path, [download])
     assert placed(report) == {}
     assert [one.student for one in report.having(LineState.NOT_PLACED)] == ["ada", "ada"]
-    assert "several people have the name of ada" in why(report)
+    assert "several people in the LMS have the name of ada" in why(report)
     if "101" in names[0]:
         (tiny.path / "students.csv").write_text(
             "id,first_name,last_name,canvas\nada,Ada,Lovelace,101\neve,,,999\n"
@@ -187,7 +187,7 @@ def test_a_name_that_two_systems_may_have_given_to_two_students_is_refused(
         report = collect(klass.path, [file])
         assert placed(report) == {}, whose
         meant = ", ".join(dict.fromkeys((whose, "malloryeve")))
-        assert f"different students or times by it ({meant}): write the id under student" in why(report)
+        assert f"another student or time in each ({meant}): write the id under student" in why(report)
     assert placed(collect(klass.path, [file], form="canvas")).keys() == {"malloryeve"}
 
 
@@ -206,7 +206,7 @@ def test_no_names_that_one_student_chooses_say_which_system_a_download_is_of(
     assert (lies(klass, "ada"), lies(klass, "ben")) == (work(klass, 1), work(klass, 2))
     assert placed(report).keys() == {"ada", "ben"}
     assert all(
-        f"different students or times by it ({one}, eve)" in why(report) for one in ("ada", "ben", "zoe")
+        f"another student or time in each ({one}, eve)" in why(report) for one in ("ada", "ben", "zoe")
     )
     report = collect(klass.path, [download], form="canvas")
     assert {one.student for one in report.outcomes} == {"ada", "ben", "eve"}

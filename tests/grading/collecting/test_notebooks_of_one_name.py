@@ -57,15 +57,15 @@ def test_the_cells_say_of_which_assignment_it_is(
 
 def test_of_another_assignment_it_is_refused(klass: TinyClass, tmp_path: Path) -> None:
     report = gathered(klass, tmp_path, of(klass, "ps2"), "problem1.ipynb", "ps1")
-    assert "it is not for ps1: it is the notebook of ps2" in why(report)
+    assert "the file is the notebook of ps2, not of ps1" in why(report)
     report = gathered(klass, tmp_path, work(klass), "problem1.ipynb")
-    assert "its name says ps1 or ps2 and its cells are those of lab_1_2" in why(report)
+    assert "the file's name is that of ps1 or ps2, but the cells are those of lab_1_2" in why(report)
 
 
 def test_where_cells_say_nothing_the_instructor_does(klass: TinyClass, tmp_path: Path) -> None:
     nameless = work(klass).replace('"grade_id"', '"nobody"')
     report = gathered(klass, tmp_path, nameless, "problem1.ipynb")
-    assert "(ps1, ps2): write it under assignment" in why(report)
+    assert "(ps1, ps2): write the assignment under assignment" in why(report)
     report = gathered(klass, tmp_path, nameless, "problem1.ipynb", "ps1")
     assert [one.assignment for one in report.having(LineState.PLACED)] == ["ps1"]
 
@@ -74,4 +74,6 @@ def test_of_an_assignment_of_several_notebooks_the_name_says_which(klass: TinyCl
     (klass.path / "source" / "ps1" / "problem2.ipynb").write_text("{}")
     nameless = work(klass).replace('"grade_id"', '"nobody"')
     report = gathered(klass, tmp_path, nameless, "homework.ipynb", "ps1")
-    assert "which notebook of ps1 it is (problem1, problem2): write it under notebook" in why(report)
+    assert "which notebook of ps1 the file is (problem1, problem2): write the notebook under notebook" in why(
+        report
+    )

@@ -100,7 +100,7 @@ def test_a_pattern_fits_no_name_that_a_student_chose(
     files = of(klass, f"{top}lab-1-2-zz-top/lab_1_2.ipynb", forged)
     report = gathered(klass, tmp_path, files, names=names)
     assert placed(report).keys() == {"zoe"}
-    assert "its name does not say whose it is" in why(report)
+    assert "the file's name does not identify a student" in why(report)
 
 
 def test_of_a_time_in_a_pattern_the_day_alone_is_not_meant(klass: TinyClass, tmp_path: Path) -> None:
@@ -117,7 +117,7 @@ def test_what_a_name_says_of_no_assignment_of_the_class_leads_nowhere(
     (klass.path / "stray.ipynb").write_text("{}")
     nameless = work(klass).replace('"grade_id"', '"nobody"')
     report = gathered(klass, tmp_path, {f"ada-{assignment}/x.ipynb": nameless}, names="{id}-{assignment}")
-    assert "it is not clear which assignment it is for" in why(report)
+    assert "it is not clear which assignment the file is for" in why(report)
     edit(klass, "x.ipynb", assignment=assignment)
     assert placed(collect(klass.path)) == {}
     assert not [*(klass.path / "submitted").rglob("*.ipynb")]
@@ -126,7 +126,7 @@ def test_what_a_name_says_of_no_assignment_of_the_class_leads_nowhere(
 def test_blind_marking_waits_for_the_worksheet(klass: TinyClass, tmp_path: Path) -> None:
     files = of(klass, "Participant_31_assignsubmission_file_/lab_1_2.ipynb")
     report = gathered(klass, tmp_path, files)
-    assert "collect it together with the grading worksheet" in why(report)
+    assert "collect the file together with the grading worksheet" in why(report)
     worksheet = tmp_path / "Grades.csv"
     worksheet.write_text(
         "Identifier,Full name,Email address,Grade\nParticipant 31,Ada,ada.love@uni.example,\n"

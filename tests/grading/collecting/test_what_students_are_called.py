@@ -71,7 +71,7 @@ def test_in_brightspace_two_people_of_one_name_are_told_apart(klass: TinyClass, 
     files = {name.format(number, number): work(klass, number) for number in (1, 9)}
     report = collect(klass.path, [write_zip(tmp_path / "b.zip", files)])
     assert placed(report) == {}
-    assert "several people have the name of ben, with the numbers 1, 9" in why(report)
+    assert "several people in the LMS have the name of ben; their numbers are 1, 9" in why(report)
     (klass.path / "students.csv").write_text("id,first_name,last_name,brightspace\nben,Ben,Bär,1\n")
     assert lies(klass, placed(collect(klass.path, [tmp_path / "b.zip"])).popitem()[0]) == work(klass, 1)
 

@@ -96,11 +96,11 @@ def test_who_fills_an_archive_harms_nobody_else(klass: TinyClass, tmp_path: Path
 @pytest.mark.parametrize(
     ("name", "words"),
     [
-        ("lab_1_2.rar", "unpack it into a folder named ada"),
-        ("lab_1_2.tar.gz", "it is not an archive that can be read"),
-        ("lab_1_2.7z", "unpack it into a folder named ada"),
+        ("lab_1_2.rar", "unpack the file into a folder named ada"),
+        ("lab_1_2.tar.gz", "the archive cannot be read"),
+        ("lab_1_2.7z", "unpack the file into a folder named ada"),
         ("lab_1_2.py", "write no under use"),
-        ("answer.docx", "it is not a notebook; to leave it out"),
+        ("answer.docx", "it is not a notebook; to leave the file out"),
     ],
 )
 def test_what_is_not_taken_is_named_with_its_student_the_reason_and_what_to_type(
@@ -140,7 +140,7 @@ def test_the_notebook_of_one_assignment_gives_no_place_to_a_file_of_another(
         ("lovelaceada_101_9002_lab_1_2.py", "it is not a notebook")
     ]
     assert named(report, LineState.NOT_PLACED) == [("lovelaceada_101_9003_lab_1_3.py", "ada")]
-    assert "it is not a notebook; to leave it out" in why(report)
+    assert "it is not a notebook; to leave the file out" in why(report)
 
 
 def test_what_has_no_place_is_repeated_until_it_has_one(
@@ -154,7 +154,9 @@ def test_what_has_no_place_is_repeated_until_it_has_one(
     label = "c.zip/lovelaceada_101_9001_lab_1_2.rar"
     graded = klass.grade()
     assert graded.exit_code == 2
-    assert any(label in str(one.path) and "ada: it is an archive" in one.reason for one in graded.refused)
+    assert any(
+        label in str(one.path) and "ada: archives of this kind" in one.reason for one in graded.refused
+    )
     assert any("collected.csv, line 2, cell use" in one.reason for one in graded.refused)
     assert label in write_report(klass.path).read_text()
     assert label not in write_report(klass.path, names=False, to=tmp_path / "r.html").read_text()
@@ -240,10 +242,10 @@ def test_the_cells_say_which_assignment_it_is(klass: TinyClass, tmp_path: Path) 
     for name in ("lab_1_3.ipynb", "lab_1_2.ipynb", "homework.ipynb"):
         report = gathered(klass, tmp_path, {MOODLE.format("Ada Lovelace", name): other}, assignment="lab_1_2")
         (beside,) = report.having(LineState.BESIDE)
-        assert "it is not for lab_1_2: it is the notebook of lab_1_3" in beside.reason
+        assert "the file is the notebook of lab_1_3, not of lab_1_2" in beside.reason
         assert lies(klass, "ada") == work(klass, 3)
     report = gathered(klass, tmp_path, {ada: other})
-    assert "its name says lab_1_2 and its cells are those of lab_1_3" in why(report)
+    assert "the file's name is that of lab_1_2, but the cells are those of lab_1_3" in why(report)
     report = gathered(klass, tmp_path, {MOODLE.format("Ada Lovelace", "homework.ipynb"): other})
     assert [one.assignment for one in report.having(LineState.PLACED)] == ["lab_1_3"]
 
@@ -270,7 +272,7 @@ def test_a_second_copy_under_another_labs_name_waits(klass: TinyClass, tmp_path:
     held = zipped({"lab_1_2 (1).ipynb": other, "lab_1_3.ipynb": other})
     report = gathered(klass, tmp_path, {MOODLE.format("Ada Lovelace", "work.zip"): held})
     assert [one.assignment for one in report.having(LineState.PLACED)] == ["lab_1_3"]
-    assert "its name says lab_1_2 and its cells are those of lab_1_3" in why(report)
+    assert "the file's name is that of lab_1_2, but the cells are those of lab_1_3" in why(report)
 
 
 def test_a_notebook_of_the_course_that_is_no_assignment_here_is_beside_the_work(

@@ -48,7 +48,7 @@ def test_a_dry_run_enters_nothing_and_says_who_would_get_other_points(
     assert report.would_change is not None
     assert [change.line() for change in report.would_change] == [
         "ben  lab_1_2.talker  4 → 10",
-        "eve  lab_1_2.talker  4 → 10, the points by a person stay",
+        "eve  lab_1_2.talker  4 → 10, the points that a person gave stay",
     ]
     assert "Nothing was entered. 2 results would change:" in shown(report)
     after = files(tiny)

@@ -145,7 +145,7 @@ def test_moodle_takes_points_and_pages(graded: TinyClass) -> None:
     assert {row[2]: number(row[-1]) for row in students} == in_gradebook(graded)
     with zipfile.ZipFile(graded.path / "export" / "feedback-moodle-lab_1_2.zip") as archive:
         assert archive.namelist() == ["Eve O'Neill_555_assignsubmission_file/lab_1_2.html"]
-    assert any("in the zip for ada, ben, jose:" in notice for notice in done.notices)
+    assert any("on lab_1_2 for ada, ben, jose:" in notice for notice in done.notices)
 
 
 def test_what_would_give_points_to_nobody_is_not_offered(graded: TinyClass) -> None:
@@ -396,7 +396,7 @@ def test_a_column_of_another_name_is_named(graded: TinyClass, tmp_path: Path) ->
     lines = rows(graded.path / "export" / "canvas.csv")
     assert [row[-1] for row in lines[2:]] == ["18.5", ""]
     result = CliRunner().invoke(cli, [*command[:4], "--column", "lab_1_2=Lab 1.2"])
-    assert (result.exit_code, "--column names a column of --into" in result.output) == (2, True)
+    assert (result.exit_code, "--column names a column of the list in --into" in result.output) == (2, True)
 
 
 def test_a_person_or_a_program_reads_what_was_written_and_what_waits(

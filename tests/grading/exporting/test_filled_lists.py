@@ -115,7 +115,7 @@ def test_only_moodle_says_who_a_participant_is(klass: TinyClass, tmp_path: Path)
     with zipfile.ZipFile(folder / "feedback-moodle-lab_1_2.zip") as pages:
         assert pages.namelist() == ["Eve O'Neill_555_assignsubmission_file/lab_1_2.html"]
     (feedback,) = done.notices
-    assert "no feedback on lab_1_2 in the zip for ben:" in feedback
+    assert "the zip has no feedback on lab_1_2 for ben:" in feedback
 
 
 def test_a_doubtful_line_is_settled_by_what_the_list_has_in_it(klass: TinyClass, tmp_path: Path) -> None:

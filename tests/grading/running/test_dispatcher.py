@@ -156,7 +156,9 @@ def test_a_worker_that_is_sick_does_not_swallow_the_class(tasks: list[Task]) -> 
     dispatcher = make_dispatcher(link, told)
     dispatcher.await_workers()
     assert students(list(dispatcher.execute_all(tasks))) == [task.student for task in tasks]
-    assert "name-sick (sick) gets no work: it failed on 3 notebooks in a row: no space left." in told[0]
+    assert (
+        "name-sick (sick) gets no work: the worker failed on 3 notebooks in a row: no space left." in told[0]
+    )
     assert sum(give.worker == "sick" for give in link.given) <= 2 * HERE.slots
 
 
@@ -193,7 +195,8 @@ def test_a_worker_that_forges_is_turned_out_by_name(tasks: list[Task]) -> None:
     assert students(list(dispatcher.execute_all(tasks))) == [task.student for task in tasks]
     assert len(told) == 1
     assert (
-        "name-bad (bad) gets no work: it sent an impossible answer: the answer is not an execution" in told[0]
+        "name-bad (bad) gets no work: the worker sent an impossible answer: the answer is not an execution"
+        in told[0]
     )
     assert sum(give.worker == "bad" for give in link.given) <= HERE.slots
 
@@ -224,13 +227,13 @@ def test_a_worker_that_falls_silent_is_turned_out(tasks: list[Task], monkeypatch
     dispatcher = make_dispatcher(link, told)
     dispatcher.await_workers()
     assert students(list(dispatcher.execute_all(tasks))) == [task.student for task in tasks]
-    assert "name-mute (mute) gets no work: it has not answered in time. Start it again." in told[0]
+    assert "name-mute (mute) gets no work: the worker has not answered in time. Start it again." in told[0]
 
 
 @pytest.mark.parametrize(
     ("offer", "words"),
     [
-        (Offer("other", 2, obstacle=""), "its version of the course is other, and here it is here"),
+        (Offer("other", 2, obstacle=""), "the worker's version of the course is other, and here it is here"),
         (
             Offer("here", 2, obstacle="bubblewrap is missing"),
             "no sandbox: bubblewrap is missing",
@@ -264,14 +267,14 @@ def test_a_worker_cannot_write_on_the_terminal(tasks: list[Task]) -> None:
     link = FakeLink(Joined("a\x1b[31m", "b\nTotal: 100", msgspec.json.encode(offer)), Asked())
     with pytest.raises(NoWorkers):
         make_dispatcher(link, told).await_workers()
-    assert "its version of the course" in told[0]
+    assert "the worker's version of the course" in told[0]
     assert all(letter.isprintable() for letter in told[0])
 
 
 def test_a_worker_without_the_package_is_refused_with_what_to_do() -> None:
     link = FakeLink(Unfit("tcp://w:1", "w", "ModuleNotFoundError: No module named 'autograder'"), Asked())
     with pytest.raises(
-        NoWorkers, match=r"w \(tcp://w:1\): it does not have the autograder .* `\./course worker`"
+        NoWorkers, match=r"w \(tcp://w:1\): the worker does not have the autograder .* `\./course worker`"
     ):
         make_dispatcher(link).await_workers()
 

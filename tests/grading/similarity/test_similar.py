@@ -220,7 +220,7 @@ def test_what_lies_beside_its_place_is_named_and_stays_there(class_: TinyClass) 
     assert code == 2
     said = " ".join(output.split())
     for one in (alone, high, submitted / "moodle.zip"):
-        assert f"refused {one}: it is not graded in this place" in said
+        assert f"refused {one}: the file is not graded in this place" in said
         assert one.is_file()
     assert students(found(class_)) == [("ada", "ben")]
 
@@ -247,4 +247,4 @@ def test_a_folder_that_cannot_be_listed_is_named(class_: TinyClass) -> None:
     (class_.path / "submitted").touch()
     code, said = run(class_)
     assert code == 2
-    assert f"refused      {class_.path / 'submitted'}: it could not be read" in said
+    assert f"refused      {class_.path / 'submitted'}: the folder could not be read" in said

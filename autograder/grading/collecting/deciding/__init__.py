@@ -1,1 +1,1 @@
-"""Decides whose a collected file is, for which notebook, and which file of a student counts."""
+"""Decides to which student and notebook a collected file belongs, and which file of a student is graded."""

@@ -83,8 +83,8 @@ class AssignmentOf:
             asked: The assignment that the instructor named; empty to find it.
 
         Raises:
-            NoTarget: The notebook is unclear; or the cells belong to several assignments, or to another assignment
-                than the file's name or the instructor says.
+            NoTarget: The notebook is unclear, or the cells belong to several assignments, or they do not belong to the
+                assignment in the file's name or to ``asked``.
         """
         named = self._notebooks.get(stem_of(name).casefold(), [])
         cells = _cells(data)
@@ -92,21 +92,23 @@ class AssignmentOf:
         mixed = self._directory.named_cells.assignments(cells)
         if len(mixed) > 1 and asked not in mixed:
             raise NoTarget(
-                f"it has the cells of {' and of '.join(mixed)}: ask for a notebook of each, or write the one that it "
-                f"is to count for {_UNDER}"
+                f"the file has cells of {' and of '.join(mixed)}: ask the student for a notebook of each, or write one "
+                f"of these assignments {_UNDER}"
             )
         held = self._directory.named_cells.closest(names, asked if asked in mixed else "")
         meant = [target for target in named if not held or target in held] or held
         here = [target for target in meant if asked in ("", target[0])]
         if meant and not here:
             other = meant[0][0]
-            why = f"it is not for {asked}: it is the notebook of {other}"
-            raise NoTarget(f"{why}; to have it there, write {other} {_UNDER}", is_left_out=True)
+            why = f"the file is the notebook of {other}, not of {asked}"
+            raise NoTarget(
+                f"{why}; to collect the file for {other}, write {other} {_UNDER}", is_left_out=True
+            )
         if named and not asked and not set(named) & set(meant):
             says, other = " or ".join(assignment for assignment, _ in named), held[0][0]
             raise NoTarget(
-                f"its name says {says} and its cells are those of {other}: ask for the right notebook, or write "
-                f"{other} {_UNDER}"
+                f"the file's name is that of {says}, but the cells are those of {other}: ask the student for the right "
+                f"notebook, or write {other} {_UNDER}"
             )
         if asked and not here:
             here = [(asked, one) for one in self._directory.notebooks(asked)]
@@ -121,15 +123,18 @@ class AssignmentOf:
         assignments = sorted({asked} if asked else {assignment for assignment, _ in meant})
         if len(assignments) == 1:
             names = ", ".join(self._directory.notebooks(assignments[0]))
-            which = f"which notebook of {assignments[0]} it is ({names}): write it under notebook in collected.csv"
+            which = (
+                f"which notebook of {assignments[0]} the file is ({names}): write the notebook under notebook in "
+                "collected.csv"
+            )
         else:
             known = ", ".join(assignments or self._directory.assignments())
-            which = f"which assignment it is for ({known}): write it {_UNDER}"
+            which = f"which assignment the file is for ({known}): write the assignment {_UNDER}"
         return f"it is not clear {which}"
 
     @functools.cached_property
     def _notebooks(self) -> dict[str, list[Target]]:
-        """All assignments and notebooks, by the name of the notebook: several assignments may use one name."""
+        """Pairs of an assignment and a notebook, by the name of the notebook, which several assignments may use."""
         found: dict[str, list[Target]] = defaultdict(list)
         for assignment in self._directory.assignments():
             for name in self._directory.notebooks(assignment):

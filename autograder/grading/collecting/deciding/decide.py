@@ -1,4 +1,4 @@
-"""Decides which file of a student counts, independently of the order in which the files came."""
+"""Decides which file of a student is graded, independently of the order in which the files came."""
 
 from __future__ import annotations
 
@@ -22,18 +22,18 @@ if TYPE_CHECKING:
 
 _Why = tuple[Line, LineState, str]
 _ONE_NUMBER = ("canvas", "moodle", "brightspace")
-"""The systems in which users may change their names, but have one number in all files of a download."""
+"""The systems in which users may change their names, but have the same number in all files of a download."""
 _CELL = re2.compile(r"(?:under|the cell) (use|student|assignment|notebook|handed_in)\b")
 
 
 @dataclass(frozen=True)
 class Looks:
-    """The folders of a class by which one of several files of a student is chosen.
+    """The folders of a class whose contents decide which of a student's files is graded.
 
     Attributes:
         directory: The class, with the notebooks that were handed out.
         inbox: The inbox, with the bytes of the files.
-        submitted: The folder ``submitted``, with the files that count so far.
+        submitted: The folder ``submitted``, with the files that are graded so far.
     """
 
     directory: ClassDirectory
@@ -70,15 +70,18 @@ def decide(lines: Iterable[Line], looks: Looks) -> list[Line]:
 
 
 def _beside(line: Line, came: set[tuple[str, str]]) -> Line:
-    """Return the line of a file, such as a picture, that waits only as long as its student has no notebook."""
+    """Return the line of a file that is not a notebook.
+
+    The line waits for a person only if its student has handed in no notebook.
+    """
     if line.lms == "list" or (line.student and (line.student, line.assignment) in came):
         return replace(line, state=LineState.BESIDE)
     return replace(line, reason=_with_cell(line.reason))
 
 
 def _with_cell(reason: str) -> str:
-    """Return a reason that names the cell to edit."""
-    return reason if cell_in(reason) else f"{reason.rstrip('.')}; to leave it out, write no under use"
+    """Return the reason. If it does not name a cell to edit, add how to leave the file out."""
+    return reason if cell_in(reason) else f"{reason.rstrip('.')}; to leave the file out, write no under use"
 
 
 def cell_in(reason: str) -> str:
@@ -96,11 +99,13 @@ def _of_group(place: Place, group: list[Line], looks: Looks) -> Iterator[_Why]:
         best, others = _best(place, chosen, looks)
         yield from others
         if best:
-            # A later correction of a file does not change the time at which its student handed it in.
+            # If a person corrected the file in ``submitted``, the student's own time of handing in still applies.
             times = [one.when for one in group if one.when and lying]
             yield replace(best, when=best.when or max(times, default=None)), LineState.PLACED, ""
         why = (
-            "was put there by hand and is graded" if lying else "is graded, because yes is written under use"
+            "was put into submitted by hand and is graded"
+            if lying
+            else "is graded, because yes is written under use"
         )
         for one in group:
             if one not in chosen:
@@ -111,7 +116,11 @@ def _of_group(place: Place, group: list[Line], looks: Looks) -> Iterator[_Why]:
                 )
         return
     for one in by_hand:
-        yield one, LineState.EARLIER, "it was in submitted before: write yes under use to put it there again"
+        yield (
+            one,
+            LineState.EARLIER,
+            "the file was in submitted before: write yes under use to put it there again",
+        )
     pool = [one for one in group if not one.is_by_hand]
     for sift in (_people, _unreadable):
         doubts = sift(place, pool, looks)
@@ -129,7 +138,8 @@ def _people(place: Place, pool: Sequence[Line], _: Looks) -> list[tuple[Line, st
     """Return the files that are linked to a student only by a name, if several people have this name.
 
     Several people have the name if the LMS gives it several numbers. In Canvas, a person has the same number in every
-    download, so the numbers of all downloads are compared. In other systems, only numbers in the same download are.
+    download, so the numbers of all downloads are compared. In other systems, only the numbers in one download are
+    compared.
     """
     numbers: dict[str, set[str]] = defaultdict(set)
     of_systems = [one for one in pool if one.lms in _ONE_NUMBER]
@@ -138,8 +148,8 @@ def _people(place: Place, pool: Sequence[Line], _: Looks) -> list[tuple[Line, st
             numbers[download].add(one.number)
     several = next((sorted(found) for found in numbers.values() if len(found) > 1), [])
     reason = (
-        f"several people have the name of {place[0]}, with the numbers {', '.join(several)}: write the id under "
-        "student, or no under use"
+        f"several people in the LMS have the name of {place[0]}; their numbers are {', '.join(several)}: write the id "
+        "under student, or no under use"
     )
     return [(one, reason) for one in of_systems if several and not one.is_sure]
 
@@ -150,18 +160,18 @@ def _unreadable(place: Place, pool: Sequence[Line], looks: Looks) -> list[tuple[
         return []
     reasons = [(one, reason) for one in pool if (reason := why_unreadable(looks.inbox.read(one.content)))]
     what_to_do = (
-        f"Other work of {place[0]} is graded: ask for this file again if it is newer, or write no under use"
+        f"Another file of {place[0]} is graded: ask for this file again if it is newer, or write no under use"
     )
     return [(one, f"{reason} {what_to_do}") for one, reason in reasons] if len(reasons) < len(pool) else []
 
 
 def _best(place: Place, files: Sequence[Line], looks: Looks) -> tuple[Line | None, list[_Why]]:
-    """Return the file that counts, and the decisions about the others.
+    """Return the file to grade, or None if a person has to choose; and the decisions about the other files.
 
-    The file with the newest time of handing in counts. If the times do not decide, a file with answers is preferred to
-    a file that is as it was handed out. If this does not decide either, the exact name decides between files of one
-    download, and last the system's numbering. If several different files are left, the one that counted before still
-    counts; None if none of them did.
+    The file with the newest time of handing in is graded. If the times are equal or unknown, a file with answers is
+    preferred to a file without answers. Next, in one download, a file with the notebook's exact name is preferred; and
+    last, the file with the highest number from the system. If several different files are left, the file that is
+    already in ``submitted`` is graded again.
     """
     is_several = len({one.content for one in files}) > 1
     work = {
@@ -183,8 +193,8 @@ def _best(place: Place, files: Sequence[Line], looks: Looks) -> tuple[Line | Non
     first = next((one for one in best if one.content == there), best[0])
     if any(one.content != first.content for one in best) and first.content != there:
         reason = (
-            f"{place[0]} has several different files for {place[1]}, and nothing says which is the newest: "
-            "write yes under use for the one that is to be graded, or the times under handed_in"
+            f"{place[0]} has several different files for {place[1]}, and it is unknown which file is the newest: "
+            "write yes under use for the file to grade, or the times under handed_in"
         )
         return None, [(one, LineState.NOT_PLACED, reason) for one in files]
     others: list[_Why] = []
@@ -194,11 +204,15 @@ def _best(place: Place, files: Sequence[Line], looks: Looks) -> tuple[Line | Non
             others += [(one, LineState.UNCHANGED, "")] if one is not first else []
         elif one in best:
             what_to_do = "write yes under use to have this file graded, or no"
-            reason = f"nothing says whether it is newer than {first.label}, which is graded now: {what_to_do}"
+            reason = (
+                f"it is unknown whether this file is newer than {first.label}, which is graded: {what_to_do}"
+            )
             others.append((one, LineState.NOT_PLACED, reason))
         elif first.when and not one.when and not is_older:
             at = f"{first.label}, handed in {in_zone(first.when, looks.directory.time_zone)}"
-            reason = f"nothing says whether it is newer than {at}: write its time under handed_in"
+            reason = (
+                f"it is unknown whether this file is newer than {at}: write the file's time under handed_in"
+            )
             others.append((one, LineState.NOT_PLACED, reason))
         else:
             others.append((one, LineState.EARLIER, f"{first.label} {_why_it_counts(first, one, work)}"))
@@ -213,9 +227,7 @@ def _top(files: Sequence[Line], rank: Callable[[Line], float]) -> list[Line]:
 
 def _why_it_counts(best: Line, other: Line, work: dict[str, bool]) -> str:
     if work[best.key] > work[other.key]:
-        return (
-            "has answers and is graded; this file is as it was handed out, and is kept as an earlier attempt"
-        )
+        return "has answers and is graded; this file has no answers, and is kept as an earlier attempt"
     if best.is_named > other.is_named:
         return (
             "has the notebook's exact name and is graded; this file is kept as an earlier attempt: to have it graded "

@@ -1,4 +1,4 @@
-"""Distinguishes a student's work from a notebook that is as it was handed out, because a student may send both."""
+"""Tells a notebook with a student's work from a notebook without any, because a student may send both."""
 
 from __future__ import annotations
 

@@ -28,9 +28,9 @@ if TYPE_CHECKING:
 PAGES = ("index.html", "grades.csv", GRADESCOPE)
 """The names of files that an LMS adds to a download."""
 NO_LIST = (
-    "it is too large, or not a list that can be read. These can: Moodle's grading worksheet, Canvas's gradebook or "
-    "submissions, GitHub Classroom's grades and Gradescope's scores. Times belong into the column handed_in of "
-    "collected.csv, a list of your students into students.csv of the class"
+    "the file is too large, or not a known list. Known lists are Moodle's grading worksheet, Canvas's gradebook or "
+    "submissions, GitHub Classroom's grades and Gradescope's scores. Write times into the column handed_in of "
+    "collected.csv, and a list of your students into students.csv of the class"
 )
 """The reason why a list cannot be used."""
 _OTHER_ARCHIVES = (".rar", ".7z", ".gz", ".bz2", ".xz", ".zst")
@@ -130,7 +130,7 @@ class _Reading:
         rank = bool(self.delivery.assignment) - bool(self.delivery.form or self.delivery.names)
         line = Line(arrival.key, arrival.label, arrival.content, use=edit.use, rank=rank)
         if arrival.is_list:
-            return replace(line, reason="it was read as a list", is_soft=True, lms="list")
+            return replace(line, reason="the file was read as a list", is_soft=True, lms="list")
         by_hand = self.delivery.form == BY_HAND
         line = _by_hand(line, arrival) if by_hand else self._collected(line, arrival, edit, given)
         return replace(line, when=datetime.fromisoformat(edit.handed_in)) if edit.handed_in else line
@@ -157,7 +157,7 @@ class _Reading:
                 late=found.late,
                 is_sure=owners.is_sure or bool(written),
             )
-            # An assignment in a name counts only if the class has an assignment with that name.
+            # Use the assignment in a name only if the class has an assignment with that name.
             asked = asked or (found.assignment if self.assignments.notebooks(found.assignment) else "")
         # Inside a student's own archive, a name identifies the notebook but not the student.
         name = found.file if found and not arrival.inner else arrival.name
@@ -190,9 +190,9 @@ class _Reading:
         if notebook in several:
             return replace(line, assignment=asked, notebook=notebook)
         reason = (
-            f"write its notebook under notebook ({', '.join(several)})"
+            f"write the name of the notebook under notebook ({', '.join(several)})"
             if several
-            else f"the class has no assignment {asked or 'here'}: correct the cell assignment"
+            else f"the class has no assignment {asked or 'here'}: correct the name under assignment"
         )
         return replace(line, assignment=asked if several else "", reason=reason)
 
@@ -200,15 +200,15 @@ class _Reading:
 def _no_notebook(line: Line, arrival: Arrival) -> Line:
     """Return the line for a file that is not a notebook, such as a picture, or a page of the LMS."""
     if arrival.name in PAGES and not arrival.inner and not line.students:
-        return replace(line, assignment="", reason="it is a page of the LMS", is_soft=True, lms="list")
+        return replace(line, assignment="", reason="the file is a page of the LMS", is_soft=True, lms="list")
     if arrival.name.lower().endswith(_OTHER_ARCHIVES):
-        what = "it is an archive that is not opened here: unpack it into a folder named"
-        return replace(line, reason=f"{what} {line.student or 'STUDENT'}, and collect that")
+        what = "archives of this kind are not opened: unpack the file into a folder named"
+        return replace(line, reason=f"{what} {line.student or 'STUDENT'}, and collect the folder")
     return replace(line, reason="it is not a notebook", is_soft=True)
 
 
 def _by_hand(line: Line, arrival: Arrival) -> Line:
-    """Return the line of a file that a person put into ``submitted``, where the path contains everything."""
+    """Return the line of a file that a person put into ``submitted``. Its path names the student and the notebook."""
     student, assignment, name = arrival.parts
     return replace(
         line,

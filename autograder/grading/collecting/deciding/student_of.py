@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from autograder.grading.collecting.reading.lms_file_names import Found
 
 _WRITE_IT = "write the id under student in collected.csv"
-_NO_ID = f"its name does not say whose it is: {_WRITE_IT}, or add a line to students.csv"
+_NO_ID = f"the file's name does not identify a student: {_WRITE_IT}, or add a line to students.csv"
 _LIST_OF = {"moodle": "the grading worksheet (Grades-….csv)", "gradescope": GRADESCOPE}
 """For the systems that number submissions instead of students, the list that maps these numbers to students."""
 _BY_NUMBER, _BY_LOGIN = ("canvas", "brightspace", "gradescope"), ("blackboard", "sakai", "ilias")
@@ -39,8 +39,8 @@ class Owners:
     """The students who may have handed in a file, according to its name.
 
     Attributes:
-        found: The facts in the name; None if no system writes such names, or if several systems do, which would mean
-            different students or times.
+        found: The facts in the name; None if no system writes such names, or if several systems do, and the students or
+            times would differ.
         members: For each member of the group, the students who may be meant; empty if none is known.
         is_sure: True if a number of the system identifies the students, and not just a name that students may choose.
     """
@@ -60,7 +60,7 @@ class StudentOf:
         names: The pattern given with ``--names``; empty if none was given.
         entries: The entries of all lists, which map numbers to students.
         own: The entries of lists that came with the files. Their times apply to the files.
-        others: The entries of lists that came alone. Their times are used if those in ``own`` have none.
+        others: The entries of lists that came alone. Their times are used if ``own`` has no time for a file.
     """
 
     def __init__(
@@ -85,9 +85,9 @@ class StudentOf:
     def owners(self, parts: Sequence[str], levels: int, *, is_alone: bool = False) -> Owners:
         """Return the students of a file, by the topmost name in its path that identifies any student.
 
-        The topmost name is used because the system has written it: names that the student chose come below it or after
-        it. If two systems may have written a name, both must mean the same student; if one of them means no student,
-        they disagree.
+        The system has written the topmost names, and the student may have chosen the names below. If two systems may
+        have written a name, it must mean the same student and time in both; otherwise the result has several possible
+        students.
 
         Args:
             parts: The folders of the path and the file.
@@ -115,10 +115,10 @@ class StudentOf:
         for one in filter(None, map(str.strip, cell.replace(",", ";").split(";"))):
             found = self._roster.find(Identity(login=one, name=one)) or self._without_zeros(one)
             if len(found) != 1 and self._roster.students:
-                return (), f"students.csv has no student {one}: correct the cell student"
+                return (), f"students.csv has no student {one}: correct the id under student"
             ids.append(found[0].id if found else one)
             if reason := reason_against_name(ids[-1]):
-                return (), f"{ids[-1]} cannot be a student's id: {reason}: correct the cell student"
+                return (), f"{ids[-1]} cannot be a student's id: {reason}: correct the id under student"
         return tuple(ids), ""
 
     def _without_zeros(self, written: str) -> tuple[Student, ...]:
@@ -169,7 +169,7 @@ class StudentOf:
         return replace(owners, members=(meant,)) if len(meant) > 1 else owners
 
     def _who(self, identity: Identity) -> tuple[tuple[tuple[Student, ...], ...], bool]:
-        """Return the students who may be meant, for each member of a group, and whether a number makes it certain."""
+        """Return, for each member of a group, the students who may be meant; and whether a number identifies them."""
         known = self._by_number.get((identity.lms, identity.number or identity.login))
         if known is not None:
             hits = [hit for names in known.members if (hit := self._first(names))]
@@ -215,7 +215,7 @@ class StudentOf:
         return numbers
 
     def _first(self, names: Iterable[Identity]) -> tuple[Student, bool] | None:
-        """Return the student whom the first unambiguous identity means, and whether it is more than a name."""
+        """Return the student whom the first unambiguous identity means, and whether it has a user name or address."""
         hits = ((self._roster.find(name), bool(name.login)) for name in names)
         return next(((found[0], is_sure) for found, is_sure in hits if len(found) == 1), None)
 
@@ -223,7 +223,10 @@ class StudentOf:
         """Return why a file cannot be assigned to a student, and what to do; empty if it can be assigned."""
         if owners.found is None and owners.members:
             ids = ", ".join(one.id for one in owners.members[0])
-            return f"its name fits several systems, which mean different students or times by it ({ids}): {_WRITE_IT}"
+            return (
+                f"the file's name fits several systems, and would mean another student or time in each ({ids}): "
+                f"{_WRITE_IT}"
+            )
         if owners.found is None:
             return _NO_ID
         identity = owners.found.identity
@@ -231,8 +234,8 @@ class StudentOf:
         known = self._by_number.get((identity.lms, number))
         what_to_do = _WRITE_IT
         if identity.lms in _LIST_OF and known is None:
-            which = f"{_LIST_OF[identity.lms]}, which says who number {number} is"
-            what_to_do = f"collect it together with {which}, or {_WRITE_IT}"
+            which = f"{_LIST_OF[identity.lms]}, which maps number {number} to a student"
+            what_to_do = f"collect the file together with {which}, or {_WRITE_IT}"
         for students in owners.members:
             if len(students) > 1:
                 return f"{identity} may be {', '.join(one.id for one in students)}: {what_to_do}"

@@ -1,4 +1,4 @@
-"""The files in zips and folders. A desk, a process in a box, unpacks an archive, so this module reads only its answer.
+"""Reads the files in zips and folders. A desk, a process in a box, unpacks each archive; this module reads its answer.
 
 In the desk, :mod:`autograder.grading.collecting.reading.unpack` writes all files of an archive, within limits, into one
 file on the disk. This module treats each name in it as text only, reads bytes up to the size limit of a notebook, and
@@ -99,7 +99,7 @@ class Archives:
         Args:
             source: A file or folder that the instructor named, which may be a link. But links inside the folder are not
                 followed.
-            is_opened: True to open an archive here; False to treat it as a file, as inside a download.
+            is_opened: True to unpack an archive and yield its files; False to yield the archive itself as a file.
         """
         counts: Counter[tuple[str, ...]] = Counter()
         for file in self._of_source(source.absolute(), is_opened=is_opened):
@@ -108,7 +108,7 @@ class Archives:
             if counts[folder] <= MOST_FILES:
                 yield file
             elif counts[folder] == MOST_FILES + 1:
-                reason = f"it has more than {MOST_FILES} files; the others in it were not read"
+                reason = f"the folder has more than {MOST_FILES} files; the other files were not read"
                 yield File(replace(file.arrival, parts=folder), _refusing(reason))
 
     def _of_source(self, source: Path, *, is_opened: bool) -> Iterator[File]:
@@ -151,7 +151,7 @@ def _unpacked(
     if code in (errno.ENOSPC, errno.EDQUOT):
         raise OSError(code, os.strerror(code))
     if code:
-        yield (), _refusing("unpacking it would exceed a limit: unpack it yourself, and collect the folder")
+        yield (), _refusing("unpacking the archive would exceed a limit: unpack it, and collect the folder")
         return
     for line, begin in itertools.islice(_lines(out), room.files + 1):
         room.files -= not line.reason
@@ -178,7 +178,7 @@ def _lines(out: IO[bytes]) -> Iterator[tuple[_Unpacked, int]]:
 
 
 def _path(name: str) -> tuple[str, ...]:
-    """Return the path of a file in an archive, as a text without ``..``. No file is written to this path."""
+    """Return the path of a file in an archive as a tuple of names, without ``..``. No file is written to this path."""
     parts = name[:LONGEST_NAME].replace("\\", "/").split("/")
     return tuple(part for part in parts if part not in ("", ".", "..")) or (name[:LONGEST_NAME],)
 
@@ -197,7 +197,7 @@ def _of_folder(source: Path) -> Iterator[File]:
                 yield File(Arrival("", (*here, name_as_text(name))), _refusing("it is a link"))
         if folders and len(here) > _DEEPEST_FOLDER:
             folders.clear()
-            reason = f"more than {_DEEPEST_FOLDER} folders are in each other; the others were not read"
+            reason = f"folders are nested more than {_DEEPEST_FOLDER} deep; the deeper folders were not read"
             yield File(Arrival("", here), _refusing(reason))
 
 

@@ -20,7 +20,7 @@ _LARGEST_LIST = 50_000_000
 
 
 def without_sandbox() -> str:
-    """Return why archives or lists were read without a sandbox; empty if there is one, or if there were none."""
+    """Return why archives or lists were read without a sandbox; empty if nothing was read without a sandbox."""
     return why_impossible() if desk.is_unboxed else ""
 
 
@@ -34,14 +34,15 @@ def unpack(source: int, answer: int, limits: tuple[int, int, int, int], most: in
         most: The limit in bytes of the answer.
 
     Returns:
-        The exit code: the number of the error if the answer could not be written; negative or 1 if a limit was met.
+        The exit code: the number of the error if the answer could not be written; negative or 1 if a limit was
+        exceeded.
     """
     return _ask(source, answer, most, limits=limits)
 
 
 @functools.lru_cache(maxsize=16)  # one command needs each list several times
 def read_list(name: str, data: bytes) -> list[ListEntry] | None:
-    """Return the entries of a list; None if its form is unknown, or if a limit was met.
+    """Return the entries of a list; None if its form is unknown, or if a limit was exceeded.
 
     Args:
         name: The file's name.
@@ -60,5 +61,5 @@ def read_list(name: str, data: bytes) -> list[ListEntry] | None:
 def _ask(source: int, answer: int, most: int, **call: object) -> int:
     try:
         return desk.ask(source, answer, most, _CPU_SECONDS, call)
-    except ChannelClosed:  # the system has killed it, usually because memory is short
+    except ChannelClosed:  # the system has killed the desk, usually because memory is short
         return -signal.SIGKILL

@@ -77,7 +77,7 @@ def _entries(form: ListForm, records: list[dict[str, str]]) -> Iterator[ListEntr
 def _of_gradescope(data: bytes) -> list[ListEntry] | None:
     """Read ``submission_metadata.yml``, which contains the student and the time for each submission's folder."""
     try:
-        # Every value stays text: no number loses its zeros, and no text gets longer than it was typed.
+        # Load every value as text, so that a number such as 0042 keeps its zeros.
         found = yaml.load(data, Loader=getattr(yaml, "CBaseLoader", yaml.BaseLoader))
     except (yaml.YAMLError, ValueError, RecursionError):
         return None
@@ -101,5 +101,5 @@ def _member(submitter: Mapping[str, Any]) -> tuple[Identity, ...]:
 
 
 def _word(value: object) -> str:
-    """Return a value as text; empty for a nested list, because its text could be larger than any memory."""
+    """Return a value that is a text; empty for any other value: a nested list could be larger than the memory."""
     return value.strip() if isinstance(value, str) else ""

@@ -1,4 +1,4 @@
-"""The file names in downloads from learning management systems (LMS), and what such a name says."""
+"""Reads the facts in file names of downloads from learning management systems (LMS), such as student and time."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ def read_at(parts: Sequence[str], place: int, form: str, is_notebook: Callable[[
     """Return the facts in one name of a path, if it has the form of this LMS; None if it has another form.
 
     Args:
-        parts: The folders of the path and the file. None leads upwards, and accents are in composed form.
+        parts: The folders of the path and the file, without ``..``. Accents are in composed form (Unicode NFC).
         place: The index of the name in the path.
         form: A key of :data:`FORMS`.
         is_notebook: Returns True for the name of a notebook of the class; needed for forms that resemble other names.
@@ -150,7 +150,7 @@ _IN_NUMBERS = ("%Y-%m-%d-%H-%M-%S", "%Y-%m-%d %H:%M:%S %z")
 
 
 def _ends(text: str, mark: str) -> list[str]:
-    """Return the text behind each of its last few marks, such as hyphens; the longest text first."""
+    """Return the ends of a text after its last few marks, such as hyphens: for ``a-b-c``, ``b-c`` and ``c``."""
     pieces = text.rsplit(mark, _MOST_MARKS)[1:]
     return [end for start in range(len(pieces)) if (end := mark.join(pieces[start:]).strip())]
 
@@ -196,7 +196,7 @@ def _in_one_part(pattern: str, who: _Who, *, says_file: bool = False) -> _Reader
     Args:
         pattern: The pattern of the name. Its groups ``file``, ``when``, ``order`` and ``late`` are the fields of
             :class:`Found`.
-        who: Returns, from the groups, the student, and the student by each way to read the name.
+        who: Returns the student from the groups; and if the name can be read in several ways, the student by each way.
         says_file: True if only the name of a folder has no group ``file``.
     """
     expression = re2.compile(f"(?s){pattern}")  # (?s) because a name may contain line breaks
@@ -229,8 +229,9 @@ _READERS = {
         r"^(?P<item>.+?)_(?P<login>[^_]+)_attempt_(?P<when>\d{4}(?:-\d\d){5})(?:_(?P<file>.+)|\.txt)$",
         _at_its_end("blackboard"),
     ),
-    # 12345-67890 - Ada Lovelace - Oct 3, 2025 205 PM is a folder; with " - lab_1_2.ipynb" after it, it is a file. The
-    # date is in the language of the course: 3 October, 2025 1405.
+    # 12345-67890 - Ada Lovelace - Oct 3, 2025 205 PM is the name of a folder. The name of a file also has " -
+    # lab_1_2.ipynb" at the end. The form of the date depends on the language of the course: for example, 3 October,
+    # 2025 1405.
     "brightspace": _in_one_part(
         r"^(?P<number>\d+)-\d+ ?- ?(?P<name>.+?) ?- ?"
         r"(?P<when>(?:[^\d\s,.-]+\.? \d\d?|\d\d?\.? (?:de )?[^\d\s,.-]+\.?),? (?:de )?\d{4} "

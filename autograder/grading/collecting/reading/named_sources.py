@@ -2,11 +2,11 @@
 
 Only the names on the command line decide, never the contents:
 
-- **One student's own**: a file or folder whose name, or whose system, identifies one student; and every file that is
-  neither a zip nor a list. Names inside it identify no student. If a student may have chosen one of the names of a
-  command, or if the command names several folders, as with ``repositories/*``, everything is one student's own.
+- **The work of one student**: a file or folder with a name that an LMS gives to the work of one student. If the command
+  also names a file that is neither a zip nor a list, a path with the name of a student, or several folders, as with
+  ``repositories/*``, then each of its paths is the work of one student. Names inside such a path identify no student.
 - **A download**: every other zip and folder. The names at its top identify students. If a single folder at the top
-  contains everything else, the names in that folder identify students, too. No names further down do, because students
+  contains everything else, the names in that folder identify students, too. Names further down do not, because students
   have chosen them.
 """
 
@@ -53,7 +53,7 @@ class NamedSource:
 
     @functools.cached_property
     def levels(self) -> int:
-        """Return how many names at the top of each path were not chosen by students, so that they may identify one."""
+        """Return how many names at the top of each path may identify a student, because no student has chosen them."""
         if self.is_own:
             return 1
         above = 1 if self.path.is_dir() else 0  # the name of the folder itself, which identifies no student
@@ -73,7 +73,7 @@ class NamedSource:
 
 
 def own_of(paths: Sequence[Path], student_of: StudentOf) -> set[Path]:
-    """Return those paths of one command that are each one student's own."""
+    """Return the paths of a command that are each the work of one student."""
     formed = set(filter(student_of.has_form, paths))
     downloads = {path for path in paths if _DOWNLOAD.match(name_as_text(path.name))}
     others = set(paths) - formed
@@ -81,7 +81,8 @@ def own_of(paths: Sequence[Path], student_of: StudentOf) -> set[Path]:
         _is_loose(path) or student_of.is_called(path) for path in others - downloads
     ):
         return set(paths)
-    # Next to a student's own file, a student may have chosen the name of a download as well.
+    # A name of a known download means a download. But next to one student's work, a student may have chosen this name,
+    # too.
     return formed if formed - downloads else set()
 
 
@@ -91,13 +92,13 @@ def note_on(source: NamedSource, student_of: StudentOf, form: str) -> str:
         return f"{source.path} {EMPTY}"
     if not source.is_own and not form:
         return (
-            f"{source.path} was taken for a download, in which names identify the students: if one student sent it, "
-            "rename it to the student's id"
+            f"{source.path} was taken for a download, in which names identify the students: if one student sent "
+            "the file, rename it to the student's id"
         )
     if source.is_own and not _is_loose(source.path) and not student_of.is_called(source.path):
         return (
-            f"{source.path} was taken for one student's work because of its name or its neighbors: if it is a download "
-            "or a list, rename it to submissions.zip or list.csv, and name it in a command of its own"
+            f"{source.path} was taken for one student's work because of its name or the other paths of the command: if "
+            "it is a download or a list, rename it to submissions.zip or list.csv, and collect it in a separate command"
         )
     return ""
 

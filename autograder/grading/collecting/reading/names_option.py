@@ -70,7 +70,7 @@ def read_names(pattern: str) -> Callable[[Sequence[str], int], Found | None]:
                 divided.sort(
                     key=lambda way: -len(way.get("time", "")) if read_time(way.get("time", "")) else 0
                 )
-                # ben_b_7 may belong to ben or to ben_b: either the class has only one of them, or it is unclear.
+                # Return all ways to divide the name, because ben_b_7 may belong to ben or to ben_b.
                 found = [_found(way, parts[-1]) for way in divided]
                 return replace(found[0], readings=tuple(dict.fromkeys(one.identity for one in found)))
         return None

@@ -1,8 +1,8 @@
 """Unpacks one archive. It runs in a desk, a process in a box, because an archive may be made to do harm.
 
-The answer contains, for each file, a line of JSON and then the bytes of the file. The line has the size, and a list of
-names: the path of the file in its archive and, before it, the path of each archive that is inside another. If a file is
-not taken, the line has the reason.
+The answer contains, for each file, a line of JSON and then the bytes of the file. The line has the size of the file,
+and the paths that lead to the file: ``["src.zip", "lab_1_2.ipynb"]`` for a file in an archive inside the archive. If a
+file is not taken, the line has the reason.
 """
 
 from __future__ import annotations
@@ -93,8 +93,8 @@ class Unpacking:
     """Unpacks an archive, and the archives in it. The limits hold for all of them together.
 
     Args:
-        answer: The descriptor of the file for what is unpacked.
-        depth: The maximum number of archives inside one another; 1 if an archive in the archive is not unpacked.
+        answer: The descriptor of the file to which the answer is written.
+        depth: The maximum number of archives inside one another; 1 to leave archives inside the archive packed.
         files: The maximum number of files.
         unpacked: The maximum size of all files together, in bytes.
         of_one: The maximum size of one file, in bytes.
@@ -110,15 +110,15 @@ class Unpacking:
         except Exception as error:
             self._tell(
                 names,
-                reason=f"it is not an archive that can be read: {_told(error)}; get it again",
+                reason=f"the archive cannot be read: {_told(error)}; get the archive again",
             )
             return
         size = sum(one.size for one in entries)
         if len(entries) > self.files or size > self.unpacked:
             self._tell(
                 names,
-                reason=f"it has {len(entries)} files that unpack to {size / 1e6:.0f} MB, and {self.files} files of "
-                f"{self.unpacked / 1e6:.0f} MB may still be unpacked: ask for the notebook alone",
+                reason=f"the archive has {len(entries)} files of {size / 1e6:.0f} MB, but only {self.files} files of "
+                f"{self.unpacked / 1e6:.0f} MB may still be unpacked: ask the student for the notebook alone",
             )
             return
         self.files -= len(entries)
@@ -130,13 +130,13 @@ class Unpacking:
         ]
         # At depth 1 the archive is a whole download; if that is empty, a later step reports it.
         if not kept and self.depth > 1:
-            self._tell(names, reason=f"it {EMPTY}")
+            self._tell(names, reason=f"the archive {EMPTY}")
         for one in kept:
             self._take([*names, one.name[: 2 * LONGEST_NAME]], one)
 
     def _take(self, names: Sequence[str], one: _Entry) -> None:
         if not one.is_ordinary:
-            self._tell(names, reason="it is a link, or not an ordinary file")
+            self._tell(names, reason="the file is a link, or not an ordinary file")
             return
         if one.size > self.of_one:
             megabytes = f"{one.size / 1e6:.0f} MB; the limit is {self.of_one / 1e6:.0f} MB"
