@@ -104,7 +104,7 @@ def grade_id(exercise_id: str) -> str:
 
 
 def _words(error: Exception) -> str:
-    """Return an error of an import as one line of text, with the file and line."""
+    """Return an error that an import raised as one line of text, with the file and line."""
     kind = type(error).__name__
     if isinstance(error, SyntaxError):
         return f"{kind}: {error.msg} ({error.filename}, line {error.lineno})"

@@ -83,7 +83,7 @@ def started_at(pid: int) -> str:
 
 
 def send(processes: Iterable[Known], number: int) -> None:
-    """Send a signal to those of the given processes that still run."""
+    """Send a signal to the given processes. Skip processes that have ended."""
     for process in processes:
         _signal(process, number)
 
@@ -267,7 +267,7 @@ def end_processes_in(folder: Path) -> None:
 def _signal(process: Known, number: int, within: float = 0.0) -> bool:
     """Send a signal to a process if it still exists, and wait at most ``within`` seconds for it to end.
 
-    Only one handle is open at a time, because there may be more processes than open files allowed.
+    Only one pidfd is open at a time, because there may be more processes than the limit of open files.
 
     Returns:
         False if this process is not allowed to send it a signal.

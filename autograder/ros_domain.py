@@ -31,8 +31,8 @@ HIGHEST_DOMAIN = 232
 _PORT_BASE = 7400
 _DOMAIN_GAIN = 250
 _CLAIM_OFFSET = 9
-"""The offset of the port that reserves a domain. RTPS uses the offsets 0 and 1 and the offsets from 10 on, but not
-those between.
+"""The offset of the port that reserves a domain. RTPS uses the offsets 0 and 1 and the offsets from 10 on, but not the
+offsets 2 to 9.
 """
 GROUP_OFFSET = 0
 """The port offset for multicast discovery."""

@@ -1,6 +1,6 @@
 """The only way in which this package makes temporary folders and files.
 
-The linter forbids ``tempfile`` everywhere else. On a machine with several users, any of them may create something at
+The linter forbids ``tempfile`` everywhere else. On a machine with several users, any user may create something at
 a path in ``/tmp`` that can be guessed. So each name is random, and only the user who makes a folder can look into it.
 """
 
@@ -75,7 +75,7 @@ def scratch_folder(parent: Path, prefix: str = "n") -> Iterator[Path]:
 
 
 def write_files(files: Mapping[str, bytes], folder: Path) -> Path:
-    """Write files by their relative paths into a folder, which is created. Return the folder."""
+    """Create a folder, and write files into it by their relative paths. Return the folder."""
     folder.mkdir()
     for name, data in files.items():
         path = folder / name

@@ -62,7 +62,7 @@ class NothingToExecuteError(LookupError):
 def plan(root: Path, only: Sequence[str] = ()) -> list[Planned]:
     """Return two notebooks for each lab of a course: the master, and the one that students get.
 
-    The second is the file in ``chapters`` that students open, not a newly built notebook.
+    The second notebook is the file in ``chapters`` that students open. It is not built again.
 
     Args:
         root: The top folder of the course, which contains ``solutions`` and ``chapters``.

@@ -26,7 +26,7 @@ _PICTURE = re.compile(r"!\[[^\]]*\]\([^)]*\)")
 figure for readers who cannot see it.
 """
 PREDICTION = "**Before you run it:**"
-"""The words with which a question begins that students answer before they run a demonstration."""
+"""The first words of a question that students answer before they run a demonstration."""
 _PARAGRAPH = re.compile(r"\n\s*\n|\n(?=\d+\. |- )")
 _CODE = re.compile(r"`[^`]*`|\]\([^)]*\)")
 """Matches code and the address of a link. Parentheses there do not count as parentheses of a text."""

@@ -77,7 +77,7 @@ def judge_all(
 
 
 def _judged(turns: Iterable[Turn[T]], jobs: int) -> Iterator[tuple[Turn[T], Verdict | None, str]]:
-    """Judge several answers at the same time. Yield each with its verdict, or with the reason for having none."""
+    """Judge several answers at the same time. Yield each answer with its verdict, or with why it has no verdict."""
     from autograder.judge.serving.fork import Child
 
     waiting = deque(turns)
