@@ -12,7 +12,7 @@ import psutil
 from autograder.boxes.limits import BUILD_LIMITS, Limits
 from autograder.grading.running.dispatcher import Dispatcher, Done
 from autograder.grading.running.orders import JUDGE
-from autograder.grading.running.process_link import ThisMachine
+from autograder.grading.running.process_link import this_machine
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator, Iterable
@@ -69,7 +69,7 @@ def execute_all(
     """
     slots = workers or at_once(cores(), psutil.virtual_memory().available)
     results: queue.SimpleQueue[Done | BaseException | None] = queue.SimpleQueue()
-    with ThisMachine(scratch, slots, boxed=boxed) as machine:
+    with this_machine(scratch, slots, boxed=boxed) as machine:
         dispatcher = Dispatcher(machine, "", judge=judge, boxed=boxed, tell=lambda _: None)
 
         def dispatch() -> None:

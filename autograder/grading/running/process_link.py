@@ -25,7 +25,6 @@ from environment.python_child import python_child
 
 if TYPE_CHECKING:
     from pathlib import Path
-    from types import TracebackType
 
 GOODBYE_SECONDS = 2.0
 """Seconds after which a process that was asked to end is killed, so that Ctrl-C takes less than three seconds."""
@@ -39,17 +38,16 @@ class ProcessLink:
 
     Args:
         words: The module that the process runs, and the arguments of the module.
-        folder: The working directory of the process; None for that of the caller.
+        scratch: The folder in which the process executes submissions. If the process ends by accident, it is started
+            again. None for a process that only passes messages on, which is not started again, and which keeps the
+            caller's working directory, because Dask's settings may name certificates by relative paths.
     """
 
-    _cleans_up = False
-    """True if the process must clean up before it ends, even after an error."""
-
-    def __init__(self, *words: str, folder: str | None = "/") -> None:
-        self._words, self._folder = words, folder
+    def __init__(self, *words: str, scratch: Path | None) -> None:
+        self._words, self._scratch = words, scratch
         self._news: queue.SimpleQueue[News] = queue.SimpleQueue()
         self._changing = threading.Lock()
-        self._closing = self._stopped = False
+        self._stopped = False
 
     def __enter__(self) -> Self:
         # The process prints into a file: a pipe that is not read would fill up and block the process.
@@ -58,13 +56,9 @@ class ProcessLink:
         threading.Thread(target=self._listen, daemon=True).start()
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        """End the process. A Dask client is killed after an error, so that the scheduler cancels its tasks."""
-        with self._changing:
-            self._closing = True
-        self._end(at_once=kind is not None and not self._cleans_up)
+    def __exit__(self, *_: object) -> None:
+        self.stop()
+        self._end()
         self._log.close()
 
     def say(self, command: Command) -> None:
@@ -86,14 +80,18 @@ class ProcessLink:
 
     def stop(self) -> None:
         """End the dispatcher's work: :meth:`hear` returns ``Broken`` from now on. Any thread may call this."""
-        self._stopped = True
+        with self._changing:
+            self._stopped = True
         self._news.put(_STOPPED)
 
     def _start(self) -> None:
         own, its_own = socket.socketpair()
         with its_own:
             child = python_child(
-                "-m", *self._words, environment={**os.environ, **course.variables()}, folder=self._folder
+                "-m",
+                *self._words,
+                environment={**os.environ, **course.variables()},
+                folder=None if self._scratch is None else "/",
             )
             self._process = child.start(
                 stdin=its_own.fileno(),
@@ -103,13 +101,13 @@ class ProcessLink:
             )
         self._lines = Lines(own, sys.maxsize)
 
-    def _end(self, *, at_once: bool) -> None:
-        """Ask the process to end, and kill it if it takes too long; or kill it now, if ``at_once`` is true."""
-        if at_once:
-            self._process.kill()
+    def _end(self) -> None:
+        """Ask the process to end and to clean up, and kill it if it takes too long."""
         self._lines.finish()
         end_soon(self._process, GOODBYE_SECONDS)
         self._lines.close()
+        if self._scratch is not None and self._process.returncode != 0:
+            end_processes_in(self._scratch)  # the process may have left processes of submissions
 
     def _listen(self) -> None:
         """Read the process's messages all the time: a process that cannot write does not read commands either."""
@@ -125,14 +123,18 @@ class ProcessLink:
             except (msgspec.MsgspecError, ValueError, MemoryError) as error:
                 reason = f"the process sent an invalid message: {error}"
             with self._changing:
-                if self._closing or said_nothing >= _STARTS or not self._starts_again(reason):
+                if self._stopped or said_nothing >= _STARTS or not self._starts_again(reason):
                     self._news.put(Broken(reason))
                     return
 
     def _starts_again(self, reason: str) -> bool:
-        """Start the process again and return True, or return False if this kind of process is never started again."""
-        del reason
-        return False
+        """Start the process again and return True, or return False if it is not a process that is started again."""
+        if self._scratch is None:
+            return False
+        self._end()
+        self._news.put(Left(ADDRESS, reason))
+        self._start()
+        return True
 
     def _last_words(self) -> str:
         with contextlib.suppress(ValueError, OSError):
@@ -142,32 +144,16 @@ class ProcessLink:
         return ""
 
 
-class ThisMachine(ProcessLink):
-    """The connection to the executor process of this machine. If the process ends by accident, it is started again.
+def this_machine(scratch: Path, slots: int, *, boxed: bool) -> ProcessLink:
+    """Return the connection to a new executor process on this machine.
 
     Args:
         scratch: The folder in which submissions run.
         slots: The number of notebooks to execute at the same time.
         boxed: True if notebooks are executed in boxes.
     """
-
-    _cleans_up = True
-
-    def __init__(self, scratch: Path, slots: int, *, boxed: bool) -> None:
-        words = [str(scratch), str(slots), *(["boxed"] if boxed else [])]
-        super().__init__("autograder.grading.running.executor", *words)
-        self._scratch = scratch
-
-    def _starts_again(self, reason: str) -> bool:
-        self._end(at_once=True)
-        self._news.put(Left(ADDRESS, reason))
-        self._start()
-        return True
-
-    def _end(self, *, at_once: bool) -> None:
-        super()._end(at_once=at_once)
-        if self._process.returncode != 0:
-            end_processes_in(self._scratch)  # the executor may have left processes of submissions
+    words = [str(scratch), str(slots), *(["boxed"] if boxed else [])]
+    return ProcessLink("autograder.grading.running.executor", *words, scratch=scratch)
 
 
 def client_of(address: str) -> ProcessLink:
@@ -176,5 +162,4 @@ def client_of(address: str) -> ProcessLink:
     Args:
         address: The scheduler's address.
     """
-    # The client keeps the working directory, because Dask's settings may name certificates by relative paths.
-    return ProcessLink("autograder.grading.cluster.dask_client", address, folder=None)
+    return ProcessLink("autograder.grading.cluster.dask_client", address, scratch=None)

@@ -98,7 +98,7 @@ def run(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Any:
         cells: int = 0,
     ) -> Any:
         machine = FakeMachine(answer, together)
-        monkeypatch.setattr(engine, "ThisMachine", machine)
+        monkeypatch.setattr(engine, "this_machine", machine)
         # A worker is not told the name of the student: the notebook has it, too.
         tasks = [Task(student, "lab", student, (Cell(""),) * cells, "0", "1") for student in students]
         done = list(engine.execute_all(tasks, tmp_path / "scratch" / "x", workers))
