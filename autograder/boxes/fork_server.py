@@ -190,7 +190,6 @@ class ForkServer:
         mode: ``BESIDE`` or ``INSIDE``; see :mod:`autograder.boxes.fork_server`.
         module: The module that it serves.
         address: The path of the socket to create. It must not be visible in any box.
-        log: The descriptor for its standard error; None to discard it.
         extra: More environment variables, which are set while modules are imported.
         words: The arguments for the module's ``prepare``. The children can read them and the environment.
     """
@@ -200,7 +199,6 @@ class ForkServer:
         mode: str,
         module: str,
         address: Path,
-        log: int | None = None,
         extra: Mapping[str, str] | None = None,
         words: Sequence[str] = (),
     ) -> None:
@@ -215,7 +213,7 @@ class ForkServer:
             self._process = python_child(*arguments, environment=variables).start(
                 stdin=subprocess.PIPE,
                 stdout=subprocess.DEVNULL,
-                stderr=subprocess.DEVNULL if log is None else log,
+                stderr=subprocess.DEVNULL,
                 pass_fds=(listener.fileno(),),
                 # Ctrl-C must reach only the grader, which then ends its boxes in an orderly way.
                 start_new_session=True,
@@ -264,7 +262,6 @@ class ForkServers:
         judge_module: The module that the judges' fork server serves. It is a parameter, because boxes do not import
             the judge.
         boxed: True to start the fork servers for supervisors and programs, too.
-        log: The descriptor for their standard error.
         environment: More environment variables for all fork servers except that for supervisors. They are set here
             because libraries read some variables when they are loaded.
         of_judges: More environment variables for the judges only, such as the folder of the course.
@@ -277,7 +274,6 @@ class ForkServers:
         judge_module: str,
         *,
         boxed: bool,
-        log: int | None = None,
         environment: Mapping[str, str] | None = None,
         of_judges: Mapping[str, str] | None = None,
         interfaces: Sequence[str] = (),
@@ -294,13 +290,13 @@ class ForkServers:
                 started.callback(server.stop)
                 return server.address
 
-            kernels = kept(ForkServer(INSIDE, KERNEL_MODULE, place / "kernels", log, environment, interfaces))
-            judges = kept(ForkServer(INSIDE, judge_module, place / "judges", log, of_judges))
+            kernels = kept(ForkServer(INSIDE, KERNEL_MODULE, place / "kernels", environment, interfaces))
+            judges = kept(ForkServer(INSIDE, judge_module, place / "judges", of_judges))
             supervisors = programs = ""
             if boxed:
-                programs = kept(_of_programs(place / "programs", log, environment))
+                programs = kept(_of_programs(place / "programs", environment))
                 # The supervisors are started last, so they are stopped first, and end their boxes in an orderly way.
-                supervisors = kept(ForkServer(BESIDE, SUPERVISOR_MODULE, place / "supervisors", log))
+                supervisors = kept(ForkServer(BESIDE, SUPERVISOR_MODULE, place / "supervisors"))
             self.addresses = Addresses(supervisors, kernels, judges, programs)
             self._open = started.pop_all()
 
@@ -320,7 +316,7 @@ class ForkServers:
         self.stop()
 
 
-def _of_programs(address: Path, log: int | None, environment: Mapping[str, str] | None) -> ForkServer:
+def _of_programs(address: Path, environment: Mapping[str, str] | None) -> ForkServer:
     """Start the fork server for programs, with folders for the libraries of a workspace."""
     folders = library_folders(str(address))
     for folder in folders:
@@ -331,7 +327,6 @@ def _of_programs(address: Path, log: int | None, environment: Mapping[str, str] 
         INSIDE,
         PROGRAM_MODULE,
         address,
-        log,
         {**(environment or {}), "LD_LIBRARY_PATH": path},
         [given, *map(str, folders)],
     )
