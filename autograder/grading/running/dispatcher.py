@@ -12,7 +12,6 @@ import bisect
 import itertools
 import operator
 import time
-from collections import deque
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Protocol
 
@@ -75,7 +74,7 @@ class _Worker:
     flights: set[int] = field(default_factory=set)
 
 
-@dataclass
+@dataclass(eq=False)
 class _Job:
     """A task to execute, with the number of attempts and the workers that have tried it."""
 
@@ -86,6 +85,16 @@ class _Job:
     """True if the previous result was not reliable, so that no other task may run on the worker at the same time."""
     cpu_seconds: float = 0.0
     """The processor time of the execution whose result was not reliable, in seconds; 0 if there was none."""
+
+    @property
+    def is_new(self) -> bool:
+        """True if the task was never given to a worker."""
+        return not (self.tried or self.alone)
+
+    @property
+    def turn(self) -> tuple[int, float]:
+        """The place in the queue: tasks to repeat, then new tasks, then tasks to repeat alone, the shortest first."""
+        return (2, self.cpu_seconds) if self.alone else (int(self.is_new), 0.0)
 
 
 @dataclass(frozen=True)
@@ -140,9 +149,7 @@ class Dispatcher:
         self._return_seconds = return_seconds
         self._workers: dict[str, _Worker] = {}
         self._refused: dict[str, str] = {}
-        self._new: deque[_Job] = deque()
-        self._again: list[_Job] = []
-        self._alone: list[_Job] = []
+        self._waiting: list[_Job] = []
         self._flights: dict[int, _Flight] = {}
         self._done: list[Done] = []
         self._number = 0
@@ -174,18 +181,18 @@ class Dispatcher:
             NoWorkers: All workers have ended or were rejected, and no new worker came in time.
         """
         jobs = (_Job(task) for task in tasks)
-        alone_until: float | None = None
+        return_until: float | None = None
         while True:
             self._give_out(jobs, on_start)
-            if not (self._flights or self._again or self._new or self._alone):
+            if not (self._flights or self._waiting):
                 return
             if self._workers:
-                alone_until = None
-            elif alone_until is None:
-                alone_until = time.monotonic() + self._return_seconds
-            self._take_in(self._link.hear(self._seconds_to_wait(alone_until)))
+                return_until = None
+            elif return_until is None:
+                return_until = time.monotonic() + self._return_seconds
+            self._take_in(self._link.hear(self._seconds_to_wait(return_until)))
             now = time.monotonic()
-            if alone_until is not None and now >= alone_until and not self._workers:
+            if return_until is not None and now >= return_until and not self._workers:
                 raise NoWorkers(f"{self._nobody()} What was graded so far is kept.")
             self._give_up_on_silent(now)
             while self._done:
@@ -198,7 +205,7 @@ class Dispatcher:
                 job = self._next_for(address, worker, jobs)
                 if job is None:
                     break
-                if not (job.tried or job.alone):
+                if job.is_new:
                     on_start(job.task)
                 self._send(job, address, worker)
         self._look_ahead(jobs)
@@ -211,27 +218,26 @@ class Dispatcher:
         tasks are left and the worker is idle.
         """
         held = [self._flights[number].job for number in worker.flights]
-        if any(job.alone for job in held):
-            return None
-        if not any(job.attempts > 1 for job in held) and (job := self._taken_from(self._again, address)):
-            return job
         self._look_ahead(jobs)
-        if self._new:
-            return self._new.popleft()
-        return None if held else self._taken_from(self._alone, address)
+        job = next((job for job in self._waiting if self._may_run(job, address, held)), None)
+        if job is not None:
+            self._waiting.remove(job)
+        return job
 
-    def _taken_from(self, waiting: list[_Job], address: str) -> _Job | None:
-        """Remove and return the first waiting task that this worker has not tried, or that all workers have tried."""
-        for job in waiting:
-            if address not in job.tried or job.tried >= self._workers.keys():
-                waiting.remove(job)
-                return job
-        return None
+    def _may_run(self, job: _Job, address: str, held: list[_Job]) -> bool:
+        """Return True if a worker that runs the tasks ``held`` may run this task at the same time."""
+        if any(other.alone or job.alone or (job.tried and other.attempts > 1) for other in held):
+            return False
+        return address not in job.tried or job.tried >= self._workers.keys()
 
     def _look_ahead(self, jobs: Iterator[_Job]) -> None:
-        """Take the next new task from the iterator, to know whether any are left."""
-        if not self._new:
-            self._new.extend(itertools.islice(jobs, 1))
+        """Put the next new task into the queue if it contains no new task, to know whether any are left."""
+        if not any(job.is_new for job in self._waiting):
+            for job in itertools.islice(jobs, 1):
+                self._wait(job)
+
+    def _wait(self, job: _Job) -> None:
+        bisect.insort(self._waiting, job, key=operator.attrgetter("turn"))
 
     def _send(self, job: _Job, address: str, worker: _Worker) -> None:
         job.attempts += 1
@@ -242,10 +248,10 @@ class Dispatcher:
         order = self._order(job.task.beside_others(worker.slots > 1 and not job.alone))
         self._link.say(Give(self._number, address, order))
 
-    def _seconds_to_wait(self, alone_until: float | None) -> float | None:
+    def _seconds_to_wait(self, return_until: float | None) -> float | None:
         deadlines = [flight.deadline for flight in self._flights.values()]
-        if alone_until is not None:
-            deadlines.append(alone_until)
+        if return_until is not None:
+            deadlines.append(return_until)
         return min(deadlines) - time.monotonic() if deadlines else None
 
     def _order(self, task: Task) -> bytes:
@@ -339,7 +345,8 @@ class Dispatcher:
         """Return True if the task must run again: the result is not reliable, or another worker may succeed."""
         if not job.alone:
             return execution.says_nothing
-        return bool(execution.trouble) and self._others_may_do(job)
+        others_may_do = job.attempts < ATTEMPTS and not job.tried >= self._workers.keys()
+        return bool(execution.trouble) and others_may_do
 
     def _do_alone(self, flight: _Flight, execution: Execution) -> None:
         job = flight.job
@@ -348,16 +355,6 @@ class Dispatcher:
             job.tried.discard(flight.worker)
         job.alone, job.cpu_seconds = True, execution.cpu_seconds
         self._wait(job)
-
-    def _wait(self, job: _Job) -> None:
-        """Queue a job. Jobs that must run alone are sorted by their earlier processor time, the shortest first."""
-        if job.alone:
-            bisect.insort(self._alone, job, key=operator.attrgetter("cpu_seconds"))
-        else:
-            self._again.append(job)
-
-    def _others_may_do(self, job: _Job) -> bool:
-        return job.attempts < ATTEMPTS and not job.tried >= self._workers.keys()
 
     def _forged(self, number: int, reason: str) -> None:
         address = self._flights[number].worker
@@ -379,8 +376,8 @@ class Dispatcher:
             if number in self._flights and flight.deadline <= now:
                 if flight.worker == ADDRESS:
                     self._lost(number, "the execution has not ended in time")
-                    continue
-                self._turn_out(flight.worker, "the worker has not answered in time. Start it again")
+                else:
+                    self._turn_out(flight.worker, "the worker has not answered in time. Start it again")
 
     def _lost(self, number: int, reason: str) -> None:
         job = self._land(number).job
