@@ -80,10 +80,12 @@ def tasks_of_six(tiny: TinyClass) -> list[Task]:
     return [replace(task, student=f"student-{number}") for number in range(6)]
 
 
-def make_dispatcher(link: FakeLink, told: list[str] | None = None, **options: Any) -> Dispatcher:
+def make_dispatcher(
+    link: FakeLink, told: list[str] | None = None, address: str = "tcp://x:1", **options: Any
+) -> Dispatcher:
     tell = (told if told is not None else []).append
     settings = {"judge": "a:B", "boxed": True, "return_seconds": 0.05, **options}
-    return Dispatcher(link, "tcp://x:1", tell=tell, **settings)
+    return Dispatcher(link, address, tell=tell, **settings)
 
 
 def students(done: list[Done]) -> list[str]:

@@ -394,6 +394,10 @@ class Dispatcher:
         return flight
 
     def _nobody(self) -> str:
+        if not self._address:
+            return (
+                "This machine cannot execute notebooks: the process that executes them did not start in time."
+            )
         if not self._refused:
             return (
                 f"The Dask scheduler at {self._address} has no workers. "

@@ -284,6 +284,13 @@ def test_no_worker_at_all_says_how_to_start_one() -> None:
         make_dispatcher(FakeLink(Asked())).await_workers()
 
 
+def test_an_executor_that_does_not_start_in_time_is_not_taken_for_a_scheduler(tasks: list[Task]) -> None:
+    with pytest.raises(
+        NoWorkers, match=r"This machine cannot execute notebooks: the process .* did not start"
+    ):
+        list(make_dispatcher(FakeLink(), address="").execute_all(tasks))
+
+
 def test_no_scheduler_says_so() -> None:
     with pytest.raises(SchedulerGone, match=r"tcp://x:1 cannot be reached \(refused\)"):
         make_dispatcher(FakeLink(Broken("refused"))).await_workers()
