@@ -10,6 +10,7 @@ from __future__ import annotations
 import contextlib
 import sys
 import threading
+import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -158,6 +159,8 @@ def main(arguments: list[str]) -> None:
             be executed in boxes.
     """
     adopt_orphans()
+    # A setup.py of a student may cause thousands of these warnings when it is parsed.
+    warnings.simplefilter("ignore", SyntaxWarning)
     executor, grader = Executor(Path(arguments[0])), Lines.with_parent()
     # Start the fork servers now: they import their modules while the grader prepares the first order.
     executor.fork_servers(boxed="boxed" in arguments[2:])
