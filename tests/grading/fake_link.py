@@ -12,7 +12,7 @@ from tiny_class import FakeEngine, TinyClass
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.rebuilding.task_making import tasks_of
 from autograder.grading.running.dispatcher import Dispatcher
-from autograder.grading.running.orders import Answered, Command, Give, Joined, News, Offer, Order
+from autograder.grading.running.orders import Answered, Broken, Command, Give, Joined, News, Offer, Order
 from autograder.grading.task import Task
 
 if TYPE_CHECKING:
@@ -32,6 +32,9 @@ class FakeLink:
         self.in_flight: set[int] = set()
         self.most_in_flight = 0
         self.answer: Callable[[Give, Task], News | None] = honest
+
+    def stop(self) -> None:
+        self.news.append(Broken("the run was stopped"))
 
     def say(self, command: Command) -> None:
         if not isinstance(command, Give):

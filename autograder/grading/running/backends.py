@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import functools
 from typing import TYPE_CHECKING
 
 from autograder.grading.running.orders import JUDGE
@@ -71,8 +72,8 @@ def cluster(
         GradingError: The cluster cannot be used. The message says why.
     """
     from autograder.grading.cluster.connection import connected
-    from autograder.grading.running import sandboxing
+    from autograder.grading.running import engine, sandboxing
 
     boxed = not sandboxing.switched_off(directory)
     with connected(scheduler, judge=judge or JUDGE, boxed=boxed, tell=tell) as pool:
-        yield pool.execute_all
+        yield functools.partial(engine.dispatch, pool)

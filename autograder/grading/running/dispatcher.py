@@ -121,6 +121,9 @@ class Link(Protocol):
     def hear(self, within: float | None) -> News | None:
         """Wait at most ``within`` seconds (None: without limit) for the next message. Return None if none came."""
 
+    def stop(self) -> None:
+        """Make :meth:`hear` return ``Broken`` from now on. Any thread may call this."""
+
 
 class Dispatcher:
     """Gives the tasks of one batch to workers.
@@ -197,6 +200,10 @@ class Dispatcher:
             self._give_up_on_silent(now)
             while self._done:
                 yield self._done.pop()
+
+    def stop(self) -> None:
+        """End :meth:`execute_all`, which another thread runs. The dispatcher cannot be used afterwards."""
+        self._link.stop()
 
     def _give_out(self, jobs: Iterator[_Job], on_start: Callable[[Task], None]) -> None:
         """Give a task to every free slot. No tasks are queued at a worker: they would be lost if the worker ended."""

@@ -53,13 +53,10 @@ def execute_all(
     judge: str = JUDGE,
     boxed: bool = True,
 ) -> Generator[Done, None, None]:
-    """Execute tasks in parallel, and yield results as they are ready.
-
-    If the caller leaves the loop early, the tasks that still run are ended.
+    """Execute tasks in parallel on this machine, and yield results as they are ready.
 
     Args:
-        tasks: The tasks in the order in which they begin. The next task is taken, in another thread, when a slot is
-            free.
+        tasks: The tasks in the order in which they begin.
         scratch: The folder in which submissions run. The caller removes it.
         workers: The number of notebooks to execute at the same time; None for the number that :func:`at_once`
             returns.
@@ -68,26 +65,41 @@ def execute_all(
         boxed: True if the tasks are executed in boxes.
     """
     slots = workers or at_once(cores(), psutil.virtual_memory().available)
-    results: queue.SimpleQueue[Done | BaseException | None] = queue.SimpleQueue()
     with this_machine(scratch, slots, boxed=boxed) as machine:
         dispatcher = Dispatcher(machine, "", judge=judge, boxed=boxed, tell=lambda _: None)
+        yield from dispatch(dispatcher, tasks, on_start)
 
-        def dispatch() -> None:
-            """Run in a separate thread, so that free slots get tasks while the caller stores a result."""
-            try:
-                for done in dispatcher.execute_all(tasks, on_start):
-                    results.put(done)
-                results.put(None)
-            except BaseException as error:  # pass the error on, because the caller waits for results
-                results.put(error)
 
-        thread = threading.Thread(target=dispatch, daemon=True)
-        thread.start()
+def dispatch(
+    dispatcher: Dispatcher, tasks: Iterable[Task], on_start: Callable[[Task], None]
+) -> Generator[Done, None, None]:
+    """Let a dispatcher execute tasks in another thread, so that free slots get tasks while the caller stores a result.
+
+    If the caller leaves the loop early, the tasks that still run are ended.
+
+    Args:
+        dispatcher: The dispatcher. It cannot be used afterwards.
+        tasks: The tasks in the order in which they begin. The next task is taken, in the other thread, when a slot is
+            free.
+        on_start: Called in the other thread when a task begins.
+    """
+    results: queue.SimpleQueue[Done | BaseException | None] = queue.SimpleQueue()
+
+    def execute() -> None:
         try:
-            while (result := results.get()) is not None:
-                if isinstance(result, BaseException):
-                    raise result
-                yield result
-        finally:
-            machine.stop()
-            thread.join()
+            for done in dispatcher.execute_all(tasks, on_start):
+                results.put(done)
+            results.put(None)
+        except BaseException as error:  # pass the error on, because the caller waits for results
+            results.put(error)
+
+    thread = threading.Thread(target=execute, daemon=True)
+    thread.start()
+    try:
+        while (result := results.get()) is not None:
+            if isinstance(result, BaseException):
+                raise result
+            yield result
+    finally:
+        dispatcher.stop()
+        thread.join()

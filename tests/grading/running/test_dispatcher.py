@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -22,6 +23,7 @@ from tiny_class import FakeEngine, TinyClass
 
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.running import dispatcher as dispatcher_module
+from autograder.grading.running import engine
 from autograder.grading.running.dispatcher import ATTEMPTS, NoWorkers, SchedulerGone
 from autograder.grading.running.orders import (
     Answered,
@@ -320,3 +322,18 @@ def test_when_the_last_worker_is_gone_the_batch_waits_a_little_and_then_stops(ta
     assert next(running)
     link.news.append(joined("a again"))
     assert len(list(running)) == len(tasks) - 1
+
+
+def test_tasks_go_on_while_the_caller_of_a_cluster_holds_a_result(tasks: list[Task]) -> None:
+    dispatcher = make_dispatcher(FakeLink(joined("w")))
+    dispatcher.await_workers()
+    last_began = threading.Event()
+
+    def began(task: Task) -> None:
+        if task == tasks[-1]:
+            last_began.set()
+
+    running = engine.dispatch(dispatcher, tasks, began)
+    next(running)
+    assert last_began.wait(60)
+    running.close()
