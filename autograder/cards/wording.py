@@ -157,11 +157,11 @@ def traffic_notes(shown: Traffic) -> str:
     if shown.simulated:
         notes.append("Simulated time: the judge moved your node's clock, so these seconds pass faster.")
     if shown.left_out:
-        count = f"{shown.left_out} {'moment' if shown.left_out == 1 else 'moments'}"
-        notes.append(f"Too much to show it all: {count} in between left out.")
+        count = "1 moment is" if shown.left_out == 1 else f"{shown.left_out} moments are"
+        notes.append(f"{count} left out in the middle, because there is too much to show.")
     if shown.parts_left_out:
-        count = f"{shown.parts_left_out} more {'part' if shown.parts_left_out == 1 else 'parts'}"
-        notes.append(f"{count} of the check left out.")
+        count = "1 more run is" if shown.parts_left_out == 1 else f"{shown.parts_left_out} more runs are"
+        notes.append(f"{count} not shown.")
     return " ".join(notes)
 
 

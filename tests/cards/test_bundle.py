@@ -272,7 +272,7 @@ def test_a_long_timeline_is_cut_and_says_so(hostile: Verdict) -> None:
     rows = tree.all("table", "agc-moments")[0].all("td")
     assert 40 <= len(tree.all("svg", "agc-mark")) <= 82
     assert any("more left out here" in words(row) for row in rows)
-    left_out = int(re.findall(r"(\d+) moments in between left out", words(tree))[0])
+    left_out = int(re.findall(r"(\d+) moments are left out in the middle", words(tree))[0])
     assert left_out + len(tree.all("svg", "agc-mark")) == len(hostile.timeline)
 
 
