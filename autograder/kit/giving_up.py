@@ -48,19 +48,16 @@ PATIENCES = (6.5, 6.95)
 No common constant, such as 5 or 10, is in this range, even with the tolerances below.
 """
 PATIENCES_WITHOUT_A_SERVER = {Pace.FAST: (0.2, 0.24), Pace.REAL_TIME: PATIENCES}
-"""Like :data:`PATIENCES`, but for a run without a server, by pace. In such a run the function waits for its whole
-patience, so the short range exposes a constant limit that would be long enough for a late server. A function that
-cannot keep to the short range, for example because it waits in whole seconds, gets the long range in the second look.
-rclpy's own waits check four times a second, so they take a quarter of a second here.
+"""Like :data:`PATIENCES`, but for a run without a server, by pace. In the first look the range is short, to expose a
+function that waits for a constant time. rclpy's own waits then take 0.25 s. A function that does not keep to the short
+range, for example because it waits in whole seconds, gets the long range in the second look.
 """
 TOO_LONG = 2.0
 """The number of seconds by which a function may exceed its patience, to make and destroy its node and for a slow
 machine.
 """
 SLACK = 1.1
-"""Like :data:`TOO_LONG`, in seconds, for a patience that is shorter than this value. A slower function gets a longer
-patience in the second look.
-"""
+"""A patience below this value, in seconds, is short. For a short patience, this value replaces :data:`TOO_LONG`."""
 TOO_SHORT = 0.5
 """The minimum fraction of its patience that a function must wait."""
 PART_OF_A_WAIT = 1.0
@@ -181,8 +178,8 @@ def objection(part: Part, others: Sequence[Part] = (), role: str = "") -> str:
 
 
 def _unsaid(part: Part, others: Sequence[Part]) -> str:
-    # A client that repeats its report counts as reporting even if the words also occur in other runs, where the server
-    # may have been discovered late.
+    # A client that repeats the words in this run has reported the missing server. It may use the same words in a run
+    # with a server, because discovery may be slow there.
     times = _moments(part, NOT_AVAILABLE)
     said_again = bool(times) and max(times) - min(times) > 1
     return "" if said_again else NOT_AVAILABLE.missing(part, others)

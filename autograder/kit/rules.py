@@ -135,7 +135,7 @@ class StateRule:
     def _decided(self, part: Part, holds: State) -> Iterator[tuple[Any, Any]]:
         """Yield pairs of the required and the actual report, for each report at whose time only one content is right.
 
-        A report is left out if the condition may not hold at the report's time.
+        A report is also left out unless the condition certainly holds at the report's time.
         """
         for what, views in self._said(part):
             due, *others = map(self.rule, views)

@@ -31,7 +31,7 @@ AMENT_PACKAGE = "ament_package()"
 BUILDING = 180.0
 """The time limit of a build, in seconds of wall time. A Python package needs one second, an interface package ten."""
 _FEW = 10
-"""If not all other packages fit into the report, so many of them are named."""
+"""The number of other packages that the report names if not all of their names fit."""
 
 
 @dataclass(frozen=True)

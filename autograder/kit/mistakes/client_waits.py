@@ -44,10 +44,11 @@ class Wait:
         return part.first(self.asks) is not None
 
     def had_server(self, evidence: Evidence) -> list[Part]:
-        """Return the runs in which a report that the server is missing is wrong, because the client had its server.
+        """Return the runs in which the client must not report that the server is missing.
 
-        The first run is usually left out, because its server comes late, so the client may report there that the server
-        is missing. It is included only if the client sent no request in it and looked for no other server.
+        These are the runs with a server in which the client sent a request. The server of the first run comes late, so
+        the client may report there that the server is missing. The first run is returned only if the client sent no
+        request in that run and looked for no other server.
         """
         late, *others = self.runs(evidence)
         found = [part for part in others if self.asked(part)]
@@ -57,9 +58,9 @@ class Wait:
         return [*found, late] if without else found
 
     def _looks_elsewhere(self, evidence: Evidence) -> bool:
-        """Return True if the client looked for a server with another name or type than the exercise asks for.
+        """Return True if the client looked for a server whose name or type differs from the exercise's.
 
-        A wrong name always counts, but a wrong type only if the client kept waiting in the run without a server.
+        A wrong type counts only if the client kept waiting in the run without a server. A wrong name always counts.
         """
         name, kind = evidence.reference.only(self.role)
         looked_for = [found for part in evidence for found in part.endpoints(self.role).items()]

@@ -196,7 +196,8 @@ def spinning(role: str) -> tuple[Mistake, ...]:
 
 
 def _was_spun(part: Part, role: str) -> bool:
-    # A stack in which a thread spins counts, too, because the judge may have missed what the node did first.
+    # A thread that was spinning when the subject hung also shows that the node was spun, because the judge may have
+    # missed what the node did before.
     return worked(part, role) or something_spins(part)
 
 
@@ -206,7 +207,8 @@ def _awaits_in_vain(evidence: Evidence) -> bool:
 
 
 def _left_an_answer(part: Part) -> bool:
-    # A client that only sends a goal may keep spinning after the goal was answered, as long as its node responds.
+    # The answer to a goal counts only if the node no longer responds, because a client that only sends a goal may keep
+    # spinning after the answer.
     answers = part.of("response") + (part.of("goal_answered") if part.of("unanswered") else [])
     if not answers:
         return False

@@ -143,11 +143,11 @@ LEFT_LYING = 0.3
 
 
 def _answer_not_taken(evidence: Evidence) -> Advice | None:
-    """Return advice if the client goes on in each run without an answer that was available.
+    """Return advice if the client read ``sum`` of None although the service had answered: a call has timed out.
 
-    For example, a call has timed out. This has to happen in each run, because in a single run a busy machine may have
-    delayed the answer. An answer that was sent after the exception does not count. A client whose code contains
-    ``result()`` does not count, because it may never have waited for its future.
+    This has to happen in each run with an answer, because in a single run a busy machine may have delayed the answer.
+    An answer that was sent after the exception does not count. If the failing line contains ``result()``, the result is
+    None, because the client may never have waited for its future.
     """
     answered = [part for part in evidence if _got_an_answer(part)]
     if not answered or not all(map(_went_on_without_it, answered)):

@@ -2,8 +2,8 @@
 
 The stacks come from Python's faulthandler, with the innermost call first. The judge requests them if a subject that
 should still be running has fallen silent. In rclpy 7.1, ``Client.call`` waits in ``client.py``, the action client's
-blocking calls in ``action/client.py``, and ``Rate.sleep`` in ``timer.py``. Callbacks are called from ``executors.py``,
-so their lines come before its lines.
+blocking calls in ``action/client.py``, and ``Rate.sleep`` in ``timer.py``. The calls in ``executors.py``, which calls
+callbacks, come after the calls in the student's callback.
 """
 
 from __future__ import annotations

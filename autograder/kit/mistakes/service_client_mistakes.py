@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 def _does_not_wait_for_answers(evidence: Evidence) -> bool:
     served, calls = ClientSeen(evidence).served, ClientSeen(evidence.reference).calls
-    # A client that made all its calls although one answer came late does wait for answers.
+    # One of the answers comes late. A client that made all its calls nevertheless has waited for the late answer.
     waits = any(len(requests(part)) >= calls for part in served if part.of("response"))
     return any(
         ended_before_its_answer(part)
@@ -56,10 +56,9 @@ def _gave_up_on_its_answer(part: Part, served: Sequence[Part]) -> bool:
 def _made_nothing_of_its_answer(part: Part) -> bool:
     """Return True if the subject ended at its first answer and did nothing that shows that it used the answer.
 
-    A client uses the answer if it makes another call, or prints a number that is derived from the answer. A client that
-    did not wait for its answer may still exist when the answer is sent, because a process takes time to end. The caller
-    does not use this function for a client that makes one call and raises no exception, because such a client may only
-    have forgotten to report the sum.
+    A client uses the answer if it makes another call, or prints a number that is derived from the answer. If a task
+    asks for only one call, use this function only after an exception: a client without an exception may have waited,
+    and only not have reported the sum.
     """
     if part.ending is None or len(requests(part)) != 1 or len(part.of("response")) != 1:
         return False

@@ -29,11 +29,9 @@ CALLED = (LATE, BIASED, EXTREME)
 HANGS_AFTER = 8.0
 """The number of seconds without any event after which a client counts as hung.
 
-A program that calls before the service exists is watched for this time twice, in the fast look and in real time: 21
-seconds in all on a quiet machine. No event can decide earlier whether its call was lost. The judge could see the
-request only as a server, and the client would then find that server; no subscription of ROS can read the topic of
-requests, because ROS puts a slash before its name. The stack of a client that waits for the service with a timer, which
-is right, looks the same. So a second run has to confirm that nothing happens.
+A client that calls before the service exists loses its call, and then looks like a client that rightly waits for the
+service with a timer. No event tells these clients apart: the judge receives calls only as a server, and the client
+would find that server. So the judge watches both for this time, in the fast look and again in real time.
 """
 
 

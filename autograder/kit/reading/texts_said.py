@@ -216,8 +216,8 @@ def repeated(part: Part, sent: Sequence[str]) -> dict[str, int]:
 def retold(part: Part, sent: Sequence[str]) -> str:
     """Return an example line if the subject repeats all earlier texts with each new text; empty if it does not.
 
-    For each text, the line with the fewest texts counts, because a program may report each text in its own line and
-    also show all texts. A few texts in one line, such as the last two or a summary, do not count.
+    A program may report each text in a line of its own and also show all texts. So for each text, only the line with
+    the fewest texts is examined. A few texts in one line, such as the last two or a summary, are not a repetition.
     """
     lines = [(line, {text for text in sent if tells(line, text)}) for line in part.said()]
     holding = [[one for one in lines if text in one[1]] for text in dict.fromkeys(sent)]

@@ -206,7 +206,7 @@ def aborted(bench: Bench, first: Part) -> None:
 
 
 def needs_no_search(bench: Bench, first: Part) -> bool:
-    """Return True if the server may exist before the subject: for a function that has waited for answers before."""
+    """Return True if the server may start before the subject: a notebook's function known to wait for answers."""
     return bench.in_a_cell and bool(first.of("result_request"))
 
 
@@ -232,9 +232,8 @@ def works_on_a_goal(
     result.insert(-1, result[1])
     done = await_goal(bench, server, GOAL_LIMIT)
     if done:
-        # Wait before the first feedback until the client requests the result, which a client that goes on does next. If
-        # the feedback came together with the answer to the goal, chance would decide which of the two a client receives
-        # that handles one event and ends.
+        # Send feedback only after the client has read the answer to its goal and requests the result. If the answer and
+        # the feedback came together, chance would decide which of them a client receives that ends after one event.
         server.await_result_request(SHOWN_WITHIN[bench.pace])
         action, _ = bench.reference.only("action_client")
         for count, last in enumerate(newest, start=2):
@@ -299,7 +298,8 @@ def refuse(
         begin_it: Starts the subject.
         known: True if the subject has already sent a goal.
         prepared: True to start the server before the subject.
-        may_stay: True if the subject need not end, so that the wait is over soon after it has reported the refusal.
+        may_stay: True if the subject may keep running after the refusal. Then the judge waits only until the subject
+            has reported the refusal, and a moment longer.
     """
 
     def reported(seen: Evidence) -> bool:
@@ -340,7 +340,7 @@ _WHAT_IS_SAID = (
 
 
 def _not_by_refusal(mistake: Mistake) -> Mistake:
-    """Return a mistake that is not recognized if only a refused goal causes its error, which is checked later."""
+    """Return the mistake, but do not recognize it if the client crashes only in the run with a refused goal."""
 
     def recognise(evidence: Evidence) -> Advice | None:
         return None if goals.crashed_by_refusal(evidence) else mistake.recognise(evidence)

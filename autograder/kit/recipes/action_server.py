@@ -109,7 +109,7 @@ class SendsGoals(SeenAsItIs):
         )
 
     def _cancel_refused_on_its_way(self, evidence: Evidence) -> Advice | None:
-        """Return the advice of :meth:`_cancel_refused` if the goal still ran, so that timing had no influence."""
+        """Return advice if the server refused the cancel request although the goal had not ended."""
         return None if self.canceled(evidence).cancelled_too_late else self._cancel_refused(evidence)
 
     def _cancel_not_read(self, evidence: Evidence) -> Advice | None:
@@ -118,7 +118,7 @@ class SendsGoals(SeenAsItIs):
         if long.cancel_accepted or long.unread < MANY or is_quick(long):
             return None
         if any(seen.accepted and not seen.over for seen in self._good(evidence)):
-            return None  # A thread is stuck in another goal.
+            return None  # A goal without a result may keep the only thread busy.
         return Advice(
             "Your server keeps working and does not read the cancel request, because the only thread that spins the "
             "node is busy with the execute callback.",

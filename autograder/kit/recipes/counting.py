@@ -165,8 +165,8 @@ def _first_number(seen: Publisher, expected: Publisher) -> int | None:
     """Return the number in the publisher's first message, even if the judge could not receive it; None if unknown.
 
     A loop may publish before any subscriber can receive the message, so the first received number may be a later one.
-    The judge knows how many messages it missed, because DDS numbers them, and counts back from the received number. If
-    the publisher would then have begun before the reference's first number, some of the missed messages had no number.
+    The judge knows how many messages it missed, because DDS numbers them, and counts back from the received number. The
+    result may lie before the reference's first number, if some of the missed messages contained no number.
     """
     first = counters(seen.texts[seen.greetings :][:1])
     return first[0] - expected.step * (seen.number_of_first - 1) if first else None

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from autograder.kit.model import Bench, Exercise
 
 SILENCE = object()
-"""The author's function returns this if the subject must publish nothing: no value, or no word about a state."""
+"""The author's function returns this if the subject must not publish anything."""
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 

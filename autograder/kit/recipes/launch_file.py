@@ -274,7 +274,8 @@ class LaunchFile:
         if talks:
             bench.wait_until(lambda evidence: len(self.seen(evidence).heard) >= MESSAGES, LATE)
         if talks and listens:
-            # The graph does not show processes, so the endpoint of a third program may still appear.
+            # Endpoints of other programs may still appear. The graph does not show the process of an endpoint, so wait
+            # until no further endpoint can change the verdict.
             bench.watch_graph(lambda evidence: self.seen(evidence).is_settled, PAUSE[bench.pace])
         seen = self.seen(Evidence([bench.seen()], bench.reference))
         bench.stop()

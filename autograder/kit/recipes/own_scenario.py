@@ -165,9 +165,8 @@ class Spoken(OwnScenario):
         lines = [
             (event, word) for _, event in without_tracebacks(part.events) if (word := self._word_in(event))
         ]
-        if any(
-            event.kind == "log" for event, _ in lines
-        ):  # a logged line also reaches the terminal, perhaps late
+        # A logged line is recorded twice: on /rosout and in the terminal. Leave out the terminal's copy.
+        if any(event.kind == "log" for event, _ in lines):
             lines = [(event, word) for event, word in lines if not _is_a_logged_one(event)]
         told = {
             id(event): replace(

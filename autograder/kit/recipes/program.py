@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 SAYING = {Pace.FAST: 2.0, Pace.REAL_TIME: 5.0}
 """Time limit in seconds of wall time from the appearance of the program's node until the program logs its line."""
 LATE = 0.3
-"""The number of seconds without any event, after the program has logged its line, until its log counts as complete."""
+"""At the end, the judge waits for more lines until no event has come for this many seconds."""
 COMPARED, LONG = 200, 400
 """The maximum number of lines to compare, and of characters in each, because comparing more could take minutes."""
 

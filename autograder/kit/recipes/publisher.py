@@ -93,14 +93,16 @@ class Hears:
         enough = self._enough(bench.before) if bench.pace is Pace.REAL_TIME else self._messages
         _listen(bench, topic, enough, period)
         if bench.wait_until(lambda evidence: _lost(evidence, topic) > LOST, 0.0):
-            bench.doubt()  # Only times in real time tell a burst from a slow start.
+            # The judge missed many messages at the start. Either the publisher sent them in a burst, or discovery was
+            # slow. Times in real time show which.
+            bench.doubt()
         if bench.pace is Pace.FAST and bench.wait_until(self._is_simulated, 0.0):
             enough = self._long_run
             _listen(bench, topic, enough, period, LONG_STEP)
             if not bench.in_a_cell:
                 bench.await_end(PERSISTS)
         elif bench.pace is Pace.REAL_TIME and bench.heard(topic) >= enough:
-            # The wait may last as long as these messages once more, because one of them may be late.
+            # One of these messages may be late. So wait for as many further messages, but only until the rate is right.
             bench.wait_until(
                 lambda evidence: self.keeps_rate(evidence).passed, self._row(bench.before) * period
             )
@@ -108,7 +110,10 @@ class Hears:
             bench.note_whether_it_spins()
 
     def _is_simulated(self, evidence: Evidence) -> bool:
-        """Return True if enough messages follow the simulated clock; the first ones may come before simulated time."""
+        """Return True if at least half as many messages as the judge first waits for follow the simulated clock.
+
+        Half is enough, because the first messages may come before the judge begins to simulate time.
+        """
         topic, _ = evidence.reference.only("publisher")
         return len(simulated(evidence.main.of("message", topic))) >= self._messages // 2
 
@@ -144,7 +149,8 @@ class Hears:
         else:
             enough = self._long_run if self._is_simulated(evidence) else self._messages
         heard = evidence.main.of("message", topic)
-        # A program that ended by itself never published enough, because the task has no end.
+        # The task asks for a publisher that never ends. So if the program ended by itself, no number of messages is
+        # enough: set the required number higher than the number that came.
         return Publisher(
             topic, evidence.main, max(enough, len(heard) + 1) if evidence.main.ending else enough
         )

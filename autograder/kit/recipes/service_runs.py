@@ -202,10 +202,10 @@ def meets_service(
     answer = answering(run.answers)
     server = bench.serve(service, type_name, answer, hold=run.held) if prepared else None
     bench.start(*run.numbers, patience_sec=bench.seen().inputs[PATIENCE])
-    # The service starts when the judge has discovered the client. If the service existed before, the client might
-    # discover it first, and chance would decide whether the call of a client that ends at once reaches the judge. If
-    # the subject has only another client, it waits for another service, so the run ends. But if it has no client, it
-    # may only be slow to make one, so the service starts.
+    # Start the service only after the judge has discovered the client. If the client discovered the service first,
+    # chance would decide whether the call of a client that ends at once reaches the judge. If the subject has ended or
+    # has only clients for other services, end the run. If it has no client yet, start the service, because the subject
+    # may only be slow.
     if not bench.await_endpoint("client", service) and (
         bench.await_end(0.0) or bench.seen().endpoints("client")
     ):
@@ -216,8 +216,8 @@ def meets_service(
     if run.held and bench.wait_until(
         lambda seen: len(requests(seen.main)) >= run.held, CALL_LIMIT, quiet=HANGS_AFTER
     ):
-        # While the answer is held back, other nodes may send requests to the client's node. So the first event that the
-        # client gets need not be the answer.
+        # Before the answer, send the client's node an unrelated request. It exposes a client that handles one event and
+        # takes this event for the answer.
         bench.settle()
         hold_back(
             bench, "request", run.held, ANSWERS_LATE if run.held == 1 and held_for is None else held_for
@@ -233,9 +233,10 @@ def meets_service(
 
 
 def is_done(evidence: Evidence, calls: int) -> bool:
-    """Return True if the subject has ended, or has reported the sum, as a program that spins on may.
+    """Return True if the subject has ended or has reported the sum.
 
-    The result stays True even if the subject then sends one more call.
+    A program need not end, because it may keep spinning after its report. The result stays True even if the subject
+    then sends one more call.
     """
     return evidence.main.ending is not None or has_reported(evidence.main, calls)
 

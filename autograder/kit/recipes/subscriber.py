@@ -147,7 +147,7 @@ class Speaks:
         if _is_simulated(evidence) or not singly or not missing or any(event in singly for event in missing):
             return None
         if all(is_said(_text(event), evidence.main) for event in missing):
-            return None  # Only texts that were sent twice are missing.
+            return None  # Each text was reported at least once, so the listener is not too slow.
         return Advice(
             f"At the pace of {self._paced_by}, one string every {self._pace:g} s, your listener misses some strings, "
             f"such as “{_text(missing[0])}”. If strings come one by one, it misses none.",

@@ -120,7 +120,8 @@ class Watch(Declared):
                 made = f"{state}, {missed[0].said - missed[0].begin:.1f} s after it was so"
             else:
                 made = f"{state}, {counted(sum(span.said is not None for span in due), 'time')}"
-            # A subject that ended early was given less, so the solution's run shows how often the state is due.
+            # Count how often the state is due in the run of the reference solution, because a subject that ended early
+            # got fewer inputs.
             usual = sum(same(span.state, state) for span in self._spans(expected, self._state))
             return Finding(passed, f"{state}, {counted(usual, 'time')}, at most {self._within} s late", made)
 
@@ -188,7 +189,7 @@ class Watch(Declared):
             self._repeated,
             "Your node reports {} twice in a row.",
             "Store the state that you reported last, and report a state only if it differs from that one.",
-            False,  # a thread of a right node may do so in the first look, whose clock it does not follow
+            False,  # A right node may do so in simulated time if it has a thread that does not follow the ROS clock.
         )
         yield (
             "only_in_answer",
@@ -214,7 +215,7 @@ class Watch(Declared):
         )
 
     def _check_what_is_given(self) -> None:
-        """Raise an error if a node may leave a state out, or may look only once a second, and still be in time."""
+        """Raise an error if a node passes with these inputs although it skips a state or checks once a second only."""
         sent, at = [], 0.0
         for given, seconds in self._gives:
             fields = given if isinstance(given, Mapping) else {"data": given}
@@ -243,8 +244,8 @@ class Watch(Declared):
             )
 
     def _happens(self, met: Met) -> bool:
-        # This wait is in real time. Simulated time begins with the step after it, before the first input, because a
-        # real time that the subject stored at the first input could not be compared with later simulated times.
+        # Wait in real time. Then make one step of simulated time before the first input: otherwise the subject might
+        # store a real time at the first input, and compare that with later simulated times.
         met.bench.wait_until(lambda evidence: bool(self._subject.seen(evidence).of("message")), self._waits)
         met.bench.run_time(STEP)
         for given, seconds in self._gives:
