@@ -145,18 +145,19 @@ LEFT_LYING = 0.3
 def _answer_not_taken(evidence: Evidence) -> Advice | None:
     """Return advice if the client read ``sum`` of None although the service had answered: a call has timed out.
 
-    This has to happen in each run with an answer, because in a single run a busy machine may have delayed the answer.
-    An answer that was sent after the exception does not count. If the failing line contains ``result()``, the result is
-    None, because the client may never have waited for its future.
+    Two runs have to show this, because in a single run a busy machine may have delayed the answer. A run in which the
+    answer came just before the exception, or after it, shows nothing. If the failing line contains ``result()``, the
+    result is None, because the client may never have waited for its future.
     """
     answered = [part for part in evidence if _got_an_answer(part)]
-    if not answered or not all(map(_went_on_without_it, answered)):
+    unread = [part for part in answered if _left_its_answer_unread(part)]
+    if len(unread) < max(1, min(2, len(answered))) or not all(map(_had_none_instead, answered)):
         return None
     return Advice(
         "The service answered, but your client had None instead of the answer. A call(..., timeout_sec=...) returns "
         "None if its time is up before a spin of the node has received the answer.",
         NOT_SPUN_WHILE_CALLING,
-        answered[0].traceback,
+        unread[0].traceback,
     )
 
 
@@ -171,13 +172,16 @@ def _stopped_at(part: Part, ending: Event) -> float:
     return (next(outputs, ending) if part.traceback else ending).t
 
 
-def _went_on_without_it(part: Part) -> bool:
-    given, found = part.first("response"), _NONE_FOR_AN_ANSWER.search(part.traceback)
-    if given is None or found is None or "result()" in found[0] or part.ending is None:
+def _left_its_answer_unread(part: Part) -> bool:
+    given = part.first("response")
+    return bool(given and part.ending and _stopped_at(part, part.ending) > given.t + LEFT_LYING)
+
+
+def _had_none_instead(part: Part) -> bool:
+    found = _NONE_FOR_AN_ANSWER.search(part.traceback)
+    if found is None or "result()" in found[0] or part.ending is None:
         return False
-    if "rclpy/executors.py" in part.traceback:
-        return False  # The client waited in a callback, so the node was spun.
-    return _stopped_at(part, part.ending) > given.t + LEFT_LYING
+    return "rclpy/executors.py" not in part.traceback  # else the client waited in a callback, so the node was spun
 
 
 _COROUTINE = re2.compile(
