@@ -181,7 +181,8 @@ def _had_none_instead(part: Part) -> bool:
     found = _NONE_FOR_AN_ANSWER.search(part.traceback)
     if found is None or "result()" in found[0] or part.ending is None:
         return False
-    return "rclpy/executors.py" not in part.traceback  # else the client waited in a callback, so the node was spun
+    # If the client waited in a callback, the node was spun.
+    return "rclpy/executors.py" not in part.traceback
 
 
 _COROUTINE = re2.compile(
