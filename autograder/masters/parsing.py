@@ -60,7 +60,7 @@ TAGS = {kind.value: kind for kind in CellRole if kind not in (CellRole.TEXT, Cel
 COPY = re.compile(r"^### COPY (?P<names>\w+(?: \w+)*)$", re.MULTILINE)
 OPTIONS = {"tags", "grade_id"}
 MANUAL_FORM = '+++ {"tags": ["manual"], "points": 5, "grade_id": "some_name"}'
-"""An example of the line above a question that a person grades."""
+"""An example of the line with options that a master has above each question that a person grades."""
 
 
 @dataclass(frozen=True)

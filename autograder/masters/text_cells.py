@@ -134,7 +134,7 @@ def attach_figures(folder: Path, markdown: str) -> tuple[str, dict[str, dict[str
 
 
 def digest(svg: bytes) -> bytes:
-    """Return the digest of an SVG, which its PNG has to contain."""
+    """Return the digest of an SVG. A PNG that was made from this SVG contains this digest, so an old PNG is noticed."""
     return hashlib.sha256(svg).hexdigest().encode("ascii")
 
 

@@ -109,7 +109,7 @@ class Table:
             return {}
 
     def put_edits(self, edits: Mapping[str, Edit]) -> None:
-        """Store what people have written into the table.
+        """Store the cells of the table that people have edited.
 
         Raises:
             OSError: The file could not be written.

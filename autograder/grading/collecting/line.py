@@ -91,7 +91,7 @@ class Line:
 
     @property
     def place(self) -> Place:
-        """The place of the notebook."""
+        """The student, the assignment and the notebook for which the file was handed in."""
         return self.student, self.assignment, self.notebook
 
     @property

@@ -155,7 +155,7 @@ def opened(url: str) -> AbstractContextManager[Connection]:
 
 @functools.lru_cache(maxsize=8)
 def _engine(url: str) -> Engine:
-    """Return SQLAlchemy's engine for a gradebook, which opens a new connection for each block."""
+    """Return SQLAlchemy's engine for a gradebook. It opens a new connection for each ``with`` statement."""
     return sqlalchemy.create_engine(url, poolclass=NullPool)
 
 

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 SEQUENCE = 7
 """The number of words in each of the sequences by which answers are compared; about one short line of code."""
 LONGEST = 10_000
-"""The maximum number of words of an answer to compare: more than a thousand lines."""
+"""The maximum number of words of an answer to compare. Even an answer of a thousand lines has fewer words."""
 _LONGEST_TEXT = 20 * LONGEST
 _MANY, _MANY_SHARE = 5, 0.25
 """A sequence is not a student's own if at least this number and this fraction of the students wrote it."""

@@ -46,9 +46,9 @@ class Wait:
     def had_server(self, evidence: Evidence) -> list[Part]:
         """Return the runs in which the client must not report that the server is missing.
 
-        These are the runs with a server in which the client sent a request. The server of the first run comes late, so
-        the client may report there that the server is missing. The first run is returned only if the client sent no
-        request in that run and looked for no other server.
+        These are the runs with a server in which the client sent a request. But in the first run the server comes late,
+        so the client may rightly report a missing server before it sends its request. So the first run is returned only
+        if the client gave up in that run: it sent no request, and looked for no other server.
         """
         late, *others = self.runs(evidence)
         found = [part for part in others if self.asked(part)]

@@ -91,7 +91,7 @@ def pair(event: Event) -> list[int]:
 
 
 def reports(part: Part) -> bool:
-    """Return True if the client reports the last answer, and its function, if any, returns the same number."""
+    """Return True if the client reports the last answer. A function must also return the answer."""
     given = part.of("response")
     said = bool(given) and mentions(part.said(after=given[-1]), answers(part)[-1])
     return said and not says_otherwise(part)

@@ -141,7 +141,7 @@ class Machine(Declared):
         self._compares(name, points, title, due, came, words)
 
     def wrong(self, key: str, step: Step | Mapping[str, Any], says: str, next_step: str) -> None:
-        """Add the mistake that all replies follow a variant of ``step``. For the arguments see :meth:`Relay.wrong`."""
+        """Add a mistake: all replies are those of a wrong ``step``. For the arguments see :meth:`Relay.wrong`."""
         wrong = variant(self._step, step)
 
         def replied(seen: Part, step: Step) -> bool:

@@ -72,7 +72,7 @@ class LabProgram:
         )
 
     def judge(self, evidence: Evidence) -> Finding:
-        """Return the first finding that fails in the node's exercise; if none fails, a finding that passes."""
+        """Judge the program by the criteria of the exercise about its node: all of them have to be met."""
         return self.node.judge_as_one(self.view(evidence), "every requirement for its node is met")
 
     def ending(self, evidence: Evidence) -> str:

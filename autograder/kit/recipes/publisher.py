@@ -49,7 +49,7 @@ passed within a moment, so this shows whether the program ends.
 
 
 class Hears:
-    """The recipe for a publisher, whose views are of the type :class:`Publisher`.
+    """The recipe for a publisher. Its criteria and mistakes get objects of the type :class:`Publisher`.
 
     Args:
         messages: The number of messages to wait for at first, in simulated time.

@@ -53,7 +53,7 @@ class Speaks:
         self._step = pace / STEPS
 
     def scenario(self, bench: Bench) -> None:
-        """Send texts that no program can guess: first some at the pace, then some one by one."""
+        """Send texts that no program can guess: first some at the recipe's pace, then some one by one."""
         topic, type_name = bench.reference.only("subscription")
         texts = random_texts(bench.random)
         bench.part("listening", texts=texts)

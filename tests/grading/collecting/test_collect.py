@@ -309,7 +309,7 @@ def test_a_notebook_that_nobody_collected_is_not_overwritten(klass: TinyClass, t
         [write_zip(tmp_path / "m.zip", {"Ada Lovelace_1_assignsubmission_file_lab_1_2.ipynb": work(klass)})],
     )
     (other,) = report.having(LineState.EARLIER)
-    assert "was put into submitted by hand and is graded" in other.reason
+    assert "was put into the folder submitted by hand, and is graded" in other.reason
     assert lies(klass, "ada") == mine
 
 

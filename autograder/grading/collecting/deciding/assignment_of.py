@@ -92,8 +92,8 @@ class AssignmentOf:
         mixed = self._directory.named_cells.assignments(cells)
         if len(mixed) > 1 and asked not in mixed:
             raise NoTarget(
-                f"the file has cells of {' and of '.join(mixed)}: ask the student for a notebook of each, or write one "
-                f"of these assignments {_UNDER}"
+                f"the file has cells of {' and of '.join(mixed)}: ask the student for a notebook for each, or write "
+                f"the name of one of these assignments {_UNDER}"
             )
         held = self._directory.named_cells.closest(names, asked if asked in mixed else "")
         meant = [target for target in named if not held or target in held] or held

@@ -103,7 +103,7 @@ def _of_group(place: Place, group: list[Line], looks: Looks) -> Iterator[_Why]:
             times = [one.when for one in group if one.when and lying]
             yield replace(best, when=best.when or max(times, default=None)), LineState.PLACED, ""
         why = (
-            "was put into submitted by hand and is graded"
+            "was put into the folder submitted by hand, and is graded"
             if lying
             else "is graded, because yes is written under use"
         )
