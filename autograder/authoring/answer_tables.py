@@ -182,7 +182,8 @@ def _look_at(answer: Listed, *, twice: bool) -> None:
         "remove base: settings.toml sets the base of all workspaces": workspace and bool(entry.base),
         f"the entry is an edit, but the file {file} exists: remove one of the two": any(given)
         and file.exists(),
-        f"the file {file} does not exist, and the entry is not an edit": not any(given) and not file.exists(),
+        f"the file {file} does not exist, and the answer has no base and change": not any(given)
+        and not file.exists(),
     }
     for what, holds in troubles.items():
         if holds:

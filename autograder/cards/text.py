@@ -65,7 +65,7 @@ class _Writer:
                 yield from self._criterion(row)
         if card.remarks:
             yield ""
-            yield self._heading("Worth a word (costs no points)")
+            yield self._heading("Worth mentioning (costs no points)")
             for remark in card.remarks:
                 yield from self._wrapped(remark, "  - ", "    ")
         if card.traffic.parts:

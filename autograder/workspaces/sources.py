@@ -238,7 +238,7 @@ def receive(lines: Lines, count: int, path: str, folder: Path) -> None:
     for _ in range(count):
         source = lines.hear(Source)
         room -= room_of(source)
-        # Read sources beyond the limit, too, because other messages may follow, but do not keep them.
+        # Read the sources beyond the limit as well, but do not keep them: other messages may follow on this connection.
         if room >= 0:
             taken.append(source)
     if room < 0:

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class GradebookLayout:
-    """The format of one system's gradebook file.
+    """The format of the gradebook file of one LMS.
 
     Attributes:
         purpose: The page of the system on which the file is uploaded.

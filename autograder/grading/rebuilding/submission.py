@@ -30,8 +30,8 @@ LONGEST_REASON = 300
 LONGEST_NAME = 200
 """The maximum length of the name of a cell or picture, in characters."""
 HARMLESS_LENGTH = 6_000
-"""If the cells that a student wrote are shorter than this in total (in characters), their page is rendered without a
-test of the time, because even the slowest texts of this length stay within the time limit of a page.
+"""The total length, in characters, up to which the cells that a student wrote are not first rendered as a trial: even
+the slowest text of this length is rendered within the time limit of a page.
 """
 _LONGEST_SHOWN = 80
 _KINDS = {

@@ -333,8 +333,8 @@ class Dispatcher:
             return
         worker = self._workers[flight.worker]
         self._land(number)
-        # The failure of a task that ran alone is not counted against the worker: the notebook may be the cause, and
-        # several such notebooks come one after the other.
+        # Do not count a failure of a task that ran alone: the notebook may be the cause. Several such notebooks run one
+        # after the other, so a worker without a fault would seem to fail again and again.
         if not flight.job.alone:
             worker.troubles = worker.troubles + 1 if execution.trouble else 0
         if self._comes_again(flight.job, execution):

@@ -51,8 +51,9 @@ def limited(seconds: float = LIMIT) -> Iterator[None]:
 
     Raises:
         Undecided: The time is over, or the parent process has sent ``SIGNAL`` after the block used at least
-            :data:`SURE` seconds of processor time. The block ignores an earlier signal: the check is late for a reason
-            other than the subject's output, so it must end without a verdict.
+            :data:`SURE` seconds of processor time: the subject's output is the cause, and the verdict says so. An
+            earlier signal is ignored here: the machine is the cause, and the parent process ends the check without a
+            verdict.
     """
     if threading.current_thread() is not threading.main_thread():
         yield  # only the main thread can handle signals, so elsewhere there is no limit

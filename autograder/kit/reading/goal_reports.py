@@ -314,4 +314,4 @@ ends_without_a_server = WAIT.gives_up
 waits.
 """
 may_wait_on = remark(ABSENT)
-"""Returns a remark for the card if the client keeps waiting without a server: a robot also needs a time limit."""
+"""Returns a remark for the card if the client keeps waiting without a server. It advises a time limit."""

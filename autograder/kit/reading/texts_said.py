@@ -48,7 +48,10 @@ two or three, because a program may show a few recent texts.
 
 
 def tells(line: str, text: str) -> bool:
-    """Return True if a line contains a text unchanged, and not within the bytes of a serialized message."""
+    """Return True if a line contains a text unchanged.
+
+    A text inside the printed bytes of a serialized message does not count, because the program did not decode it.
+    """
     found = _frame(line, text)
     return found is not None and not found.before.endswith(_BYTE) and not found.after.startswith(_BYTE)
 

@@ -93,7 +93,7 @@ class ServiceType(SeenAsItIs):
         return Finding(not names, expected, f"it does not name {names}" if names else "it does")
 
     def _most_thorough(self, evidence: Evidence) -> PackageReport | None:
-        """Return the package with such a file that declares most of what it needs; None if there is none."""
+        """Return the package with the task's file that declares most of its dependencies; None if none has the file."""
         packages = (package for package, _ in self._holders(evidence))
         return min(packages, key=lambda package: len(_undeclared(package)), default=None)
 

@@ -145,7 +145,7 @@ class Watch(Declared):
         self._judges(name, words)
 
     def wrong(self, key: str, state: State | Mapping[str, Any], says: str, next_step: str) -> None:
-        """Add the mistake that all messages fit a wrong variant of the state. See :meth:`Relay.wrong`."""
+        """Add a mistake: all messages report the states of a wrong ``state`` function. See :meth:`Relay.wrong`."""
         wrong = variant(self._state, state)
 
         def fits(seen: Part, rule: State) -> bool:
@@ -226,9 +226,10 @@ class Watch(Declared):
         for span in spans:
             if self._within < span.end - span.begin <= late:
                 raise ValueError(
-                    f"gives: the state {span.state} lasts {span.end - span.begin:.2f} s from {span.begin:.2f} s on. A "
-                    f"node may report it {self._within} s late, and a busy machine makes that {late:g} s. Let it last "
-                    f"longer than {late:g} s, or at most {self._within} s if nothing has to be reported."
+                    f"gives: the state {span.state} begins at {span.begin:.2f} s and lasts only "
+                    f"{span.end - span.begin:.2f} s. On a busy machine, a right node may report it {late:g} s late. If "
+                    f"the node has to report this state, let the state last longer than {late:g} s. If not, let it "
+                    f"last at most {self._within} s."
                 )
         inputs = [event.t for event in sent]
         by_time = [
@@ -239,8 +240,9 @@ class Watch(Declared):
         if gap > 0 and 1.0 - gap <= late < 1.0:
             shown = in_words([round(part, 2) for part in parts])
             raise ValueError(
-                "gives: a node that looks only once a second would be in time each time. Let time change the state in "
-                f"different thirds of a second, at three changes or more. So far these parts of a second: {shown}"
+                "gives: a wrong node that checks the time only once a second would pass. Let time change the state at "
+                "least three times, in different thirds of a second. So far the changes are at these fractions of a "
+                f"second: {shown}"
             )
 
     def _happens(self, met: Met) -> bool:

@@ -140,7 +140,7 @@ class SpinThreads:
 
     @property
     def nodes(self) -> tuple[Node, ...]:
-        """The nodes that spin and will be destroyed."""
+        """The nodes that these threads spin, and destroy when they are stopped."""
         return self._nodes
 
     @property

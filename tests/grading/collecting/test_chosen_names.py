@@ -157,7 +157,7 @@ def test_what_one_system_reads_as_nobodys_is_not_anothers_student(klass: TinyCla
     report = collect(klass.path, [file])
     assert placed(report) == {}
     assert (
-        "the file's name fits several systems, and would mean another student or time in each (ben): write"
+        "the file's name fits several LMSs, and would mean another student or time in each (ben): write"
         in why(report)
     )
     assert "no student in the class is called mallory" in why(collect(klass.path, [file], form="canvas"))

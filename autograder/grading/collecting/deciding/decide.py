@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 _Why = tuple[Line, LineState, str]
 _ONE_NUMBER = ("canvas", "moodle", "brightspace")
-"""The systems in which users may change their names, but have the same number in all files of a download."""
+"""The LMSs in which users may change their names, but have the same number in all files of a download."""
 _CELL = re2.compile(r"(?:under|the cell) (use|student|assignment|notebook|handed_in)\b")
 
 

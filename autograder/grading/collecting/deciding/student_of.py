@@ -27,11 +27,11 @@ if TYPE_CHECKING:
 _WRITE_IT = "write the id under student in collected.csv"
 _NO_ID = f"the file's name does not identify a student: {_WRITE_IT}, or add a line to students.csv"
 _LIST_OF = {"moodle": "the grading worksheet (Grades-….csv)", "gradescope": GRADESCOPE}
-"""For the systems that number submissions instead of students, the list that maps these numbers to students."""
+"""For the LMSs that number submissions instead of students, the list that maps these numbers to students."""
 _BY_NUMBER, _BY_LOGIN = ("canvas", "brightspace", "gradescope"), ("blackboard", "sakai", "ilias")
-"""The systems whose file names contain a person's number, and those whose file names contain a user name."""
+"""The LMSs whose file names contain a person's number, and those whose file names contain a user name."""
 _LISTED = ("canvas", "github", "gradescope")
-"""The systems whose lists identify students. (A number from Moodle or Gradescope belongs to one submission only.)"""
+"""The LMSs whose lists identify students. (A number from Moodle or Gradescope belongs to one submission only.)"""
 
 
 @dataclass(frozen=True)
@@ -39,10 +39,10 @@ class Owners:
     """The students who may have handed in a file, according to its name.
 
     Attributes:
-        found: The facts in the name; None if no system writes such names, or if several systems do, and the students or
+        found: The facts in the name; None if no LMS writes such names, or if several LMSs do, and the students or
             times would differ.
         members: For each member of the group, the students who may be meant; empty if none is known.
-        is_sure: True if a number of the system identifies the students, and not just a name that students may choose.
+        is_sure: True if a number of the LMS identifies the students, and not just a name that students may choose.
     """
 
     found: Found | None
@@ -51,12 +51,12 @@ class Owners:
 
 
 class StudentOf:
-    """Finds a class's students by the names that the systems use for them.
+    """Finds a class's students by the names that the LMSs use for them.
 
     Args:
         roster: The students of the class.
         is_notebook: Returns True for the name of a notebook of the class.
-        form: The system that the instructor named for all files; empty to find it from the names.
+        form: The LMS that the instructor named for all files; empty to find it from the names.
         names: The pattern given with ``--names``; empty if none was given.
         entries: The entries of all lists, which map numbers to students.
         own: The entries of lists that came with the files. Their times apply to the files.
@@ -85,9 +85,9 @@ class StudentOf:
     def owners(self, parts: Sequence[str], levels: int, *, is_alone: bool = False) -> Owners:
         """Return the students of a file, by the topmost name in its path that identifies any student.
 
-        The system has written the topmost names, and the student may have chosen the names below. If two systems may
-        have written a name, it must mean the same student and time in both; otherwise the result has several possible
-        students.
+        The LMS has chosen the topmost names; the student may have chosen the names below. If a name fits the patterns
+        of two LMSs, it must give the same student and time of handing in for both. Otherwise the result has several
+        possible students.
 
         Args:
             parts: The folders of the path and the file.
@@ -183,7 +183,7 @@ class StudentOf:
         is_sure = bool(found and number) and found[0].lms.get(identity.lms, "").casefold() == number
         found = tuple(one for one in found if is_sure or not self._is_another(one, identity))
         if found and (identity.login or number):
-            # A user name in the system may equal the id of a different student in the class, so the name has to
+            # A user name in the LMS may equal the id of a different student in the class, so the name has to
             # agree.
             named = self._roster.find(Identity(name=identity.name))
             found = _distinct((found, named if len(named) == 1 else ()))
@@ -193,7 +193,7 @@ class StudentOf:
         return ((found,) if found else ()), is_sure
 
     def _is_another(self, student: Student, identity: Identity) -> bool:
-        """Return True if the student has a different number in that system, and so is not the person with this name."""
+        """Return True if the student has a different number in that LMS, and so is not the person with this name."""
         by_number = identity.number if identity.lms in _BY_NUMBER else ""
         theirs = by_number or (identity.login if identity.lms in _BY_LOGIN else "")
         known = self._numbers.get((identity.lms, student.id), set())
@@ -201,11 +201,11 @@ class StudentOf:
 
     @functools.cached_property
     def _numbers(self) -> dict[tuple[str, str], set[str]]:
-        """Return, by system and student, the numbers or user names that certainly are that student's."""
+        """Return, for each LMS and student, the numbers or user names that certainly belong to the student."""
         numbers: dict[tuple[str, str], set[str]] = defaultdict(set)
         for student in self._roster.students.values():
             for lms, number in student.lms.items():
-                # Some instructors write user names into the column of a system that uses numbers.
+                # Some instructors write user names into the column of an LMS that uses numbers.
                 if lms not in _BY_NUMBER or (number.isdigit() and lms != "gradescope"):
                     numbers[lms, student.id].add(number.casefold())
         for entry in (one for one in self._entries if one.number and one.lms in _LISTED):
@@ -224,7 +224,7 @@ class StudentOf:
         if owners.found is None and owners.members:
             ids = ", ".join(one.id for one in owners.members[0])
             return (
-                f"the file's name fits several systems, and would mean another student or time in each ({ids}): "
+                f"the file's name fits several LMSs, and would mean another student or time in each ({ids}): "
                 f"{_WRITE_IT}"
             )
         if owners.found is None:

@@ -1,4 +1,4 @@
-"""The forms of lists that systems export: what ``collect`` reads, and what ``export --into`` fills in."""
+"""The forms of lists that LMSs export: what ``collect`` reads, and what ``export --into`` fills in."""
 
 from __future__ import annotations
 
