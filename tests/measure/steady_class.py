@@ -51,7 +51,7 @@ STUDENTS: dict[str, tuple[str, ...]] = {
     ),
     "eva": (
         "exercise_1_2.three_ints/right/blocking_call_given_terms.py",
-        "exercise_1_3.cancel/wrong/status_not_reported_always_canceled.py",
+        "exercise_1_3.cancel/wrong/status_not_reported.py",
         "lab_1_2.listener/wrong/not_logged.py",
     ),
     "fay": (
