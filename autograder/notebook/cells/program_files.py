@@ -92,17 +92,50 @@ def _definition(name: str, cells: list[str], there: set[str]) -> list[Statement]
     else:
         raise NotRunError(f"Run the cell that defines {name} first, then run this one again.")
     there.add(name)
+    return _with_helpers(found, statements, cells, there)
+
+
+def _with_helpers(
+    found: Statement, around: list[Statement], cells: list[str], there: set[str]
+) -> list[Statement]:
+    """Return a statement, and before it the imports and helpers that it uses. ``around`` are those of its cell."""
     needed: list[Statement] = []
+    own_names = _stored(found[0])
     for used in sorted(_used(found[0]) - there):
-        own = next((one for one in reversed(statements) if used in _names(one[0])), None)
-        own = own or next(
-            (one for cell in reversed(cells) for one in _statements(cell) if used in _imported(one[0])), None
-        )
-        if own is None or used in there:
+        helper, its_cell = _helper(used, around, cells if used not in own_names else [])
+        if helper is None or used in there:
             continue
-        there |= _names(own[0])
-        needed += [own] if isinstance(own[0], _IMPORTS) else _definition(used, [source], there)
+        there |= _names(helper[0])
+        needed += (
+            [helper] if isinstance(helper[0], _IMPORTS) else _with_helpers(helper, its_cell, cells, there)
+        )
     return [*needed, found]
+
+
+def _helper(name: str, around: list[Statement], cells: list[str]) -> tuple[Statement | None, list[Statement]]:
+    """Return the statement that defines a name, and the statements of its cell; None if no cell defines the name.
+
+    In another cell than that of the class, only an import, a class, a function or a constant is a helper: a variable
+    there may be a node that the student has tried out.
+    """
+    for one in reversed(around):
+        if name in _names(one[0]):
+            return one, around
+    for statements in map(_statements, reversed(cells)):
+        for one in reversed(statements):
+            if name in _names(one[0]) and _may_be_copied(one[0]):
+                return one, statements
+    return None, []
+
+
+def _may_be_copied(node: ast.stmt) -> bool:
+    if not isinstance(node, (ast.Assign, ast.AnnAssign)):
+        return True
+    try:
+        ast.literal_eval(node.value or ast.Constant(None))
+    except (ValueError, TypeError, SyntaxError, MemoryError, RecursionError):
+        return False
+    return True
 
 
 def _statements(source: str) -> list[Statement]:
@@ -143,6 +176,14 @@ def _names(node: ast.stmt) -> set[str]:
 
 def _used(node: ast.stmt) -> set[str]:
     return {one.id for one in ast.walk(node) if isinstance(one, ast.Name) and isinstance(one.ctx, ast.Load)}
+
+
+def _stored(node: ast.stmt) -> set[str]:
+    """Return the names of variables and arguments inside a statement: a helper elsewhere may have the same name."""
+    arguments = {one.arg for one in ast.walk(node) if isinstance(one, ast.arg)}
+    return arguments | {
+        one.id for one in ast.walk(node) if isinstance(one, ast.Name) and isinstance(one.ctx, ast.Store)
+    }
 
 
 def load_ipython_extension(shell: Any) -> None:

@@ -26,6 +26,18 @@ def test_the_newest_definition_takes_the_place_of_the_comment() -> None:
 
 
 @pytest.mark.parametrize(
+    "cell",
+    [
+        pytest.param("node = Node('tried')", id="a variable that is no constant"),
+        pytest.param("def text():\n    pass", id="the name of an argument"),
+    ],
+)
+def test_other_cells_give_only_helpers(cell: str) -> None:
+    own = "class Talker(Node):\n    def say(self, text):\n        return node, text"
+    assert with_definitions(PROGRAM, [cell, own]) == PROGRAM.replace(f"{COPIED}Talker", own)
+
+
+@pytest.mark.parametrize(
     ("cells", "has"),
     [
         pytest.param(
@@ -47,6 +59,11 @@ def test_the_newest_definition_takes_the_place_of_the_comment() -> None:
             ["def a():\n    return b()\ndef b():\n    return 1\nclass Talker(Node):\n    one = a()"],
             "def b():\n    return 1\n\n\ndef a():\n    return b()\n\n\nclass",
             id="helpers of helpers",
+        ),
+        pytest.param(
+            ["class Chatter(Node):\n    n = LONG", "LONG = 10", "class Talker(Chatter):\n    pass"],
+            "LONG = 10\n\n\nclass Chatter(Node):\n    n = LONG\n\n\nclass Talker(Chatter)",
+            id="a base class in another cell, and what that uses",
         ),
         pytest.param(["@final\nclass Talker(Node):\n    pass"], "@final\nclass Talker", id="a decorator"),
         pytest.param(
