@@ -142,7 +142,9 @@ def watched(*seconds: float) -> Exercise:
 def test_messages_with_which_a_wrong_node_would_pass_are_refused() -> None:
     watched(0.3, 1.65, 1.7, 0.97, 2.4)  # due at 1.3, 2.95 and 5.62 s
     watched(0.3, 1.2, 0.7)  # lost for too short a time to be reported
-    with pytest.raises(ValueError, match=r"lost begins at 1\.3. s and lasts only 0\.4. s.*longer than 0\.55 s"):
+    with pytest.raises(
+        ValueError, match=r"lost begins at 1\.3. s and lasts only 0\.4. s.*longer than 0\.55 s"
+    ):
         watched(0.3, 1.4, 1.7, 0.97, 2.4)
     with pytest.raises(ValueError, match="checks the time only once a second"):
         watched(0.3, 2.0, 2.0, 1.0, 2.4)
