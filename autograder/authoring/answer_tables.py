@@ -111,7 +111,7 @@ class Listed:
         return self.file.parents[1] / KINDS[0] / self.entry.base if self.entry.base else None
 
     def text(self) -> str:
-        """Return the text of the program. For a workspace, return its first line and its edit.
+        """Return the text of the program. For a changed workspace, return what is wrong with it, and the change.
 
         Raises:
             BadTable: The edit does not fit the base.

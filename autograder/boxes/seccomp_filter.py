@@ -186,7 +186,8 @@ def filter_for_boxes(*, hidden_memory: bool = True, machine: str = "") -> bytes:
     """Return the filter program for a machine; empty if the machine's system calls are not known here.
 
     Args:
-        hidden_memory: True to allow memory that belongs to no process, because a cgroup counts it.
+        hidden_memory: True to allow memory that belongs to no process, such as memfd. Pass True only if a cgroup counts
+            such memory.
         machine: The machine as in ``uname -m``; by default this machine.
     """
     known = ARCHITECTURES.get(machine or platform.machine())

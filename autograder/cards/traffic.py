@@ -73,7 +73,7 @@ class TrafficPart:
         return self.simulated and max(together.values(), default=0) > _TOGETHER
 
     def when(self, index: int) -> str:
-        """Return the time of a moment, such as ``"0.500 s"``; if :attr:`stands_still`, its number, ``"no. 3"``."""
+        """Return a moment's time, such as ``"0.500 s"``; if the clock :attr:`stands_still`, its number, ``"no. 3"``."""
         if self.stands_still and len(self.moments) > 1:
             return f"no. {index + 1}"
         return f"{self.moments[index].t:.3f} s"

@@ -64,8 +64,8 @@ def check(
     """Run a command as the subject of an exercise and print the verdict."""
     from autograder import course, exercises
 
-    # A course around the current folder judges with its own code. With --box the program may be another person's, and
-    # this person may have changed that code, so the course is not used.
+    # If the current folder is in a course, the code of that course judges the program. With --box the program's author
+    # is not trusted, and the author may have changed the code of the course, too. So the installed package judges.
     if not boxed:
         course.use_the_one_around(Path.cwd())
     if exercise is None:

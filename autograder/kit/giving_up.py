@@ -70,9 +70,9 @@ WAITING = Outcome("not available", "waiting")
 AGAIN_AND_AGAIN = 3
 """The minimum number of times that a client must report that it is still waiting."""
 SAYS_SO_TO = 8.0
-"""The minimum time in seconds from the moment when the judge first saw the client to the client's last report that it
-waits. For example, a client that reports every four seconds reaches this time, but a client that stops after three
-tries does not.
+"""A client counts as still waiting only if its last report that it waits comes at least this many seconds after the
+judge first saw the client. A client that reports every four seconds gets there; one that stops after three tries does
+not.
 """
 _CLIENTS = ("client", "action_client")
 _AT_WORK = ("log", "called", "looked")

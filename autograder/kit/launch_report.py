@@ -105,6 +105,6 @@ def as_run(
 
 
 def _program(word: str, programs: Sequence[tuple[str, str]]) -> str:
-    """Return the end of the path of the program whose code is in a module or file; empty if there is none."""
+    """Return the last parts of the path of the program that a module or file defines; empty if it defines none."""
     file = word.removesuffix(".py") if word.endswith(".py") else word.replace(".", "/")
     return next((path for module, path in programs if f"/{file}".endswith(f"/{module}")), "")

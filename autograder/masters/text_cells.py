@@ -92,7 +92,7 @@ def _hint(question: str, answer: list[str], offset: int) -> Hint:
     text = "\n".join(answer).strip("\n")
     if not question or not text.strip():
         raise CellError(
-            offset, "A hint without its question or its answer.", "Write ':::{hint} What is asked?'."
+            offset, "A hint without its question, its answer, or both.", "Write ':::{hint} What is asked?'."
         )
     return Hint(question, text)
 

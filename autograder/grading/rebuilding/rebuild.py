@@ -165,11 +165,11 @@ class _Sorting:
         found = []
         if len(places) > 1 and is_answer(master):
             found.append(
-                f"The cell {_quoted(name)} was there {len(places)} times. The last one that you changed before its "
-                "check counts as your answer; the others run as cells that you added."
+                f"The cell {_quoted(name)} was in the notebook {len(places)} times. Of the copies above its check, "
+                "the last one that you changed counts as your answer; the others run as cells that you added."
             )
         elif len(places) > 1:
-            found.append(f"The cell {_quoted(name)} was there {len(places)} times. It runs once.")
+            found.append(f"The cell {_quoted(name)} was in the notebook {len(places)} times. It runs once.")
         if cell.kind != master.cell_type:
             found.append(
                 f"The cell {_quoted(name)} had become a {cell.kind} cell. "

@@ -150,7 +150,10 @@ def _lines(answer: Compared, passages: Iterable[tuple[int, Sequence[bool]]]) -> 
 
 
 def _pieces(line: str, passage_of: list[int], last: int) -> tuple[_Piece, ...]:
-    """Split a line into pieces of at most one passage each. ``last`` is the passage before the line."""
+    """Split a line so that each piece lies in one matching passage or in none.
+
+    ``last`` is the passage to which the end of the previous line belongs.
+    """
     indent = len(line) - len(line.lstrip())
     passage_of[:indent] = [0] * indent
     found = []

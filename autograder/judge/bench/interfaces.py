@@ -21,7 +21,9 @@ if TYPE_CHECKING:
     from rclpy.node import Node
 
 _SIDES = {"request": "rq{service}Request", "response": "rr{service}Reply"}
-"""The DDS topics of a service in rmw_fastrtps, by the part of the service type whose hash the topic announces."""
+"""The names that rmw_fastrtps gives to the two DDS topics of a service. The keys are the parts of the service type, and
+each topic announces the type hash of its part.
+"""
 
 
 class UnknownInterface(LookupError):

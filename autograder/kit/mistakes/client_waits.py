@@ -133,9 +133,9 @@ class Wait:
         )
 
     def _gives_up_where_served(self, evidence: Evidence) -> str:
-        """Return the client's line about a missing server if it prints that only with a server; otherwise empty.
+        """Return the line with which a client gives up although there is a server; otherwise empty.
 
-        This is so if the line appears in each run with a server, but not in the run without a server.
+        It is a line that the client prints in each run with a server, but not in the run without one.
         """
         absent, served = evidence.part(self.absent), self.runs(evidence)
         if not absent.events or NOT_AVAILABLE.lines(absent):

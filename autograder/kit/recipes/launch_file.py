@@ -214,7 +214,7 @@ class Launched:
         return any(self._leads_there(old, new) for old, new in remappings(argv))
 
     def _leads_there(self, old: str, new: str) -> bool:
-        """Return True if a remapping rule from ``old`` to ``new`` leads from the topic's old name to its new name."""
+        """Return True if the rule ``old:=new`` renames the topic of the program to the topic of the exercise."""
         begins = old.rpartition(":")[2].rpartition("/")[2] == self._old_name
         return begins and _leads_to(self.topic, new)
 

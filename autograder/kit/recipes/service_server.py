@@ -172,8 +172,8 @@ class Asks:
                 "Each call reaches both servers, and the quicker one answers.",
                 "Call create_service only once, and make only one node.",
             ),
-            # A wrong answer is checked before crashes, because rclpy's server crashes if an answer does not fit into
-            # its field.
+            # A wrong answer is looked for before crashes: rclpy's server crashes if an answer does not fit into its
+            # field, and then the student should read about the answer, not about the crash.
             OWN,
             *common.connecting("service"),
             *common.spinning("service"),

@@ -139,7 +139,10 @@ class Watches:
         atexit.register(self._give_way)  # stop the check before ROS is shut down
 
     def _go_on(self) -> None:
-        """Check what a cell has redefined, and restart a check that waited for it. IPython calls this after cells."""
+        """Check what the cell has redefined, and restart a check that waited for the end of the cell.
+
+        IPython calls this after each cell.
+        """
         for watch in self.all.values():
             subject = self._names.get(watch.name)
             if watch.is_defined_anew(subject):

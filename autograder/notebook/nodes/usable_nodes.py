@@ -118,7 +118,8 @@ def _check_is_idle(node: Node) -> None:
     name = node_label(node)
     if isinstance(executor, LendingExecutor):
         raise NodeBusyError(
-            f"{name} spins in the background already: let it spin, or call .stop() there first"
+            f"{name} spins in the background already: let it spin, or first call .stop() on what spin_in_background() "
+            "returned"
         )
     raise NodeBusyError(
         f"{name} is in another executor already ({type(executor).__name__}): "
