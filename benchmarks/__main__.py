@@ -15,8 +15,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from autograder import course
-from autograder.grading.running.engine import cores
-from autograder.temporary_folders import fresh_folder
+from autograder.grading.running.execution_backends import cores
+from autograder.safe_files import fresh_folder
 from benchmarks import figures, results
 from benchmarks.box_start import measure_box_start
 from benchmarks.classes import BenchmarkClass, make_class

@@ -8,11 +8,11 @@ from dataclasses import dataclass
 
 import msgspec
 
-from autograder.execution.cells import Cell, Execution
-from autograder.grading.running.executor import Executor
-from autograder.grading.running.orders import JUDGE, Order
-from autograder.grading.task import Task
-from autograder.temporary_folders import HeldFolder
+from autograder.execution.executed_cells import Cell, Execution
+from autograder.grading.grading_task import Task
+from autograder.grading.running.order_executor import Executor
+from autograder.grading.running.worker_messages import JUDGE, Order
+from autograder.safe_files import HeldFolder
 
 
 @dataclass(frozen=True)

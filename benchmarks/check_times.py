@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from autograder.temporary_folders import HeldFolder
+from autograder.safe_files import HeldFolder
 from benchmarks.classes import make_class
 from benchmarks.floor import builds, measure_floor
 

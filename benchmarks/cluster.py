@@ -24,7 +24,7 @@ from autograder import course
 from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.rebuilding.task_making import tasks_of
-from autograder.temporary_folders import fresh_folder
+from autograder.safe_files import fresh_folder
 from benchmarks.classes import make_class
 from benchmarks.machine import Machine, Watch, machine
 from benchmarks.ours import AUTOGRADER

@@ -18,7 +18,7 @@ from environment.python_child import python_child
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from autograder.grading.task import Task
+    from autograder.grading.grading_task import Task
     from benchmarks.classes import BenchmarkClass
 
 Cell = tuple[str, float, float, str]

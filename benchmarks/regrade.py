@@ -14,11 +14,11 @@ from unittest import mock
 
 from rich.console import Console
 
-from autograder.boxes.limits import Ended
-from autograder.execution.cells import CellRun, Execution
+from autograder.boxes.run_limits import Ended
+from autograder.execution.executed_cells import CellRun, Execution
 from autograder.grading import batch
-from autograder.grading.running import backends
-from autograder.grading.running.dispatcher import Done
+from autograder.grading.running import execution_backends
+from autograder.grading.running.task_dispatcher import Done
 from autograder.verdict import State, Verdict
 from benchmarks.ours import GRADE
 from environment.python_child import python_child
@@ -29,7 +29,7 @@ _MORE_TURNS = 2
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator, Iterable, Iterator
 
-    from autograder.grading.task import Task
+    from autograder.grading.grading_task import Task
     from benchmarks.classes import BenchmarkClass
 
 
@@ -67,12 +67,12 @@ def _cpu() -> float:
 
 
 def _fill(path: Path) -> None:
-    with mock.patch.object(backends, "local", _nobody):
+    with mock.patch.object(execution_backends, "local", _nobody):
         batch.grade(path, console=Console(file=io.StringIO()))
 
 
 @contextlib.contextmanager
-def _nobody(*_: object) -> Iterator[backends.Execute]:
+def _nobody(*_: object) -> Iterator[execution_backends.Execute]:
     def execute(tasks: Iterable[Task], on_start: Callable[[Task], None]) -> Generator[Done, None, None]:
         for task in tasks:
             on_start(task)

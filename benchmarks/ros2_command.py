@@ -25,11 +25,11 @@ from nbclient import NotebookClient
 from nbformat.v4 import new_code_cell, new_notebook
 
 from autograder import course
-from autograder.masters.layout import chapter_path, lab_name, masters
-from autograder.masters.source import source_notebook
-from autograder.student import journal
+from autograder.masters.master_files import chapter_path, lab_name, masters
+from autograder.masters.source_notebooks import source_notebook
+from autograder.safe_files import HeldFolder
+from autograder.student import check_journal
 from autograder.student.lab import join_domain
-from autograder.temporary_folders import HeldFolder
 from environment.python_child import installed_program
 
 if TYPE_CHECKING:
@@ -96,7 +96,7 @@ def open_notebooks(notebooks: Sequence[Open], folder: Path) -> Iterator[None]:
     """
     before = dict(os.environ)
     claim = join_domain()
-    os.environ[journal.VARIABLE] = str(folder / journal.NAME)
+    os.environ[check_journal.VARIABLE] = str(folder / check_journal.NAME)
     managers: list[KernelManager] = []
 
     def execute(name: str, notebook: NotebookNode, folder: Path) -> None:

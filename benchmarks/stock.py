@@ -18,9 +18,9 @@ from typing import TYPE_CHECKING
 
 from nbgrader.api import Gradebook
 
-from autograder.boxes.limits import Limits
+from autograder.boxes.run_limits import Limits
 from autograder.grading.classes.class_directory import CONFIG_NAME
-from autograder.judge.serving.domain import lease
+from autograder.judge.ros_setup import lease
 from benchmarks.machine import Usage, Watch
 from environment.python_child import python_child
 

@@ -17,9 +17,9 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 import psutil
 
-from autograder.execution.cells import CellType
-from autograder.grading.task import Task
-from autograder.temporary_folders import HeldFolder
+from autograder.execution.executed_cells import CellType
+from autograder.grading.grading_task import Task
+from autograder.safe_files import HeldFolder
 from benchmarks.machine import CpuGroup
 
 if TYPE_CHECKING:
@@ -38,17 +38,17 @@ def main() -> None:
     """Answer each task with its floor, as a line of JSON."""
     answers = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)
-    from autograder.judge import settings
+    from autograder.judge import ros_setup
 
-    os.environ.update(settings.ros_environment())
+    os.environ.update(ros_setup.ros_environment())
     for name in _MODULES:
         __import__(name)
-    from autograder.cards import bundle
+    from autograder.cards import html_rendering
 
-    bundle.prepare()
-    from autograder.judge.serving import attached
+    html_rendering.prepare_templates()
+    from autograder.judge import controlled_judge
 
-    attached.imports()
+    controlled_judge.imports()
     for line in sys.stdin.buffer:
         answers.write(msgspec.json.encode(_floor(msgspec.json.decode(line, type=Task))) + b"\n")
         answers.flush()
@@ -56,8 +56,8 @@ def main() -> None:
 
 def _floor(task: Task) -> dict[str, Any]:
     """CPU seconds of a task's cells and of the judge's children; and by cell."""
-    from autograder.judge.serving.domain import lease
-    from autograder.judge.serving.process import JudgeProcess
+    from autograder.judge.controlled_judge import JudgeProcess
+    from autograder.judge.ros_setup import lease
 
     group = CpuGroup.make()
     with HeldFolder("autograder-bench-") as held, lease() as domain:

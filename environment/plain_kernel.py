@@ -1,8 +1,8 @@
 """Uses the course in a Jupyter kernel that was started without it, as in Colab: sets up ``.venv``, then joins it.
 
 The first cell of each notebook calls `set_up` where ``autograder`` cannot be imported
-(``autograder/masters/first_cell.py`` writes that cell). The environment is the one that ``./course setup`` makes, with
-the same locks and repairs, so a verdict is the same one as in ``./course lab``.
+(``autograder/masters/source_notebooks.py`` writes that cell). The environment is the one that ``./course setup`` makes,
+with the same locks and repairs, so a verdict is the same one as in ``./course lab``.
 
 A running kernel cannot start again with another ``LD_LIBRARY_PATH``, as each Python of ``.venv`` does. So `join`
 loads the libraries of ROS itself: the loader finds a library that is loaded already by its name.

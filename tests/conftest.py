@@ -91,7 +91,7 @@ def pytest_xdist_auto_num_workers() -> int:
 
     On two cores the tests took 518 s with four processes, and 547 s with three by a simulation of their queue.
     """
-    from autograder.grading.running.engine import cores
+    from autograder.grading.running.execution_backends import cores
 
     return cores() + 2
 

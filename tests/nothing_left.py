@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING
 import psutil
 
 from autograder.process_trees import adopt_orphans, die_with_parent, end_below
-from autograder.temporary_folders import HeldFolder
+from autograder.safe_files import HeldFolder
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

@@ -12,21 +12,21 @@ from pathlib import Path
 
 import pytest
 
-from autograder.authoring.answers import folder_of, named
+from autograder.authoring.answer_bank import answer_named, answers_folder
 from autograder.boxes.sandbox import why_impossible
 from autograder.cli import GROUPS
-from autograder.cli.students import show
+from autograder.cli.student_commands import show
 from autograder.kit.recipes.sent_texts import AT_PACE
 from autograder.verdict import not_checked
 from environment.python_child import SAFE_PATH, TYPED_PYTHONPATH, installed_program
 
-TALKER = folder_of("lab_1_2.talker")
-LISTENER = folder_of("lab_1_2.listener")
+TALKER = answers_folder("lab_1_2.talker")
+LISTENER = answers_folder("lab_1_2.listener")
 
 
 def wrong_talker(name: str, folder: Path) -> str:
     """A wrong answer of the bank as a file."""
-    return named(f"lab_1_2.talker/wrong/{name}").unpack(folder)[-1]
+    return answer_named(f"lab_1_2.talker/wrong/{name}").unpack(folder)[-1]
 
 
 def _run(*words: str) -> subprocess.CompletedProcess[str]:

@@ -8,7 +8,7 @@ import sys
 
 import pytest
 
-from autograder.code_of_elsewhere import recognised
+from autograder.foreign_code import recognised
 
 SETTING = """
 import asyncio, json, linecache, sys, traceback

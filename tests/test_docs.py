@@ -13,7 +13,7 @@ from urllib.parse import unquote
 
 import pytest
 
-from autograder.masters.layout import chapter_path, masters
+from autograder.masters.master_files import chapter_path, masters
 
 ROOT = Path(__file__).resolve().parents[1]
 MASTERS = masters(ROOT)

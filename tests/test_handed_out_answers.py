@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING
 import nbformat
 import pytest
 
-from autograder.masters.layout import masters
-from autograder.student.handing_out import hand_out
+from autograder.masters.master_files import masters
+from autograder.student.handout import hand_out
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

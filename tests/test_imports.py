@@ -25,17 +25,17 @@ ALL = frozenset(PARTS)
 MAY_IMPORT = {
     "verdict": frozenset[str](),
     "course": frozenset[str](),
-    "code_of_elsewhere": frozenset[str](),
-    "kit": frozenset({"code_of_elsewhere", "verdict"}),
+    "foreign_code": frozenset[str](),
+    "kit": frozenset({"foreign_code", "verdict"}),
     "exercises": frozenset({"course", "kit"}),
     "messages": frozenset({"verdict"}),
     "cards": frozenset({"verdict"}),
-    "boxes": frozenset({"process_trees", "temporary_folders"}),  # what isolates knows nothing of what runs
-    "execution": frozenset({"boxes", "messages", "verdict", "process_trees", "temporary_folders"}),
-    "masters": frozenset({"course", "exercises", "regular_files"}),
+    "boxes": frozenset({"process_trees", "safe_files"}),  # what isolates knows nothing of what runs
+    "execution": frozenset({"boxes", "messages", "verdict", "process_trees", "safe_files"}),
+    "masters": frozenset({"course", "exercises", "safe_files"}),
     "mcap_files": frozenset[str](),
     "process_trees": frozenset[str](),
-    "temporary_folders": frozenset[str](),
+    "safe_files": frozenset[str](),
     "appeals": ALL - {"grading", "boxes", "execution", "notebook"},
     "notebook": ALL
     - {"judge", "exercises", "kit", "masters", "boxes", "execution", "grading", "authoring", "appeals"},
@@ -45,10 +45,11 @@ MAY_IMPORT = {
 
 # The same for the parts of `notebook`: what is below knows nothing of what is above.
 NOTEBOOK_MAY_IMPORT = {
-    "cells": frozenset[str](),
-    "nodes": frozenset({"cells"}),
-    "checking": frozenset({"cells", "nodes"}),
-    "observing": frozenset({"cells", "checking"}),
+    "cell_output": frozenset[str](),
+    "cell_runs": frozenset({"cell_output"}),
+    "nodes": frozenset({"cell_output", "cell_runs"}),
+    "checking": frozenset({"cell_output", "cell_runs", "nodes"}),
+    "observing": frozenset({"cell_output", "cell_runs", "checking"}),
     "robot": frozenset({"nodes", "observing"}),
 }
 MOST_FILES = 32
@@ -136,15 +137,19 @@ def test_a_part_of_the_notebook_imports_only_what_is_below(part: str) -> None:
 
 def test_what_was_handed_in_is_parsed_by_a_desk_alone() -> None:
     of_the_class = {
-        "rebuilding/named_cells.py",
-        "collecting/deciding/has_work.py",
+        "rebuilding/cell_matching.py",
+        "collecting/file_to_grade.py",
     }  # its own sources, and what it releases
     users = {
         path.relative_to(PACKAGE / "grading").as_posix()
         for path, _, name in imports(PACKAGE)
-        if name in ("autograder.grading.rebuilding.parsing.parse", "autograder.grading.rebuilding.parsing")
+        if name
+        in (
+            "autograder.grading.rebuilding.notebook_parsing.parse",
+            "autograder.grading.rebuilding.notebook_parsing",
+        )
     }
-    assert users == {"rebuilding/desk_process.py", *of_the_class}
+    assert users == of_the_class
 
 
 def test_the_process_with_the_gradebook_imports_nothing_that_executes_a_submission() -> None:
@@ -155,12 +160,12 @@ def test_the_process_with_the_gradebook_imports_nothing_that_executes_a_submissi
         "autograder.judge.",
         "autograder.notebook.",
         "autograder.workspaces.",
-        "autograder.execution.runner",
+        "autograder.execution.notebook_runner",
     )
-    but = {"autograder.judge.settings"}  # the variables of ROS, for the fork servers
+    but = {"autograder.judge.ros_setup"}  # the variables of ROS, for the fork servers
     assert "autograder.grading.running.process_link" in reached
     assert [name for name in sorted(reached - but) if name.startswith(executing)] == []
-    assert "autograder.grading.running.executor" not in reached
+    assert "autograder.grading.running.order_executor" not in reached
 
 
 def test_no_folder_of_the_package_is_a_long_list() -> None:
@@ -254,7 +259,7 @@ def test_dask_is_imported_where_it_is_shut_in_and_where_it_executes() -> None:
         for path, _, name in imports(PACKAGE)
         if name.split(".")[0] in {"dask", "distributed"}
     }
-    assert found == {f"grading/cluster/{name}.py" for name in ("dask_client", "dask_worker", "start_worker")}
+    assert found == {f"grading/cluster/{name}.py" for name in ("dask_client", "dask_worker")}
 
 
 def test_every_part_has_its_line_in_the_architecture() -> None:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from autograder.regular_files import write_whole
+from autograder.safe_files import write_whole
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -8,14 +8,14 @@ import sys
 
 import pytest
 
-from autograder.ros_domain import NoFreeDomainError, claim_free_domain, domain_from_environment
+from autograder.dds_discovery import NoFreeDomainError, claim_free_domain, domain_from_environment
 
 CANDIDATES = range(215, 225)
 """Nobody picks one of these, and their ports are above those that Linux gives to outgoing connections."""
 
 CLAIM_AND_HOLD = """
 import sys
-from autograder.ros_domain import claim_free_domain
+from autograder.dds_discovery import claim_free_domain
 claim = claim_free_domain(range(215, 225))
 print(claim.domain, flush=True)
 sys.stdin.read()

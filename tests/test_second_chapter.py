@@ -18,7 +18,7 @@ import pytest
 
 from autograder.authoring.new_exercise import new_exercise
 from autograder.boxes.sandbox import why_impossible
-from autograder.student.handing_out import hand_out
+from autograder.student.handout import hand_out
 from autograder.workspaces.builds.install_folder import with_prefixes
 from environment.interface_packages import build_command, interface_packages
 

@@ -10,11 +10,11 @@ import sys
 import pytest
 from click.testing import CliRunner
 
-from autograder.authoring.judging import Turn, judge_all
+from autograder.authoring.answer_bank import Turn, judge_all
 from autograder.cli import cli
-from autograder.judge.subjects import command
+from autograder.judge import command_check
 from autograder.standard_output import short_lines, split_lines, stray_lines_on_stderr
-from autograder.student import journal
+from autograder.student import check_journal
 from autograder.verdict import State, Verdict, to_json
 
 LOG_LINE = b"2026-11-20 14:02:11.123 [RTPS_TRANSPORT_SHM Error] Failed to create segment\n"
@@ -76,8 +76,8 @@ def test_check_prints_nothing_but_the_verdict(
         _say_as_fast_dds()
         return VERDICT, None
 
-    monkeypatch.setattr(command, "check_and_keep", noisy)
-    monkeypatch.setattr(journal, "note_check", lambda verdict: None)
+    monkeypatch.setattr(command_check, "check_and_keep", noisy)
+    monkeypatch.setattr(check_journal, "note_check", lambda verdict: None)
     done = CliRunner().invoke(cli, ["check", "--json", VERDICT.exercise, "--", "true"])
     assert (done.exit_code, done.stdout) == (0, f"{to_json(VERDICT).decode()}\n")
     said = capfd.readouterr()

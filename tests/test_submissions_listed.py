@@ -13,14 +13,14 @@ from pathlib import Path
 from typing import Any
 
 from autograder import exercises
-from autograder.authoring.answer_tables import KINDS
-from autograder.authoring.answers import answers, folder_of
+from autograder.authoring.answer_bank import answers, answers_folder
+from autograder.authoring.answer_tables import ANSWER_KINDS
 
 ROOT = Path(__file__).parents[1]
 NOTEBOOKS = Path(__file__).parent / "submissions" / "notebooks"
 MISTAKES = ROOT / "docs" / "mistakes.md"
 """Written by hand: its sections, tables and order are for readers, and a key may have several recognizers."""
-FOLDERS = [folder_of(exercise_id) for exercise_id in exercises.all_ids()]
+FOLDERS = [answers_folder(exercise_id) for exercise_id in exercises.all_ids()]
 CELL = re.compile(r"^# %% (solution \w+|extra)$", re.MULTILINE)
 PROGRAMS = list(answers())
 
@@ -49,7 +49,7 @@ class InNotebook:
 IN_NOTEBOOKS = [
     InNotebook(NOTEBOOKS / exercise / kind / name, entry)
     for exercise, listing in tomllib.loads((NOTEBOOKS / "notebooks.toml").read_text(encoding="utf-8")).items()
-    for kind in KINDS
+    for kind in ANSWER_KINDS
     for name, entry in listing[kind].items()
 ]
 
@@ -68,7 +68,7 @@ def explained() -> set[str]:
 
 def test_every_file_is_listed_and_every_listed_one_is_there() -> None:
     files = [path for folder in (NOTEBOOKS, *FOLDERS) for path in folder.rglob("*.*") if path.is_file()]
-    found = {path for path in files if path.parent.name in KINDS and path.suffix != ".toml"}
+    found = {path for path in files if path.parent.name in ANSWER_KINDS and path.suffix != ".toml"}
     whole = {answer.file for answer in PROGRAMS if answer.edit is None}
     assert found == whole | {answer.path for answer in IN_NOTEBOOKS}
 

@@ -10,12 +10,12 @@ from typing import Any
 
 import pytest
 
-from autograder.temporary_folders import HeldFolder, UnsafeTemporaryFolder, fresh_folder
+from autograder.safe_files import HeldFolder, UnsafeTemporaryFolder, fresh_folder
 
 MAKER = """
 import sys, tempfile
 tempfile.tempdir = sys.argv[1]
-from autograder.temporary_folders import HeldFolder
+from autograder.safe_files import HeldFolder
 folder = HeldFolder("held-")
 (folder.path / "socket").touch()
 print(folder.path, flush=True)

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import msgspec
 
-from autograder.cards.readable import printable_json
-from autograder.judge.verdicts.keeping import Kept, plain, restored
+from autograder.cards.readable_text import printable_json
+from autograder.judge.evidence_files import Kept, plain, restored
 from environment.installation import COMMAND
 
 if TYPE_CHECKING:

@@ -7,15 +7,15 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from autograder import exercises
-from autograder.cards.readable import printable_json
-from autograder.judge.verdicts import reference, trial
-from autograder.judge.verdicts.keeping import NoEvidence, evidence_of
+from autograder.cards.readable_text import printable_json
+from autograder.judge import evidence_files, one_check
+from autograder.judge.evidence_files import NoEvidence, evidence_of
 from environment.installation import COMMAND
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from autograder.judge.verdicts.keeping import Kept
+    from autograder.judge.evidence_files import Kept
     from autograder.verdict import Verdict
 
 
@@ -54,12 +54,12 @@ def replay(kept: Kept) -> Replay:
         )
     try:
         exercise = exercises.get(then.exercise)
-        expected = reference.load(exercise.id)
-        changed = reference.digest(exercise.id) != kept.reference
-    except (exercises.UnknownExercise, exercises.BrokenExercise, reference.NoReference) as error:
+        expected = evidence_files.load_reference(exercise.id)
+        changed = evidence_files.reference_digest(exercise.id) != kept.reference
+    except (exercises.UnknownExercise, exercises.BrokenExercise, evidence_files.NoReference) as error:
         raise CannotReplay(f"{error} Use the version of the course that the check was made with.") from error
     try:
-        now = trial.decide(exercise, evidence_of(kept, expected), then.seed)
+        now = one_check.decide(exercise, evidence_of(kept, expected), then.seed)
     except NoEvidence as error:
         raise CannotReplay(f"{error} in this check, so there is nothing to judge again") from error
     except Exception as error:  # evidence from another version, or written by hand, may lack any field

@@ -23,27 +23,162 @@ a table is named after the file of its answer::
     -        self.get_logger().info("Hello, ROS 2! From SimpleNode.")
     '''
 
-``shows`` is the first line of the resulting program; by default ``Wrong: `` followed by ``why``. For the format of
-``change`` see ``autograder.authoring.edits``.
+``shows`` is the first line of the resulting program; by default ``Wrong: `` followed by ``why``.
+
+``change`` is an edit. It looks like a diff without line numbers::
+
+         self.publisher = self.create_publisher(String, 'chatter', 10)
+    -        self.i = 0
+    +        self.i = 1
+    ...
+    -        self.i += 1
+    +        self.i += 2
+
+Lines with ``-`` are removed from the base, and lines with ``+`` are added. A line with a space, or an empty line, stays
+unchanged; it identifies the place if the removed lines occur several times. ``...`` separates two places of the base.
+
+The edit of a workspace begins with a line that says what the answer shows. Then follows a section for each changed file
+or folder:
+
+    === src/my_robot_pkg/setup.py              the whole file, up to the next section
+    === src/my_robot_pkg/setup.py (changed)    the edit of the file, as above
+    === src/my_robot_pkg/setup.py (removed)
+    === src/my_robot_pkg -> src/robot          a renamed folder or file
 """
 
 from __future__ import annotations
 
 import difflib
+import re  # noqa: TID251  (not what a student handed in)
+import shutil
 import tomllib
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
 import msgspec
 
-from autograder.authoring.edits import CannotEdit, edited
-
 if TYPE_CHECKING:
     from collections.abc import Iterator
-    from pathlib import Path
+
+
+_BETWEEN_PLACES = "..."
+"""The line in an edit that separates two places of the base."""
+
+
+class CannotEdit(ValueError):
+    """An edit does not fit its base. The message names the lines of the edit, and says what to do."""
+
+
+def edited_text(base: str, change: str) -> str:
+    """Return the base after applying an edit.
+
+    Args:
+        base: The original text.
+        change: The edit, in the format that this module describes.
+
+    Raises:
+        CannotEdit: A place of the edit occurs in the base not at all, or several times; or ``change`` is not an
+            edit.
+    """
+    lines = base.split("\n")
+    places = []
+    for block in change.removesuffix("\n").split(f"\n{_BETWEEN_PLACES}\n"):
+        old, new = _sides(block)
+        places.append((_place(lines, old), old, new))
+    places.sort(key=lambda place: place[0], reverse=True)
+    end = len(lines)
+    for at, old, new in places:
+        if at + len(old) > end:
+            raise CannotEdit(f"two places of the change share the line {lines[end]!r}: write them as one")
+        lines[at : at + len(old)] = new
+        end = at
+    return "\n".join(lines)
+
+
+def _sides(block: str) -> tuple[list[str], list[str]]:
+    """Return the lines of one place of the base, before and after the edit."""
+    old, new = [], []
+    for line in block.split("\n"):
+        if line[:1] not in ("", " ", "-", "+"):
+            raise CannotEdit(f"{line!r} does not begin with -, + or a space")
+        if line[:1] != "+":
+            old.append(line[1:])
+        if line[:1] != "-":
+            new.append(line[1:])
+    if old == new:
+        raise CannotEdit(
+            f"{block!r} changes nothing: put - in front of each line to remove and + in front of each line to add"
+        )
+    if not old:
+        raise CannotEdit(
+            f"{block!r} does not say where to add its lines: also write the unchanged line before or after them, "
+            "with a space in front"
+        )
+    return old, new
+
+
+def _place(lines: list[str], old: list[str]) -> int:
+    """Return the index of the only place in ``lines`` at which the lines ``old`` occur."""
+    found = [at for at in range(len(lines) - len(old) + 1) if lines[at : at + len(old)] == old]
+    if len(found) == 1:
+        return found[0]
+    text = "\n".join(old)
+    if found:
+        numbers = ", ".join(str(at + 1) for at in found)
+        raise CannotEdit(
+            f"{text!r} occurs in the base {len(found)} times (lines {numbers}): add the line before or after it, "
+            "with a space in front"
+        )
+    missing = next((line for line in old if line not in lines), None)
+    if missing is not None:
+        raise CannotEdit(f"{missing!r} is not a line of the base")
+    raise CannotEdit(f"each line of {text!r} is in the base, but there the lines do not follow each other")
+
+
+_SECTION = re.compile(r"^=== (?P<path>\S+)(?: -> (?P<to>\S+)| \((?P<what>changed|removed)\))?$")
+
+
+def unpack_workspace(answer: str, base: Path, folder: Path) -> None:
+    """Copy the base workspace into a new folder and apply an answer's edit there.
+
+    Args:
+        answer: The first line and the edit, in the format that this module describes.
+        base: The workspace to copy.
+        folder: The new folder.
+
+    Raises:
+        CannotEdit: A section of the answer does not fit the base.
+    """
+    shutil.copytree(base, folder)
+    path, to, what, body = Path(), None, None, list[str]()
+    for line in [*answer.splitlines()[1:], "=== ."]:
+        found = _SECTION.match(line)
+        if found is None:
+            body.append(line)
+            continue
+        if path != Path():
+            _apply(folder / path, folder / to if to else None, what, body)
+        path, to, what, body = Path(found["path"]), found["to"], found["what"], []
+
+
+def _apply(file: Path, to: Path | None, what: str | None, body: list[str]) -> None:
+    if to is not None:
+        file.rename(to)
+    elif what == "removed":
+        shutil.rmtree(file) if file.is_dir() else file.unlink()
+    elif what == "changed":
+        try:
+            file.write_text(edited_text(file.read_text(encoding="utf-8"), "\n".join(body)), encoding="utf-8")
+        except CannotEdit as error:
+            raise CannotEdit(f"{file}: {error}") from None
+    else:
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text("\n".join(body).strip("\n") + "\n" if any(body) else "", encoding="utf-8")
+
 
 T = TypeVar("T")
-KINDS = ("right", "wrong")
+ANSWER_KINDS = ("right", "wrong")
 WORKSPACE = ".workspace"
 """An answer whose name ends with this suffix is a workspace, not a single program."""
 
@@ -79,7 +214,7 @@ class AnswerEntry(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     change: str = ""
 
 
-class Settings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class AnswerSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """The settings for all answers of a folder, from its file ``settings.toml``, if it exists.
 
     Attributes:
@@ -92,7 +227,7 @@ class Settings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 @dataclass(frozen=True)
-class Listed:
+class ListedAnswer:
     """An answer together with its entry in a table.
 
     Attributes:
@@ -108,7 +243,7 @@ class Listed:
     @property
     def base(self) -> Path | None:
         """The path of the right answer from which an edit makes this answer; None if no edit makes it."""
-        return self.file.parents[1] / KINDS[0] / self.entry.base if self.entry.base else None
+        return self.file.parents[1] / ANSWER_KINDS[0] / self.entry.base if self.entry.base else None
 
     def text(self) -> str:
         """Return the text of the program. For a changed workspace, return what is wrong with it, and the change.
@@ -131,7 +266,7 @@ class Listed:
                 f"{self.base.parent} has no file {self.base.name}, which is the entry's base; {hint}"
             ) from None
         try:
-            changed = edited(text, self.entry.change)
+            changed = edited_text(text, self.entry.change)
         except CannotEdit as error:
             raise self._bad(f"the edit does not fit {self.base.name}: {error}") from None
         if not text.startswith(("#", '"""')):
@@ -149,7 +284,7 @@ def usual_first_line(kind: str, why: str) -> str:
     return f"{kind.capitalize()}: {why}"
 
 
-def listed(folder: Path) -> Iterator[Listed]:
+def listed_answers(folder: Path) -> Iterator[ListedAnswer]:
     """Yield every answer of a folder, in the order of its tables.
 
     Args:
@@ -159,24 +294,24 @@ def listed(folder: Path) -> Iterator[Listed]:
         BadTable: A table cannot be read; or an entry is listed twice, lacks a needed field, or has a forbidden one.
     """
     names = set()
-    for kind in KINDS:
+    for kind in ANSWER_KINDS:
         for table in sorted((folder / kind).glob("*.toml")):
-            for name, entry in _read(table, dict[str, AnswerEntry]).items():
-                answer = Listed(folder / kind / name, entry, table)
+            for name, entry in _read_table(table, dict[str, AnswerEntry]).items():
+                answer = ListedAnswer(folder / kind / name, entry, table)
                 _look_at(answer, twice=answer.file in names)
                 names.add(answer.file)
                 yield answer
 
 
-def _look_at(answer: Listed, *, twice: bool) -> None:
+def _look_at(answer: ListedAnswer, *, twice: bool) -> None:
     file, entry = answer.file, answer.entry
     workspace = file.suffix == WORKSPACE
     needed = (entry.change,) if workspace else (entry.base, entry.change)
     given = (entry.base, entry.shows, entry.change)
     troubles = {
         "the answer is listed twice": twice,
-        "a wrong answer needs a diagnosis": file.parent.name != KINDS[0] and not entry.diagnosis,
-        "a right answer must not have a diagnosis": file.parent.name == KINDS[0]
+        "a wrong answer needs a diagnosis": file.parent.name != ANSWER_KINDS[0] and not entry.diagnosis,
+        "a right answer must not have a diagnosis": file.parent.name == ANSWER_KINDS[0]
         and bool(entry.diagnosis or entry.also),
         "an edit needs the fields base and change": any(given) and not all(needed),
         "remove base: settings.toml sets the base of all workspaces": workspace and bool(entry.base),
@@ -190,17 +325,17 @@ def _look_at(answer: Listed, *, twice: bool) -> None:
             raise BadTable(f"{answer.table}: {file.name}: {what}")
 
 
-def settings(folder: Path) -> Settings:
+def answer_settings(folder: Path) -> AnswerSettings:
     """Return the settings for all answers of a folder.
 
     Raises:
         BadTable: The file cannot be used.
     """
     file = folder / "settings.toml"
-    return _read(file, Settings) if file.exists() else Settings()
+    return _read_table(file, AnswerSettings) if file.exists() else AnswerSettings()
 
 
-def _read(table: Path, kind: type[T]) -> T:
+def _read_table(table: Path, kind: type[T]) -> T:
     try:
         return msgspec.convert(tomllib.loads(table.read_text(encoding="utf-8")), kind)
     except (tomllib.TOMLDecodeError, msgspec.ValidationError) as error:

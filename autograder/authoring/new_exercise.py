@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from autograder import course, exercises
-from autograder.temporary_folders import HeldFolder
+from autograder.safe_files import HeldFolder
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

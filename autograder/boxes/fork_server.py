@@ -28,12 +28,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
-from autograder.boxes.channel import Channel
 from autograder.boxes.enter_box import enter
-from autograder.boxes.environment import base_environment
-from autograder.boxes.limits import raise_own
+from autograder.boxes.process_channel import Channel
+from autograder.boxes.run_limits import raise_own
+from autograder.boxes.visible_host import base_environment
 from autograder.process_trees import end_soon
-from autograder.temporary_folders import HeldFolder
+from autograder.safe_files import HeldFolder
 from environment.python_child import python_child
 
 if TYPE_CHECKING:
@@ -47,7 +47,7 @@ Folders of older versions have another prefix and no lock, so they are never rem
 """
 _LIBRARY_FOLDERS = 8
 """The maximum number of folders for libraries, which is more than any workspace of the course needs."""
-SUPERVISOR_MODULE = "autograder.boxes.supervisor"
+SUPERVISOR_MODULE = "autograder.boxes.box_supervisor"
 KERNEL_MODULE = "autograder.execution.kernel_process"
 PROGRAM_MODULE = "autograder.execution.program_process"
 _GOODBYE_SECONDS = 3.0
@@ -244,7 +244,7 @@ class Addresses:
 
     Attributes:
         supervisors: The address used by :class:`autograder.boxes.sandbox.Enclosure`; empty without a sandbox.
-        kernels: The address used by :class:`autograder.execution.kernel.Kernel`.
+        kernels: The address used by :class:`autograder.execution.jupyter_kernel.Kernel`.
         judges: The address used to start judges.
         programs: The address used by :meth:`autograder.boxes.sandbox.Enclosure.ros2`; empty without a sandbox.
     """

@@ -11,8 +11,8 @@ The namespaces decide what a box can reach. In addition, the filter refuses:
   seconds;
 * calls that take kernel memory that neither cgroups nor the guard count: attributes of files (access control lists),
   memory policies (``mbind``), names of memory areas (``prctl``), filters of sockets and of system calls;
-* locks that ``/proc/locks`` does not show for a box, so that the guard (:mod:`autograder.boxes.guards`) cannot count
-  them: those of open file descriptions, and of ended processes whose table of open files is shared;
+* locks that ``/proc/locks`` does not show for a box, so that the guard (:mod:`autograder.boxes.limit_guards`) cannot
+  count them: those of open file descriptions, and of ended processes whose table of open files is shared;
 * network protocols whose waiting data the guard does not count: all except UDP, TCP, and netlink to list interfaces.
 
 A refused call fails with EPERM, as for any user without the right to make it, with two exceptions. Calls for attributes

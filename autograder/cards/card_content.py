@@ -1,18 +1,100 @@
-"""Prepares the content of both kinds of card, HTML and text, as strings that are safe to show."""
+"""Prepares the content of both kinds of card, HTML and text, as strings that are safe to show.
+
+If a text was seen that differs a little from the expected text, the content also contains the characters that are
+missing or too much. Two long texts look equal when only a comma is missing.
+"""
 
 from __future__ import annotations
 
+import difflib
 from dataclasses import dataclass, replace
+from enum import StrEnum
 from typing import TYPE_CHECKING, TypedDict
 
-from autograder.cards import wording
-from autograder.cards.differences import TextPiece, difference
-from autograder.cards.readable import block, one_line, paragraph
-from autograder.cards.tracebacks import TRACEBACK, TracebackPlace, place
-from autograder.cards.traffic import Traffic, traffic
+import re2
+
+from autograder.cards import card_wording
+from autograder.cards.card_traffic import Traffic, traffic
+from autograder.cards.readable_text import TRACEBACK, TracebackLine, block, one_line, paragraph, place
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from autograder.verdict import CriterionResult, State, Verdict
+
+
+MIN_SIMILARITY = 0.5
+"""The minimum similarity of two texts, from 0 to 1. If they are less similar, showing their difference would not help.
+"""
+LONGEST_COMPARED = 120
+"""The maximum length of a compared text, in characters, because the time grows with the square of the length."""
+_QUOTED = re2.compile("“([^“”]*)”")
+_BLANK = "␣"
+_ANY_NUMBER = "N"
+"""The letter that stands for any whole number in an expected text."""
+
+
+class DiffTag(StrEnum):
+    """The kind of a piece of text: equal, missing, or too much."""
+
+    SAME = "same"
+    MISSING = "missing"
+    EXTRA = "extra"
+
+
+@dataclass(frozen=True)
+class TextPiece:
+    """A sequence of characters, all equal in both texts, all missing, or all too much."""
+
+    kind: DiffTag
+    text: str
+
+    @property
+    def marked(self) -> str:
+        """Return the text with marks that show its kind without color: ``[missing]``, ``{too much}``."""
+        if self.kind is DiffTag.SAME:
+            return self.text
+        text = self.text.replace(" ", _BLANK)
+        return f"[{text}]" if self.kind is DiffTag.MISSING else f"{{{text}}}"
+
+
+def difference(criterion: CriterionResult) -> tuple[TextPiece, ...]:
+    """Return the difference between the first quoted text that was seen and the first one that was expected.
+
+    The result is empty if the criterion is met or if one side has no quoted text. It is also empty if the two texts are
+    equal, too long, or too different for a comparison to help.
+    """
+    if criterion.passed:
+        return ()
+    expected, seen = _QUOTED.search(criterion.expected), _QUOTED.search(criterion.seen)
+    if expected is None or seen is None:
+        return ()
+    return _compared(expected[1], seen[1])
+
+
+def marked(pieces: Iterable[TextPiece]) -> str:
+    """Return all pieces as one text, with brackets around what is missing: ``"Hello[,] world[!] 0"``."""
+    return "".join(piece.marked for piece in pieces)
+
+
+def _compared(expected: str, seen: str) -> tuple[TextPiece, ...]:
+    if expected == seen or max(len(expected), len(seen)) > LONGEST_COMPARED:
+        return ()
+    matcher = difflib.SequenceMatcher(None, expected, seen, autojunk=False)
+    if matcher.ratio() < MIN_SIMILARITY:
+        return ()
+    found = []
+    for operation, a1, a2, b1, b2 in matcher.get_opcodes():
+        fills_in = expected[a1:a2] == _ANY_NUMBER and seen[b1:b2].isdigit()
+        if operation == "equal" or fills_in:
+            found.append(TextPiece(DiffTag.SAME, seen[b1:b2]))
+            continue
+        if operation in ("delete", "replace"):
+            found.append(TextPiece(DiffTag.MISSING, expected[a1:a2]))
+        if operation in ("insert", "replace"):
+            found.append(TextPiece(DiffTag.EXTRA, seen[b1:b2]))
+    return tuple(found)
+
 
 UNFOLDED = 16
 """A traceback is shown unfolded if it has fewer lines than this."""
@@ -104,13 +186,13 @@ class CriterionRow:
         pieces = difference(criterion)
         return cls(
             passed=criterion.passed,
-            word=wording.CRITERION_WORDS[criterion.passed],
+            word=card_wording.CRITERION_WORDS[criterion.passed],
             title=one_line(criterion.title, 160, mark=form.mark),
             expected=one_line(criterion.expected, 240, mark=form.mark) or form.nothing,
             seen=one_line(criterion.seen, 240, mark=form.mark) or form.nothing,
-            points=f"{wording.points(earned)} of {wording.points(criterion.points)}",
-            unit=wording.unit(criterion.points),
-            weight=wording.points(max(criterion.points, 0.1)),
+            points=f"{card_wording.points(earned)} of {card_wording.points(criterion.points)}",
+            unit=card_wording.unit(criterion.points),
+            weight=card_wording.points(max(criterion.points, 0.1)),
             difference=tuple(TextPiece(one.kind, one_line(one.text, 200, mark=form.mark)) for one in pieces),
         )
 
@@ -141,8 +223,8 @@ class Card:
     max_score: str
     unit: str
     notice: str
-    advice: wording.AdviceBlock
-    place: TracebackPlace | None
+    advice: card_wording.AdviceBlock
+    place: TracebackLine | None
     criteria: tuple[CriterionRow, ...]
     remarks: tuple[str, ...]
     traffic: Traffic
@@ -166,21 +248,21 @@ class Card:
     ) -> Card:
         """Return the content of a verdict's card, in one form. For the other arguments see :class:`Choices`."""
         mark = form.mark
-        advice = wording.advice(verdict)
+        advice = card_wording.advice(verdict)
         shown = traffic(verdict.timeline, at_most=form.moments)
         detail = verdict.detail if verdict.detail.strip() else ""
         card = cls(
             state=verdict.state,
             title=one_line(verdict.title or verdict.exercise, 160, mark=mark),
-            state_words=wording.STATE_WORDS[verdict.state],
-            tally=wording.tally(verdict),
-            score_line=wording.score_line(verdict, before),
-            before=wording.points_before(verdict, before),
-            score=wording.points(verdict.score),
-            max_score=wording.points(verdict.max_score),
-            unit=wording.unit(verdict.max_score),
+            state_words=card_wording.STATE_WORDS[verdict.state],
+            tally=card_wording.tally(verdict),
+            score_line=card_wording.score_line(verdict, before),
+            before=card_wording.points_before(verdict, before),
+            score=card_wording.points(verdict.score),
+            max_score=card_wording.points(verdict.max_score),
+            unit=card_wording.unit(verdict.max_score),
             notice=one_line(notice, 200, mark=mark),
-            advice=wording.AdviceBlock(
+            advice=card_wording.AdviceBlock(
                 advice.heading,
                 paragraph(advice.text, 1200, mark=mark),
                 paragraph(advice.next_step, 1200, mark=mark),
@@ -189,13 +271,13 @@ class Card:
             criteria=tuple(CriterionRow.of(criterion, form) for criterion in verdict.criteria),
             remarks=tuple(paragraph(remark, 600, mark=mark) for remark in verdict.remarks),
             traffic=shown,
-            traffic_notes=wording.traffic_notes(shown),
-            detail_heading=one_line(wording.detail_heading(detail), 160, mark=mark),
+            traffic_notes=card_wording.traffic_notes(shown),
+            detail_heading=one_line(card_wording.detail_heading(detail), 160, mark=mark),
             detail=tuple(block(detail, max_lines=form.lines, max_columns=form.columns, mark=mark))
             if detail
             else (),
             unfolded=TRACEBACK in detail and detail.count("\n") < UNFOLDED,
-            facts=tuple(wording.fine_print(verdict)),
+            facts=tuple(card_wording.fine_print(verdict)),
             solution=solution.readable() if solution and verdict.passed else None,
         )
         return card._shortened() if short else card
@@ -204,11 +286,11 @@ class Card:
         return replace(self, criteria=(), remarks=(), traffic=Traffic(()), detail=(), facts=(), solution=None)
 
 
-def _readable(found: TracebackPlace | None, mark: str) -> TracebackPlace | None:
+def _readable(found: TracebackLine | None, mark: str) -> TracebackLine | None:
     if found is None:
         return None
     texts = (found.where, 120), (found.quote, 200), (found.error, 300)
-    return TracebackPlace(*(one_line(text, limit, mark=mark) for text, limit in texts))
+    return TracebackLine(*(one_line(text, limit, mark=mark) for text, limit in texts))
 
 
 def _code(text: str) -> str:

@@ -11,14 +11,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from autograder.cards import readable, wording
-from autograder.cards.axis import CHARACTER, Axis, Tick, places_of
-from autograder.cards.readable import one_line
+from autograder.cards import card_wording, readable_text
+from autograder.cards.card_traffic import CHARACTER_WIDTH, Axis, Tick, places_of
+from autograder.cards.readable_text import one_line
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from autograder.cards.traffic import TrafficPart
+    from autograder.cards.card_traffic import TrafficPart
 
 WIDTH = 600
 """The width in pixels of the narrowest picture in which nothing overlaps. Narrower windows scroll."""
@@ -131,7 +131,7 @@ def picture(part: TrafficPart, width: int = WIDTH) -> Picture:
         ticks=tuple(Tick(_percent(tick.x, width), tick.text, tick.anchor) for tick in axis.ticks()),
         axis_y=bottom,
         height=bottom + _AXIS_HEIGHT + _READING_HEIGHT,
-        summary=wording.part_in_words(part),
+        summary=card_wording.part_in_words(part),
         breaks=tuple(_percent((xs[after] + xs[after + 1]) / 2, width) for after in part.gaps),
         width=width,
         reading_y=bottom + _AXIS_HEIGHT + _READING_HEIGHT - 5,
@@ -152,7 +152,7 @@ def _lane(
     placed = _flags([_Wish(labels[i], xs[i], needed=moments[i].key) for i in members])
     text = one_line(name, 60)
     levels = 1 + max((flag.level for flag in placed if flag), default=0)
-    name_end = readable.width(text) * (CHARACTER + 0.7) + 6
+    name_end = readable_text.width(text) * (CHARACTER_WIDTH + 0.7) + 6
     if any(flag.level == levels - 1 and flag.left < name_end for flag in placed if flag):
         levels += 1
     line_y = top + _LANE_HEAD + levels * _LEVEL_HEIGHT + 7
@@ -166,7 +166,7 @@ def _lane(
             label=labels[i] if flag else "",
             label_y=line_y - 10 - (flag.level if flag else 0) * _LEVEL_HEIGHT,
             to_the_left=flag is not None and flag.left < flag.pole,
-            tooltip=wording.moment_in_words(moments[i], part.when(i)),
+            tooltip=card_wording.moment_in_words(moments[i], part.when(i)),
         )
         for i, flag, row in zip(members, placed, rows, strict=True)
     )
@@ -248,7 +248,7 @@ class _Flag:
 
 def _length(label: str) -> float:
     """Return the distance in pixels from a mark to the end of its label."""
-    return 5 + readable.width(label) * CHARACTER
+    return 5 + readable_text.width(label) * CHARACTER_WIDTH
 
 
 def _flags(wishes: Sequence[_Wish]) -> list[_Flag | None]:

@@ -11,17 +11,23 @@ from pathlib import Path
 import click
 
 from autograder import course
-from autograder.cli import appeals, authors, instructors, reports, students
+from autograder.cli import author_commands, class_commands, result_commands, student_commands
 
 GROUPS = {
-    "Students": students.COMMANDS,
-    "Instructors, a class": instructors.COMMANDS,
-    "Instructors, its results": (*reports.COMMANDS, *appeals.COMMANDS),
-    "Authors": authors.COMMANDS,
+    "Students": student_commands.STUDENT_COMMANDS,
+    "Instructors, a class": class_commands.CLASS_COMMANDS,
+    "Instructors, its results": (*result_commands.REPORT_COMMANDS, *result_commands.APPEAL_COMMANDS),
+    "Authors": author_commands.AUTHOR_COMMANDS,
 }
 """The commands, grouped by the people who use them, in the order of the help page."""
-_HERE = (instructors.new_class, instructors.hand_out, students.lab, students.progress, students.reset)
-IN_A_COURSE = {str(command.name) for command in (*_HERE, *authors.COMMANDS)}
+_HERE = (
+    class_commands.new_class,
+    class_commands.hand_out,
+    student_commands.lab,
+    student_commands.progress,
+    student_commands.reset,
+)
+IN_A_COURSE = {str(command.name) for command in (*_HERE, *author_commands.AUTHOR_COMMANDS)}
 """The names of the commands that use the course that contains the current folder. The command `check` uses it as well,
 except with --box. Commands for a class never do, because the current folder may contain students' work with a changed
 copy of a course. They use the course that `new-class` recorded.

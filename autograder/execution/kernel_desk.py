@@ -3,8 +3,8 @@
 A desk is a fork of the kernels' fork server, which has loaded Jupyter's protocol (``jupyter_client.session``) and
 ZeroMQ. It connects to the kernel. Then, before it reads anything, it gives itself a filter of system calls. From then
 on it cannot open files, start processes or threads, or make further connections. ZeroMQ keeps a message of any size in
-memory until its last part has come, so the process has a memory limit. :mod:`autograder.execution.kernel` gives the
-orders.
+memory until its last part has come, so the process has a memory limit. :mod:`autograder.execution.jupyter_kernel` gives
+the orders.
 """
 
 from __future__ import annotations
@@ -21,10 +21,10 @@ from zmq.utils.monitor import recv_monitor_message
 
 from autograder.boxes import syscalls
 from autograder.boxes.seccomp_filter import filter_for_desks
-from autograder.execution.desk_messages import DeskAnswer, DeskOrder, Do, Said, Setting
-from autograder.execution.kernel import IOPUB, SHELL
-from autograder.execution.outputs import Budget, OutputCollector
-from autograder.messages.lines import Hangup, Lines
+from autograder.execution.cell_outputs import Budget, OutputCollector
+from autograder.execution.jupyter_kernel import IOPUB, SHELL
+from autograder.execution.kernel_desk_messages import DeskAnswer, DeskOrder, Do, Said, Setting
+from autograder.messages.json_lines import Hangup, Lines
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence

@@ -21,8 +21,8 @@ from traitlets.config import Config
 
 from autograder.boxes.fork_server import INTERFACES, RCLPY, preload, preload_ros
 from autograder.execution import kernel_desk
-from autograder.execution.kernel import IOPUB, SHELL
-from autograder.temporary_folders import HeldFolder
+from autograder.execution.jupyter_kernel import IOPUB, SHELL
+from autograder.safe_files import HeldFolder
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -38,11 +38,11 @@ _PRELOADED = (
     "numpy.random",
     "autograder.notebook",
     "autograder.notebook.checking.check",
-    "autograder.notebook.robot.starting",
-    "autograder.cards.bundle",
+    "autograder.notebook.robot.live_robot",
+    "autograder.cards.html_rendering",
 )
-_MAGIC = "autograder.notebook.cells.program_files"
-_PREPARED = ("autograder.cards.bundle",)
+_MAGIC = "autograder.notebook.program_magic"
+_PREPARED = ("autograder.cards.html_rendering",)
 """The preloaded modules whose function ``prepare`` is called after the import."""
 
 

@@ -11,21 +11,27 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Self
 
-from autograder.boxes.boxed_processes import ForkedProcess
 from autograder.boxes.enter_box import Entrance
-from autograder.boxes.environment import base_environment, box_environment, kernel_environment
-from autograder.boxes.guards import BoxGuard, NoGuard
-from autograder.boxes.mounts import HOME, WORK, Bind
+from autograder.boxes.limit_guards import BoxGuard, NoGuard
+from autograder.boxes.running_boxes import ForkedProcess
 from autograder.boxes.sandbox import Enclosure
-from autograder.execution.desk_messages import Setting
-from autograder.temporary_folders import write_files
+from autograder.boxes.visible_host import (
+    HOME,
+    WORK,
+    Bind,
+    base_environment,
+    box_environment,
+    kernel_environment,
+)
+from autograder.execution.kernel_desk_messages import Setting
+from autograder.safe_files import write_files
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from autograder.boxes.fork_server import Addresses
-    from autograder.boxes.limits import Limits
-    from autograder.execution.kernel import Channels
+    from autograder.boxes.run_limits import Limits
+    from autograder.execution.jupyter_kernel import Channels
 
 SHARED_FOLDER = Path("/run/judge")
 """The path, in the student's box, of the folder that the box shares with its grader."""

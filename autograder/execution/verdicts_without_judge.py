@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING, Any
 
 import re2
 
-from autograder.boxes.limits import Ended
+from autograder.boxes.run_limits import Ended
 from autograder.verdict import ASKS_FOR_INPUT, Diagnosis, State, Verdict, failed, not_checked
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-    from autograder.execution.cells import CellCheck, CellRun
+    from autograder.execution.executed_cells import CellCheck, CellRun
 
 _SYNTAX_ERRORS = ("SyntaxError", "IndentationError", "TabError")
 _ASSERTION = "AssertionError"

@@ -21,30 +21,27 @@ from rich.console import Console
 
 from autograder.grading.batch_work import AskedFor, Work, find_work, without_grade, would_change
 from autograder.grading.class_store import ClassStore
-from autograder.grading.classes.changed_masters import news
+from autograder.grading.classes.class_checks import changed_master_warnings, check_configuration, limits_of
 from autograder.grading.classes.class_directory import ClassDirectory, RefusedFile, Submission
-from autograder.grading.classes.configuration import check_configuration, limits_of
-from autograder.grading.classes.timestamps import handed_in_at
-from autograder.grading.collecting.beside_its_place import beside_their_place, put_right
-from autograder.grading.errors import MasterUnusable, is_disk_full
-from autograder.grading.gradebooks.gradebook_reading import (
+from autograder.grading.classes.gradebook_reading import (
     SubmissionEntry,
     gradebook_file,
     read_due_dates,
     read_entries,
     read_entry,
 )
+from autograder.grading.classes.submission_times import handed_in_at
+from autograder.grading.collecting.submitted_folder import misplaced_files, rename_decomposed_folders
+from autograder.grading.grading_errors import MasterUnusable, is_disk_full
 from autograder.grading.rebuilding.course_version import course_version
-from autograder.grading.rebuilding.fingerprints import Fingerprints
 from autograder.grading.rebuilding.source_points import check_release, read_released
-from autograder.grading.reporting.report import GradeReport
-from autograder.grading.reporting.rows import rows_of, write_csv
-from autograder.grading.running import backends, sandboxing
-from autograder.grading.running.batch_times import Timings
-from autograder.grading.running.progress import BatchProgress, plain_line
+from autograder.grading.rebuilding.submission_fingerprints import Fingerprints
+from autograder.grading.reporting.grade_report import GradeReport
+from autograder.grading.running import execution_backends
+from autograder.grading.running.batch_progress import BatchProgress, Timings, plain_line
 from autograder.grading.table.roster import enter_roster, read_roster
-from autograder.grading.table.true_rows import true_rows
-from autograder.grading.table.what_counts import read_what_counts
+from autograder.grading.table.rows import rows_of, write_csv
+from autograder.grading.table.weighted_rows import read_what_counts, true_rows
 from environment.installation import COMMAND
 
 # Some modules are imported inside functions, because they import nbgrader, which takes a second.
@@ -53,15 +50,15 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
     from datetime import datetime
 
-    from autograder.execution.cells import Execution
+    from autograder.execution.executed_cells import Execution
     from autograder.grading.class_records import Entered
-    from autograder.grading.gradebooks.gradebook_reading import Entries
-    from autograder.grading.gradebooks.writer import Writer
+    from autograder.grading.classes.gradebook_reading import Entries
+    from autograder.grading.classes.result_writer import Writer
+    from autograder.grading.grading_task import Task
     from autograder.grading.rebuilding.source_points import GradedCell
-    from autograder.grading.running.backends import Execute
-    from autograder.grading.table.point_differences import Difference
+    from autograder.grading.running.execution_backends import Execute
+    from autograder.grading.table.class_table import Difference
     from autograder.grading.table.roster import Roster
-    from autograder.grading.task import Task
 
 
 def grade(
@@ -107,16 +104,16 @@ def grade(
     directory = ClassDirectory(Path(path))
     check_configuration(directory)
     if scheduler is None:
-        backend = backends.local(directory, jobs, judge)
+        backend = execution_backends.local(directory, jobs, judge)
     else:
-        from autograder.grading.cluster.connection import check_address, check_dask
+        from autograder.grading.running.execution_backends import check_address, check_dask
 
         check_dask()
         check_address(scheduler)
         tell = functools.partial(plain_line, console)
-        backend = backends.cluster(directory, scheduler, judge, tell)
+        backend = execution_backends.cluster(directory, scheduler, judge, tell)
     with directory.lock(), contextlib.ExitStack() as stack:
-        backends.remove_leftovers(directory)
+        execution_backends.remove_leftovers(directory)
         roster = read_roster(directory)
         in_sections = roster.of_sections(sections) if sections else ()
         asked = AskedFor(assignments, [*students, *in_sections])
@@ -173,7 +170,7 @@ class _Batch:
 
     @functools.cached_property
     def _writer(self) -> Writer:
-        from autograder.grading.gradebooks.writer import Writer
+        from autograder.grading.classes.result_writer import Writer
 
         return Writer(self._directory, self._store)
 
@@ -190,10 +187,10 @@ class _Batch:
             check_release(self._directory, asked)
         if not self._dry_run:
             enter_roster(self._directory)
-            self._notices += put_right(self._directory)
-        beside, notices = beside_their_place(self._directory)
+            self._notices += rename_decomposed_folders(self._directory)
+        beside, notices = misplaced_files(self._directory)
         self._notices += notices
-        for text in news(self._directory, self._store, assignments or self._cells):
+        for text in changed_master_warnings(self._directory, self._store, assignments or self._cells):
             self._notices.append(text)
             plain_line(self._console, f"note: {text}")
         found = find_work(
@@ -307,7 +304,7 @@ class _Batch:
             written=self._written,
             seconds=seconds,
             timings=self._timings,
-            note=sandboxing.NOTE if sandboxing.switched_off(self._directory) else "",
+            note=execution_backends.NOTE if execution_backends.switched_off(self._directory) else "",
             gradebook=gradebook_file(url),
             due=self._due_dates(url),
         )
@@ -384,7 +381,7 @@ class _Batch:
             work.rows = rows
             work.results.clear()
             return
-        from autograder.grading.gradebooks.writer import NotWritten
+        from autograder.grading.classes.result_writer import NotWritten
 
         try:
             with self._timings.measure("gradebook"):

@@ -8,25 +8,25 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from autograder.grading.classes.class_directory import RefusedFile
-from autograder.grading.classes.timestamps import handed_in_at, is_not_believed
+from autograder.grading.classes.gradebook_reading import CellEntry, SubmissionEntry, read_due_dates
+from autograder.grading.classes.submission_times import handed_in_at, is_not_believed
 from autograder.grading.collecting.collected_csv import NAME, Table
-from autograder.grading.errors import MasterUnusable, check_known, course_command
-from autograder.grading.gradebooks.gradebook_reading import CellEntry, SubmissionEntry, read_due_dates
-from autograder.grading.reporting.rows import LATE, Row
-from autograder.grading.table.point_differences import Difference
+from autograder.grading.grading_errors import MasterUnusable, check_known, course_command
+from autograder.grading.table.class_table import Difference
+from autograder.grading.table.rows import LATE, Row
 from environment.installation import COMMAND
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
     from datetime import datetime
 
-    from autograder.execution.cells import Execution
+    from autograder.execution.executed_cells import Execution
     from autograder.grading.classes.class_directory import ClassDirectory, Submission
-    from autograder.grading.gradebooks.gradebook_reading import Entries
-    from autograder.grading.rebuilding.fingerprints import Fingerprints
+    from autograder.grading.classes.gradebook_reading import Entries
+    from autograder.grading.grading_task import Task
     from autograder.grading.rebuilding.source_points import GradedCell, Released
+    from autograder.grading.rebuilding.submission_fingerprints import Fingerprints
     from autograder.grading.table.roster import Roster
-    from autograder.grading.task import Task
 
 
 @dataclass(frozen=True)

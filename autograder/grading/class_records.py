@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING, Self
 
 import msgspec
 
-from autograder.execution.cells import CellType
-from autograder.grading.reporting.rows import Row  # noqa: TC001  (the same)
+from autograder.execution.executed_cells import CellType
+from autograder.grading.table.rows import Row  # noqa: TC001  (the same)
 
 if TYPE_CHECKING:
-    from autograder.execution.cells import Execution
-    from autograder.grading.gradebooks.gradebook_reading import SubmissionEntry
-    from autograder.grading.task import Task
+    from autograder.execution.executed_cells import Execution
+    from autograder.grading.classes.gradebook_reading import SubmissionEntry
+    from autograder.grading.grading_task import Task
 
 
 @dataclass(frozen=True)
@@ -55,7 +55,7 @@ class Entered:
 
     Attributes:
         fingerprint: The hash of all files that influence the grades, from :class:`Fingerprints`.
-        tasks: The hash of each notebook's task, from :meth:`autograder.grading.task.Task.key`.
+        tasks: The hash of each notebook's task, from :meth:`autograder.grading.grading_task.Task.key`.
         scores: The points of each check cell, by notebook and grade_id.
         rows: The results as rows of the report, with the recognized mistakes.
         course: The version of the course that graded the submission.
@@ -114,9 +114,9 @@ class KeptEvidence:
     Attributes:
         assignment: The assignment's name.
         notebook: The notebook's name.
-        task: The hash of the executed task, from :meth:`autograder.grading.task.Task.key`.
+        task: The hash of the executed task, from :meth:`autograder.grading.grading_task.Task.key`.
         course: The version of the course.
-        checks: The evidence by exercise, as packed by the judge (:mod:`autograder.judge.verdicts.keeping`).
+        checks: The evidence by exercise, as packed by the judge (:mod:`autograder.judge.evidence_files`).
         cells: The executed cells: a list of :class:`RunCell`, encoded with MessagePack and compressed.
     """
 

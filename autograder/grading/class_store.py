@@ -17,17 +17,17 @@ from typing import TYPE_CHECKING, Any, Self, TypeVar
 
 import msgspec
 
-from autograder.execution.cells import Execution
+from autograder.execution.executed_cells import Execution
 from autograder.grading.class_records import Attempt, Entered, KeptEvidence, Origin
-from autograder.grading.errors import DiskFull, StoreTrouble, is_disk_full, said_by_database
-from autograder.grading.reporting.rows import Row
-from autograder.regular_files import name_as_text
+from autograder.grading.grading_errors import DiskFull, StoreTrouble, is_disk_full, said_by_database
+from autograder.grading.table.rows import Row
+from autograder.safe_files import name_as_text
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
     from autograder.grading.classes.class_directory import ClassDirectory, Submission
-    from autograder.grading.task import Task
+    from autograder.grading.grading_task import Task
 
 NAME = "class.db"
 _FORM = 2

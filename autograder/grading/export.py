@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 from nbgrader.api import MissingEntry
 from nbgrader.plugins import ExportPlugin
 
-from autograder.grading.reporting.spreadsheet import csv_text
-from autograder.regular_files import write_whole
+from autograder.grading.table.spreadsheet_csv import csv_text
+from autograder.safe_files import write_whole
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

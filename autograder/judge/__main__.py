@@ -19,15 +19,15 @@ def main() -> None:
         "--attached", type=int, nargs=2, metavar=("LISTENER", "ORDERS"), help="descriptors of two sockets"
     )
     arguments = parser.parse_args()
-    from autograder.judge.serving import attached
+    from autograder.judge import controlled_judge
 
-    attached.prepare()
+    controlled_judge.prepare()
     if arguments.attached:
-        attached.run({}, arguments.attached)
+        controlled_judge.run({}, arguments.attached)
         return
-    from autograder.judge.serving import server
+    from autograder.judge import check_server
 
-    server.run(arguments.socket)
+    check_server.run(arguments.socket)
 
 
 if __name__ == "__main__":

@@ -351,7 +351,7 @@ class Exercise:
         remarks: Functions that return a sentence for the card that costs no points, or an empty text.
         roles: The roles of the subject's endpoints, such as ``("publisher",)``. `record` waits for one of them.
         limit: The time limit of a check in seconds of wall time, for both looks together. A command gets more time,
-            because it may build first (`autograder/judge/subjects/command.py`).
+            because it may build first (`autograder/judge/command_check.py`).
         arguments: A description of the arguments that a command takes; empty if it takes none.
         sample_arguments: Example arguments with which ``record`` starts the reference solution to see its endpoints.
         second_look: True if a subject that fails in simulated time gets a second look in real time.

@@ -15,9 +15,8 @@ from typing import TYPE_CHECKING
 import numpy
 
 from autograder.course import SOLUTIONS
-from autograder.masters.layout import find_root
-from autograder.masters.master_errors import MasterError
-from autograder.masters.text_cells import KEYWORD, digest
+from autograder.masters.master_cells import DIGEST_KEYWORD, figure_digest
+from autograder.masters.master_files import MasterError, find_root
 from environment.system_packages import CHROMIUM_NAMES, find_program
 
 if TYPE_CHECKING:
@@ -72,7 +71,7 @@ def draw(figures: Sequence[Path], chromium: str) -> None:
 
 def _is_drawn(svg: Path) -> bool:
     png = svg.with_suffix(".png")
-    return png.exists() and digest(svg.read_bytes()) in png.read_bytes()
+    return png.exists() and figure_digest(svg.read_bytes()) in png.read_bytes()
 
 
 def _with_few_colours(page: Page, png: bytes) -> bytes:
@@ -113,7 +112,7 @@ def signed(png: bytes, svg: bytes) -> bytes:
         png: The picture.
         svg: The SVG from which it was drawn.
     """
-    mark = chunk(b"tEXt", KEYWORD + b"\0" + digest(svg))
+    mark = chunk(b"tEXt", DIGEST_KEYWORD + b"\0" + figure_digest(svg))
     return png[:_HEADER_LENGTH] + mark + png[_HEADER_LENGTH:]
 
 

@@ -5,16 +5,16 @@ Nothing in this package is secret or decides a grade, because the judge is a sep
 
 from __future__ import annotations
 
-import autograder.notebook.cells.program_files  # noqa: F401  (defines the cell magic %%program)
+import autograder.notebook.program_magic  # noqa: F401  (defines the cell magic %%program)
 from autograder.notebook.checking import judge_link
 from autograder.notebook.checking.check import check
 from autograder.notebook.checking.watch_mode import unwatch, watch
 from autograder.notebook.nodes import ros_session
-from autograder.notebook.nodes.background import spin_in_background, spinning
+from autograder.notebook.nodes.background_nodes import spin_in_background, spinning
 from autograder.notebook.nodes.ros_session import RosSession
 from autograder.notebook.observing.graph_picture import draw_graph, watch_graph
-from autograder.notebook.observing.plots import plot
-from autograder.notebook.observing.recordings import read_recording, recording
+from autograder.notebook.observing.message_recordings import read_recording, recording
+from autograder.notebook.observing.topic_plots import plot
 from autograder.notebook.robot import start_robot
 
 __all__ = [

@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from autograder.workspaces import entry_points
+from autograder.workspaces import packages
 from autograder.workspaces.packages import UNREADABLE
 
 if TYPE_CHECKING:
@@ -60,11 +60,11 @@ def add_entry_points(workspace: str | Path, entries: Iterable[str], package: str
     setup = Path(workspace) / "src" / package / "setup.py"
     wanted = list(entries)
     for entry in wanted:
-        if not isinstance(entry, str) or not entry_points.is_entry_point(entry):
-            return entry_points.objection(entry)
+        if not isinstance(entry, str) or not packages.is_entry_point(entry):
+            return packages.objection(entry)
     try:
         text, tree = _read(setup)
-        programs = entry_points.console_scripts(tree)
+        programs = packages.console_scripts(tree)
     except _CannotUse as error:
         return str(error)
     if programs is None:

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from autograder.workspaces.builds.colcon import look
+from autograder.workspaces.builds.colcon_build import look
 from autograder.workspaces.builds.install_folder import (
     CannotPlace,
     package_prefixes,
@@ -24,10 +24,10 @@ from autograder.workspaces.builds.install_folder import (
     python_folders,
     with_prefixes,
 )
-from autograder.workspaces.builds.own_builds import OwnBuilds
+from autograder.workspaces.builds.students_builds import OwnBuilds
 
 if TYPE_CHECKING:
-    from autograder.workspaces.builds.colcon import Build
+    from autograder.workspaces.builds.colcon_build import Build
 
 MAX_LOG = 4_000
 """The maximum number of characters that are shown of the log of a failed build."""

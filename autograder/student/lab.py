@@ -11,8 +11,8 @@ import threading
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from autograder.ros_domain import DOMAIN_VARIABLE, DomainClaim, claim_free_domain, domain_from_environment
-from autograder.student import journal
+from autograder.dds_discovery import DOMAIN_VARIABLE, DomainClaim, claim_free_domain, domain_from_environment
+from autograder.student import check_journal
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -66,7 +66,7 @@ def open_lab(folder: Path, arguments: Sequence[str] = ()) -> None:
     os.environ[_CONFIG_PATH] = os.pathsep.join(filter(None, (str(SETTINGS), os.environ.get(_CONFIG_PATH))))
     os.chdir(folder)
     os.environ[NOTEBOOKS_VARIABLE] = str(Path.cwd())
-    os.environ[journal.VARIABLE] = str(journal.place(Path.cwd()))
+    os.environ[check_journal.VARIABLE] = str(check_journal.place(Path.cwd()))
     os.environ[_BUILD_TYPE] = os.environ.get(_BUILD_TYPE) or "Release"
     from jupyterlab.labapp import LabApp
 

@@ -24,10 +24,10 @@ from jupyter_server.utils import url_path_join
 from tornado import web
 
 from autograder import course, exercises
-from autograder.cards import certificate
-from autograder.student import course_page, journal, resetting
+from autograder.cards import html_rendering
+from autograder.student import check_journal, notebook_reset, progress
 from autograder.student.lab import COURSE_PAGE
-from autograder.student.standing import Standing, standing
+from autograder.student.progress import Standing, standing
 
 if TYPE_CHECKING:
     from jupyter_server.serverapp import ServerApp
@@ -60,12 +60,12 @@ class _CourseHandler(JupyterHandler):
     @property
     def journal(self) -> Path:
         """The path of the journal for the folder that JupyterLab shows."""
-        named = os.environ.get(journal.VARIABLE)
-        return Path(named) if named else journal.place(self.notebooks)
+        named = os.environ.get(check_journal.VARIABLE)
+        return Path(named) if named else check_journal.place(self.notebooks)
 
     def standing(self) -> Standing:
         """The progress of the student."""
-        return standing(course.root(), self.notebooks, journal.entries(self.journal))
+        return standing(course.root(), self.notebooks, check_journal.entries(self.journal))
 
     def name_in_body(self) -> str:
         """Return the notebook that a request names.
@@ -91,10 +91,10 @@ class CoursePage(_CourseHandler):
         """Show the page."""
         try:
             found = await asyncio.to_thread(self.standing)
-            text = course_page.page_html(found, self.base_url, self.xsrf_token.decode())
+            text = progress.page_html(found, self.base_url, self.xsrf_token.decode())
         except (course.NoCourse, course.BrokenChapter, exercises.BrokenExercise, OSError) as error:
             self.set_status(500)
-            text = course_page.trouble_html(str(error), self.base_url)
+            text = progress.trouble_html(str(error), self.base_url)
         self.set_header("Cache-Control", "no-cache")
         self.finish(text)
 
@@ -115,7 +115,9 @@ class NotebookFile(_CourseHandler):
         self._note("unread")
 
     def _note(self, kind: Any) -> None:
-        if not journal.note(journal.JournalEntry(kind, self.name_in_body(), time.time()), self.journal):
+        if not check_journal.note(
+            check_journal.JournalEntry(kind, self.name_in_body(), time.time()), self.journal
+        ):
             raise web.HTTPError(500, reason="the journal cannot be written")
         self.set_status(204)
 
@@ -132,8 +134,10 @@ class ResetNotebook(_CourseHandler):
         """
         name = self.name_in_body()
         try:
-            done = await asyncio.to_thread(resetting.reset, course.root(), self.notebooks, name, self.journal)
-        except (resetting.CannotReset, course.NoCourse, course.BrokenChapter) as error:
+            done = await asyncio.to_thread(
+                notebook_reset.reset, course.root(), self.notebooks, name, self.journal
+            )
+        except (notebook_reset.CannotReset, course.NoCourse, course.BrokenChapter) as error:
             self.set_status(409)
             self.finish({"message": str(error)})
             return
@@ -152,7 +156,7 @@ class Certificate(_CourseHandler):
             if chapter.name == name and chapter.finished is not None:
                 self.set_header("Content-Type", "image/svg+xml")
                 self.set_header("Content-Disposition", f'attachment; filename="certificate-{name}.svg"')
-                self.finish(certificate.certificate_svg(chapter.title, chapter.possible, chapter.finished))
+                self.finish(html_rendering.certificate_svg(chapter.title, chapter.possible, chapter.finished))
                 return
         raise web.HTTPError(404, reason="this certificate does not exist yet")
 

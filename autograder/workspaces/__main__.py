@@ -5,7 +5,7 @@ It builds the packages in the workspace, reports the result, then becomes the st
 In a terminal, the check starts this command as a process; in a notebook, the kernel starts it when the judge asks. The
 judge reads the output, in which the report on the build comes before any output of the student's program. Everything
 runs with the student's rights on the student's own computer. When a class is graded, however,
-`autograder.workspaces.service` does this work instead.
+`autograder.workspaces.grading_service` does this work instead.
 """
 
 from __future__ import annotations
@@ -20,16 +20,16 @@ from typing import TYPE_CHECKING
 from autograder import exercises
 from autograder.kit.runners import Launches, LaunchesFromPackage, RunsPrograms
 from autograder.process_trees import die_with_parent
-from autograder.workspaces.builds.own_builds import StudentsBuilds
+from autograder.workspaces.builds.students_builds import StudentsBuilds
 from autograder.workspaces.packages import workspace_of
-from autograder.workspaces.preparation import Preparation
 from autograder.workspaces.program_plans import alone, plan_for, ros2
-from autograder.workspaces.running.processes import tell, watched
+from autograder.workspaces.program_preparation import Preparation
+from autograder.workspaces.program_processes import tell, watched
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from autograder.workspaces.preparation import Prepared
+    from autograder.workspaces.program_preparation import Prepared
 
 
 def main(arguments: Sequence[str]) -> int:

@@ -16,14 +16,14 @@ from autograder import course
 from autograder.kit.runners import ALONE, LaunchesFromPackage, RunsProgram, RunsPrograms, ServesInterface
 from autograder.kit.workspace_report import AMENT_PACKAGE
 from autograder.workspaces.builds.install_folder import files_of_interfaces, has_service, is_indexed
-from autograder.workspaces.byte_budget import ByteBudget
 from autograder.workspaces.packages import LAUNCH_LANGUAGES, WORKSPACE, launch_files
+from autograder.workspaces.sources import ByteBudget
 from environment.python_child import installed_program, python_child
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
 
-    from autograder.workspaces.builds.colcon import Build
+    from autograder.workspaces.builds.colcon_build import Build
     from autograder.workspaces.packages import Package
 
 _LAUNCH_FILES = ("launch.py", ".xml", ".yaml", ".yml")
@@ -137,7 +137,9 @@ def _interface_plan(runner: ServesInterface) -> Plan:
 
     def probe(made: Build) -> Sequence[str]:
         service_type = f"{generated(made)[0].name}/srv/{interface}"
-        return python_child("-m", "autograder.workspaces.running.probe", service_type, runner.service).command
+        return python_child(
+            "-m", "autograder.workspaces.interface_probe", service_type, runner.service
+        ).command
 
     return Plan(
         targets=lambda found: [package.name for package in holders(found)],

@@ -19,13 +19,41 @@ from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING
 
-from autograder.messages.workspaces import Source
-from autograder.regular_files import opened
+from autograder.messages.workspace_messages import Source
+from autograder.safe_files import opened
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
-    from autograder.messages.lines import Lines
+    from autograder.messages.json_lines import Lines
+
+
+class ByteBudget:
+    """The number of bytes that may still be read from a set of files.
+
+    Args:
+        size: The maximum number of bytes for all files together.
+
+    Attributes:
+        sufficed: True if the budget was enough for every file so far.
+    """
+
+    def __init__(self, size: int) -> None:
+        self._left = size
+        self.sufficed = True
+
+    def has(self, file: Path) -> bool:
+        """Subtract the size of a file (0 if it is missing). If too little is left, return False instead."""
+        try:
+            size = file.stat().st_size
+        except OSError:
+            size = 0
+        if size > self._left:
+            self.sufficed = False
+            return False
+        self._left -= size
+        return True
+
 
 MAX_FILES = 1_000
 """The maximum number of files and folders in one submission."""
@@ -96,7 +124,7 @@ def is_source(path: str) -> bool:
     return not any(part in _NOT_SOURCES or part.endswith(".pyc") for part in path.split("/"))
 
 
-def read(folder: Path, name: str, largest: int) -> Iterator[Source]:
+def read_sources(folder: Path, name: str, largest: int) -> Iterator[Source]:
     """Yield a folder and the sources below it, the folder first; nothing if it is not a folder.
 
     Args:
@@ -159,7 +187,7 @@ def collect_workspace(workspace: Path) -> list[Source]:
     name = workspace.resolve().name
     # Include a package.xml: if the path is a package instead of a workspace, a diagnosis reports this from the file.
     package = read_file(workspace / "package.xml", f"{name}/package.xml", MAX_FILE)
-    sources = read(workspace / "src", f"{name}/src", MAX_FILE)
+    sources = read_sources(workspace / "src", f"{name}/src", MAX_FILE)
     return _bounded([Source(name), *([package] if package else []), *sources])
 
 
@@ -217,7 +245,7 @@ def room_of(source: Source) -> int:
     return len(source.data or b"") + len(source.path)
 
 
-def receive(lines: Lines, count: int, path: str, folder: Path) -> None:
+def receive_sources(lines: Lines, count: int, path: str, folder: Path) -> None:
     """Receive sources from another process, check that they are harmless, and write them into a folder.
 
     Args:

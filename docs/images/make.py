@@ -15,7 +15,7 @@ from pathlib import Path
 
 from playwright.sync_api import sync_playwright
 
-from autograder.temporary_folders import HeldFolder
+from autograder.safe_files import HeldFolder
 from environment.python_child import python_child
 from environment.system_packages import CHROMIUM_NAMES, find_program
 

@@ -10,9 +10,9 @@ import pytest
 from click.testing import CliRunner
 from mcap.reader import make_reader
 
-from autograder.authoring.answers import folder_of
+from autograder.authoring.answer_bank import answers_folder
 from autograder.cli import cli
-from autograder.notebook.observing.recordings import read_recording
+from autograder.notebook.observing.message_recordings import read_recording
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -241,7 +241,7 @@ def test_a_place_for_messages_that_is_none_ends_with_2(
 
 @pytest.mark.ros
 def test_the_messages_of_a_check_in_a_terminal(tmp_path: Path) -> None:
-    program = folder_of("lab_1_2.talker") / "right" / "text_as_it_stands.py"
+    program = answers_folder("lab_1_2.talker") / "right" / "text_as_it_stands.py"
     path = tmp_path / "check.mcap"
     code, said = run("check", "lab_1_2.talker", "--mcap", path, "--", sys.executable, program)
     assert code == 0, said

@@ -13,11 +13,11 @@ from rclpy.serialization import deserialize_message
 
 from autograder import exercises
 from autograder.appeals import appeal_file
-from autograder.appeals.messages_seen import write_bag, write_messages
+from autograder.appeals.evidence_as_mcap import write_bag, write_messages
 from autograder.appeals.replaying import replay
-from autograder.authoring.answers import answers
-from autograder.judge.bench.interfaces import filled, interface, to_data
-from autograder.judge.verdicts.keeping import Kept, plain
+from autograder.authoring.answer_bank import answers
+from autograder.judge.bench.ros_interfaces import filled, interface, to_data
+from autograder.judge.evidence_files import Kept, plain
 from tests.measure import evidence
 
 if TYPE_CHECKING:

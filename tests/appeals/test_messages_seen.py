@@ -11,8 +11,8 @@ from mcap.reader import make_reader
 from rclpy.serialization import deserialize_message
 from std_msgs.msg import String
 
-from autograder.appeals.messages_seen import write_bag, write_messages
-from autograder.judge.verdicts.keeping import Kept, KeptLook
+from autograder.appeals.evidence_as_mcap import write_bag, write_messages
+from autograder.judge.evidence_files import Kept, KeptLook
 from autograder.kit.evidence import Event, Part
 from autograder.verdict import State, Verdict
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from autograder.authoring.answer_tables import BadTable, listed, settings
+from autograder.authoring.answer_tables import BadTable, answer_settings, listed_answers
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -38,7 +38,7 @@ def folder(tmp_path: Path) -> Path:
 
 
 def texts(folder: Path) -> dict[str, str]:
-    return {answer.file.name: answer.text() for answer in listed(folder)}
+    return {answer.file.name: answer.text() for answer in listed_answers(folder)}
 
 
 def test_an_edit_is_a_whole_program_with_its_own_first_line(folder: Path) -> None:
@@ -101,7 +101,7 @@ def test_an_edit_that_does_not_fit_is_named_when_it_is_used(
 def test_a_broken_table_is_named(folder: Path, old: str, new: str, words: str) -> None:
     (folder / "wrong" / "answers.toml").write_text(EDIT.replace(old, new))
     with pytest.raises(BadTable, match=f"wrong/answers.toml: .*{words}"):
-        list(listed(folder))
+        list(listed_answers(folder))
 
 
 def test_a_workspace_is_told_by_what_it_changes(folder: Path) -> None:
@@ -110,27 +110,27 @@ def test_a_workspace_is_told_by_what_it_changes(folder: Path) -> None:
     assert texts(folder)["counter_start.workspace"] == "Wrong: counts from 1.\n-i = 0\n+i = 1\n"
     table.write_text(EDIT.replace("counter_start.py", "counter_start.workspace"))
     with pytest.raises(BadTable, match=r"counter_start\.workspace: remove base: settings"):
-        list(listed(folder))
+        list(listed_answers(folder))
 
 
 def test_a_folder_without_settings_holds_python_programs(folder: Path) -> None:
-    assert settings(folder).command == ("python3", "{file}")
+    assert answer_settings(folder).command == ("python3", "{file}")
     (folder / "settings.toml").write_text('command = ["{file}"]\nbase = "base"\n')
-    assert (settings(folder).command, settings(folder).base) == (("{file}",), "base")
+    assert (answer_settings(folder).command, answer_settings(folder).base) == (("{file}",), "base")
     (folder / "settings.toml").write_text('comand = ["{file}"]\n')
     with pytest.raises(BadTable, match=r"settings\.toml: .*unknown field `comand`"):
-        settings(folder)
+        answer_settings(folder)
 
 
 def test_an_answer_is_told_once_and_either_whole_or_as_an_edit(folder: Path) -> None:
     (folder / "wrong" / "more.toml").write_text(EDIT)
     with pytest.raises(BadTable, match=r"more\.toml: counter_start.py: the answer is listed twice"):
-        list(listed(folder))
+        list(listed_answers(folder))
     (folder / "wrong" / "more.toml").unlink()
     (folder / "wrong" / "counter_start.py").write_text(RIGHT)
     with pytest.raises(BadTable, match="exists: remove one of the two"):
-        list(listed(folder))
+        list(listed_answers(folder))
     (folder / "wrong" / "counter_start.py").unlink()
     (folder / "right" / "answers.toml").write_text('"usual.py" = { why = "counts", diagnosis = "crashed" }\n')
     with pytest.raises(BadTable, match="a right answer must not have a diagnosis"):
-        list(listed(folder))
+        list(listed_answers(folder))

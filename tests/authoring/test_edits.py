@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from autograder.authoring.edits import CannotEdit, edited
+from autograder.authoring.answer_tables import CannotEdit, edited_text
 
 BASE = """import rclpy
 
@@ -53,14 +53,14 @@ def again():
     ],
 )
 def test_a_change_is_made(change: str, old: str, new: str) -> None:
-    assert edited(BASE, change) == BASE.replace(old, new)
+    assert edited_text(BASE, change) == BASE.replace(old, new)
 
 
 def test_several_places_are_changed_in_any_order() -> None:
     places = ["-    node = make()\n+    node = take()", "-import rclpy\n+import rclpy as ros"]
     there = BASE.replace("make", "take").replace("import rclpy", "import rclpy as ros")
-    assert edited(BASE, "\n...\n".join(places)) == there
-    assert edited(BASE, "\n...\n".join(reversed(places)) + "\n") == there
+    assert edited_text(BASE, "\n...\n".join(places)) == there
+    assert edited_text(BASE, "\n...\n".join(reversed(places)) + "\n") == there
 
 
 @pytest.mark.parametrize(
@@ -93,4 +93,4 @@ def test_several_places_are_changed_in_any_order() -> None:
 )
 def test_what_does_not_fit_is_said(change: str, words: str) -> None:
     with pytest.raises(CannotEdit, match=words):
-        edited(BASE, change)
+        edited_text(BASE, change)

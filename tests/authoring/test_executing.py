@@ -8,10 +8,9 @@ from typing import TYPE_CHECKING
 import pytest
 from rich.console import Console
 
-from autograder.authoring.executing import execute_command
-from autograder.authoring.execution_plan import NothingToExecuteError
-from autograder.masters.chapters import build
-from autograder.masters.parsing import HEADER
+from autograder.authoring.notebook_execution import NothingToExecuteError, execute_command
+from autograder.masters.chapter_building import build
+from autograder.masters.master_cells import MASTER_HEADER
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -71,7 +70,7 @@ def course(folder: Path, text: str) -> Path:
     """A course with one notebook."""
     master = folder / "solutions" / "01_first" / "lab_9_1" / "lab.md"
     master.parent.mkdir(parents=True)
-    master.write_text(f"{HEADER}\n{text}")
+    master.write_text(f"{MASTER_HEADER}\n{text}")
     build(folder)
     return folder
 

@@ -6,12 +6,11 @@ from dataclasses import replace
 
 import pytest
 
-from autograder.authoring.execution_plan import NotebookKind, Planned
-from autograder.authoring.execution_problems import problems_of
-from autograder.boxes.limits import Ended
-from autograder.execution.cells import Cell, CellCheck, CellRun, Execution
+from autograder.authoring.notebook_execution import NotebookKind, Planned, problems_of
+from autograder.boxes.run_limits import Ended
+from autograder.execution.executed_cells import Cell, CellCheck, CellRun, Execution
+from autograder.grading.grading_task import Task
 from autograder.grading.rebuilding import nbformat_nodes
-from autograder.grading.task import Task
 from autograder.verdict import Diagnosis, State, Verdict
 
 CHECK = CellCheck("lab_1_2.talker", "The talker", 10.0, 10.0, 60.0)

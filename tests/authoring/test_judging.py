@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from autograder.authoring.judging import Turn, judge_all
+from autograder.authoring.answer_bank import Turn, judge_all
 from autograder.verdict import State, Verdict, not_checked, to_json
 
 if TYPE_CHECKING:

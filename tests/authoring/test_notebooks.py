@@ -9,20 +9,19 @@ import pytest
 from rich.console import Console
 
 from autograder import course
-from autograder.authoring.executing import REPORTS, execute_all
-from autograder.authoring.execution_plan import plan
-from autograder.masters.layout import lab_name, masters
+from autograder.authoring.notebook_execution import REPORTS_FOLDER, execute_all, execution_plan
+from autograder.masters.master_files import lab_name, masters
 from tests.tiers import asked_for
 
 if TYPE_CHECKING:
-    from autograder.authoring.executing import Executed
+    from autograder.authoring.notebook_execution import Executed
 
 
 @pytest.fixture(scope="module")
 def executed(request: pytest.FixtureRequest) -> list[Executed]:
     """The notebooks that this session asks for, as ``./course execute`` runs them."""
-    planned = plan(course.root(), asked_for(request, "notebook"))
-    return execute_all(planned, course.root() / REPORTS, console=Console(file=StringIO()))
+    planned = execution_plan(course.root(), asked_for(request, "notebook"))
+    return execute_all(planned, course.root() / REPORTS_FOLDER, console=Console(file=StringIO()))
 
 
 @pytest.mark.ros

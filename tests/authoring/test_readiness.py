@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 import pytest
 
 from autograder import course, exercises
-from autograder.authoring.answers import answers
+from autograder.authoring.answer_bank import answers
+from autograder.authoring.exercise_faults import still_to_do
 from autograder.authoring.new_exercise import EXAMPLES, new_exercise, recipes
-from autograder.authoring.readiness import still_to_do
 from environment import python_child
 
 if TYPE_CHECKING:

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from autograder.boxes.fork_server import Addresses
 
-NO_JUDGE = "autograder.boxes.supervisor"
+NO_JUDGE = "autograder.boxes.box_supervisor"
 """These tests need none: any module with a \"prepare\" will do."""
 
 

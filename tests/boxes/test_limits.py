@@ -13,15 +13,15 @@ from typing import TYPE_CHECKING
 import psutil
 import pytest
 
-from autograder.boxes import cgroups, guards
+from autograder.boxes import cgroups, limit_guards
 from autograder.boxes.fork_server import ForkServers
-from autograder.boxes.limits import Ended, Limits
+from autograder.boxes.run_limits import Ended, Limits
 from autograder.boxes.sandbox import why_impossible
-from autograder.execution.cells import Cell, CellCheck, Execution
+from autograder.execution.executed_cells import Cell, CellCheck, Execution
 from autograder.execution.notebook_boxes import BoxedPlace, JudgeSetting, UnboxedPlace
-from autograder.execution.runner import run_notebook
-from autograder.judge.serving import attached
-from autograder.temporary_folders import scratch_folder
+from autograder.execution.notebook_runner import run_notebook
+from autograder.judge import controlled_judge
+from autograder.safe_files import scratch_folder
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -48,8 +48,10 @@ def run(request: pytest.FixtureRequest, tmp_path: Path, boxed: Addresses) -> Ite
     """Runs a cell and then a check under limits; the second time as on a host without cgroups."""
     with pytest.MonkeyPatch.context() as patch:
         if request.param == "watched":
-            patch.setattr(guards, "usable", dict)
-            patch.setattr(guards, "Group", lambda memory, processes: cgroups.Group(memory, processes, {}))
+            patch.setattr(limit_guards, "usable", dict)
+            patch.setattr(
+                limit_guards, "Group", lambda memory, processes: cgroups.Group(memory, processes, {})
+            )
         elif len(cgroups.usable()) < 2:
             pytest.skip("this host lets us make no cgroups")
 
@@ -88,7 +90,7 @@ def test_memory(run: Run) -> None:
 
 def test_memory_that_was_given_back_before_anyone_looked(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     """A watch comes by now and then: what a process may have must not depend on when."""
-    monkeypatch.setattr(guards, "INTERVAL", 3600.0)
+    monkeypatch.setattr(limit_guards, "INTERVAL", 3600.0)
     source = "try:\n    bytearray(700_000_000)\nexcept MemoryError:\n    pass"
     execution = run(source, memory_bytes=500_000_000)
     assert execution.cells[0].ended is Ended.OUT_OF_MEMORY
@@ -100,14 +102,14 @@ def test_memory_that_a_process_hides_by_its_name(tmp_path: Path) -> None:
         tmp_path.joinpath("status").write_text(
             f"Name:\t{name}\nVmHWM:\t  9000 kB\nRssAnon:\t  2000 kB\nRssFile:\t  1000 kB\nRssShmem:\t     0 kB\n"
         )
-        assert guards._memory_of(str(tmp_path)) == (2000 * 1024, 8000 * 1024)
+        assert limit_guards._memory_of(str(tmp_path)) == (2000 * 1024, 8000 * 1024)
 
 
 def test_tables_of_pages_are_memory(tmp_path: Path) -> None:
     # Whoever reads what nobody has written has no page of it, and two bytes of a table for each thousand.
     tmp_path.joinpath("status").write_text("VmHWM:\t  10 kB\nVmPTE:\t  3000000 kB\nRssAnon:\t  8 kB\n")
     tmp_path.joinpath("smaps_rollup").write_text("Pss_Anon:\t  8 kB\nPss_Shmem:\t  0 kB\n")
-    for measure in (guards._memory_of, guards._exact_memory_of):
+    for measure in (limit_guards._memory_of, limit_guards._exact_memory_of):
         assert measure(str(tmp_path)) == (3_000_008 * 1024,) * 2
 
 
@@ -187,10 +189,10 @@ for _ in range(300):
 def test_a_bomb_that_was_faster_than_the_watch_is_no_matter_of_files(monkeypatch: pytest.MonkeyPatch) -> None:
     """On a crowded machine a look comes late: then its processes have more files open than a box may, too."""
     limits = Limits()
-    use = guards.Use(limits.processes + 1, 0, 0, 0.0, limits.all_open_files + 1)
-    monkeypatch.setattr(guards, "usable", dict)
-    monkeypatch.setattr(guards, "use_of", lambda *_: use)
-    guard = guards.BoxGuard(limits)
+    use = limit_guards.Use(limits.processes + 1, 0, 0, 0.0, limits.all_open_files + 1)
+    monkeypatch.setattr(limit_guards, "usable", dict)
+    monkeypatch.setattr(limit_guards, "use_of", lambda *_: use)
+    guard = limit_guards.BoxGuard(limits)
     guard.watch(os.getpid())
     assert guard.exceeded() is Ended.TOO_MANY_PROCESSES
     guard.close()
@@ -257,7 +259,7 @@ def test_an_interrupt_that_meets_the_kernel_itself_leaves_it_alive(run: Run) -> 
 
 
 def test_an_error_of_a_limit_has_its_own_word() -> None:
-    from autograder.execution.cells import CellRun
+    from autograder.execution.executed_cells import CellRun
     from autograder.execution.verdicts_without_judge import without_verdict
 
     assert CHECK.check is not None
@@ -294,8 +296,10 @@ def test_a_judge_has_a_limit_of_memory(kind: type[BoxedPlace | UnboxedPlace], tm
     own, its_own = socket.socketpair()
     with (
         own, its_own, socket.socket(socket.AF_UNIX) as listener, scratch_folder(tmp_path) as folder,
-        ForkServers(attached.__name__, boxed=boxed) as warm,
-        kind(warm.addresses, folder, {}, {}, "JUDGE", JudgeSetting(attached.environment(boxed=boxed)), limits) as place,
+        ForkServers(controlled_judge.__name__, boxed=boxed) as warm,
+        kind(
+            warm.addresses, folder, {}, {}, "JUDGE", JudgeSetting(controlled_judge.environment(boxed=boxed)), limits,
+        ) as place,
     ):  # fmt: skip
         listener.bind(str(place.judge_socket))
         listener.listen()
@@ -305,4 +309,4 @@ def test_a_judge_has_a_limit_of_memory(kind: type[BoxedPlace | UnboxedPlace], tm
 
 
 def test_what_is_not_in_its_box_yet_is_not_taken_for_all_that_the_host_does() -> None:
-    assert guards.use_of(os.getpid(), None) == guards.Use(0, 0, 0, 0.0, 0)
+    assert limit_guards.use_of(os.getpid(), None) == limit_guards.Use(0, 0, 0, 0.0, 0)

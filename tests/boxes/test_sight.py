@@ -15,14 +15,14 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from autograder import course
-from autograder.boxes import mounts
-from autograder.boxes.limits import Limits
-from autograder.boxes.mounts import installation
+from autograder.boxes import visible_host
+from autograder.boxes.run_limits import Limits
 from autograder.boxes.sandbox import Bind, Enclosure
-from autograder.execution.cells import Cell
+from autograder.boxes.visible_host import installation
+from autograder.execution.executed_cells import Cell
 from autograder.execution.notebook_boxes import BoxedPlace, JudgeSetting
-from autograder.execution.runner import run_notebook
-from autograder.temporary_folders import scratch_folder
+from autograder.execution.notebook_runner import run_notebook
+from autograder.safe_files import scratch_folder
 from environment.place import Place
 
 if TYPE_CHECKING:
@@ -307,7 +307,7 @@ def test_a_sourced_ros_is_part_of_the_installation_and_a_workspace_is_not(tmp_pa
         "LD_LIBRARY_PATH": f"{ros}/lib/x86_64-linux-gnu:{workspace}/lib",
         "PATH": f"/usr/bin:{tmp_path}/home/bin:.",
     }
-    found = [path for path in mounts._installation(variables) if path.is_relative_to(tmp_path)]
+    found = [path for path in visible_host._installation(variables) if path.is_relative_to(tmp_path)]
     assert found == [ros]
 
 

@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING
 import pytest
 
 from autograder import exercises
-from autograder.cards.bundle import card_html, waiting_bundle
-from autograder.student import journal
-from autograder.student.journal import JournalEntry
+from autograder.cards.html_rendering import card_html, waiting_bundle
+from autograder.student import check_journal
+from autograder.student.check_journal import JournalEntry
 from autograder.verdict import from_json
 
 sys.path.insert(0, str(Path(__file__).parent))
@@ -57,8 +57,8 @@ def note_points(chapters: Path, share: float) -> None:
     names = exercises.all_ids()
     for exercise in names if share == 1 else names[::2]:
         possible = exercises.get(exercise).points
-        assert journal.note(
-            JournalEntry("check", exercise, 1, share * possible, possible), chapters / journal.NAME
+        assert check_journal.note(
+            JournalEntry("check", exercise, 1, share * possible, possible), chapters / check_journal.NAME
         )
 
 
@@ -78,7 +78,7 @@ def tab_to(page: Page, target: Locator) -> None:
 
 @light_and_dark
 def test_the_course_page(page: Page, lab: str, chapters: Path, scheme: str) -> None:
-    (chapters / journal.NAME).unlink(missing_ok=True)
+    (chapters / check_journal.NAME).unlink(missing_ok=True)
     page.emulate_media(color_scheme="dark" if scheme == "dark" else "light")
     page.goto(lab.format("course"))
     assert grave_findings(page) == []
@@ -99,13 +99,15 @@ def test_the_side_panel_and_a_card_in_jupyterlab_by_the_keyboard(
 ) -> None:
     from playwright.sync_api import expect
 
-    (chapters / journal.NAME).unlink(missing_ok=True)
+    (chapters / check_journal.NAME).unlink(missing_ok=True)
     # As a student who stopped in Lab 1.2: "Continue" leads there.
     for lab_before in ("00_nervous_system", "lab_1_1"):
         for exercise in exercises.all_ids():
             if exercise.startswith(f"{lab_before}."):
                 points = exercises.get(exercise).points
-                journal.note(JournalEntry("check", exercise, 1, points, points), chapters / journal.NAME)
+                check_journal.note(
+                    JournalEntry("check", exercise, 1, points, points), chapters / check_journal.NAME
+                )
     page.goto(lab.format("lab"))
     panel = page.frame_locator("iframe[title=Course]")
     expect(panel.locator("#continue")).to_contain_text("Lab 1.2")

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 import pytest
 
 from autograder import exercises
-from autograder.student import journal
-from autograder.student.journal import JournalEntry
+from autograder.student import check_journal
+from autograder.student.check_journal import JournalEntry
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -52,7 +52,9 @@ def all_but(here: Sequence[str], chapters: Path) -> None:
     for exercise in exercises.all_ids():
         points = exercises.get(exercise).points
         if exercise not in here:
-            assert journal.note(JournalEntry("check", exercise, 1, points, points), chapters / journal.NAME)
+            assert check_journal.note(
+                JournalEntry("check", exercise, 1, points, points), chapters / check_journal.NAME
+            )
 
 
 def look(page: Page, name: str) -> None:

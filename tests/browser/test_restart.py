@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import nbformat
 import pytest
 
-from autograder.cards.bundle import waiting_bundle
+from autograder.cards.html_rendering import waiting_bundle
 
 sys.path.insert(0, str(Path(__file__).parent))
 from open_notebook import OpenNotebook, look, opened_page

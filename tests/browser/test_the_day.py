@@ -37,7 +37,7 @@ from tiny_class import QUIET, TALKER, TinyClass, make_tiny_class
 from workbook import rows_of
 
 from autograder.cli import cli
-from autograder.grading.running import engine, sandboxing
+from autograder.grading.running import execution_backends
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -98,8 +98,8 @@ def tiny(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> TinyClass:
     so that formgrader, in a process of its own, finds the results that a command has left.
     """
     fake = EngineWithAsserts()
-    monkeypatch.setattr(engine, "execute_all", fake.execute_all)
-    monkeypatch.setattr(sandboxing, "require", lambda _: None)
+    monkeypatch.setattr(execution_backends, "execute_all", fake.execute_all)
+    monkeypatch.setattr(execution_backends, "require", lambda _: None)
     tiny = TinyClass(make_tiny_class(tmp_path / "made"))
     penalty(tiny)
     due(tiny, DUE)

@@ -23,21 +23,21 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "grading"))
 from server_of_a_test import jupyter_server
 from tiny_class import FakeEngine, TinyClass, make_tiny_class
 
-from autograder.boxes.limits import Ended, Limits
-from autograder.execution.cells import CellRun, CellType
-from autograder.execution.outputs import Budget, OutputCollector
+from autograder.boxes.run_limits import Ended, Limits
+from autograder.execution.cell_outputs import Budget, OutputCollector
+from autograder.execution.executed_cells import CellRun, CellType
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.rebuilding import nbformat_nodes
 from autograder.grading.returning.sanitize import clean, harmless_markdown
-from autograder.grading.running import engine
+from autograder.grading.running import execution_backends
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from playwright.sync_api import Page
 
-    from autograder.execution.cells import Execution
-    from autograder.grading.task import Task
+    from autograder.execution.executed_cells import Execution
+    from autograder.grading.grading_task import Task
 
 pytestmark = [
     pytest.mark.browser,
@@ -211,7 +211,7 @@ def hostile_class(tmp_path_factory: pytest.TempPathFactory) -> TinyClass:
     other = tiny.submit("mallory")
     other.rename(other.with_name("lab <img src=x onerror=fired()>.ipynb"))
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(engine, "execute_all", HostileEngine().execute_all)
+        patch.setattr(execution_backends, "execute_all", HostileEngine().execute_all)
         tiny.grade(feedback=True)
     assert tiny.scores("eve")["lab_1_2-talker"] == 4
     return tiny

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import re2
 
-from autograder.cards import wording
-from autograder.cards.tracebacks import TRACEBACK, place
+from autograder.cards import card_wording
+from autograder.cards.readable_text import TRACEBACK, place
 from autograder.verdict import State
 
 if TYPE_CHECKING:
@@ -28,7 +28,7 @@ def objection(verdict: Verdict) -> str:
     """What is wrong about the words of a card; empty where nothing is."""
     if verdict.state is not State.FAILED or verdict.diagnosis is None:
         return ""
-    advice = wording.advice(verdict)
+    advice = card_wording.advice(verdict)
     missed = [criterion.seen for criterion in verdict.criteria if not criterion.passed]
     words = " ".join((advice.text, advice.next_step, *missed))
     if found := _NO_WORDS.search(words) or _SINGULAR.search(words):

@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from autograder.cards.bundle import card_html
-from autograder.cards.text import card_text
+from autograder.cards.html_rendering import card_html
+from autograder.cards.text_rendering import card_text
 from autograder.verdict import CriterionResult, Diagnosis, Moment, State, Verdict, not_checked
 
 if TYPE_CHECKING:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from autograder.cards import bundle
+from autograder.cards import html_rendering
 from autograder.cards.card_content import Solution
-from autograder.cards.wording import OTHER_WAY, SOLUTION
+from autograder.cards.card_wording import OTHER_WAY, SOLUTION
 from autograder.verdict import State, Verdict
 
 FULL = Verdict("lab_9_1.battery", "The battery", State.PASSED, 10, 10)
@@ -16,7 +16,7 @@ REFERENCE = Solution(
 
 
 def test_full_marks_offer_it_folded_up() -> None:
-    card = bundle.mimebundle(FULL, solution=REFERENCE)
+    card = html_rendering.card_bundle(FULL, solution=REFERENCE)
     html = card["text/html"]
     assert f'<details class="agc-fold agc-solution">\n<summary>{SOLUTION}' in html
     assert "&lt;a/&gt;" in html
@@ -27,15 +27,15 @@ def test_full_marks_offer_it_folded_up() -> None:
 
 
 def test_anything_less_does_not() -> None:
-    without = bundle.mimebundle(FULL)
+    without = html_rendering.card_bundle(FULL)
     assert SOLUTION not in str(without)
     for state, score in ((State.FAILED, 9), (State.FAILED, 10), (State.NOT_CHECKED, 0)):
         assert SOLUTION not in str(
-            bundle.mimebundle(replace(FULL, state=state, score=score), solution=REFERENCE)
+            html_rendering.card_bundle(replace(FULL, state=state, score=score), solution=REFERENCE)
         )
 
 
 def test_where_there_is_no_other_way_none_is_mentioned() -> None:
-    card = bundle.mimebundle(FULL, solution=Solution(("x = 1",), "Because."))
+    card = html_rendering.card_bundle(FULL, solution=Solution(("x = 1",), "Because."))
     assert OTHER_WAY not in card["text/html"]
     assert OTHER_WAY not in card["text/plain"]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from autograder.cards.differences import difference, marked
+from autograder.cards.card_content import difference, marked
 from autograder.verdict import CriterionResult
 
 

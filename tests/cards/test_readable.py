@@ -7,7 +7,7 @@ import sys
 
 import pytest
 
-from autograder.cards.readable import _escaped, block, one_line, paragraph, printable_json, width, wrap
+from autograder.cards.readable_text import _escaped, block, one_line, paragraph, printable_json, width, wrap
 
 
 @pytest.mark.parametrize(

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING
 import pytest
 
 from autograder.cards.card_content import IN_A_TERMINAL
-from autograder.cards.readable import width as columns
-from autograder.cards.text import card_text
+from autograder.cards.readable_text import width as columns
+from autograder.cards.text_rendering import card_text
 from autograder.verdict import CriterionResult, State, Verdict, not_checked
 
 if TYPE_CHECKING:

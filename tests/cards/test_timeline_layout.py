@@ -7,10 +7,9 @@ from itertools import pairwise
 
 import pytest
 
-from autograder.cards import readable
-from autograder.cards.axis import TURNS
+from autograder.cards import readable_text
+from autograder.cards.card_traffic import TURNS, TrafficPart, traffic
 from autograder.cards.timeline_layout import HALF_WIDTH, WIDTH, Lane, Mark, Picture, picture
-from autograder.cards.traffic import TrafficPart, traffic
 from autograder.verdict import Moment, Verdict
 
 CHARACTER = 6.62  # pixels of a character of the 11-pixel label font (DejaVu Sans Mono and Menlo: 0.602 em)
@@ -22,10 +21,10 @@ def parts_of(verdict: Verdict) -> tuple[TrafficPart, ...]:
 
 def texts(lane: Lane, width: int) -> list[tuple[float, float, float, float]]:
     """Left, right, top and bottom of each label, and of the lane's name, in pixels."""
-    boxes = [(0.0, readable.width(lane.name) * 7.3, lane.name_y - 9, lane.name_y + 2)]
+    boxes = [(0.0, readable_text.width(lane.name) * 7.3, lane.name_y - 9, lane.name_y + 2)]
     for mark in lane.marks:
         if mark.label:
-            length = readable.width(mark.label) * CHARACTER
+            length = readable_text.width(mark.label) * CHARACTER
             x = mark.x * width / 100 + (-4 - length if mark.to_the_left else 4)
             boxes.append((x, x + length, mark.label_y - 9, mark.label_y + 2))
     return boxes

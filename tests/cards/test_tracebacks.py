@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from autograder.cards.tracebacks import TracebackPlace, place
+from autograder.cards.readable_text import TracebackLine, place
 
 OF_A_PROGRAM = """Traceback (most recent call last):
   File "/home/ada/talker.py", line 30, in main
@@ -14,7 +14,7 @@ TypeError: tick() takes 0 positional arguments but 1 was given"""
 
 def test_of_a_program_it_is_the_last_line_of_its_own() -> None:
     error = "TypeError: tick() takes 0 positional arguments but 1 was given"
-    assert place(OF_A_PROGRAM) == TracebackPlace("Line 30 of talker.py", "rclpy.spin(node)", error)
+    assert place(OF_A_PROGRAM) == TracebackLine("Line 30 of talker.py", "rclpy.spin(node)", error)
 
 
 def test_a_line_that_spins_is_not_blamed_for_a_callback() -> None:
@@ -31,7 +31,7 @@ def test_a_file_that_python_cannot_read_has_a_line_without_a_traceback() -> None
     detail = (
         "  File \"/home/ada/talker.py\", line 14\n    def tick(self)\n          ^\nSyntaxError: expected ':'"
     )
-    assert place(detail) == TracebackPlace(
+    assert place(detail) == TracebackLine(
         "Line 14 of talker.py", "def tick(self)", "SyntaxError: expected ':'"
     )
 
@@ -41,13 +41,13 @@ def test_what_a_build_has_installed_is_the_students_own() -> None:
     detail = (
         f'Traceback (most recent call last):\n  File "{file}", line 9, in main\n    tock()\nNameError: tock'
     )
-    assert place(detail) == TracebackPlace("Line 9 of talker.py", "tock()", "NameError: tock")
+    assert place(detail) == TracebackLine("Line 9 of talker.py", "tock()", "NameError: tock")
     assert place(detail.replace("/ws/install/my_robot_pkg", "/ws/.venv")) is None
 
 
 def test_a_line_that_python_does_not_quote_has_no_quote() -> None:
     found = place('Traceback (most recent call last):\n  File "<ipython-input-3>", line 2, in f\nKeyError: 1')
-    assert found == TracebackPlace("Line 2 of your cell", "", "KeyError: 1")
+    assert found == TracebackLine("Line 2 of your cell", "", "KeyError: 1")
 
 
 def test_the_script_of_an_entry_point_is_nobodys() -> None:

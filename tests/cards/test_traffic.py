@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from autograder.cards.traffic import MAX_LANES, OTHER_LANES, OWN_LANE, traffic
+from autograder.cards.card_traffic import MAX_LANES, OTHER_LANES, OWN_LANE, traffic
 from autograder.verdict import Moment
 
 

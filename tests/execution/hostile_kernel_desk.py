@@ -22,7 +22,7 @@ from tests.boxes.reach import reached
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from autograder.execution.desk_messages import DeskOrder, Said
+    from autograder.execution.kernel_desk_messages import DeskOrder, Said
 
 _NAMED = re2.compile(r"hostile: (\w+) ?(\d*)")
 SCRIPT = "<script>fired()</script><img src=x onerror=fired()>"

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from autograder.boxes.limits import Ended, Limits
-from autograder.execution.cells import Cell, CellCheck
-from autograder.execution.runner import _Run
+from autograder.boxes.run_limits import Ended, Limits
+from autograder.execution.executed_cells import Cell, CellCheck
+from autograder.execution.notebook_runner import _Run
 
 if TYPE_CHECKING:
-    from autograder.boxes.limits import Left
+    from autograder.boxes.run_limits import Left
     from autograder.verdict import Verdict
 
 LIMITS = Limits(cell_seconds=120, check_margin=10)

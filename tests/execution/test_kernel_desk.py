@@ -14,22 +14,22 @@ import msgspec
 import pytest
 
 from autograder.boxes.fork_server import INSIDE, ForkServer
-from autograder.boxes.limits import Ended, Limits
-from autograder.execution.cells import Cell, CellCheck, Execution
-from autograder.execution.desk_messages import admitted_answer
+from autograder.boxes.run_limits import Ended, Limits
+from autograder.execution.cell_outputs import NotebookOutputs
+from autograder.execution.executed_cells import Cell, CellCheck, Execution
+from autograder.execution.kernel_desk_messages import admitted_answer
 from autograder.execution.notebook_boxes import BoxedPlace, JudgeSetting, UnboxedPlace
-from autograder.execution.outputs import NotebookOutputs
-from autograder.execution.runner import run_notebook
-from autograder.temporary_folders import scratch_folder
+from autograder.execution.notebook_runner import run_notebook
+from autograder.safe_files import scratch_folder
 from autograder.verdict import State, Verdict
 from tests.execution.hostile_kernel_desk import CRAFTED, SCRIPT
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from autograder.boxes.boxed_processes import ForkedProcess
     from autograder.boxes.fork_server import Addresses
-    from autograder.execution.kernel import Channels
+    from autograder.boxes.running_boxes import ForkedProcess
+    from autograder.execution.jupyter_kernel import Channels
 
 ROOT = Path(__file__).resolve().parents[2]
 CHECK = Cell("1", check=CellCheck("lab.one", "One", points=10, worth=10, limit=2))

@@ -12,17 +12,17 @@ from typing import TYPE_CHECKING, NoReturn
 import psutil
 import pytest
 
-from autograder.boxes.box import NoSandbox
 from autograder.boxes.fork_server import Addresses
-from autograder.boxes.limits import Ended, Left, Limits, Patient, wall_time
-from autograder.execution.cells import Cell, CellCheck, CellType, Execution
+from autograder.boxes.run_limits import Ended, Left, Limits, Patient, wall_time
+from autograder.boxes.running_boxes import NoSandbox
+from autograder.execution.executed_cells import Cell, CellCheck, CellType, Execution
 from autograder.execution.notebook_boxes import BoxedPlace, JudgeSetting, UnboxedPlace
-from autograder.execution.runner import Unfinished, run_notebook
-from autograder.temporary_folders import scratch_folder
+from autograder.execution.notebook_runner import Unfinished, run_notebook
+from autograder.safe_files import scratch_folder
 from autograder.verdict import State, Verdict
 
 if TYPE_CHECKING:
-    from autograder.execution.kernel import Channels
+    from autograder.execution.jupyter_kernel import Channels
 
 CHECK = CellCheck("lab.one", "One", points=10, worth=10, limit=2)
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from autograder.boxes.limits import Ended
-from autograder.execution.cells import CellCheck, CellRun
+from autograder.boxes.run_limits import Ended
+from autograder.execution.executed_cells import CellCheck, CellRun
 from autograder.execution.verdicts_without_judge import without_verdict
 from autograder.verdict import ASKS_FOR_INPUT
 

@@ -9,7 +9,7 @@ import pytest
 from exercise_1_3 import _cancel_scenario as cancel
 from exercise_1_3._cancel_evidence import AGREED, CANCEL_REFUSED, HONOURED
 
-from autograder.judge.verdicts import reference
+from autograder.judge import evidence_files
 from autograder.kit.evidence import Event, Evidence, Part
 from autograder.kit.giving_up import LATENESS
 from autograder.kit.lateness import SOON
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from autograder.kit.counterparts import ActionCounterpart
 
-REFERENCE = reference.load("exercise_1_3.cancel")
+REFERENCE = evidence_files.load_reference("exercise_1_3.cancel")
 ACTION = "/fibonacci"
 FEEDBACK_EVERY = 0.2
 

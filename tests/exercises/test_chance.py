@@ -15,7 +15,7 @@ from inspecting_topics import mismatch
 from lab_1_2 import listener, talker
 from lab_1_4 import client as action_client
 
-from autograder.judge.verdicts import reference
+from autograder.judge import evidence_files
 from autograder.kit.evidence import Event, Evidence, Part, Reference
 from autograder.kit.mistakes import common_mistakes as common
 from autograder.kit.mistakes import unfinished
@@ -193,10 +193,10 @@ def test_a_deaf_talker_is_told_and_earns_the_same_whether_its_only_text_was_hear
 
 @pytest.mark.parametrize("seen", [[], [_interface("subscription")]])
 def test_a_listener_that_dies_at_once_earns_the_same(seen: list[Event]) -> None:
-    reference = Reference("lab_1_2.listener", {"subscription": {TOPIC: TYPE}})
+    evidence_files = Reference("lab_1_2.listener", {"subscription": {TOPIC: TYPE}})
     late = Event(9.1, "sent", TOPIC, {"fields": {"data": "fjord 1234"}})
     part = Part("listening", {"texts": ["fjord 1234"]}, [*seen, *_printed(TRACEBACK), EXITED, late])
-    assert _points(listener, Evidence([part], reference)) == 0
+    assert _points(listener, Evidence([part], evidence_files)) == 0
 
 
 @pytest.mark.parametrize(
@@ -277,7 +277,7 @@ def test_who_does_not_wait_for_an_answer_is_told_so_however_slowly_the_program_e
     gave_up = Event(0.5, "output", "stderr", {"text": "no answer"})
     late = [replace(given, t=0.9), EXITED] if slow_to_end else [EXITED, replace(given, t=9.5)]
     held = Part(EXTREME, {"numbers": [2000, 3000]}, [asked, gave_up, *late])
-    evidence = Evidence([quick, held], reference.load("lab_1_3.client"))
+    evidence = Evidence([quick, held], evidence_files.load_reference("lab_1_3.client"))
     assert ANSWER_NOT_AWAITED.recognise(evidence)
     right = Part(EXTREME, {}, [asked, given, Event(0.5, "output", "stdout", {"text": "sum: -77777"}), EXITED])
     assert not ANSWER_NOT_AWAITED.recognise(replace(evidence, parts=[quick, right]))

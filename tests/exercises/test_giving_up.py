@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from autograder import exercises
-from autograder.judge.verdicts import reference, trial
+from autograder.judge import evidence_files, one_check
 from autograder.kit.evidence import Event, Evidence, Part, Reference
 from autograder.kit.giving_up import PATIENCES, broken_patience, gave_up, objection, remark
 
@@ -73,7 +73,7 @@ def test_it_asked_once_it_had_met_the_server() -> None:
 def test_a_client_that_looks_once_is_told_so_whenever_it_met_the_service(
     exercise_id: str, met_in: list[int]
 ) -> None:
-    stored = reference.load(exercise_id)
+    stored = evidence_files.load_reference(exercise_id)
     parts = []
     # The recorded order of the runs is a drawn one, too.
     in_order = sorted(stored.parts, key=lambda part: part.name == "there is no service")
@@ -81,7 +81,7 @@ def test_a_client_that_looks_once_is_told_so_whenever_it_met_the_service(
         seen = run("not available", part.inputs.get("numbers", [1, 2, 3]))
         events = [SEEN, *part.events, ENDED] if number in met_in else seen.events
         parts.append(Part(part.name, {"numbers": part.inputs.get("numbers", [1, 2, 3])}, events))
-    diagnosis, _ = trial.diagnose(exercises.get(exercise_id), Evidence(parts, stored))
+    diagnosis, _ = one_check.diagnose(exercises.get(exercise_id), Evidence(parts, stored))
     assert diagnosis.key == "gave_up_too_early"
 
 
@@ -107,10 +107,10 @@ RETURNED = Event(0.01, "subject", "returned", {"value": "None"})
 def test_of_a_function_that_was_not_seen_to_look_for_anybody_nobody_says_that_it_gave_up(
     exercise_id: str, events: list[Event], key: str
 ) -> None:
-    stored = reference.load(exercise_id)
+    stored = evidence_files.load_reference(exercise_id)
     inputs = {"numbers": [1, 2, 3], "patience_sec": 6.6}
     parts = [Part(part.name, inputs, events) for part in stored.parts]
-    diagnosis, _ = trial.diagnose(exercises.get(exercise_id), Evidence(parts, stored))
+    diagnosis, _ = one_check.diagnose(exercises.get(exercise_id), Evidence(parts, stored))
     assert diagnosis.key == key
 
 
@@ -234,7 +234,7 @@ def test_how_a_client_takes_it_that_nobody_serves(part: Part, expected: str) -> 
 def test_words_about_waiting_bring_a_point_only_to_what_was_a_client_of_something(
     exercise_id: str, is_client: bool
 ) -> None:
-    stored = reference.load(exercise_id)
+    stored = evidence_files.load_reference(exercise_id)
     absent = next(part.name for part in stored.parts if part.name.startswith("there is no"))
     role = "action_client" if exercise_id == "lab_1_4.client" else "client"
     of_another_type = {"nodes": ["/client"], role: {stored.only(role)[0]: "std_srvs/srv/Trigger"}}

@@ -11,7 +11,7 @@ import pytest
 from exercise_1_2 import three_ints as exercise_1_2_three_ints
 from lab_1_3 import client as lab_1_3_client
 
-from autograder.judge.verdicts import reference, trial
+from autograder.judge import evidence_files, one_check
 from autograder.kit.evidence import Event, Evidence, Part, Reference
 from autograder.kit.lateness import ANSWERS_SOON
 from autograder.kit.mistakes.service_client_mistakes import NOT_RETURNED
@@ -33,7 +33,7 @@ from autograder.kit.recipes import service_runs
 from autograder.kit.recipes.service_runs import Run, answering, has_spoken, is_done
 
 SEEDS = range(60)
-REFERENCE = reference.load("lab_1_3.client")
+REFERENCE = evidence_files.load_reference("lab_1_3.client")
 TYPE = "my_robot_interfaces/srv/AddTwoInts"
 RETURNED = Event(0.4, "subject", "returned", {"value": "-987654321"})
 RAISED = Event(
@@ -174,11 +174,11 @@ def test_who_is_done_stays_so_while_one_more_call_is_on_its_way() -> None:
 def test_to_give_up_at_once_does_not_count_more_where_one_call_came_through_by_chance() -> None:
     gone = ("output", "stderr", {"text": "add_two_ints is not available"}), ("subject", "exited", {"code": 1})
     asked = ("request", "/add_two_ints", {"fields": {"a": 1, "b": 2}})
-    reference = Reference("e", {"client": {"/add_two_ints": "my_robot_interfaces/srv/AddTwoInts"}})
+    evidence_files = Reference("e", {"client": {"/add_two_ints": "my_robot_interfaces/srv/AddTwoInts"}})
     unlucky = [seen_of(name, *gone) for name in (LATE, BIASED, ABSENT)]
     lucky = [unlucky[0], seen_of(BIASED, asked, answered(3)), unlucky[2]]
     patient = [seen_of(LATE, asked, answered(3)), lucky[1], unlucky[2]]
-    passed = [gives_up_in_time(Evidence(parts, reference)).passed for parts in (unlucky, lucky, patient)]
+    passed = [gives_up_in_time(Evidence(parts, evidence_files)).passed for parts in (unlucky, lucky, patient)]
     assert passed == [False, False, True]
 
 
@@ -246,7 +246,7 @@ def test_who_raises_has_not_waited_also_where_the_answer_came_before_its_end(
     known = Event(0.05, "interface", "graph", {"nodes": ["/n"], "client": {"/add_two_ints": TYPE}})
     part = _reported(*after)
     seen = Evidence([replace(part, events=[known, *part.events])], REFERENCE)
-    found, _ = trial.diagnose(lab_1_3_client.EXERCISE, seen)
+    found, _ = one_check.diagnose(lab_1_3_client.EXERCISE, seen)
     assert found.key == key
 
 

@@ -14,8 +14,8 @@ import nbformat
 import pytest
 
 from autograder import course, exercises
-from autograder.authoring.readiness import faults_of_text
-from autograder.masters.layout import chapter_path
+from autograder.authoring.exercise_faults import faults_of_text
+from autograder.masters.master_files import chapter_path
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from autograder import exercises
-from autograder.judge.verdicts import reference, trial
+from autograder.judge import evidence_files, one_check
 from autograder.kit.evidence import Event, Evidence, Part
 from autograder.kit.mistakes.unfinished import NOTHING_THERE
 from autograder.kit.workspace_report import WorkspaceReport, as_line
@@ -14,7 +14,7 @@ from autograder.kit.workspace_report import WorkspaceReport, as_line
 @pytest.mark.parametrize("exercise_id", exercises.all_ids())
 @pytest.mark.parametrize("nodes", [[], ["/a_node"]], ids=["nothing", "a bare node"])
 def test_doing_nothing_earns_nothing(exercise_id: str, nodes: list[str]) -> None:
-    stored = reference.load(exercise_id)
+    stored = evidence_files.load_reference(exercise_id)
     survey = Event(0.5, "interface", "graph", {"nodes": nodes})
     returned = Event(0.6, "subject", "returned", {"value": None})
     parts = [Part(part.name, part.inputs, [survey, returned]) for part in stored.parts]
@@ -32,7 +32,7 @@ def test_an_exercise_is_worth_ten_points(exercise_id: str) -> None:
 @pytest.mark.parametrize("exercise_id", exercises.all_ids())
 def test_each_criterion_and_mistake_can_look_at_any_evidence(exercise_id: str) -> None:
     exercise = exercises.get(exercise_id)
-    evidence = Evidence([], reference.load(exercise_id))
+    evidence = Evidence([], evidence_files.load_reference(exercise_id))
     for criterion in exercise.criteria:
         assert not criterion.judge(evidence).passed
     for mistake in exercise.mistakes:
@@ -44,11 +44,11 @@ def test_each_criterion_and_mistake_can_look_at_any_evidence(exercise_id: str) -
 )
 @pytest.mark.parametrize("seen", [True, False], ids=["its client was seen", "it was gone too soon"])
 def test_a_function_that_comes_back_with_nothing_is_not_written_yet(exercise_id: str, seen: bool) -> None:
-    stored = reference.load(exercise_id)
+    stored = evidence_files.load_reference(exercise_id)
     survey = Event(0.5, "interface", "graph", {"nodes": ["/client"], **stored.interface} if seen else {})
     returned = Event(0.6, "subject", "returned", {"value": None})
     parts = [Part(part.name, part.inputs, [survey, returned]) for part in stored.parts]
-    diagnosis, _ = trial.diagnose(exercises.get(exercise_id), Evidence(parts, stored))
+    diagnosis, _ = one_check.diagnose(exercises.get(exercise_id), Evidence(parts, stored))
     asked_nothing = {"not_written", "no_call", "one_call_only"} if seen else {"not_written"}
     assert diagnosis.key in asked_nothing
 
@@ -59,7 +59,7 @@ def test_a_function_that_comes_back_with_nothing_is_not_written_yet(exercise_id:
 )
 @pytest.mark.parametrize("seen", [True, False], ids=["its client was seen", "it was gone too soon"])
 def test_a_function_as_it_was_handed_out_is_not_written_yet(exercise_id: str, seen: bool) -> None:
-    stored = reference.load(exercise_id)
+    stored = evidence_files.load_reference(exercise_id)
     started = Event(0.0, "subject", "started", {"accepted": ["patience_sec"]})
     survey = Event(0.005, "interface", "graph", {"nodes": ["/client"], **stored.interface} if seen else {})
     returned = Event(0.01, "subject", "returned", {"value": None})
@@ -67,7 +67,7 @@ def test_a_function_as_it_was_handed_out_is_not_written_yet(exercise_id: str, se
         Part(part.name, {"patience_sec": 2.5, **part.inputs}, [started, survey, returned])
         for part in stored.parts
     ]
-    diagnosis, _ = trial.diagnose(exercises.get(exercise_id), Evidence(parts, stored))
+    diagnosis, _ = one_check.diagnose(exercises.get(exercise_id), Evidence(parts, stored))
     assert diagnosis.key == "not_written"
     assert "TODO" in diagnosis.next_step
 
@@ -79,7 +79,7 @@ def test_a_function_as_it_was_handed_out_is_not_written_yet(exercise_id: str, se
 def test_a_program_that_ends_at_once_is_told_what_belongs_into_its_main(
     exercise_id: str, client: bool, other: bool
 ) -> None:
-    stored = reference.load(exercise_id)
+    stored = evidence_files.load_reference(exercise_id)
     exited = Event(0.4, "subject", "exited", {"code": 0})
     evidence = Evidence([Part(part.name, part.inputs, [exited]) for part in stored.parts], stored)
     advice = next(filter(None, (m.recognise(evidence) for m in NOTHING_THERE)))
@@ -89,7 +89,7 @@ def test_a_program_that_ends_at_once_is_told_what_belongs_into_its_main(
 
 
 def test_of_a_built_program_nothing_is_said_of_the_last_lines_of_its_file() -> None:
-    stored = reference.load("lab_1_2.talker")
+    stored = evidence_files.load_reference("lab_1_2.talker")
     built = Event(0.1, "output", "stdout", {"text": as_line(WorkspaceReport("built", built=True))})
     exited = Event(0.4, "subject", "exited", {"code": 0})
     advice = next(

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from autograder.grading import batch
-from autograder.grading.rebuilding import desk, task_making
+from autograder.grading.rebuilding import submission_desk, task_making
 
 sys.path.insert(0, str(Path(__file__).parent))
 sys.path.insert(0, str(Path(__file__).parent / "collecting"))
@@ -22,12 +22,12 @@ from tiny_class import FakeEngine, TinyClass, make_tiny_class
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from autograder.boxes.desk import Desk, KeptDesk
+    from autograder.boxes.reading_desks import Desk, KeptDesk
 
 SMALL = 100_000
 """Bytes of a file that is kept in the memory of the tests, with what it holds."""
-_document_of = desk.document_of
-_once = functools.lru_cache(maxsize=300)(desk.document_of)
+_document_of = submission_desk.document_of
+_once = functools.lru_cache(maxsize=300)(submission_desk.document_of)
 
 
 @pytest.fixture(scope="session")
@@ -72,7 +72,7 @@ def each_file_is_read_once() -> Iterator[None]:
         return (_once if len(data) < SMALL else _document_of)(asked, data)
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(desk, "document_of", document)
+        patch.setattr(submission_desk, "document_of", document)
         yield
 
 

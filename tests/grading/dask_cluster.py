@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Self
 
 import psutil
 
-from autograder.temporary_folders import remove_tree
+from autograder.safe_files import remove_tree
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -33,7 +33,7 @@ asyncio.run(main())
 
 _WORKER = """
 import sys
-from autograder.grading.cluster import start_worker
+from autograder.grading.cluster import dask_worker as start_worker
 
 address, name, slots, version, obstacle = sys.argv[1:6]
 # Agreed upon, also while somebody edits the course.
@@ -45,7 +45,7 @@ start_worker.start_worker(address, jobs=int(slots), name=name, sandbox=False, te
 
 # What `dask worker` executes first, so that it has the same to offer.
 _PRELOAD = """
-from autograder.grading.cluster import start_worker
+from autograder.grading.cluster import dask_worker as start_worker
 
 start_worker.course_version = lambda: {version!r}
 start_worker.why_impossible = lambda: {obstacle!r}

@@ -14,8 +14,8 @@ import traceback
 from pathlib import Path
 from typing import Self
 
-from autograder.messages.lines import listen
-from autograder.messages.orders import Report
+from autograder.messages.json_lines import listen
+from autograder.messages.judge_messages import Report
 from autograder.verdict import Diagnosis, State, Verdict
 
 

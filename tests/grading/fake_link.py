@@ -10,15 +10,24 @@ import msgspec
 from tiny_class import FakeEngine, TinyClass
 
 from autograder.grading.classes.class_directory import ClassDirectory
+from autograder.grading.grading_task import Task
 from autograder.grading.rebuilding.task_making import tasks_of
-from autograder.grading.running.dispatcher import Dispatcher
-from autograder.grading.running.orders import Answered, Broken, Command, Give, Joined, News, Offer, Order
-from autograder.grading.task import Task
+from autograder.grading.running.task_dispatcher import Dispatcher
+from autograder.grading.running.worker_messages import (
+    Answered,
+    Broken,
+    Command,
+    Give,
+    Joined,
+    News,
+    Offer,
+    Order,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from autograder.grading.running.dispatcher import Done
+    from autograder.grading.running.task_dispatcher import Done
 
 HERE = Offer("here", slots=2, obstacle="")
 

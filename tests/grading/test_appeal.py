@@ -16,14 +16,14 @@ from tiny_class import QUIET, FakeEngine, TinyClass
 from autograder import exercises
 from autograder.appeals import appeal_file
 from autograder.cli import cli
-from autograder.grading.appeal import write_appeal
+from autograder.grading.appeal_writing import write_appeal
 from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.class_directory import ClassDirectory
-from autograder.grading.errors import GradingError
-from autograder.grading.running import sandboxing, task_execution
-from autograder.judge.verdicts import keeping, reference, trial
+from autograder.grading.grading_errors import GradingError
+from autograder.grading.running import execution_backends, task_execution
+from autograder.judge import evidence_files, one_check
 from autograder.kit.evidence import Event, Evidence, Part
-from autograder.messages.orders import Report
+from autograder.messages.judge_messages import Report
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -33,10 +33,12 @@ ID = "lab_1_2.talker"
 
 def evidence() -> bytes:
     """What a judge may hand over of a talker that is right."""
-    stored = reference.load(ID)
+    stored = evidence_files.load_reference(ID)
     graph = Event(0.1, "interface", "graph", stored.interface)
     seen = Evidence([Part("talking", {}, [graph, *stored.parts[0].events])], stored)
-    return keeping.pack(trial.decide(exercises.get(ID), seen, "s"), seen, reference.digest(ID), at=1.8e9)
+    return evidence_files.pack(
+        one_check.decide(exercises.get(ID), seen, "s"), seen, evidence_files.reference_digest(ID), at=1.8e9
+    )
 
 
 @pytest.fixture(scope="module")
@@ -45,7 +47,7 @@ def _graded(to_be_copied: TinyClass) -> Path:
     engine = FakeEngine()
     engine.evidence[ID] = evidence()
     with engine.at_work(), pytest.MonkeyPatch.context() as patch:
-        patch.setattr(sandboxing, "require", lambda _: None)
+        patch.setattr(execution_backends, "require", lambda _: None)
         to_be_copied.grade()
     return to_be_copied.path
 
@@ -55,7 +57,7 @@ def graded(
     _graded: Path, fake_engine: FakeEngine, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> TinyClass:
     """A class with one submission, of which a check has evidence."""
-    monkeypatch.setattr(sandboxing, "require", lambda _: None)
+    monkeypatch.setattr(execution_backends, "require", lambda _: None)
     fake_engine.evidence[ID] = evidence()
     return TinyClass(shutil.copytree(_graded, tmp_path / "class"))
 
@@ -76,7 +78,7 @@ def test_everything_about_the_check_is_in_the_file_and_it_is_judged_the_same(gra
         ("Talker", ["def Talker():", "    return 10"])
     ]
     assert appeal.expected == json.loads(exercises.reference_path(ID).read_text(encoding="utf-8"))
-    assert appeal.seen == keeping.unpack(evidence())
+    assert appeal.seen == evidence_files.unpack(evidence())
     done = CliRunner().invoke(cli, ["replay", str(file)])
     assert done.exit_code == 0, done.output
     assert "the same verdict" in done.output
@@ -99,7 +101,7 @@ def test_where_a_person_says_so_the_file_is_somewhere_else(graded: TinyClass, tm
 def test_a_course_that_expects_something_else_since_does_not_say_what_was_expected(
     graded: TinyClass, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(reference, "digest", lambda _: "another")
+    monkeypatch.setattr(evidence_files, "reference_digest", lambda _: "another")
     assert appeal_file.read(write_appeal(graded.path, "ada", ID)).expected is None
 
 
@@ -168,8 +170,8 @@ def test_what_a_judge_hands_over_comes_from_the_worker_and_from_no_notebook(
     tiny: TinyClass, with_fake_judge: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Through real workers: the notebook writes where it can, and only the judge's words are kept."""
-    monkeypatch.setattr(sandboxing, "require", lambda _: None)
-    sandboxing.switch_off(tiny.path)
+    monkeypatch.setattr(execution_backends, "require", lambda _: None)
+    execution_backends.switch_off(tiny.path)
     tiny.submit("ada", "10 if print('evidence') is None else 0", 1)
     tiny.grade(jobs=1, judge=with_fake_judge, console=QUIET)
     assert kept(tiny) == {ID: b"lab_1_2.talker said 10", "lab_1_2.listener": b"lab_1_2.listener said 1"}
@@ -177,7 +179,7 @@ def test_what_a_judge_hands_over_comes_from_the_worker_and_from_no_notebook(
 
 def test_the_verdict_of_the_evidence_is_the_present_one() -> None:
     """Else the tests above would show nothing."""
-    found = keeping.unpack(evidence()).verdict
+    found = evidence_files.unpack(evidence()).verdict
     assert (found.score, replace(found, seconds=0.0).passed) == (10.0, True)
 
 

@@ -14,9 +14,11 @@ from nbgrader.api import Gradebook
 from tiny_class import LISTENER, TALKER, FakeEngine, TinyClass
 
 from autograder.grading.class_store import ClassStore
+from autograder.grading.classes import gradebook_writing
 from autograder.grading.classes.class_directory import ClassDirectory
+from autograder.grading.classes.gradebook_writing import NotebookEntry
 from autograder.grading.classes.new_class import release
-from autograder.grading.errors import (
+from autograder.grading.grading_errors import (
     ClassBusy,
     ClassIncomplete,
     DiskFull,
@@ -24,15 +26,13 @@ from autograder.grading.errors import (
     MasterUnusable,
     NotAClass,
 )
-from autograder.grading.gradebooks import gradebook
-from autograder.grading.gradebooks.gradebook import NotebookEntry
-from autograder.temporary_folders import fresh_folder
+from autograder.safe_files import fresh_folder
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from autograder.grading.reporting.report import GradeReport
-    from autograder.grading.reporting.rows import Row
+    from autograder.grading.reporting.grade_report import GradeReport
+    from autograder.grading.table.rows import Row
 
 pytestmark = pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning")
 
@@ -186,13 +186,13 @@ def test_grades_are_taken_back_before_the_first_notebook_runs(
 def test_a_gradebook_that_says_something_else_afterwards_is_not_believed(
     tiny: TinyClass, fake_engine: FakeEngine, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    usual = gradebook.enter
+    usual = gradebook_writing.enter
 
     def generous(url: str, assignment: str, student: str, notebooks: Any, at: Any) -> bool:
         ten = {name: NotebookEntry({TALKER: 10}, {}) for name in notebooks}
         return usual(url, assignment, student, ten, at)
 
-    monkeypatch.setattr(gradebook, "enter", generous)
+    monkeypatch.setattr(gradebook_writing, "enter", generous)
     tiny.submit("ada", 4)
     report = tiny.grade()
     assert tiny.scores("ada")[TALKER] == 0
@@ -515,7 +515,7 @@ def test_the_secret_is_in_nothing_that_is_handed_out(tiny: TinyClass) -> None:
 def test_reset_is_one_step_for_all(tiny: TinyClass, fake_engine: FakeEngine) -> None:
     tiny.submit("ada")
     tiny.grade()
-    gradebook.reset(
+    gradebook_writing.reset(
         f"sqlite:///{tiny.path / 'gradebook.db'}",
         [("lab_1_2", "ada"), ("lab_1_2", "nobody"), ("none", "ada")],
     )

@@ -18,16 +18,16 @@ import pytest
 from click.testing import CliRunner
 from tiny_class import TALKER, FakeEngine, TinyClass
 
-from autograder.boxes.limits import Ended, Limits
+from autograder.boxes.run_limits import Ended, Limits
 from autograder.cli import cli
-from autograder.execution.cells import Cell, CellCheck, CellRun, Execution
+from autograder.execution.executed_cells import Cell, CellCheck, CellRun, Execution
 from autograder.grading import class_store
 from autograder.grading.class_records import Attempt, Entered, Origin
 from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.class_directory import ClassDirectory, Submission
-from autograder.grading.errors import DiskFull, StoreTrouble
-from autograder.grading.reporting.rows import Row
-from autograder.grading.task import Task
+from autograder.grading.grading_errors import DiskFull, StoreTrouble
+from autograder.grading.grading_task import Task
+from autograder.grading.table.rows import Row
 from autograder.verdict import State, Verdict
 from tests import hasty_disk
 

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import pytest
 from tiny_class import LISTENER, TALKER, FakeEngine, TinyClass
 
-from autograder.grading.errors import DiskFull, GradebookTrouble
+from autograder.grading.grading_errors import DiskFull, GradebookTrouble
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

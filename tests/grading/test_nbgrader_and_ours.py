@@ -18,10 +18,10 @@ from tiny_class import LISTENER, TALKER, FakeEngine, TinyClass
 
 from autograder.cli import cli
 from autograder.grading.class_store import ClassStore
+from autograder.grading.classes import gradebook_writing
 from autograder.grading.classes.class_directory import ClassDirectory
-from autograder.grading.errors import ClassIncomplete
-from autograder.grading.gradebooks import gradebook
-from autograder.grading.gradebooks.gradebook_reading import read_entries
+from autograder.grading.classes.gradebook_reading import read_entries
+from autograder.grading.grading_errors import ClassIncomplete
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -129,7 +129,7 @@ def test_plain_nbgrader_leaves_no_earlier_score_when_it_fails(
     elif where == "executing":
         monkeypatch.setattr(fake_engine, "execute", fail)
     else:
-        monkeypatch.setattr(gradebook, "enter", fail)
+        monkeypatch.setattr(gradebook_writing, "enter", fail)
     with pytest.raises(RuntimeError if where == "executing" else NbGraderException):
         nbgrader_autograde(tiny, force=True)
     assert tiny.scores("ada") == {TALKER: 0, LISTENER: 0}

@@ -19,15 +19,15 @@ from rich.console import Console
 from test_nbgrader_and_ours import nbgrader_autograde
 from tiny_class import LISTENER, TALKER, FakeEngine, TinyClass
 
-from autograder.grading.rebuilding import submission
-from autograder.grading.rebuilding.desk import read_notebook
-from autograder.grading.rebuilding.submission import UnreadableSubmission, read_bytes
-from autograder.grading.reporting.report_table import show
+from autograder.grading.rebuilding import submitted_notebook
+from autograder.grading.rebuilding.submission_desk import read_notebook
+from autograder.grading.rebuilding.submitted_notebook import UnreadableSubmission, read_bytes
+from autograder.grading.reporting.grade_report import show
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from autograder.grading.reporting.report import GradeReport
+    from autograder.grading.reporting.grade_report import GradeReport
 
 pytestmark = pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning")
 NOTHING = {TALKER: 0, LISTENER: 0}
@@ -352,7 +352,7 @@ def test_a_file_that_is_no_notebook_has_its_line(tiny: TinyClass, fake_engine: F
 
 
 def test_a_cell_that_is_too_long_is_left_out_with_a_word() -> None:
-    long = json.dumps({"cell_type": "code", "source": "x" * (submission.MAX_CELL_CHARACTERS + 1)})
+    long = json.dumps({"cell_type": "code", "source": "x" * (submitted_notebook.MAX_CELL_CHARACTERS + 1)})
     assert read_notebook(notebook(f"[{CODE}, {long}]"))[1] == 1
 
 
@@ -360,11 +360,11 @@ def test_the_largest_file_is_read_and_the_costliest_ends_at_the_limit_of_the_des
     """The JSON that costs most: fifty megabytes of it took two gigabytes of memory, and half a minute."""
     printed = json.dumps({"cell_type": "code", "source": "x", "said": '"1", [2, ' * 3_000_000})
     assert read_notebook(notebook(f"[{printed}]"))[1] == 0, "what a cell has printed is one value"
-    picture = "\N{ROBOT FACE}" + "x" * (submission.MAX_BYTES - 1_000)
+    picture = "\N{ROBOT FACE}" + "x" * (submitted_notebook.MAX_BYTES - 1_000)
     shown = json.dumps({"cell_type": "code", "source": "x", "said": picture}, ensure_ascii=False)
     assert len(read_notebook(notebook(f"[{shown}]"))[0]) == 1
     with pytest.raises(UnreadableSubmission, match="far more memory"):
-        read_notebook(notebook("[" + "[]," * ((submission.MAX_BYTES - 100) // 3) + "0]"))
+        read_notebook(notebook("[" + "[]," * ((submitted_notebook.MAX_BYTES - 100) // 3) + "0]"))
 
 
 def test_a_folder_that_cannot_be_listed_is_named_to_whoever_grades_one_student(

@@ -18,10 +18,10 @@ import pytest
 from nbgrader.api import Gradebook
 from tiny_class import LISTENER, TALKER, FakeEngine, TinyClass, make_tiny_class
 
+from autograder.grading.classes import gradebook_reading
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.classes.new_class import release
-from autograder.grading.errors import ClassIncomplete, GradingError
-from autograder.grading.gradebooks import gradebook_reading
+from autograder.grading.grading_errors import ClassIncomplete, GradingError
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -10,14 +10,13 @@ from nbformat.v4 import new_code_cell
 from rich.console import Console
 from test_nbgrader_and_ours import nbgrader_autograde
 
-from autograder.grading.report_page.page import write_report
-from autograder.grading.reporting.report import report_json
-from autograder.grading.reporting.report_table import show
+from autograder.grading.reporting.grade_report import report_json, show
+from autograder.grading.reporting.report_page import write_report
 
 if TYPE_CHECKING:
     from tiny_class import FakeEngine, TinyClass
 
-    from autograder.grading.reporting.report import GradeReport
+    from autograder.grading.reporting.grade_report import GradeReport
 
 pytestmark = pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning")
 

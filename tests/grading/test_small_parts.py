@@ -13,16 +13,20 @@ from pathlib import Path
 import msgspec
 import pytest
 
-from autograder.boxes.limits import Ended
-from autograder.cards.readable import printable
-from autograder.execution.cells import Cell, CellCheck, CellRun, Execution
-from autograder.grading.classes.class_directory import reason_against_name
+from autograder.boxes.run_limits import Ended
+from autograder.cards.readable_text import printable
+from autograder.execution.executed_cells import Cell, CellCheck, CellRun, Execution
+from autograder.grading.classes.class_directory import (
+    create_secret,
+    read_secret,
+    reason_against_name,
+    seed_for,
+)
 from autograder.grading.classes.new_class import NewClass
-from autograder.grading.classes.seeds import create_secret, read_secret, seed_for
-from autograder.grading.errors import DiskFull, NotAClass, is_disk_full
-from autograder.grading.reporting.rows import Row, write_csv
-from autograder.grading.task import Task, points
-from autograder.regular_files import write_whole
+from autograder.grading.grading_errors import DiskFull, NotAClass, is_disk_full
+from autograder.grading.grading_task import Task, points
+from autograder.grading.table.rows import Row, write_csv
+from autograder.safe_files import write_whole
 from autograder.verdict import State, Verdict
 
 CHECK = CellCheck("lab.one", "One", points=10, worth=4, limit=2)

@@ -13,13 +13,13 @@ import pytest
 from nbgrader.api import Gradebook
 from rich.console import Console
 
-from autograder.boxes.limits import Ended
-from autograder.execution.cells import CellRun, Execution
+from autograder.boxes.run_limits import Ended
+from autograder.execution.executed_cells import CellRun, Execution
 from autograder.execution.verdicts_without_judge import grader_trouble, zero_points
 from autograder.grading.batch import grade
 from autograder.grading.classes.new_class import new_class
-from autograder.grading.running import engine
-from autograder.grading.running.dispatcher import Done
+from autograder.grading.running import execution_backends
+from autograder.grading.running.task_dispatcher import Done
 
 sys.path.insert(0, str(Path(__file__).parent))  # for fake_judge, which a worker imports by that name
 from fake_judge import verdict
@@ -27,8 +27,8 @@ from fake_judge import verdict
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
-    from autograder.grading.reporting.report import GradeReport
-    from autograder.grading.task import Task
+    from autograder.grading.grading_task import Task
+    from autograder.grading.reporting.grade_report import GradeReport
 
 MASTER = """\
 ---
@@ -177,7 +177,7 @@ class FakeEngine:
     def at_work(self) -> Iterator[None]:
         """Nothing is executed meanwhile."""
         with pytest.MonkeyPatch.context() as patch:
-            patch.setattr(engine, "execute_all", self.execute_all)
+            patch.setattr(execution_backends, "execute_all", self.execute_all)
             yield
 
     def execute_all(self, tasks: Sequence[Task], *_: object, **options: Any) -> Iterator[Done]:

@@ -12,11 +12,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from autograder import exercises
-from autograder.judge.serving import attached
-from autograder.judge.serving.process import JudgeDied, JudgeProcess
-from autograder.judge.settings import subject_environment
-from autograder.judge.subjects.command_subject import LEFTOVERS, CommandSubject
-from autograder.judge.verdicts.crowding import TOO_BUSY
+from autograder.judge import controlled_judge
+from autograder.judge.controlled_judge import JudgeDied, JudgeProcess
+from autograder.judge.machine_fitness import TOO_BUSY
+from autograder.judge.ros_setup import subject_environment
+from autograder.judge.subject import LEFTOVERS, CommandSubject
 from autograder.process_trees import end_descendants
 from autograder.verdict import Diagnosis, failed, not_checked, to_json
 
@@ -43,7 +43,7 @@ class _ForkedJudge:
                     if int(entry.name) not in mine:
                         with contextlib.suppress(OSError):
                             os.close(int(entry.name))
-                attached.run({}, (listener, orders))
+                controlled_judge.run({}, (listener, orders))
             os._exit(0)
 
     def end(self) -> None:

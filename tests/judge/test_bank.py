@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import pytest
 
 from autograder import exercises
-from autograder.authoring.answers import Answer, answers
-from autograder.judge.verdicts.crowding import TOO_BUSY
+from autograder.authoring.answer_bank import Answer, answers
+from autograder.judge.machine_fitness import TOO_BUSY
 from tests.measure import evidence
 from tests.tiers import due
 

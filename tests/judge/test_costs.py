@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from autograder.appeals.replaying import replay
-from autograder.authoring.answers import Answer, answers
+from autograder.authoring.answer_bank import Answer, answers
 from tests.measure import evidence
 
 COSTS = {

@@ -7,7 +7,7 @@ import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from autograder.judge.settings import provide_log_folder
+from autograder.judge.ros_setup import provide_log_folder
 
 if TYPE_CHECKING:
     import pytest

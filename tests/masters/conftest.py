@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from autograder.masters.parsing import HEADER as HEADER_LINES
+from autograder.masters.master_cells import MASTER_HEADER as HEADER_LINES
 
 if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
-    from autograder.masters.source import Points
+    from autograder.masters.source_notebooks import Points
 
 HEADER = HEADER_LINES + "\n"
 

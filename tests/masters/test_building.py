@@ -13,13 +13,13 @@ import pytest
 from nbformat import NotebookNode
 from rich.console import Console
 
-from autograder.masters.chapters import build, build_command
-from autograder.masters.master_errors import MasterError
+from autograder.masters.chapter_building import build, build_command
+from autograder.masters.master_files import MasterError
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from autograder.masters.source import Points
+    from autograder.masters.source_notebooks import Points
 
 Said = Callable[..., tuple[int, str]]
 CHAPTER = "chapters/01_first/lab_9_1.ipynb"

@@ -14,13 +14,12 @@ import pytest
 from nbgrader.nbgraderformat.v3 import MetadataValidatorV3
 
 from autograder import exercises
-from autograder.authoring.house_rules import broken_rules
-from autograder.masters.chapters import build
+from autograder.authoring.exercise_faults import broken_rules
+from autograder.masters.chapter_building import build, release_text
 from autograder.masters.code_cells import COPIED, find_region
-from autograder.masters.layout import chapter_path, lab_name, masters
-from autograder.masters.parsing import COPY, CellRole, parse_master
-from autograder.masters.release import release_text
-from autograder.masters.source import named_cells, source_notebook
+from autograder.masters.master_cells import COPY, CellRole, parse_master
+from autograder.masters.master_files import chapter_path, lab_name, masters
+from autograder.masters.source_notebooks import named_cells, source_notebook
 from tests.tiers import drawn
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -39,8 +38,8 @@ def test_another_process_builds_the_same_bytes() -> None:
     few = [master for master in MASTERS if str(master) in drawn(map(str, MASTERS), 3)]
     # Another hash seed, another folder: nothing of either may be in a chapter.
     code = (
-        "import sys; from pathlib import Path; from autograder.masters.release import release_text\n"
-        "from autograder.masters.source import source_notebook\n"
+        "import sys; from pathlib import Path; from autograder.masters.chapter_building import release_text\n"
+        "from autograder.masters.source_notebooks import source_notebook\n"
         "for master in sys.argv[1:]: sys.stdout.write(release_text(source_notebook(Path(master))))"
     )
     result = subprocess.run(

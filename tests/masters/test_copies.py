@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 import nbformat
 import pytest
 
-from autograder.masters.master_errors import MasterError
-from autograder.masters.release import release_text
-from autograder.masters.source import Points, source_notebook
+from autograder.masters.chapter_building import release_text
+from autograder.masters.master_files import MasterError
+from autograder.masters.source_notebooks import Points, source_notebook
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -10,7 +10,7 @@ import nbformat
 import pytest
 
 from autograder import exercises
-from autograder.masters.layout import chapter_path, lab_name, masters
+from autograder.masters.master_files import chapter_path, lab_name, masters
 
 ROOT = Path(__file__).resolve().parents[2]
 PARTS_OF_THE_TEXT = 74

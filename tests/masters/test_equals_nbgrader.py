@@ -12,9 +12,9 @@ from nbgrader.api import Gradebook
 from nbgrader.apps import NbGraderAPI
 from traitlets.config import Config
 
-from autograder.masters.layout import chapter_path, lab_name, masters
+from autograder.masters.master_files import chapter_path, lab_name, masters
 from autograder.masters.release_steps import ReleaseSteps
-from autograder.masters.source import source_notebook
+from autograder.masters.source_notebooks import source_notebook
 
 ROOT = Path(__file__).resolve().parents[2]
 MASTERS = masters(ROOT)

@@ -13,7 +13,7 @@ from xml.etree import ElementTree
 import pytest
 import yaml
 
-from autograder.masters.layout import chapter_path, lab_name, masters
+from autograder.masters.master_files import chapter_path, lab_name, masters
 from autograder.notebook.package_files import PACKAGE
 from autograder.notebook.robot_package import PROGRAMS
 

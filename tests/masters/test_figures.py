@@ -13,10 +13,9 @@ import pytest
 
 from autograder.grading.returning.sanitize import harmless_markdown
 from autograder.masters.drawing import SIGNATURE, chunk, signed, stale_figures
-from autograder.masters.layout import chapter_path, masters
-from autograder.masters.master_errors import MasterError
-from autograder.masters.source import Points, source_notebook
-from autograder.masters.text_cells import digest
+from autograder.masters.master_cells import figure_digest
+from autograder.masters.master_files import MasterError, chapter_path, masters
+from autograder.masters.source_notebooks import Points, source_notebook
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -86,7 +85,7 @@ def test_what_was_drawn_is_no_longer_stale(master: Path) -> None:
 def test_every_figure_is_drawn_and_small_and_says_what_it_shows(svg: Path) -> None:
     png = svg.with_suffix(".png").read_bytes()
     assert png.startswith(SIGNATURE)
-    assert digest(svg.read_bytes()) in png
+    assert figure_digest(svg.read_bytes()) in png
     assert len(png) < LARGEST
     words = ElementTree.parse(svg).getroot().findtext("{http://www.w3.org/2000/svg}desc") or ""
     assert len(words.split()) > 15

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from autograder.masters.first_cell import NAME, PART
-from autograder.masters.source import Points, source_notebook
+from autograder.masters.source_notebooks import SET_UP_CELL, SET_UP_CODE, Points, source_notebook
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -15,11 +14,11 @@ def test_a_course_with_its_own_set_up_gets_the_cell_and_with_an_address_the_link
     course: Path, ten_points: Points
 ) -> None:
     master = course / "solutions/01_first/lab_9_1/lab.md"
-    assert NAME not in [cell.id for cell in source_notebook(master, points=ten_points).cells]
-    (course / PART).parent.mkdir()
-    (course / PART).touch()
+    assert SET_UP_CELL not in [cell.id for cell in source_notebook(master, points=ten_points).cells]
+    (course / SET_UP_CODE).parent.mkdir()
+    (course / SET_UP_CODE).touch()
     without = source_notebook(master, points=ten_points)
-    assert next(cell.id for cell in without.cells if cell.cell_type == "code") == NAME
+    assert next(cell.id for cell in without.cells if cell.cell_type == "code") == SET_UP_CELL
     assert "codespaces" not in str(without)
     (course / "pyproject.toml").write_text('[project.urls]\nRepository = "https://github.com/ada/ros"\n')
     text = str(source_notebook(master, points=ten_points))

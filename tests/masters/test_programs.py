@@ -9,12 +9,12 @@ from pathlib import Path
 import nbformat
 import pytest
 
-from autograder.judge.subjects.command import check_and_keep
+from autograder.judge.command_check import check_and_keep
+from autograder.masters.chapter_building import release_text
 from autograder.masters.code_cells import COPIED, WrittenFile, written_file
-from autograder.masters.layout import masters
-from autograder.masters.parsing import CellRole
-from autograder.masters.release import release_text
-from autograder.masters.source import named_cells, source_notebook
+from autograder.masters.master_cells import CellRole
+from autograder.masters.master_files import masters
+from autograder.masters.source_notebooks import named_cells, source_notebook
 
 ROOT = Path(__file__).resolve().parents[2]
 CHECKED = [

@@ -10,11 +10,10 @@ from typing import TYPE_CHECKING
 from urllib.parse import parse_qs, urlsplit
 
 from autograder.course import repository
-from autograder.masters.chapters import build
-from autograder.masters.readme import NAME, WITHOUT_ADDRESS
+from autograder.masters.chapter_building import README, WITHOUT_ADDRESS, build
 
 if TYPE_CHECKING:
-    from autograder.masters.source import Points
+    from autograder.masters.source_notebooks import Points
 
 ROOT = Path(__file__).parents[2]
 TEXT = f"""\
@@ -32,7 +31,7 @@ BADGE = re.compile(r"^\[!\[[^\]]+\]\((\S+)\)\]\((\S+)\)$", re.MULTILINE)
 def test_with_an_address_a_build_writes_the_badges_and_without_one_what_to_type(
     course: Path, ten_points: Points
 ) -> None:
-    readme, settings = course / NAME, course / "pyproject.toml"
+    readme, settings = course / README, course / "pyproject.toml"
     readme.write_text(TEXT)
     assert readme not in build(course, points=ten_points).written
     settings.write_text('[project.urls]\nRepository = "https://github.com/ada/ros-2.x.git/"\n')
@@ -57,9 +56,9 @@ def test_with_an_address_a_build_writes_the_badges_and_without_one_what_to_type(
 
 
 def test_a_readme_without_a_place_for_badges_is_left_alone(course: Path, ten_points: Points) -> None:
-    (course / NAME).write_text("# Mine\n\n$ git clone SOMETHING else\n")
+    (course / README).write_text("# Mine\n\n$ git clone SOMETHING else\n")
     (course / "pyproject.toml").write_text('[project.urls]\nRepository = "https://github.com/ada/ros"\n')
-    assert course / NAME not in build(course, points=ten_points).written
+    assert course / README not in build(course, points=ten_points).written
 
 
 def test_the_workflows_name_the_repository_if_nobody_has(tmp_path: Path) -> None:

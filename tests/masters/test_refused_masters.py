@@ -12,10 +12,9 @@ from typing import TYPE_CHECKING
 import pytest
 
 from autograder import exercises
-from autograder.masters.check_cells import CheckCall, exercise_points
-from autograder.masters.layout import find_root, masters
-from autograder.masters.master_errors import MasterError
-from autograder.masters.source import Points, source_notebook
+from autograder.masters.code_cells import CheckCall, exercise_points
+from autograder.masters.master_files import MasterError, find_root, masters
+from autograder.masters.source_notebooks import Points, source_notebook
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -11,11 +11,11 @@ from pathlib import Path
 import nbformat
 import pytest
 
+from autograder.masters.chapter_building import release_text
 from autograder.masters.code_cells import shell_script, written_file
-from autograder.masters.layout import lab_name, masters
-from autograder.masters.parsing import CellRole
-from autograder.masters.release import release_text
-from autograder.masters.source import source_notebook
+from autograder.masters.master_cells import CellRole
+from autograder.masters.master_files import lab_name, masters
+from autograder.masters.source_notebooks import source_notebook
 
 ROOT = Path(__file__).resolve().parents[2]
 CHANGES = re.compile(

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from autograder.masters.master_errors import MasterError
-from autograder.masters.solutions import reference_source, solution_files
-from autograder.masters.source import Points, named_cells
+from autograder.masters.master_files import MasterError
+from autograder.masters.reference_solutions import reference_source, solution_files
+from autograder.masters.source_notebooks import Points, named_cells
 
 if TYPE_CHECKING:
     from collections.abc import Callable

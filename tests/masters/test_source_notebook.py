@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from autograder.masters.parsing import HEADER
-from autograder.masters.source import Points, source_notebook
+from autograder.masters.master_cells import MASTER_HEADER
+from autograder.masters.source_notebooks import Points, source_notebook
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -113,7 +113,7 @@ def test_the_last_cell_links_to_the_neighbours(course: Path, ten_points: Points)
     chapter = course / "solutions/01_first"
     for lab, title in (("lab_9_0", "Before it"), ("lab_9_2", "After it")):
         (chapter / lab).mkdir()
-        (chapter / lab / "lab.md").write_text(f"{HEADER}# {title}\n")
+        (chapter / lab / "lab.md").write_text(f"{MASTER_HEADER}# {title}\n")
     (chapter / "chapter.toml").write_text('labs = ["lab_9_2", "lab_9_1", "lab_9_0"]')
     last = {
         lab: source_notebook(chapter / lab / "lab.md", points=ten_points).cells[-1].source

@@ -10,8 +10,7 @@ import sys
 import time
 from typing import TYPE_CHECKING
 
-from autograder.authoring.answers import Answer, answers, longest_first
-from autograder.authoring.judging import Turn, judge_all, warm_up
+from autograder.authoring.answer_bank import Answer, Turn, answers, judge_all, longest_first, warm_up
 from autograder.verdict import to_json
 
 if TYPE_CHECKING:

@@ -15,24 +15,23 @@ from unittest import mock
 from autograder import course, exercises
 from autograder.boxes.fork_server import ForkServers
 from autograder.grading.classes.sample_class import _without_markers
+from autograder.grading.grading_task import Task
 from autograder.grading.rebuilding.task_making import cells_of
-from autograder.grading.running import task_execution, workspace_service
-from autograder.grading.running.orders import JUDGE
-from autograder.grading.task import Task
-from autograder.judge.serving import attached
-from autograder.judge.settings import boxed_ros_environment
-from autograder.masters.layout import lab_name, masters
-from autograder.masters.source import source_notebook
-from autograder.workspaces.built_ahead import FILE, Files
-from autograder.workspaces.graded_builds import GradedBuilds
+from autograder.grading.running import task_execution
+from autograder.grading.running.worker_messages import JUDGE
+from autograder.judge import controlled_judge
+from autograder.judge.ros_setup import boxed_ros_environment
+from autograder.masters.master_files import lab_name, masters
+from autograder.masters.source_notebooks import source_notebook
+from autograder.workspaces.graded_builds import FILE, Files, GradedBuilds
 from autograder.workspaces.packages import WORKSPACE
 
 if TYPE_CHECKING:
     import argparse
 
     from autograder.boxes.fork_server import Addresses
-    from autograder.workspaces.builds.colcon import Build
-    from autograder.workspaces.running.jobs import BuildOrder
+    from autograder.workspaces.builds.colcon_build import Build
+    from autograder.workspaces.jobs import BuildOrder
     from autograder.workspaces.sources import Tree
 
 
@@ -51,7 +50,7 @@ def main(options: argparse.Namespace) -> int:
     root = course.root()
     found: dict[Path, list[Files]] = {}
     with ForkServers(
-        attached.__name__,
+        controlled_judge.__name__,
         boxed=True,
         environment=boxed_ros_environment(),
         of_judges=course.variables(),
@@ -97,7 +96,7 @@ def _built(task: Task, addresses: Addresses) -> list[Files]:
     with (
         tempfile.TemporaryDirectory(prefix="ahead-") as scratch,
         mock.patch.object(GradedBuilds, "_entry", remembering),
-        mock.patch.object(workspace_service, "build_ahead"),
+        mock.patch.object(task_execution, "build_ahead"),
     ):
         execution = task_execution.execute(task, Path(scratch), JUDGE, addresses)
     if execution.trouble:

@@ -57,8 +57,7 @@ def judge_here(out: Path, parts: Sequence[str], seeds: Sequence[str], jobs: int,
         jobs: How many at once.
         texts: Whether what the student is told belongs to it.
     """
-    from autograder.authoring.answers import Answer, answers, longest_first
-    from autograder.authoring.judging import Turn, judge_all, warm_up
+    from autograder.authoring.answer_bank import Answer, Turn, answers, judge_all, longest_first, warm_up
 
     wanted = [answer for answer in answers() if not parts or any(part in answer.name for part in parts)]
     with out.open("w", encoding="utf-8") as lines:

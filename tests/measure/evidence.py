@@ -22,12 +22,11 @@ import msgspec
 
 from autograder import course, exercises
 from autograder.appeals.replaying import CannotReplay, replay
-from autograder.authoring.answers import Answer, answers, longest_first
-from autograder.authoring.judging import Turn, judge_all, warm_up
-from autograder.judge.verdicts import reference
-from autograder.judge.verdicts.keeping import Kept, evidence_of, packed, plain, restored, unpack
+from autograder.authoring.answer_bank import Answer, Turn, answers, judge_all, longest_first, warm_up
+from autograder.judge import evidence_files
+from autograder.judge.evidence_files import Kept, evidence_of, packed, plain, restored, unpack
 from autograder.verdict import State, to_json
-from autograder.workspaces.builds import cache
+from autograder.workspaces.builds import build_cache
 from tests.cards import sweep
 from tests.judge import quoting
 from tests.measure import bank, stimulus
@@ -121,7 +120,7 @@ def _line(record: Record) -> str:
 def _places() -> dict[str, str]:
     """The clone, the cache of builds and Python's own folder, by the names that stand for them in evidence."""
     python = f"{sys.base_prefix}/lib/python"
-    return {str(course.root()): "/course", str(cache.root()): "/cache", python: "/usr/lib/python"}
+    return {str(course.root()): "/course", str(build_cache.root()): "/cache", python: "/usr/lib/python"}
 
 
 def _mark(content: Mapping[str, Any]) -> str:
@@ -203,7 +202,7 @@ def objection(answer: Answer) -> str:
         if is_of_another_bench(answer):
             return ""
         now = replay(record.seen).now
-        quoted = evidence_of(record.seen, reference.load(answer.exercise))
+        quoted = evidence_of(record.seen, evidence_files.load_reference(answer.exercise))
         why = answer.objection(now) or sweep.objection(now) or quoting.objection(now, quoted)
     except CannotReplay as error:
         return f"{answer.name}: {error}; {COMMAND} {answer.name}"

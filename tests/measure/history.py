@@ -17,7 +17,7 @@ import msgspec
 
 from autograder import course
 from autograder.appeals.replaying import CannotReplay, replay
-from autograder.judge.verdicts.keeping import restored
+from autograder.judge.evidence_files import restored
 from tests.measure import bank
 from tests.measure.evidence import FOLDER, Record, program
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     import argparse
     from collections.abc import Iterable, Iterator, Mapping
 
-    from autograder.authoring.answers import Answer
+    from autograder.authoring.answer_bank import Answer
 
 Outcome = tuple[str, float, str]
 """State, points and key of the diagnosis."""

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import msgspec
 
-from autograder.authoring.judging import warm_up
+from autograder.authoring.answer_bank import warm_up
 from tests.mutation import equivalents
 from tests.mutation.report import text
 from tests.mutation.results import Fate, Result

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 
 from autograder import course
-from autograder.authoring.answers import answers
+from autograder.authoring.answer_bank import answers
 from autograder.verdict import from_json
 from benchmarks.machine import Machine, machine
 from benchmarks.results import replace_between
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     import argparse
     from collections.abc import Iterable
 
-    from autograder.authoring.answers import Answer
+    from autograder.authoring.answer_bank import Answer
     from autograder.verdict import Verdict
 
 PAGE = course.root() / "docs" / "accuracy.md"

@@ -22,11 +22,11 @@ from nbclient import NotebookClient
 from nbclient.exceptions import CellExecutionError, CellTimeoutError, DeadKernelError
 
 from autograder import course
-from autograder.authoring.site.outputs import execute_in_new_kernel
-from autograder.masters.layout import lab_name, masters
-from autograder.masters.source import source_notebook
-from autograder.ros_domain import DOMAIN_VARIABLE, claim_free_domain
-from autograder.student import journal
+from autograder.authoring.executed_masters import execute_in_new_kernel
+from autograder.dds_discovery import DOMAIN_VARIABLE, claim_free_domain
+from autograder.masters.master_files import lab_name, masters
+from autograder.masters.source_notebooks import source_notebook
+from autograder.student import check_journal
 
 if TYPE_CHECKING:
     import argparse
@@ -95,7 +95,7 @@ def run_all(folder: Path, notebooks: Mapping[str, NotebookNode], order: Sequence
         for name in order:
             if trouble := _run(notebooks[name], folder, lines):
                 wrong.append(f"{name}: {trouble}")
-        checks = [entry for entry in journal.entries(lines) if entry.kind == "check"]
+        checks = [entry for entry in check_journal.entries(lines) if entry.kind == "check"]
     wrong += [f"{one.name}: {one.points:g} of {one.possible:g} points" for one in checks if not one.full]
     asked = sum(
         "check(" in cell.source for name in order for cell in notebooks[name].cells if _is_check(cell)

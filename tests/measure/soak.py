@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 import msgspec
 
-from autograder.authoring.judging import Turn, judge_all, warm_up
+from autograder.authoring.answer_bank import Turn, judge_all, warm_up
 from autograder.process_trees import die_with_parent
 from tests.measure import bank
 from tests.measure.ends import Ends, Repeated, end_of
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     import argparse
     from collections.abc import Iterator, Sequence
 
-    from autograder.authoring.answers import Answer
+    from autograder.authoring.answer_bank import Answer
     from autograder.verdict import Verdict
 
 

@@ -19,14 +19,22 @@ from typing import TYPE_CHECKING, Any
 
 import autograder
 from autograder import exercises
-from autograder.judge.verdicts import reference, trial
+from autograder.judge import evidence_files, one_check
 from autograder.kit.model import Exercise
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
 PACKAGE = Path(autograder.__file__).parent
-JUDGE = ("judge/bench", "judge/subjects", "judge/settings.py", "judge/fastdds_profile.xml", "kit/evidence.py")
+JUDGE = (
+    "judge/bench",
+    "judge/subject.py",
+    "judge/notebook_subject.py",
+    "judge/path_subject.py",
+    "judge/ros_setup.py",
+    "judge/fastdds_profile.xml",
+    "kit/evidence.py",
+)
 """What is behind the words of a scenario, for each exercise."""
 WORKSPACES = ("workspaces",)
 """What runs the subject of an exercise that has a runner."""
@@ -46,9 +54,9 @@ def digest(exercise_id: str) -> str:
     reached.add(exercise.scenario)
     reached.add(exercise.runner)
     said = [
-        reference.digest(exercise_id),
+        evidence_files.reference_digest(exercise_id),
         repr((exercise.second_look, exercise.limit)),
-        _plain(_nodes(trial.__file__)[f"def {trial.look.__code__.co_firstlineno}"]),
+        _plain(_nodes(one_check.__file__)[f"def {one_check.look.__code__.co_firstlineno}"]),
         *_files(JUDGE + (WORKSPACES if exercise.runner else ())),
         *sorted(reached.texts),
     ]

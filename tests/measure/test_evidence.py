@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from autograder import exercises
-from autograder.authoring.answers import answers
+from autograder.authoring.answer_bank import answers
 from autograder.kit.recipes import publisher
 from tests.measure import evidence, stimulus
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import json
 
-from autograder.authoring.answers import named
+from autograder.authoring.answer_bank import answer_named
 from tests.measure import evidence, history
 
-ANSWER = named("lab_1_2.talker/right/usual.py")
+ANSWER = answer_named("lab_1_2.talker/right/usual.py")
 LINE = evidence.kept(ANSWER.exercise)[ANSWER.name]
 OTHER = LINE.replace("Hello, world! 3", "Hello, world! 4")
 

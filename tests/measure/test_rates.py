@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from autograder.authoring.answers import Answer, answers
+from autograder.authoring.answer_bank import Answer, answers
 from autograder.verdict import Diagnosis, State, Verdict, to_json
 from benchmarks.machine import machine
 from tests.measure import rates, soak, steady_class

@@ -13,8 +13,8 @@ from typing import get_args
 import msgspec
 import pytest
 
-from autograder.messages import checks, lines, workspaces
-from autograder.messages.lines import Hangup, Lines, NotUnderstood, Silent, TooLong
+from autograder.messages import json_lines, judge_messages, workspace_messages
+from autograder.messages.json_lines import Hangup, Lines, NotUnderstood, Silent, TooLong
 
 
 def _pair() -> tuple[socket.socket, Lines]:
@@ -25,9 +25,9 @@ def _pair() -> tuple[socket.socket, Lines]:
 def test_messages_come_one_by_one_however_they_are_cut() -> None:
     wire, judge = _pair()
     wire.sendall(b'{"say": "check", "exercise": "lab_1_2.talker"}\n{"say": "re')
-    assert judge.hear(checks.FromNotebook) == checks.Check("lab_1_2.talker")
+    assert judge.hear(judge_messages.FromNotebook) == judge_messages.Check("lab_1_2.talker")
     wire.sendall(b'ady"}\n')
-    assert judge.hear(checks.FromNotebook) == checks.Ready()
+    assert judge.hear(judge_messages.FromNotebook) == judge_messages.Ready()
 
 
 @pytest.mark.parametrize(
@@ -47,7 +47,7 @@ def test_what_is_no_message_ends_the_conversation(line: bytes) -> None:
     wire.sendall(line)
     wire.close()
     with pytest.raises(Hangup):
-        judge.hear(checks.FromNotebook)
+        judge.hear(judge_messages.FromNotebook)
 
 
 @pytest.mark.parametrize(
@@ -66,8 +66,8 @@ def test_what_is_not_expected_is_not_understood_and_ends_nothing(line: bytes) ->
     wire, judge = _pair()
     wire.sendall(line + b'\n{"say": "ready"}\n')
     with pytest.raises(NotUnderstood):
-        judge.hear(checks.FromNotebook)
-    assert judge.hear(checks.FromNotebook) == checks.Ready()
+        judge.hear(judge_messages.FromNotebook)
+    assert judge.hear(judge_messages.FromNotebook) == judge_messages.Ready()
 
 
 class Stubborn(str):
@@ -80,17 +80,17 @@ class Stubborn(str):
 @pytest.mark.parametrize("text", ["Grüße", "\ud800 half a character", "\0", Stubborn("stubborn")])
 def test_any_text_of_a_subject_s_arrives(text: str) -> None:
     wire, judge = _pair()
-    Lines(wire).say(checks.Output(1, text))
-    assert judge.hear(checks.FromNotebook) == checks.Output(1, text)
+    Lines(wire).say(judge_messages.Output(1, text))
+    assert judge.hear(judge_messages.FromNotebook) == judge_messages.Output(1, text)
 
 
 def test_every_word_stands_for_one_message() -> None:
     for union in (
-        checks.FromNotebook,
-        checks.FromJudge,
-        workspaces.ToService,
-        workspaces.FromService,
-        workspaces.BuildAnswer,
+        judge_messages.FromNotebook,
+        judge_messages.FromJudge,
+        workspace_messages.ToService,
+        workspace_messages.FromService,
+        workspace_messages.BuildAnswer,
     ):
         words = [msgspec.inspect.type_info(kind).tag for kind in get_args(union)]  # type: ignore[attr-defined]
         assert len(set(words)) == len(words)
@@ -101,7 +101,7 @@ def test_an_endless_line_ends_the_conversation() -> None:
     flood = threading.Thread(target=_flood, args=(wire,), daemon=True)
     flood.start()
     with pytest.raises(Hangup, match="too long"):
-        judge.hear(checks.FromNotebook)
+        judge.hear(judge_messages.FromNotebook)
     judge.close()
     flood.join()
 
@@ -109,7 +109,7 @@ def test_an_endless_line_ends_the_conversation() -> None:
 def _flood(wire: socket.socket) -> None:
     try:
         for _ in range(10):
-            wire.sendall(b"x" * lines.MAX_LINE)
+            wire.sendall(b"x" * json_lines.MAX_LINE)
     except OSError:
         pass
 
@@ -124,7 +124,7 @@ def test_talking_to_nobody_is_noticed() -> None:
 def _talk_on(judge: Lines) -> None:
     # The first message may still go into the kernel's buffer.
     for _ in range(100):
-        judge.say(checks.Release(1))
+        judge.say(judge_messages.Release(1))
 
 
 def test_json_is_passed_on_as_it_came_and_waited_for_with_a_limit() -> None:
@@ -151,7 +151,7 @@ def test_who_says_nothing_more_still_hears() -> None:
 
 CHILD = """
 import subprocess
-from autograder.messages.lines import Lines
+from autograder.messages.json_lines import Lines
 parent = Lines.with_parent()
 child = subprocess.Popen(["sleep", "600"])
 print("printed lines are not said")

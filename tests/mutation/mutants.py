@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 LOGS_FREELY = ("lab_1_2.talker", "lab_1_3.server", "lab_1_4.server")
 """Exercises in which nobody has to log anything, so that no mutant is made of a log line."""
 _HEADER = "=== "
-"""Begins a section of a bank workspace (``autograder/authoring/edits.py``)."""
+"""Begins a section of a bank workspace (``autograder/authoring/answer_tables.py``)."""
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from random import Random
 from typing import TYPE_CHECKING
 
-from autograder.authoring.judging import Turn, judge_all
+from autograder.authoring.answer_bank import Turn, judge_all
 from tests.mutation.mutants import Mutant, mutants, sampled
 from tests.mutation.report import Report, report
 from tests.mutation.results import Result, keep, kept, no_result, result

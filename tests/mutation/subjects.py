@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from autograder import exercises
-from autograder.authoring.answers import Answer, answers
-from autograder.authoring.recording import CannotRecord, program
+from autograder.authoring.answer_bank import Answer, answers
+from autograder.authoring.reference_recording import CannotRecord, program
 from tests.judge.notebooks import verdict_in_notebook
 
 if TYPE_CHECKING:

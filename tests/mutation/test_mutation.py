@@ -26,7 +26,7 @@ from tests.mutation.subjects import Subject, subjects
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from autograder.authoring.answers import Answer
+    from autograder.authoring.answer_bank import Answer
 
 TALKER = '''"""Right."""
 import rclpy

@@ -11,8 +11,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from autograder.judge.serving.process import JudgeProcess
-from autograder.messages.checks import SOCKET_VARIABLE
+from autograder.judge.controlled_judge import JudgeProcess
+from autograder.messages.judge_messages import SOCKET_VARIABLE
 from autograder.notebook.checking.check import check
 
 if TYPE_CHECKING:
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 _JUDGE = """
 import runpy, sys
-from autograder.judge import settings
+from autograder.judge import ros_setup as settings
 settings.prepare_judge()
 {change}
 sys.argv = ["judge", "--attached", sys.argv[1], sys.argv[2]]

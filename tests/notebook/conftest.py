@@ -18,9 +18,9 @@ from nbformat.v4 import new_code_cell, new_notebook
 from rclpy.node import Node
 from std_msgs.msg import String
 
-from autograder.notebook.nodes.background import stop_all
+from autograder.dds_discovery import claim_free_domain
+from autograder.notebook.nodes.background_nodes import stop_all
 from autograder.notebook.nodes.ros_session import start_ros
-from autograder.ros_domain import claim_free_domain
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -276,7 +276,7 @@ import queue, threading, time
 import rclpy
 from rclpy.node import Node
 from std_msgs.msg import String
-from autograder.notebook.nodes.background import spin_in_background, spinning, stop_all
+from autograder.notebook.nodes.background_nodes import spin_in_background, spinning, stop_all
 from autograder.notebook.nodes.ros_session import start_ros
 
 class TalkerNode(Node):

@@ -10,12 +10,11 @@ from typing import TYPE_CHECKING
 from click.testing import CliRunner
 
 from autograder import course, exercises
-from autograder.cards.certificate import WORDS, certificate_svg
+from autograder.cards.html_rendering import CERTIFICATE_WORDS, certificate_svg
 from autograder.cli import cli
-from autograder.student import journal
-from autograder.student.course_page import hours, page_html, trouble_html
-from autograder.student.journal import JournalEntry
-from autograder.student.standing import standing
+from autograder.student import check_journal
+from autograder.student.check_journal import JournalEntry
+from autograder.student.progress import hours, page_html, standing, trouble_html
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -50,15 +49,15 @@ def test_a_course_that_cannot_be_read_still_has_a_way_to_the_notebooks() -> None
 
 def test_a_certificate_comes_with_the_last_point_and_says_what_it_is_worth() -> None:
     everything = [JournalEntry("check", exercise, 86_400, 10, 10) for exercise in exercises.all_ids()]
-    assert WORDS not in page(*everything[1:]).partition("</h2>")[2].partition("</section>")[0]
-    assert WORDS in page(*everything)
+    assert CERTIFICATE_WORDS not in page(*everything[1:]).partition("</h2>")[2].partition("</section>")[0]
+    assert CERTIFICATE_WORDS in page(*everything)
     svg = certificate_svg("Nodes & <Topics>", 130, 86_400)
     assert "Nodes &amp; &lt;Topics&gt;" in svg
     assert ("All 130 points" in svg, "1970" in svg, "not a grade" in svg) == (True, True, True)
 
 
 def test_the_terminal_says_the_same(tmp_path: Path) -> None:
-    journal.note(TALKER, tmp_path / journal.NAME)
+    check_journal.note(TALKER, tmp_path / check_journal.NAME)
     said = CliRunner().invoke(cli, ["progress", "--folder", str(tmp_path)])
     assert said.exit_code == 0
     assert re.search(r"\[~\] Lab 1\.2: A talker and a listener +60 min +10 of 30 points", said.output)

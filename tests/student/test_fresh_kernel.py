@@ -10,10 +10,10 @@ from IPython.core.inputtransformer2 import TransformerManager
 from jupyter_client.manager import start_new_kernel
 
 from autograder import course
-from autograder.masters.first_cell import NAME as SET_UP_CELL
+from autograder.masters.source_notebooks import SET_UP_CELL as SET_UP_CELL
 from autograder.student import fresh_kernel
 from autograder.student.lab import NOTEBOOKS_VARIABLE
-from autograder.student.standing import notebook_path
+from autograder.student.progress import notebook_path
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -15,9 +15,9 @@ from typing import TYPE_CHECKING
 import pytest
 
 from autograder import exercises
-from autograder.masters.layout import lab_name, masters
-from autograder.student import handing_out
-from autograder.student.handing_out import CannotHandOut, hand_out
+from autograder.masters.master_files import lab_name, masters
+from autograder.student import handout
+from autograder.student.handout import CannotHandOut, hand_out
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -172,7 +172,7 @@ def test_the_same_course_gives_the_same_zip(tmp_path: Path) -> None:
 
 def test_a_zip_that_was_not_finished_is_none(tmp_path: Path) -> None:
     with pytest.raises(FileNotFoundError):
-        handing_out._pack(tmp_path / "course.zip", {"a": b"a", "b": tmp_path / "gone"})
+        handout._pack(tmp_path / "course.zip", {"a": b"a", "b": tmp_path / "gone"})
     assert list(tmp_path.iterdir()) == []
 
 

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from autograder.student import journal
-from autograder.student.journal import JournalEntry
+from autograder.student import check_journal
+from autograder.student.check_journal import JournalEntry
 from autograder.verdict import State, Verdict, not_checked
 
 if TYPE_CHECKING:
@@ -23,20 +23,20 @@ def verdict(score: float, exercise: str = "lab.talker") -> Verdict:
 @pytest.fixture
 def kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """This session's journal."""
-    file = tmp_path / "course" / journal.NAME
-    monkeypatch.setenv(journal.VARIABLE, str(file))
+    file = tmp_path / "course" / check_journal.NAME
+    monkeypatch.setenv(check_journal.VARIABLE, str(file))
     return file
 
 
 def test_a_check_is_a_line_and_the_best_one_counts(kept: Path) -> None:
     for score in (4.0, 10.0, 6.0):
-        journal.note_check(verdict(score))
-    journal.note_check(not_checked("lab.talker", "The talker", 10.0, "no domain is free"))
-    lines = journal.entries(kept)
+        check_journal.note_check(verdict(score))
+    check_journal.note_check(not_checked("lab.talker", "The talker", 10.0, "no domain is free"))
+    lines = check_journal.entries(kept)
     assert [(entry.name, entry.points, entry.possible) for entry in lines] == [
         ("lab.talker", score, 10.0) for score in (4.0, 10.0, 6.0)
     ]
-    assert journal.best(lines)["lab.talker"] == lines[1]
+    assert check_journal.best(lines)["lab.talker"] == lines[1]
 
 
 def test_a_link_in_anothers_folder_has_no_line_written_elsewhere(kept: Path, tmp_path: Path) -> None:
@@ -44,25 +44,28 @@ def test_a_link_in_anothers_folder_has_no_line_written_elsewhere(kept: Path, tmp
     own.write_text("export A=1\n")
     kept.parent.mkdir()
     kept.symlink_to(own)
-    assert not journal.note(JournalEntry("read", "lab", 1))
+    assert not check_journal.note(JournalEntry("read", "lab", 1))
     assert own.read_text() == "export A=1\n"
-    assert journal.entries(kept) == []
+    assert check_journal.entries(kept) == []
 
 
 def test_each_line_of_a_journal_made_by_hand_is_looked_at_once() -> None:
     """Looking at all others for each would take minutes here."""
     checks = [JournalEntry("check", f"lab.{number}", 1, 1, 10) for number in range(30_000)]
-    assert len(journal.best([*checks, *(JournalEntry("reset", "other", 2) for _ in range(30_000))])) == 30_000
+    assert (
+        len(check_journal.best([*checks, *(JournalEntry("reset", "other", 2) for _ in range(30_000))]))
+        == 30_000
+    )
 
 
 def test_points_begin_anew_with_the_notebook(kept: Path) -> None:
     lines = [JournalEntry("check", "lab.talker", 1, 10, 10), JournalEntry("check", "lab_2.server", 2, 5, 10)]
     lines += [JournalEntry("reset", "lab", 3), JournalEntry("check", "lab.listener", 4, 3, 10)]
-    assert sorted(journal.best(lines)) == ["lab.listener", "lab_2.server"]
+    assert sorted(check_journal.best(lines)) == ["lab.listener", "lab_2.server"]
 
 
 def test_damaged_lines_are_left_out_and_the_next_one_is_kept(kept: Path) -> None:
-    journal.note_check(verdict(4))
+    check_journal.note_check(verdict(4))
     good = kept.read_bytes()
     damaged = [
         b"\xff\xfe\x00",
@@ -73,8 +76,8 @@ def test_damaged_lines_are_left_out_and_the_next_one_is_kept(kept: Path) -> None
         good.strip()[:-9],  # a machine that went off
     ]
     kept.write_bytes(good + b"\n".join(damaged))
-    journal.note_check(verdict(10))
-    assert [entry.points for entry in journal.entries(kept)] == [4, 10]
+    check_journal.note_check(verdict(10))
+    assert [entry.points for entry in check_journal.entries(kept)] == [4, 10]
 
 
 @pytest.mark.parametrize("what", ["folder", "pipe", "no folder there"])
@@ -84,25 +87,25 @@ def test_what_is_no_journal_keeps_nobody_waiting(kept: Path, what: str) -> None:
     else:
         kept.parent.mkdir()
         (os.mkdir if what == "folder" else os.mkfifo)(kept)
-    journal.note_check(verdict(10))
-    assert not journal.note(JournalEntry("read", "lab", 1))
-    assert journal.entries(kept) == []
+    check_journal.note_check(verdict(10))
+    assert not check_journal.note(JournalEntry("read", "lab", 1))
+    assert check_journal.entries(kept) == []
 
 
 def test_where_no_file_may_be_made_it_is_in_the_home_one_for_each_folder(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path / "home"))
-    assert journal.place(tmp_path) == tmp_path / journal.NAME
+    assert check_journal.place(tmp_path) == tmp_path / check_journal.NAME
     monkeypatch.setattr(os, "access", lambda path, mode: False)  # root may write everywhere
-    first, second = journal.place(tmp_path / "a"), journal.place(tmp_path / "b")
+    first, second = check_journal.place(tmp_path / "a"), check_journal.place(tmp_path / "b")
     assert first.parent == second.parent == tmp_path / "home" / "ros2-course"
     assert first != second
-    assert journal.note(JournalEntry("read", "lab", 1), first)
-    assert len(journal.entries(first)) == 1
+    assert check_journal.note(JournalEntry("read", "lab", 1), first)
+    assert len(check_journal.entries(first)) == 1
 
 
 def test_an_empty_name_means_no_journal(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv(journal.VARIABLE, "")
-    assert journal.own_place() is None
-    assert not journal.note(JournalEntry("read", "lab", 1))
+    monkeypatch.setenv(check_journal.VARIABLE, "")
+    assert check_journal.own_place() is None
+    assert not check_journal.note(JournalEntry("read", "lab", 1))

@@ -19,8 +19,8 @@ from jupyterlab_server.config import get_page_config
 from nbgrader.server_extensions.validate_assignment.handlers import ValidateAssignmentHandler
 
 from autograder import exercises
-from autograder.ros_domain import claim_free_domain
-from autograder.student import journal
+from autograder.dds_discovery import claim_free_domain
+from autograder.student import check_journal
 from autograder.student.lab import (
     NOTEBOOKS_VARIABLE,
     NOTHING_TO_SAVE,
@@ -32,7 +32,13 @@ from autograder.student.lab import (
 )
 
 ROS_VARIABLES = ("ROS_DOMAIN_ID", "ROS_AUTOMATIC_DISCOVERY_RANGE", "ROS_LOCALHOST_ONLY")
-VARIABLES = (*ROS_VARIABLES, "JUPYTER_CONFIG_PATH", journal.VARIABLE, NOTEBOOKS_VARIABLE, "CMAKE_BUILD_TYPE")
+VARIABLES = (
+    *ROS_VARIABLES,
+    "JUPYTER_CONFIG_PATH",
+    check_journal.VARIABLE,
+    NOTEBOOKS_VARIABLE,
+    "CMAKE_BUILD_TYPE",
+)
 START = [
     "--LabApp.default_url=/course",
     f"--LabApp.extra_labextensions_path={PANEL}",
@@ -155,7 +161,7 @@ def test_its_kernels_and_terminals_know_the_journal_beside_the_notebooks(
 ) -> None:
     open_lab(tmp_path)
     assert started[0].environ[NOTEBOOKS_VARIABLE] == str(tmp_path)
-    assert started[0].environ[journal.VARIABLE] == str(tmp_path / journal.NAME)
+    assert started[0].environ[check_journal.VARIABLE] == str(tmp_path / check_journal.NAME)
 
 
 def test_a_request_that_was_never_answered_does_not_keep_the_server_alive() -> None:

@@ -10,8 +10,8 @@ from click.testing import CliRunner
 
 from autograder import course
 from autograder.cli import cli
-from autograder.student import journal
-from autograder.student.resetting import CannotReset, released_text, reset
+from autograder.student import check_journal
+from autograder.student.notebook_reset import CannotReset, released_text, reset
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -39,13 +39,13 @@ def test_the_students_is_kept_each_time(folder: Path) -> None:
     copies = []
     for work in ("first", "second"):
         (folder / NOTEBOOK).write_text(work)
-        done = reset(ROOT, folder, NOTEBOOK, folder / journal.NAME)
+        done = reset(ROOT, folder, NOTEBOOK, folder / check_journal.NAME)
         assert done.copy is not None
         copies.append(done.copy)
         assert (folder / NOTEBOOK).read_bytes() == released
     assert [copy.read_text() for copy in copies] == ["first", "second"]
     assert all(copy.name.startswith("lab_1_2 (your copy, ") for copy in copies)
-    assert [entry.kind for entry in journal.entries(folder / journal.NAME)] == ["reset", "reset"]
+    assert [entry.kind for entry in check_journal.entries(folder / check_journal.NAME)] == ["reset", "reset"]
     assert sorted(path.name for path in (folder / NOTEBOOK).parent.iterdir()) == sorted(
         ["lab_1_2.ipynb", *(copy.name for copy in copies)]
     )

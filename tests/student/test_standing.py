@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from autograder import course, exercises
-from autograder.student.handing_out import hand_out
-from autograder.student.journal import JournalEntry
-from autograder.student.standing import Standing, standing
+from autograder.student.check_journal import JournalEntry
+from autograder.student.handout import hand_out
+from autograder.student.progress import Standing, standing
 
 if TYPE_CHECKING:
     from pathlib import Path

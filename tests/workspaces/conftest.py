@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from autograder.workspaces.builds import cache
+from autograder.workspaces.builds import build_cache
 
 sys.path.insert(0, str(Path(__file__).parent))
 from made_workspaces import python_package
@@ -24,5 +24,5 @@ def workspace(tmp_path: Path) -> Path:
 def empty_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """The cache of this test."""
     folder = tmp_path / "cache"
-    monkeypatch.setenv(cache.VARIABLE, str(folder))
+    monkeypatch.setenv(build_cache.VARIABLE, str(folder))
     return folder

@@ -13,14 +13,14 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from autograder.authoring.answers import Answer, answers
-from autograder.judge.serving.process import JudgeProcess
-from autograder.judge.settings import subject_environment
-from autograder.messages.checks import Check, Collect, Judged
-from autograder.messages.lines import Lines
-from autograder.notebook.checking.path_run import send_sources
-from autograder.workspaces.running.plain_jobs import PlainJobs
-from autograder.workspaces.service import ServiceSockets, WorkspaceService
+from autograder.authoring.answer_bank import Answer, answers
+from autograder.judge.controlled_judge import JudgeProcess
+from autograder.judge.ros_setup import subject_environment
+from autograder.messages.json_lines import Lines
+from autograder.messages.judge_messages import Check, Collect, Judged
+from autograder.notebook.checking.subject_runs import send_sources
+from autograder.workspaces.grading_service import ServiceSockets, WorkspaceService
+from autograder.workspaces.jobs import PlainJobs
 from tests.tiers import BUILT
 
 if TYPE_CHECKING:

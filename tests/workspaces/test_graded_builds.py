@@ -12,12 +12,11 @@ import pytest
 
 from autograder import course
 from autograder.grading.classes.sample_class import _without_markers
-from autograder.masters.layout import masters
-from autograder.masters.source import source_notebook
-from autograder.workspaces import built_ahead
-from autograder.workspaces.builds.colcon import look
-from autograder.workspaces.built_ahead import FILE, build_ahead, recorded
-from autograder.workspaces.graded_builds import GradedBuilds
+from autograder.masters.master_files import masters
+from autograder.masters.source_notebooks import source_notebook
+from autograder.workspaces import graded_builds
+from autograder.workspaces.builds.colcon_build import look
+from autograder.workspaces.graded_builds import FILE, GradedBuilds, build_ahead, recorded
 
 sys.path.insert(0, str(Path(__file__).parent))
 from made_workspaces import interface_package, python_package
@@ -26,7 +25,7 @@ from test_service import FakeJobs
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from autograder.workspaces.builds.colcon import Build
+    from autograder.workspaces.builds.colcon_build import Build
 
 
 @pytest.fixture
@@ -86,7 +85,7 @@ def test_a_package_of_the_course_is_built_ahead_whatever_its_comments_say(
     chapter.mkdir(parents=True)
     (chapter / FILE).write_text(json.dumps([files]))
     monkeypatch.setattr(course, "root", lambda: tmp_path)
-    monkeypatch.setattr(built_ahead, "_done", set())
+    monkeypatch.setattr(graded_builds, "_done", set())
     jobs = FakeJobs()
     build_ahead(ahead, jobs)
     build_ahead(ahead, jobs)

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 import pytest
 
 from autograder import course
-from autograder.authoring.execution_plan import NotebookKind, plan
+from autograder.authoring.notebook_execution import NotebookKind, execution_plan
 from autograder.boxes.sandbox import why_impossible
-from autograder.grading.running import engine
+from autograder.grading.running import execution_backends
 
 sys.path.insert(0, str(Path(__file__).parent))
 from graded import gradable, graders_judge, judged_answer
@@ -20,7 +20,7 @@ from graded import gradable, graders_judge, judged_answer
 from tests.tiers import asked_for
 
 if TYPE_CHECKING:
-    from autograder.execution.cells import Execution
+    from autograder.execution.executed_cells import Execution
 
 pytestmark = [pytest.mark.ros, pytest.mark.slow]
 
@@ -44,9 +44,11 @@ def executions(
     """What came of the notebooks that this session asks for: of masters, and of one as it is handed out."""
     asked = {(NotebookKind.MASTER, notebook) for notebook in asked_for(request, "notebook")}
     asked.add((NotebookKind.CHAPTER, HANDED_OUT))
-    planned = [one for one in plan(course.root(), NOTEBOOKS) if (one.kind, one.task.notebook) in asked]
+    planned = [
+        one for one in execution_plan(course.root(), NOTEBOOKS) if (one.kind, one.task.notebook) in asked
+    ]
     tasks = [replace(one.task, boxed=True) for one in planned]
-    done = engine.execute_all(tasks, tmp_path_factory.mktemp("s"), 2)
+    done = execution_backends.execute_all(tasks, tmp_path_factory.mktemp("s"), 2)
     return {(NotebookKind(result.task.student), result.task.notebook): result.execution for result in done}
 
 

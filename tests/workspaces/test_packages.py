@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from autograder.workspaces import packages
-from autograder.workspaces.builds import builds
+from autograder.workspaces.builds import cached_builds
 from autograder.workspaces.builds.interface_packages import holds_only_interfaces, simple_package_xml
 from autograder.workspaces.sources import BadSources
 
@@ -47,7 +47,7 @@ def trouble_in(src: Path) -> str:
 
 
 def key_of(src: Path) -> str:
-    return builds.key(packages.sources_of(src, packages_in(src)))
+    return cached_builds.key(packages.sources_of(src, packages_in(src)))
 
 
 def test_the_key_is_of_bytes_names_and_bits(workspace: Path) -> None:
@@ -95,7 +95,7 @@ def test_what_cmake_includes_is_in_the_key_and_not_its_path_alone(
     workspace: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     before = key_of(workspace / "src")
-    monkeypatch.setattr(builds, "ONLY_PYTHON_FILE", tmp_path / "another.cmake")
+    monkeypatch.setattr(cached_builds, "ONLY_PYTHON_FILE", tmp_path / "another.cmake")
     (tmp_path / "another.cmake").write_text("# another\n")
     assert key_of(workspace / "src") != before
 

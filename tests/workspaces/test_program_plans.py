@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 import pytest
 
 from autograder.kit.runners import ALONE, LaunchesFromPackage
-from autograder.workspaces.builds.builds import Builds
-from autograder.workspaces.builds.colcon import Build
+from autograder.workspaces.builds.cached_builds import Builds
+from autograder.workspaces.builds.colcon_build import Build
+from autograder.workspaces.jobs import PlainJobs
 from autograder.workspaces.packages import Package
 from autograder.workspaces.program_plans import lacks_programs, launch_targets, plan_for
-from autograder.workspaces.running.plain_jobs import PlainJobs
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from autograder import exercises
-from autograder.judge.verdicts import reference
+from autograder.judge import evidence_files
 from autograder.kit.evidence import Event, Evidence, Part
 from autograder.kit.launch_report import Process, process_line, processes, remappings
 from autograder.kit.workspace_report import (
@@ -20,11 +20,11 @@ from autograder.kit.workspace_report import (
     as_line,
     report_of,
 )
-from autograder.workspaces.builds.colcon import Build
+from autograder.workspaces.builds.colcon_build import Build
 from autograder.workspaces.builds.install_folder import LIBRARY
 from autograder.workspaces.packages import Package
 from autograder.workspaces.program_plans import Plan
-from autograder.workspaces.reporting import report_line
+from autograder.workspaces.program_preparation import report_line
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -184,7 +184,7 @@ def test_what_a_package_declares_is_asked_of_its_dependencies_alone(
     found = Build(tmp_path, ok=True, packages=(replace(package, dependencies=depends),))
     plan = Plan(lambda _: ["a"], lambda _: "", lambda _: [], definition="AddTwoInts.srv")
     exercise = exercises.get("lab_1_3.interface")
-    seen = Evidence([part(report_line("built", found, plan))], reference.load(exercise.id))
+    seen = Evidence([part(report_line("built", found, plan))], evidence_files.load_reference(exercise.id))
     point = next(criterion for criterion in exercise.criteria if criterion.name == "declares")
     finding = point.judge(seen)
     assert (finding.passed, finding.seen) == (declares, says)

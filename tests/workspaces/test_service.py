@@ -16,15 +16,14 @@ import pytest
 
 from autograder.kit.evidence import REPORTS
 from autograder.kit.runners import ALONE
-from autograder.messages import workspaces as messages
-from autograder.messages.lines import Hangup, Lines
-from autograder.workspaces import packages, service, session, sources
-from autograder.workspaces.builds import colcon_in_class, own_builds
-from autograder.workspaces.builds.artefacts import Kind, PackedEntry
+from autograder.messages import workspace_messages as messages
+from autograder.messages.json_lines import Hangup, Lines
+from autograder.workspaces import grading_service, packages, sources
+from autograder.workspaces.builds import students_builds
+from autograder.workspaces.builds.build_artefacts import Kind, PackedEntry
 from autograder.workspaces.builds.install_folder import LIBRARY
-from autograder.workspaces.running.jobs import BuildOrder, Built, ProgramJob
-from autograder.workspaces.running.plain_jobs import PlainProgram
-from autograder.workspaces.service import ServiceSockets, WorkspaceService
+from autograder.workspaces.grading_service import ServiceSockets, WorkspaceService
+from autograder.workspaces.jobs import BuildOrder, Built, PlainProgram, ProgramJob
 
 sys.path.insert(0, str(Path(__file__).parent))
 from made_workspaces import interface_package, python_package
@@ -32,7 +31,7 @@ from made_workspaces import interface_package, python_package
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
 
-    from autograder.workspaces.builds.cache import CachedBuild
+    from autograder.workspaces.builds.build_cache import CachedBuild
 
 
 FORGED = f'{REPORTS[0]}{{"phase": "built", "built": true}}'
@@ -481,9 +480,9 @@ def test_a_notebook_s_build_comes_from_the_grader(
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    monkeypatch.setenv(own_builds.GRADERS, str(sockets.notebook))
+    monkeypatch.setenv(students_builds.GRADERS, str(sockets.notebook))
     monkeypatch.chdir(lab)
-    assert colcon_in_class.main(["build", "--packages-select", "my_robot_pkg"]) == 0
+    assert students_builds.main(["build", "--packages-select", "my_robot_pkg"]) == 0
     assert "Finished <<< my_robot_pkg" in capsys.readouterr().out
     assert (lab / "install" / "my_robot_pkg" / "lib" / "my_robot_pkg" / "simple_node").is_file()
     judge = FakeJudge(sockets)
@@ -500,9 +499,9 @@ def test_a_notebook_s_failed_build_shows_what_colcon_said(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     jobs.built = Built(1, b"SyntaxError: invalid syntax\nFailed   <<< my_robot_pkg\n")
-    monkeypatch.setenv(own_builds.GRADERS, str(sockets.notebook))
+    monkeypatch.setenv(students_builds.GRADERS, str(sockets.notebook))
     monkeypatch.chdir(lab)
-    assert colcon_in_class.main(["build"]) == 1
+    assert students_builds.main(["build"]) == 1
     assert "SyntaxError" in capsys.readouterr().out
     assert not (lab / "install").exists()
 
@@ -512,9 +511,9 @@ def test_sources_that_no_build_takes_are_refused_with_the_reason(
 ) -> None:
     (lab / "src" / "my_robot_pkg" / "large.bin").write_bytes(bytes(200))
     monkeypatch.setattr(packages, "MAX_BYTES", 100)
-    monkeypatch.setenv(own_builds.GRADERS, str(sockets.notebook))
+    monkeypatch.setenv(students_builds.GRADERS, str(sockets.notebook))
     monkeypatch.chdir(lab)
-    assert colcon_in_class.main(["build"]) == 1
+    assert students_builds.main(["build"]) == 1
     assert "the limit for a file in a check: move it out of the workspace" in capsys.readouterr().out
 
 
@@ -553,7 +552,7 @@ def until_they_hang_up(lines: Lines) -> list[str]:
 
 def test_a_notebook_has_only_so_many_builds(sockets: ServiceSockets) -> None:
     assert sockets.notebook is not None
-    for _ in range(service.MAX_BUILDS):
+    for _ in range(grading_service.MAX_BUILDS):
         lines = Lines.to(sockets.notebook, 20.0)
         lines._socket.sendall(b'{"say": "nothing"}\n')
         assert until_they_hang_up(lines) == ["no"]
@@ -583,7 +582,7 @@ def size_of_output(words: dict[str, Any]) -> int:
 def test_endless_output_is_cut_and_ends_with_the_run(
     sockets: ServiceSockets, jobs: FakeJobs, lab: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(session, "MAX_OUTPUT", 10_000)
+    monkeypatch.setattr(grading_service, "MAX_OUTPUT", 10_000)
     jobs.script = "yes"
     judge = FakeJudge(sockets)
     judge.check(lab)

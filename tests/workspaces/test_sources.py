@@ -14,11 +14,11 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from autograder.messages.lines import Lines, NotUnderstood, encode
-from autograder.messages.workspaces import Source
+from autograder.messages.json_lines import Lines, NotUnderstood, encode
+from autograder.messages.workspace_messages import Source
 from autograder.workspaces import sources
 from autograder.workspaces.packages import sources_of
-from autograder.workspaces.sources import BadSources, Tree, read
+from autograder.workspaces.sources import BadSources, Tree, read_sources
 
 sys.path.insert(0, str(Path(__file__).parent))
 from made_workspaces import packages_in
@@ -30,7 +30,7 @@ TWIN = unicodedata.normalize("NFC", "ä.py"), unicodedata.normalize("NFD", "ä.p
 
 
 def tree_of(folder: Path, largest: int = 1_000) -> Tree:
-    return Tree(tuple(read(folder, ".", largest)))
+    return Tree(tuple(read_sources(folder, ".", largest)))
 
 
 def unreadable(folder: Path) -> None:
@@ -285,7 +285,7 @@ def test_of_far_too_much_that_is_sent_nothing_is_kept(one: Source, tmp_path: Pat
         sent = sender.submit(here.sendall, encode(one) * count)
         tracemalloc.start()
         with pytest.raises(BadSources, match="src is too large"):
-            sources.receive(Lines(there), count, "ros2_ws", tmp_path)
+            sources.receive_sources(Lines(there), count, "ros2_ws", tmp_path)
         most = tracemalloc.get_traced_memory()[1]
         tracemalloc.stop()
         sent.result()  # all of it was heard: what is said behind it comes in its turn

@@ -1,10 +1,13 @@
-"""Reads a class directory: its configuration, assignments and submissions, and the rules for folder names."""
+"""Reads a class directory: its configuration, secret, assignments and submissions, and the rules for folder names."""
 
 from __future__ import annotations
 
 import contextlib
 import functools
 import hashlib
+import hmac
+import os
+import secrets
 import unicodedata
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,10 +18,9 @@ from traitlets.config.loader import PyFileConfigLoader
 
 from autograder import course
 from autograder.grading.classes.class_lock import held
-from autograder.grading.classes.seeds import create_secret, read_secret
-from autograder.grading.errors import ClassIncomplete, NotAClass, clear_disk_errors
-from autograder.grading.rebuilding.submission import reason_against_file
-from autograder.regular_files import remove_unfinished
+from autograder.grading.grading_errors import ClassIncomplete, NotAClass, clear_disk_errors
+from autograder.grading.rebuilding.submitted_notebook import reason_against_file
+from autograder.safe_files import remove_unfinished
 from environment.installation import COMMAND
 
 if TYPE_CHECKING:
@@ -28,7 +30,52 @@ if TYPE_CHECKING:
     from nbformat import NotebookNode
     from traitlets.config import Config
 
-    from autograder.grading.rebuilding.named_cells import NamedCells
+    from autograder.grading.rebuilding.cell_matching import NamedCells
+
+
+_SECRET_BYTES = 32
+
+
+def create_secret(path: Path) -> None:
+    """Write a new secret of a class into a file that only the owner can read.
+
+    Raises:
+        FileExistsError: The file exists. It is not replaced, because a new secret would change the inputs of every
+            student.
+    """
+    descriptor = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
+    with os.fdopen(descriptor, "w") as file:
+        file.write(secrets.token_hex(_SECRET_BYTES))
+
+
+def read_secret(path: Path) -> bytes:
+    """Return the secret of a class.
+
+    Raises:
+        OSError: The file cannot be read.
+        ValueError: The file is damaged.
+    """
+    secret = bytes.fromhex(path.read_text().strip())
+    if len(secret) != _SECRET_BYTES:
+        raise ValueError(f"{path} does not hold {_SECRET_BYTES} bytes")
+    return secret
+
+
+def seed_for(secret: bytes, student: str, assignment: str, notebook: str, work: str) -> str:
+    """Return the seed of one student's notebook. The judge derives the seed of each exercise from it.
+
+    Args:
+        secret: The class secret.
+        student: The student's id.
+        assignment: The assignment's name.
+        notebook: The notebook's name.
+        work: A hash of the submitted cells, so that a changed submission gets different inputs. Otherwise a student
+            could copy inputs from the feedback into the next submission.
+    """
+    # The hashed message contains the lengths of the names, so that ("ab", "c") and ("a", "bc") give different seeds.
+    message = "".join(f"{len(part)}:{part};" for part in (student, assignment, notebook, work))
+    return hmac.new(secret, message.encode(), hashlib.sha256).hexdigest()[:32]
+
 
 CONFIG_NAME = "nbgrader_config.py"
 STATE_NAME = ".autograder"
@@ -190,16 +237,14 @@ class ClassDirectory:
         Raises:
             MasterUnusable: The source notebook cannot be used for grading.
         """
-        from autograder.grading.rebuilding.master import (
-            read_master,  # imported here, because this import loads nbgrader, which takes a second
-        )
+        from autograder.grading.rebuilding.trusted_master import read_master
 
         return read_master(self.path / "source" / assignment / f"{notebook}{SUFFIX}", self.config)
 
     @functools.cached_property
     def named_cells(self) -> NamedCells:
         """The names of the cells in all source notebooks of the class."""
-        from autograder.grading.rebuilding.named_cells import NamedCells
+        from autograder.grading.rebuilding.cell_matching import NamedCells
 
         return NamedCells(
             {

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import msgspec
 
-from autograder.grading.errors import ClassBusy
+from autograder.grading.grading_errors import ClassBusy
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

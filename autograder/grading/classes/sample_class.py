@@ -14,21 +14,21 @@ from rich.console import Console
 
 from autograder import course
 from autograder.boxes import sandbox
-from autograder.execution.cells import CellType
+from autograder.execution.executed_cells import CellType
 from autograder.grading.batch import grade
 from autograder.grading.classes.class_directory import CONFIG_NAME, STATE_NAME, SUFFIX
 from autograder.grading.classes.new_class import CONFIG, new_class
-from autograder.grading.errors import ClassExists
+from autograder.grading.grading_errors import ClassExists
 from autograder.grading.rebuilding import nbformat_nodes
-from autograder.grading.rebuilding.rebuild import grade_id
-from autograder.grading.reporting.report_table import show
-from autograder.grading.running import sandboxing
-from autograder.masters.layout import lab_name, masters
+from autograder.grading.rebuilding.notebook_rebuilding import grade_id
+from autograder.grading.reporting.grade_report import show
+from autograder.grading.running import execution_backends
+from autograder.masters.master_files import lab_name, masters
 
 if TYPE_CHECKING:
     from nbformat import NotebookNode
 
-    from autograder.grading.reporting.report import GradeReport
+    from autograder.grading.reporting.grade_report import GradeReport
 
 DATA = Path(__file__).with_suffix(".toml")
 CELL_SECONDS = 8.0
@@ -96,7 +96,7 @@ def demo(path: Path, *, console: Console | None = None) -> GradeReport:
     """
     console = console or Console()
     if sandbox.why_impossible():
-        sandboxing.switch_off(path)
+        execution_backends.switch_off(path)
     _make(path, console)
     report = grade(path)
     show(report, console)

@@ -28,8 +28,8 @@ from typing import Any  # noqa: E402
 import msgspec  # noqa: E402
 from distributed import Client, wait  # noqa: E402
 
-from autograder.grading.cluster import calls  # noqa: E402
-from autograder.grading.running.orders import (  # noqa: E402
+from autograder.grading.cluster import dask_calls  # noqa: E402
+from autograder.grading.running.worker_messages import (  # noqa: E402
     LARGEST_ANSWER,
     Answered,
     Asked,
@@ -42,7 +42,7 @@ from autograder.grading.running.orders import (  # noqa: E402
     News,
     Unfit,
 )
-from autograder.messages.lines import Hangup, Lines  # noqa: E402
+from autograder.messages.json_lines import Hangup, Lines  # noqa: E402
 
 _MEMORY = 3 << 30
 """The limit of this process's address space, in bytes, of which Python and Dask take 0.2 GB."""
@@ -151,7 +151,7 @@ class _Carrier:
     async def _introduce(self, address: str, name: str, threads: int) -> None:
         try:
             # Dask's ``run`` needs no free thread of the worker, so even a busy worker sends its offer.
-            asking = self._client.run(calls.offer_as_json, threads, workers=[address])
+            asking = self._client.run(dask_calls.offer_as_json, threads, workers=[address])
             said = (await asyncio.wait_for(asking, _OFFER_SECONDS))[address]
         except TimeoutError:
             _tell(
@@ -171,7 +171,7 @@ class _Carrier:
             return
         key = f"autograder-{self._batch}-{give.number}"
         future = self._client.submit(
-            calls.execute_order,
+            dask_calls.execute_order,
             give.order,
             key=key,
             workers=[give.worker],

@@ -1,28 +1,35 @@
-"""Takes files into the inbox of a class, decides which of them are graded, and writes these into ``submitted``."""
+"""The command ``collect``: takes files into a class, decides which of them are graded, and shows the result."""
 
 from __future__ import annotations
 
 from collections import defaultdict
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
+from rich.console import Console
+
+from autograder.cards.readable_text import printable
 from autograder.grading.classes.class_directory import ClassDirectory
-from autograder.grading.collecting.apply import Submitted
 from autograder.grading.collecting.collected_csv import Table
-from autograder.grading.collecting.deciding.assignment_of import AssignmentOf
-from autograder.grading.collecting.deciding.decide import Looks, decide
-from autograder.grading.collecting.deciding.proposals import NO_LIST, entries_of, in_utc, lines_of
-from autograder.grading.collecting.deciding.student_of import StudentOf
-from autograder.grading.collecting.inbox import Arrival, Delivery, Inbox
-from autograder.grading.collecting.line import LineState
-from autograder.grading.collecting.outcomes import CollectReport
-from autograder.grading.collecting.reading.archives import Archives, File, NotTaken, Room
-from autograder.grading.collecting.reading.desk import read_list, without_sandbox
-from autograder.grading.collecting.reading.named_sources import NamedSource, note_on, own_of
-from autograder.grading.collecting.reading.names_option import check_names
-from autograder.grading.collecting.reading.unpack import is_archive
-from autograder.grading.errors import GradingError, check_known
+from autograder.grading.collecting.collected_files import Arrival, Delivery, Inbox, LineState
+from autograder.grading.collecting.download_desk_process import is_archive
+from autograder.grading.collecting.downloaded_files import (
+    Archives,
+    File,
+    NotTaken,
+    Room,
+    read_list,
+    without_sandbox,
+)
+from autograder.grading.collecting.file_owners import NamedSource, StudentOf, note_on, own_of
+from autograder.grading.collecting.file_to_grade import Looks, decide
+from autograder.grading.collecting.inbox_lines import NO_LIST, AssignmentOf, entries_of, in_utc, lines_of
+from autograder.grading.collecting.submitted_file_names import check_names
+from autograder.grading.collecting.submitted_folder import Submitted
+from autograder.grading.grading_errors import GradingError, check_known, course_command
+from autograder.grading.running.batch_progress import plain_line
 from autograder.grading.table.roster import enter_roster, read_roster
+from autograder.kit.in_words import counted
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Mapping, Sequence
@@ -30,9 +37,38 @@ if TYPE_CHECKING:
     from pathlib import Path
     from zoneinfo import ZoneInfo
 
-    from autograder.grading.collecting.inbox import Receiving
-    from autograder.grading.collecting.line import Line, Place
-    from autograder.grading.collecting.reading.lists import ListEntry
+    from autograder.grading.collecting.collected_files import Line, Place, Receiving
+    from autograder.grading.collecting.lms_lists import ListEntry
+
+
+@dataclass(frozen=True)
+class CollectReport:
+    """The result of collecting.
+
+    Attributes:
+        path: The class.
+        outcomes: The lines of the files that this command named, and other lines that changed.
+        untimed: The students with work collected now whose time of handing in is unknown, by assignment.
+        missing: The students who have handed in nothing, by assignment.
+        waiting: The number of lines in the table that wait for a person.
+        notes: Sentences for the instructor, for example about unclear cells and empty downloads.
+    """
+
+    path: Path
+    outcomes: tuple[Line, ...] = ()
+    untimed: dict[str, tuple[str, ...]] = field(default_factory=dict)
+    missing: dict[str, tuple[str, ...]] = field(default_factory=dict)
+    waiting: int = 0
+    notes: tuple[str, ...] = ()
+
+    def having(self, state: LineState) -> tuple[Line, ...]:
+        """Return the lines with this state."""
+        return tuple(one for one in self.outcomes if one.state == state)
+
+    @property
+    def exit_code(self) -> int:
+        """The command's exit code: 2 if a person has to decide about one of the files; otherwise 0."""
+        return 2 if self.having(LineState.NOT_PLACED) else 0
 
 
 def collect(
@@ -224,3 +260,58 @@ def _taken(file: File, receiving: Receiving) -> tuple[Arrival, bytes]:
     except NotTaken as error:
         return replace(file.arrival, refused=str(error)), b""
     return replace(file.arrival, content=receiving.keep(data)), data
+
+
+def show(report: CollectReport, console: Console | None = None) -> None:
+    """Print which files were placed and which were not, with the reasons.
+
+    Args:
+        report: The result of collecting.
+        console: The console to print on; by default standard output.
+    """
+    console = console or Console()
+    for text in _lines(report):
+        style = "yellow" if text.startswith(LineState.NOT_PLACED) else ""
+        plain_line(console, printable(text), style)
+
+
+def _lines(report: CollectReport) -> Iterator[str]:
+    for one in report.having(LineState.PLACED):
+        when = f", handed in {one.when:%Y-%m-%d %H:%M} {one.when.tzinfo}" if one.when else ""
+        late = ", late according to the LMS" if one.late else ""
+        again = f", {one.reason}" if one.reason else ""
+        yield f"placed       {one.student}/{one.assignment}: {one.label}{when}{late}{again}"
+    for state in (LineState.EARLIER, LineState.BESIDE, LineState.LEFT_OUT, LineState.NOT_PLACED):
+        for one in report.having(state):
+            owner = f"{one.student}: " if one.student else ""
+            also = (
+                "; the student's notebook was collected, too"
+                if state == LineState.BESIDE and one.student
+                else ""
+            )
+            yield f"{state:<12} {one.label}: {owner}{one.reason}{also}"
+    for assignment, students in report.missing.items():
+        yield f"nothing of   {assignment}: {', '.join(students)}"
+    untimed = {student for students in report.untimed.values() for student in students}
+    for assignment, students in report.untimed.items():
+        yield f"no time      {assignment}: {', '.join(students)}"
+    if untimed:
+        marked = any(one.late and one.student in untimed for one in report.outcomes)
+        yield (
+            "note         for these students, the time of handing in is unknown"
+            + (", though the LMS marks some of them as late" if marked else "")
+            + ", so they have no late penalty: write the time under handed_in in collected.csv"
+        )
+    for note in report.notes:
+        yield f"note         {note}"
+    counts = {state: len(report.having(state)) for state in LineState}
+    yield ", ".join(f"{count} {state}" for state, count in counts.items())
+    if counts[LineState.NOT_PLACED]:
+        yield (
+            f"note         {counted(report.waiting, 'line')} of {report.path / 'collected.csv'} to decide: write the "
+            f"student or the assignment there, or yes or no under use; then type "
+            f"{course_command('collect', report.path)}. "
+            "If many names have the same form, --from or --names can describe it"
+        )
+    if counts[LineState.PLACED]:
+        yield f"Then         {course_command('grade', report.path)}"

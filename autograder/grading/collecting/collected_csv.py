@@ -20,19 +20,18 @@ import re2
 from babel.core import Locale, UnknownLocaleError, get_global
 from babel.dates import parse_date
 
-from autograder.grading.collecting.deciding.decide import cell_in
-from autograder.grading.collecting.deciding.proposals import Edit, in_utc
-from autograder.grading.collecting.inbox import FOLDER
-from autograder.grading.collecting.line import LineState
-from autograder.grading.collecting.reading.lms_file_names import read_time
-from autograder.grading.reporting.spreadsheet import csv_rows, defused, original
-from autograder.regular_files import write_whole
+from autograder.grading.collecting.collected_files import INBOX_FOLDER, LineState
+from autograder.grading.collecting.file_to_grade import cell_in
+from autograder.grading.collecting.inbox_lines import Edit, in_utc
+from autograder.grading.collecting.submitted_file_names import read_time
+from autograder.grading.table.spreadsheet_csv import csv_rows, defused, original
+from autograder.safe_files import write_whole
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
     from autograder.grading.classes.class_directory import ClassDirectory
-    from autograder.grading.collecting.line import Line
+    from autograder.grading.collecting.collected_files import Line
 
 NAME = "collected.csv"
 COLUMNS = (
@@ -96,8 +95,8 @@ class Table:
 
     def __init__(self, directory: ClassDirectory) -> None:
         self.path = directory.path / NAME
-        self._copies = directory.state / FOLDER / "tables"
-        self._edits_file = directory.state / FOLDER / "edits.json"
+        self._copies = directory.state / INBOX_FOLDER / "tables"
+        self._edits_file = directory.state / INBOX_FOLDER / "edits.json"
         self._zone = directory.time_zone
         self._locale = _locale_of(self._zone.key)
 

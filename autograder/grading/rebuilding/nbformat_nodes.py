@@ -10,7 +10,7 @@ import nbformat
 from nbformat import NotebookNode
 from nbformat.v4 import rwbase
 
-from autograder.execution.cells import CellType
+from autograder.execution.executed_cells import CellType
 
 _nbformat: Any = nbformat
 

@@ -11,14 +11,14 @@ from typing import TYPE_CHECKING
 
 import msgspec
 
-from autograder.grading.errors import ClassIncomplete, MasterUnusable, course_command
-from autograder.grading.gradebooks import gradebook_reading
-from autograder.grading.reporting.rows import NO_EXERCISE
+from autograder.grading.classes import gradebook_reading
+from autograder.grading.grading_errors import ClassIncomplete, MasterUnusable, course_command
+from autograder.grading.table.rows import NO_EXERCISE
 
 if TYPE_CHECKING:
     from autograder.grading.class_store import ClassStore
     from autograder.grading.classes.class_directory import ClassDirectory
-    from autograder.grading.rebuilding.fingerprints import Fingerprints
+    from autograder.grading.rebuilding.submission_fingerprints import Fingerprints
 
 
 @dataclass(frozen=True)
@@ -82,7 +82,7 @@ def check_release(directory: ClassDirectory, cells: dict[str, tuple[GradedCell, 
             f"{directory.path / 'source'} contains no assignment. Put an assignment there, or make a new class."
         )
     for assignment, wanted in cells.items():
-        entered = gradebook_reading.worth(directory.gradebook_url, assignment)
+        entered = gradebook_reading.max_scores(directory.gradebook_url, assignment)
         for cell in wanted:
             if entered.get(cell.notebook, {}).get(cell.name) != cell.worth:
                 command = ("nbgrader", "generate_assignment", assignment, "--force")
@@ -99,8 +99,8 @@ def check_release(directory: ClassDirectory, cells: dict[str, tuple[GradedCell, 
 def _read(directory: ClassDirectory, assignment: str) -> list[GradedCell]:
     from nbgrader.utils import is_grade, is_task
 
-    from autograder.grading.rebuilding.master import check_of
-    from autograder.grading.rebuilding.rebuild import grade_id
+    from autograder.grading.rebuilding.notebook_rebuilding import grade_id
+    from autograder.grading.rebuilding.trusted_master import check_of
 
     found = []
     for notebook in directory.notebooks(assignment):

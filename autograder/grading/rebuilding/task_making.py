@@ -1,36 +1,82 @@
-"""Makes the tasks of a submission: one for each notebook, rebuilt and ready to be executed."""
+"""Makes the tasks of a submission: one for each notebook, rebuilt and ready to be executed.
+
+Cells that only show something, such as a ``ros2`` command, are skipped when a class is graded.
+"""
 
 from __future__ import annotations
 
 import hashlib
 from collections import Counter
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import msgspec
 
-from autograder.execution.cells import Cell, CellType
-from autograder.grading.classes.class_directory import SUFFIX, ClassDirectory, Submission
-from autograder.grading.classes.configuration import limits_of
-from autograder.grading.classes.seeds import seed_for
+from autograder.execution.executed_cells import Cell, CellType
+from autograder.grading.classes.class_checks import limits_of
+from autograder.grading.classes.class_directory import SUFFIX, ClassDirectory, Submission, seed_for
+from autograder.grading.grading_task import Task
 from autograder.grading.rebuilding.course_version import course_version
-from autograder.grading.rebuilding.demonstrations import are_run, demonstrations_of
-from autograder.grading.rebuilding.desk import read_notebook
-from autograder.grading.rebuilding.master import check_of
-from autograder.grading.rebuilding.rebuild import (
+from autograder.grading.rebuilding.notebook_rebuilding import (
     grade_id,
     is_of_another,
     is_the_masters,
     rebuild,
     rebuild_unreadable,
 )
-from autograder.grading.rebuilding.submission import UnreadableSubmission, read_bytes
-from autograder.grading.running import sandboxing
-from autograder.grading.task import Task
+from autograder.grading.rebuilding.submission_desk import read_notebook
+from autograder.grading.rebuilding.submitted_notebook import UnreadableSubmission, read_bytes
+from autograder.grading.rebuilding.trusted_master import check_of
+from autograder.grading.running import execution_backends
+from autograder.masters.master_cells import CellRole
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from nbformat import NotebookNode
+
+
+LEFT_OUT = "[a demonstration of the notebook: left out while grading]"
+
+
+def is_demonstration(cell: NotebookNode) -> bool:
+    """Return True if a cell comes from the master, and the master marks it as a demonstration.
+
+    Args:
+        cell: A cell of a rebuilt notebook. In such a notebook, only cells from the master have nbgrader's metadata.
+    """
+    given = cell.cell_type == CellType.CODE and is_the_masters(cell) and not _marks(cell).get("grade")
+    return given and CellRole.DEMONSTRATION in cell.metadata.get("tags", ())
+
+
+def demonstrations_of(notebook: NotebookNode) -> frozenset[int]:
+    """Return the indexes of the cells on which no grade depends.
+
+    Args:
+        notebook: A rebuilt notebook.
+    """
+    earning = [place for place, cell in enumerate(notebook.cells) if _marks(cell).get("grade")]
+    last = max(earning, default=len(notebook.cells))
+    return frozenset(
+        place
+        for place, cell in enumerate(notebook.cells)
+        if is_demonstration(cell) or (place > last and _is_file_or_terminal(cell))
+    )
+
+
+def _marks(cell: NotebookNode) -> dict[str, Any]:
+    marks: dict[str, Any] = cell.metadata.get("nbgrader", {})
+    return marks
+
+
+def _is_file_or_terminal(cell: NotebookNode) -> bool:
+    magic = cell.source.partition("\n")[0].partition(" ")[0].strip()
+    is_own = cell.cell_type == CellType.CODE and bool(_marks(cell))
+    return is_own and magic in ("%%bash", "%%writefile", "%%program")
+
+
+def are_run(directory: ClassDirectory) -> bool:
+    """Return True if demonstrations are run in this class (option ``demonstrations`` in its configuration)."""
+    return bool(directory.config.WireExecute.get("demonstrations", False))
 
 
 def tasks_of(directory: ClassDirectory, submission: Submission) -> list[Task]:
@@ -67,7 +113,7 @@ def task_of(directory: ClassDirectory, submission: Submission, notebook: str) ->
         problem=problem,
         remarks=() if problem else tuple(rebuilt.metadata["autograder"]["remarks"]),
         pictures=_hash_of_pictures(rebuilt),
-        boxed=not sandboxing.switched_off(directory),
+        boxed=not execution_backends.switched_off(directory),
     )
     return task, rebuilt
 

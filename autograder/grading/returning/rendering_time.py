@@ -1,9 +1,9 @@
 """Finds the cells of a notebook that take too long to render on a page.
 
 A student can craft a text that keeps parsers of Markdown and code busy for minutes. So a desk
-(:mod:`autograder.boxes.desk`) renders the texts first as a trial, in the same steps as nbconvert's page template and
-with a limit of processor time. If the desk did not finish a text, pages and formgrader show the text as it was typed,
-and cut it (:func:`autograder.grading.returning.sanitize.make_harmless`).
+(:mod:`autograder.boxes.reading_desks`) renders the texts first as a trial, in the same steps as nbconvert's page
+template and with a limit of processor time. If the desk did not finish a text, pages and formgrader show the text as it
+was typed, and cut it (:func:`autograder.grading.returning.sanitize.make_harmless`).
 """
 
 from __future__ import annotations
@@ -13,14 +13,14 @@ from typing import TYPE_CHECKING
 
 import msgspec
 
-from autograder.boxes.channel import ChannelClosed
-from autograder.boxes.desk import KeptDesk, in_memory
-from autograder.grading.rebuilding.submission import HARMLESS_LENGTH
+from autograder.boxes.process_channel import ChannelClosed
+from autograder.boxes.reading_desks import KeptDesk, in_memory
+from autograder.grading.rebuilding.submitted_notebook import HARMLESS_LENGTH
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from autograder.execution.cells import Cell
+    from autograder.execution.executed_cells import Cell
 
 SECONDS = 1
 """The time limit for all texts of a notebook, in seconds of processor time. Usually they take less than a tenth."""

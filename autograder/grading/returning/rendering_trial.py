@@ -17,7 +17,7 @@ from nbconvert.filters.highlight import Highlight2HTML
 from nbconvert.filters.markdown_mistune import markdown2html_mistune
 from nbconvert.filters.strings import clean_html, strip_files_prefix
 
-from autograder.execution.cells import CellType
+from autograder.execution.executed_cells import CellType
 from autograder.grading.returning.sanitize import clean, harmless_markdown
 
 if TYPE_CHECKING:

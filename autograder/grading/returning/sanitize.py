@@ -17,13 +17,12 @@ import re2
 from nbconvert.filters.markdown_mistune import IPythonRenderer, MarkdownWithMath
 from pygments.token import STANDARD_TYPES
 
-from autograder.execution.cells import CellType
-from autograder.execution.outputs import IMAGES
+from autograder.execution.cell_outputs import IMAGES
+from autograder.execution.executed_cells import CellType
 from autograder.grading.rebuilding import nbformat_nodes
-from autograder.grading.rebuilding.rebuild import is_check, is_the_masters
-from autograder.grading.rebuilding.submission import HARMLESS_LENGTH
-from autograder.grading.returning.pictures import PixelBudget, is_shown
-from autograder.grading.returning.tables import places_in_tables
+from autograder.grading.rebuilding.notebook_rebuilding import is_check, is_the_masters
+from autograder.grading.rebuilding.submitted_notebook import HARMLESS_LENGTH
+from autograder.grading.returning.browser_memory import PixelBudget, is_shown, places_in_tables
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable

@@ -1,7 +1,7 @@
 """The dispatcher's connection to a process that carries out its commands: the executor process or the Dask client.
 
 Both sides send lines of JSON: the dispatcher sends a ``Command``, the process sends ``News``
-(:mod:`autograder.grading.running.orders`).
+(:mod:`autograder.grading.running.worker_messages`).
 """
 
 from __future__ import annotations
@@ -17,10 +17,10 @@ from typing import TYPE_CHECKING, Self
 import msgspec
 
 from autograder import course
-from autograder.grading.running.orders import ADDRESS, Broken, Command, Left, News
-from autograder.messages.lines import Hangup, Lines
+from autograder.grading.running.worker_messages import ADDRESS, Broken, Command, Left, News
+from autograder.messages.json_lines import Hangup, Lines
 from autograder.process_trees import end_processes_in, end_soon
-from autograder.temporary_folders import unnamed_file
+from autograder.safe_files import unnamed_file
 from environment.python_child import python_child
 
 if TYPE_CHECKING:
@@ -153,7 +153,7 @@ def this_machine(scratch: Path, slots: int, *, boxed: bool) -> ProcessLink:
         boxed: True if notebooks are executed in boxes.
     """
     words = [str(scratch), str(slots), *(["boxed"] if boxed else [])]
-    return ProcessLink("autograder.grading.running.executor", *words, scratch=scratch)
+    return ProcessLink("autograder.grading.running.order_executor", *words, scratch=scratch)
 
 
 def client_of(address: str) -> ProcessLink:

@@ -1,35 +1,143 @@
-"""Executes one task: starts its boxes, kernel and judge, runs the notebook, and ends them all."""
+"""Executes one task: starts its boxes, kernel, judge and workspace service, runs the notebook, and ends them all.
+
+The workspace service builds and runs workspaces and launch files for the checks of the notebook.
+"""
 
 from __future__ import annotations
 
 import contextlib
 import functools
 import importlib
-from dataclasses import replace
+import os
+import shlex
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Self
 
-from autograder.boxes.limits import Ended
+from autograder import exercises
+from autograder.boxes.run_limits import Ended
 from autograder.boxes.sandbox import NoSandbox
-from autograder.execution.notebook_boxes import BoxedPlace, JudgeSetting, UnboxedPlace
-from autograder.execution.runner import Unfinished, run_notebook
+from autograder.boxes.visible_host import kernel_environment
+from autograder.execution.notebook_boxes import SHARED_FOLDER, BoxedPlace, JudgeSetting, UnboxedPlace
+from autograder.execution.notebook_runner import Unfinished, run_notebook
 from autograder.grading.returning.rendering_time import too_costly
-from autograder.grading.running.workspace_service import arrange, served
+from autograder.judge import controlled_judge
 from autograder.judge.bench.patience import Patience
-from autograder.judge.serving import attached
-from autograder.judge.serving.domain import lease
-from autograder.judge.settings import boxed_ros_environment, ros_environment
-from autograder.messages.checks import SOCKET_VARIABLE
-from autograder.temporary_folders import scratch_folder
+from autograder.judge.ros_setup import boxed_ros_environment, lease, ros_environment
+from autograder.messages.judge_messages import SOCKET_VARIABLE
+from autograder.safe_files import scratch_folder
+from autograder.workspaces.boxed_jobs import BoxedJobs
+from autograder.workspaces.builds import build_cache, students_builds
+from autograder.workspaces.graded_builds import build_ahead
+from autograder.workspaces.grading_service import ServiceSockets, WorkspaceService
+from autograder.workspaces.jobs import PlainJobs
+from environment.python_child import python_child
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Mapping, Sequence
     from pathlib import Path
 
     from autograder.boxes.fork_server import Addresses
-    from autograder.boxes.limits import Left
-    from autograder.execution.cells import Cell, Execution
-    from autograder.grading.task import Task
+    from autograder.boxes.run_limits import Left
+    from autograder.execution.executed_cells import Cell, Execution
+    from autograder.grading.grading_task import Task
     from autograder.verdict import Verdict
+
+
+_BUILDS, _PROGRAMS = "builds", "bin"
+
+
+@dataclass(frozen=True)
+class Arrangement:
+    """The paths of one notebook's sockets and folders.
+
+    Attributes:
+        folder: A folder that only this notebook uses.
+        boxed: True if the notebook runs in boxes.
+        runners: The exercises whose subjects the grader itself builds and starts.
+    """
+
+    folder: Path
+    boxed: bool
+    runners: frozenset[str]
+
+    @property
+    def judges_folder(self) -> Path:
+        """The folder with the judge's socket, which the judge's box sees but the student's box must not see."""
+        return self.folder / "jobs"
+
+    @property
+    def judges_socket(self) -> Path:
+        """The path of the judge's socket, which is the same inside and outside the judge's box."""
+        return self.judges_folder / "sock"
+
+    def variables(self) -> Mapping[str, str]:
+        """Return environment variables that let ``colcon build`` in the notebook's box use the grader's builds."""
+        if not self.boxed:
+            return {}
+        path = f"{SHARED_FOLDER / _PROGRAMS}{os.pathsep}{os.environ.get('PATH', os.defpath)}"
+        return {"PATH": path, students_builds.GRADERS: str(SHARED_FOLDER / _BUILDS)}
+
+
+def arrange(task: Task, folder: Path) -> Arrangement:
+    """Make the folder for the judge's socket, and find the exercises whose subjects are programs.
+
+    Call this before the boxes of the notebook are made.
+
+    Args:
+        task: The notebook.
+        folder: A folder that only this notebook uses. Its path must be short, because it will contain a Unix socket.
+    """
+    checks = [cell.check.exercise for cell in task.cells if cell.check and not cell.check.asserts]
+    runners = {name: exercises.get(name).runner for name in checks if name in exercises.all_ids()}
+    arrangement = Arrangement(
+        folder, task.boxed, frozenset(name for name, runner in runners.items() if runner)
+    )
+    arrangement.judges_folder.mkdir()
+    return arrangement
+
+
+def served(
+    arrangement: Arrangement, place: BoxedPlace | UnboxedPlace, addresses: Addresses
+) -> WorkspaceService:
+    """Return the workspace service of a notebook, for use in a ``with`` block that lasts as long as the notebook runs.
+
+    Args:
+        arrangement: The result of :func:`arrange`.
+        place: The boxes of the notebook.
+        addresses: The addresses of the fork servers.
+    """
+    folder = arrangement.folder / "work-of-jobs"
+    folder.mkdir()
+    jobs: BoxedJobs | PlainJobs
+    builds, ahead = build_cache.graders_root(), None
+    if isinstance(place, BoxedPlace):
+        jobs = BoxedJobs(addresses.supervisors, place.programs, folder, addresses.programs)
+        ros = boxed_ros_environment()
+        _furnish(place.shared)
+        if arrangement.runners:
+            build_ahead(builds, jobs)
+        builds, ahead = folder / "builds", builds
+        builds.mkdir(mode=0o700)
+        sockets = ServiceSockets(arrangement.judges_socket, place.shared / _BUILDS)
+    else:
+        jobs = PlainJobs(kernel_environment(folder / "home", {}), handed_in=True)
+        ros = ros_environment()
+        sockets = ServiceSockets(arrangement.judges_socket, None)
+    # PYTHONUNBUFFERED: output comes without delay. PYTHONFAULTHANDLER: a program that hangs can print the stacks of its
+    # threads.
+    variables = {**ros, "PYTHONUNBUFFERED": "1", "PYTHONFAULTHANDLER": "1"}
+    return WorkspaceService(sockets, jobs, builds, variables, folder, ahead)
+
+
+def _furnish(shared: Path) -> None:
+    """Write a replacement for the colcon command into ``shared``, a folder that the student's box can read."""
+    programs = shared / _PROGRAMS
+    programs.mkdir()
+    colcon = programs / "colcon"
+    stand_in = python_child("-m", "autograder.workspaces.builds.students_builds").command
+    colcon.write_text(f'#!/bin/sh\nexec {shlex.join(stand_in)} "$@"\n')
+    colcon.chmod(0o755)
+
 
 MOST_EVIDENCE = 4_000_000
 """The maximum size in bytes of the evidence of one notebook, enough for ten checks. If the evidence of a further check
@@ -82,7 +190,10 @@ def _execute(
         task.files,
         {**_ros_variables(stack, boxed=boxed), **arrangement.variables()},
         SOCKET_VARIABLE,
-        JudgeSetting(attached.environment(boxed=boxed), [*attached.readable(), arrangement.judges_folder]),
+        JudgeSetting(
+            controlled_judge.environment(boxed=boxed),
+            [*controlled_judge.readable(), arrangement.judges_folder],
+        ),
         task.limits,
         programs=bool(arrangement.runners),
     )

@@ -15,7 +15,7 @@ from traitlets import Float
 if TYPE_CHECKING:
     from traitlets.config import Config
 
-    from autograder.grading.gradebooks.gradebook_reading import SubmissionEntry
+    from autograder.grading.classes.gradebook_reading import SubmissionEntry
 
 _DAY = 86_400.0
 

@@ -8,9 +8,9 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from autograder.grading.classes.class_directory import ClassDirectory, reason_against_name
-from autograder.grading.errors import GradingError
-from autograder.grading.gradebooks.gradebook_reading import has_tables, opened, sql
-from autograder.grading.reporting.spreadsheet import csv_rows, original
+from autograder.grading.classes.gradebook_reading import has_tables, opened, sql
+from autograder.grading.grading_errors import GradingError
+from autograder.grading.table.spreadsheet_csv import csv_rows, original
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence

@@ -10,17 +10,16 @@ import contextlib
 from functools import partial
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from autograder.judge.bench import graph
-from autograder.judge.bench.actions import RecordedActionClient, ScriptedActionServer
-from autograder.judge.bench.announcements import Announcements, process_of
-from autograder.judge.bench.decoy_nodes import DecoyNodes
-from autograder.judge.bench.interfaces import expected_hashes, served_hashes, service_fields
-from autograder.judge.bench.presence import GRAPH_POLL, MATCH, Presence
+from autograder.judge.bench import discovery
+from autograder.judge.bench.discovery import Announcements, process_of
+from autograder.judge.bench.judge_nodes import DecoyNodes, JudgeFailed, Wire
+from autograder.judge.bench.recorded_actions import RecordedActionClient, ScriptedActionServer
+from autograder.judge.bench.recorded_services import Answer, RecordedCaller, RecordedServer
+from autograder.judge.bench.recorded_topics import LogReader, RecordedPublisher, RecordedSubscription
 from autograder.judge.bench.recorder import Recorder
-from autograder.judge.bench.services import Answer, RecordedCaller, RecordedServer
+from autograder.judge.bench.ros_interfaces import expected_hashes, served_hashes, service_fields
+from autograder.judge.bench.subject_presence import GRAPH_POLL, MATCH, Presence
 from autograder.judge.bench.subject_time import SubjectTime, answers
-from autograder.judge.bench.topics import LogReader, RecordedPublisher, RecordedSubscription
-from autograder.judge.bench.wire import JudgeFailed, Wire
 from autograder.kit.evidence import INTERRUPTED, Evidence, Part, Reference
 from autograder.kit.giving_up import patience
 from autograder.kit.model import STEP, Pace
@@ -29,7 +28,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
     from random import Random
 
-    from autograder.judge.subjects.subject import Subject
+    from autograder.judge.subject import Subject
 
 SETTLED = {Pace.FAST: 1.0, Pace.REAL_TIME: 3.0}
 """If the graph has not changed for this many seconds, a command is assumed to have made all its endpoints. By pace."""
@@ -91,8 +90,8 @@ class TestBench:
         self._open = contextlib.ExitStack()
         self._on_graph: Presence | None = None
         self._time_of_part: SubjectTime | None = None
-        self._there: set[graph.Endpoint] = set()
-        self._gone: set[graph.Endpoint] = set()
+        self._there: set[discovery.Endpoint] = set()
+        self._gone: set[discovery.Endpoint] = set()
         self._clean = True
         self._in_part = False
 
@@ -252,7 +251,7 @@ class TestBench:
         """Wait until the subject has printed something or has a node on the graph; give up if the subject has ended."""
         return self._presence.await_sign_of_life(within)
 
-    def await_any_endpoint(self, roles: tuple[str, ...]) -> graph.Interface:
+    def await_any_endpoint(self, roles: tuple[str, ...]) -> discovery.Interface:
         """Wait until the subject has an endpoint of one of these roles. Return all its endpoints at that time."""
         return self._presence.await_interface(lambda interface: any(interface[role] for role in roles))
 
@@ -362,7 +361,7 @@ class TestBench:
 
     def _announce(self, services: Iterable[str]) -> None:
         # Subtract removed endpoints, because the judge's participant may still see them.
-        self._there |= graph.server_endpoints(self.wire.node, services) - self._gone
+        self._there |= discovery.server_endpoints(self.wire.node, services) - self._gone
 
     # --- time ----------------------------------------------------------------------------------------------
 
@@ -444,7 +443,7 @@ class TestBench:
     def compare_type(self, service: str, like: str) -> None:
         """Record whether a service's type has the same fields as ``like``, by comparing type hashes on the graph."""
         at = self._real(service)
-        made = graph.survey(self.wire.node)["service"].get(at, "")
+        made = discovery.survey(self.wire.node)["service"].get(at, "")
         expected = expected_hashes(like, made.partition("/")[0])
         seen: dict[str, str] = {}
 

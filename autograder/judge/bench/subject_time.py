@@ -19,18 +19,18 @@ from rcl_interfaces.srv import GetParameters, SetParameters
 from rclpy.qos import QoSProfile
 from rosgraph_msgs.msg import Clock
 
-from autograder.judge.bench import graph
+from autograder.judge.bench import discovery
 from autograder.judge.bench.patience import Patience
-from autograder.judge.bench.presence import MATCH, Presence
+from autograder.judge.bench.subject_presence import MATCH, Presence
 from autograder.kit.model import STEP, Pace
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from autograder.judge.bench.graph import NodeName
+    from autograder.judge.bench.discovery import NodeName
+    from autograder.judge.bench.judge_nodes import Wire
     from autograder.judge.bench.recorder import Recorder
-    from autograder.judge.bench.wire import Wire
-    from autograder.judge.subjects.subject import Subject
+    from autograder.judge.subject import Subject
 
 ANSWER_LIMIT = 0.5
 """Time limit in seconds of wall time for a spinning node to answer. Simulated time is not used for a node that does not
@@ -295,7 +295,7 @@ class SubjectTime:
 
         See :meth:`NodeClock.lend`. If the node does not accept the clock, wait ``seconds`` of real time instead.
         """
-        for node in graph.owners(self._wire.node, role, name):
+        for node in discovery.owners(self._wire.node, role, name):
             if node.full not in self._deaf:
                 with contextlib.closing(NodeClock(self._wire, self._recorder, node)) as clock:
                     if clock.lend(seconds, lambda: self._subject.ended):

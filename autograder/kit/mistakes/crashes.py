@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import re2
 
-from autograder import code_of_elsewhere
+from autograder import foreign_code
 from autograder.kit.evidence import is_cut_off
 from autograder.kit.mistakes.known_crashes import KNOWN, NOT_SPUN_WHILE_CALLING
 from autograder.kit.mistakes.names_in_tracebacks import MARKS, Name, is_a_library, names, own_line
@@ -16,7 +16,7 @@ from autograder.kit.mistakes.python_errors import meaning
 from autograder.kit.model import Advice, Mistake
 
 if TYPE_CHECKING:
-    from autograder.code_of_elsewhere import Elsewhere
+    from autograder.foreign_code import Elsewhere
     from autograder.kit.evidence import Event, Evidence, Part
     from autograder.kit.mistakes.known_crashes import Crash
 
@@ -51,7 +51,7 @@ def _recogniser(crash: Crash | Elsewhere) -> Mistake:
             return None
         said = {name: Name(text or "") for name, text in found.groupdict().items()}
         types = [kind for ends in evidence.reference.interface.values() for kind in ends.values()]
-        here = code_of_elsewhere.packages(kind.partition("/")[0] for kind in types)
+        here = foreign_code.packages(kind.partition("/")[0] for kind in types)
         words = meaning(traceback)._asdict() | names(traceback) | {"here": Name(here)} | said
         return Advice(crash.text.format(**words).rstrip(), crash.next_step.format(**words), traceback)
 
@@ -253,9 +253,9 @@ def _only_slips(mistake: Mistake) -> Mistake:
 
 CRASHES: tuple[Mistake, ...] = (
     Mistake("call_never_spun", _answer_not_taken),
-    *map(_recogniser, code_of_elsewhere.ROWS),
+    *map(_recogniser, foreign_code.ROWS),
     *map(_recogniser, KNOWN),
-    Mistake(code_of_elsewhere.KEY, _never_awaited, certain=True),
+    Mistake(foreign_code.KEY, _never_awaited, certain=True),
     Mistake("cut_off", _cut_off, certain=True),
     Mistake("module_not_found", _file_not_found, certain=True),
     Mistake("module_not_found", _package_not_found, certain=True),

@@ -1,8 +1,12 @@
-"""Displays a check's card. Repeated checks of a cell use the same place below the cell.
+"""Displays a check's result: as a card below the cell or, during nbgrader's Validate, as an error.
 
-At first, the card of the previous check stays, so that the page does not jump. If the new check takes long, the card
-shows its progress instead, so that the student does not take the old diagnosis for the new one. If the checked class or
-function is redefined, the card is dimmed and says so.
+Repeated checks of a cell use the same place below the cell. At first, the card of the previous check stays, so that the
+page does not jump. If the new check takes long, the card shows its progress instead, so that the student does not take
+the old diagnosis for the new one. If the checked class or function is redefined, the card is dimmed and says so.
+
+If a cell has not earned full marks, Validate shows the error with which the cell ended. Without an error, it shows
+"Partial credit; passed some but not all", even if the cell has earned no points at all. So during Validate, a check
+without full marks ends with an error that contains the text of the card.
 """
 
 from __future__ import annotations
@@ -19,11 +23,12 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Self
 
 from autograder import course
-from autograder.cards import bundle
+from autograder.cards import card_wording, html_rendering
 from autograder.cards.card_content import Solution
-from autograder.cards.wording import duration
-from autograder.messages.checks import SOCKET_VARIABLE
-from autograder.notebook.cells.cell_output import notebook_shell
+from autograder.cards.card_wording import duration
+from autograder.cards.readable_text import one_line, paragraph, wrap
+from autograder.messages.judge_messages import SOCKET_VARIABLE
+from autograder.notebook.cell_output import notebook_shell
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -147,7 +152,7 @@ class CardDisplay:
                 card = _dated(earlier, notice)
             else:
                 words = "The check was interrupted, so there is no result: run it again."
-                card = bundle.waiting_bundle(self.exercise, words, over=True)
+                card = html_rendering.waiting_bundle(self.exercise, words, over=True)
             update_card(self._handle, card)
 
     def doing(self, what: str) -> None:
@@ -181,7 +186,7 @@ class CardDisplay:
     def _tell(self) -> None:
         earlier = _shown.get(self.exercise)
         title = earlier.verdict.title if earlier is not None else self.exercise
-        card = bundle.waiting_bundle(title, self._progress.words())
+        card = html_rendering.waiting_bundle(title, self._progress.words())
         if self._handle is None:
             self._handle = display_card(card)
         else:
@@ -190,7 +195,7 @@ class CardDisplay:
 
 def _dated(shown: _Shown, notice: str) -> dict[str, str]:
     """Return the HTML and text of a shown card, with a notice that the card is out of date."""
-    return bundle.mimebundle(shown.verdict, before=shown.before, notice=notice)
+    return html_rendering.card_bundle(shown.verdict, before=shown.before, notice=notice)
 
 
 def renew_card(verdict: Verdict, subject: Any) -> None:
@@ -205,7 +210,7 @@ def renew_card(verdict: Verdict, subject: Any) -> None:
 def _full_card(verdict: Verdict, before: float | None) -> dict[str, str]:
     # Show no solution in a grader's kernel, because the solution would then be in the graded notebook.
     solution = solution_of(verdict.exercise) if verdict.passed and is_live() else None
-    return bundle.mimebundle(verdict, before=before, solution=solution)
+    return html_rendering.card_bundle(verdict, before=before, solution=solution)
 
 
 def is_live() -> bool:
@@ -268,3 +273,55 @@ def solution_of(exercise: str) -> Solution | None:
     except (OSError, ValueError, KeyError, TypeError, course.NoCourse, course.BrokenChapter):
         pass  # The solution is only an addition, so an error here must not break the check.
     return None
+
+
+VALIDATE_WIDTH = 76
+"""The maximum length of a line in characters, because nbgrader cuts longer ones."""
+
+
+class NotFullMarksError(Exception):
+    """A check did not earn full marks. The exception's text is the message that Validate shows."""
+
+    def __init__(self, verdicts: list[Verdict]) -> None:
+        super().__init__("\n".join(_validate_lines(verdicts)))
+
+    def _render_traceback_(self) -> list[str]:
+        """Return only the message, because a traceback would not help. IPython calls this."""
+        return str(self).splitlines()
+
+
+_validated: dict[str, Verdict] = {}
+
+
+def raise_unless_full(verdict: Verdict) -> None:
+    """End the check cell with an error whose message Validate shows. If the check has full marks, do nothing.
+
+    Raises:
+        NotFullMarksError: The check does not have full marks.
+    """
+    _validated.pop(verdict.exercise, None)
+    _validated[verdict.exercise] = verdict
+    if not verdict.passed:
+        raise NotFullMarksError(list(_validated.values()))
+
+
+def _validate_lines(verdicts: list[Verdict]) -> list[str]:
+    """Return the lines of the message: the last check in detail, then the total if there are several checks."""
+    last = verdicts[-1]
+    state = card_wording.STATE_WORDS[last.state]
+    lines = wrap(
+        f"{one_line(last.title or last.exercise, 120)}: {state}, {card_wording.score_line(last)}",
+        VALIDATE_WIDTH,
+    )
+    for criterion in last.criteria:
+        earned = criterion.points if criterion.passed else 0.0
+        mark = "[x]" if criterion.passed else "[ ]"
+        text = f"{one_line(criterion.title, 120)} ({card_wording.points_of(earned, criterion.points)})"
+        lines += wrap(text, VALIDATE_WIDTH, f"  {mark} ", "      ")
+    advice = card_wording.advice(last)
+    lines += wrap(paragraph(f"{advice.text} {advice.next_step}", 600), VALIDATE_WIDTH)
+    if len(verdicts) > 1:
+        score, possible = sum(one.score for one in verdicts), sum(one.max_score for one in verdicts)
+        lines.append(f"The checks of this notebook so far: {card_wording.points_of(score, possible)}.")
+    lines.append(f'The card of this check is below the cell with check("{last.exercise}", …).')
+    return lines

@@ -8,26 +8,22 @@ import os
 from typing import TYPE_CHECKING, Any, Protocol
 
 from autograder import course
-from autograder.cards import bundle
-from autograder.messages import checks as messages
-from autograder.notebook.cells.cell_output import notebook_shell
-from autograder.notebook.cells.failed_cells import raise_if_stale
-from autograder.notebook.checking.captured_output import CapturedOutput
-from autograder.notebook.checking.card_display import CardDisplay, is_live, is_validating
-from autograder.notebook.checking.check_context import CheckContext
-from autograder.notebook.checking.judge_link import JudgeLink, JudgeUnreachable
-from autograder.notebook.checking.path_run import PathRun, is_path, send_sources
-from autograder.notebook.checking.subject_run import SubjectRun, Tell
-from autograder.notebook.checking.told_calls import ToldCalls
-from autograder.notebook.checking.validating import raise_unless_full
+from autograder.cards import html_rendering
+from autograder.messages import judge_messages as messages
+from autograder.notebook.cell_output import notebook_shell
+from autograder.notebook.cell_runs import raise_if_stale
+from autograder.notebook.checking.card_display import CardDisplay, is_live, is_validating, raise_unless_full
+from autograder.notebook.checking.judge_link import CheckContext, JudgeLink, JudgeUnreachable
+from autograder.notebook.checking.subject_reports import CapturedOutput, ToldCalls
+from autograder.notebook.checking.subject_runs import PathRun, SubjectRun, Tell, is_path, send_sources
 from autograder.notebook.nodes.ros_session import prepare_environment
-from autograder.student import journal
+from autograder.student import check_journal
 from autograder.verdict import Verdict, not_checked
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-    from autograder.messages.lines import Message
+    from autograder.messages.json_lines import Message
 
 
 class Score(float):
@@ -134,7 +130,7 @@ def converse(link: JudgeLink, exercise: str, subject: Any, card: CardPlace) -> V
     """
     link.say(messages.Check(exercise, kind=_kind(subject)))
     if is_live():
-        bundle.prepare()  # prepare the card while the judge makes its node
+        html_rendering.prepare_templates()  # prepare the card while the judge makes its node
     first = link.hear()
     if isinstance(first, messages.Collect):
         # A grader builds and runs workspaces and launch files itself, so only their sources are sent.
@@ -212,15 +208,15 @@ def keep(verdict: Verdict) -> None:
 
 def _chapter_ended_by(verdict: Verdict) -> tuple[str, float, float] | None:
     """Return the title, points and completion time of the chapter that this check completed; None if there is none."""
-    place = journal.own_place()
-    before = journal.best(journal.entries(place))
-    journal.note_check(verdict, place)
+    place = check_journal.own_place()
+    before = check_journal.best(check_journal.entries(place))
+    check_journal.note_check(verdict, place)
     if place is None or not verdict.passed:
         return None
-    after = journal.best(journal.entries(place))
+    after = check_journal.best(check_journal.entries(place))
     for chapter in course.chapters(course.root()):
-        finished = journal.finished(chapter, after)
-        if finished is not None and journal.finished(chapter, before) is None:
+        finished = check_journal.finished(chapter, after)
+        if finished is not None and check_journal.finished(chapter, before) is None:
             wanted = [name for lab in chapter.labs for name in chapter.exercises_of(lab)]
             return chapter.title, sum(after[name].possible for name in wanted), finished
     return None
@@ -229,9 +225,9 @@ def _chapter_ended_by(verdict: Verdict) -> tuple[str, float, float] | None:
 def _show_certificate(title: str, points: float, finished: float) -> None:
     from IPython.display import display
 
-    from autograder.cards import certificate
+    from autograder.cards import html_rendering
 
-    display(certificate.mimebundle(title, points, finished), raw=True)  # type: ignore[no-untyped-call]
+    display(html_rendering.certificate_bundle(title, points, finished), raw=True)  # type: ignore[no-untyped-call]
 
 
 def _kind(subject: Any) -> str:

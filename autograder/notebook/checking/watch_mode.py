@@ -16,8 +16,8 @@ import threading
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from autograder.cards import bundle
-from autograder.notebook.cells.cell_output import notebook_shell
+from autograder.cards import html_rendering
+from autograder.notebook.cell_output import notebook_shell
 from autograder.notebook.checking.card_display import (
     Progress,
     Telling,
@@ -102,14 +102,16 @@ class WatchMode:
         """Show the verdict on this card, and record that the subject has been checked."""
         before = self._verdict.score if self._verdict else None
         self._verdict, self.due = verdict, False
-        self._here.run(update_card, self._handle, bundle.mimebundle(verdict, before=before, short=True))
+        self._here.run(
+            update_card, self._handle, html_rendering.card_bundle(verdict, before=before, short=True)
+        )
 
     def _say(self, words: str, *, over: bool = False) -> None:
         # Run in a copy of the context, because the thread that shows the progress may be using the context itself.
         self._here.copy().run(update_card, self._handle, self._card(words, over=over))
 
     def _card(self, words: str, *, over: bool = False) -> dict[str, str]:
-        return bundle.waiting_bundle(f"{self.exercise}, {self.name}", words, over=over)
+        return html_rendering.waiting_bundle(f"{self.exercise}, {self.name}", words, over=over)
 
     def __repr__(self) -> str:
         """Return one line, shown if this is the last expression of a cell."""

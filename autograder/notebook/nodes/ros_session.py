@@ -1,23 +1,40 @@
-"""Starts ROS in a notebook's kernel, on a separate ROS domain, and shuts it down when the kernel ends."""
+"""Starts ROS in a notebook's kernel, and keeps a list of the kernel's nodes, so that they can be destroyed.
+
+ROS runs on a separate ROS domain, and is shut down when the kernel ends.
+
+rclpy keeps no list of its nodes, and a forgotten node lives until Python collects it: a service from an earlier run
+of a cell would go on answering requests. So this module records each new node with the run of the cell that made it.
+"""
 
 from __future__ import annotations
 
 import atexit
+import functools
 import os
 import sys
 import threading
+import warnings
+import weakref
+from contextlib import suppress
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 import rclpy
+from rclpy.exceptions import InvalidHandle, NotInitializedException
+from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions, get_current_signal_handlers_options, uninstall_signal_handlers
+from rclpy.task import Future
 from rclpy.utilities import get_default_context, ok, try_shutdown
 
-from autograder.ros_domain import (
-    DOMAIN_VARIABLE,
-    DomainClaim,
-    claim_free_domain,
-    domain_from_environment,
-)
+from autograder.dds_discovery import DOMAIN_VARIABLE, DomainClaim, claim_free_domain, domain_from_environment
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from rclpy.context import Context
+
+    from autograder.notebook.cell_runs import WatchedRun
+
 
 _CHECK_FIELDS = "ROS_PYTHON_CHECK_FIELDS"
 
@@ -127,3 +144,180 @@ def _session_domain() -> int:
 
 # This exit handler is registered before that of background.py and therefore runs after it: nodes end first, then ROS.
 atexit.register(try_shutdown)
+
+
+_STOPPED = "was stopped while this call was waiting for its answer"
+
+
+@dataclass(frozen=True)
+class NodeIdentity:
+    """The full name of a node, and its context.
+
+    Attributes:
+        name: The node's name with its namespace, such as ``"/robot/talker_node"``.
+        context: The ROS context to which the node belongs.
+    """
+
+    name: str
+    context: Context
+
+
+@dataclass(frozen=True)
+class MadeNode:
+    """A node and the run of the cell that made it.
+
+    Attributes:
+        node: The node.
+        identity: The full name of the node, and its ROS context.
+        run: The run of the cell that made the node; None outside a notebook.
+    """
+
+    node: Node
+    identity: NodeIdentity
+    run: WatchedRun | None
+
+
+class MadeNodes:
+    """Records every node that is made from now on.
+
+    Args:
+        current_run: Returns the current run of a cell; None outside a notebook.
+        before_making: Called with the identity of each node just before the node is made.
+    """
+
+    def __init__(
+        self, current_run: Callable[[], WatchedRun | None], before_making: Callable[[NodeIdentity], None]
+    ) -> None:
+        self._current_run = current_run
+        self._before_making = before_making
+        self._lock = threading.Lock()
+        self._made: list[tuple[weakref.ref[Node], NodeIdentity, WatchedRun | None]] = []
+
+    def watch(self) -> None:
+        """Start recording, by wrapping ``Node.__init__``: rclpy has no other hook for new nodes."""
+        plain_init = Node.__init__
+
+        @functools.wraps(plain_init)
+        def init(node: Node, node_name: str, *args: Any, **kwargs: Any) -> None:
+            __tracebackhide__ = True
+            identity = _identity_to_be(node_name, kwargs)
+            self._before_making(identity)
+            self._note(node, identity)
+            try:
+                plain_init(node, node_name, *args, **kwargs)
+            except NotInitializedException as error:
+                error.add_note(
+                    "ROS is not running in this notebook: call start_ros() before you make a node."
+                )
+                raise
+
+        Node.__init__ = init  # type: ignore[method-assign, assignment]
+
+    def _note(self, node: Node, identity: NodeIdentity) -> None:
+        with self._lock:
+            self._made = [entry for entry in self._made if entry[0]() is not None]
+            self._made.append((weakref.ref(node), identity, self._current_run()))
+
+    def alive(self) -> list[MadeNode]:
+        """Return the nodes that are on the graph."""
+        with self._lock:
+            entries = [(reference(), identity, run) for reference, identity, run in self._made]
+        return [
+            MadeNode(node, identity, run)
+            for node, identity, run in entries
+            if node is not None and _has_begun(node)
+        ]
+
+    def on(self, context: Context) -> list[Node]:
+        """Return all nodes of a context that are in memory, also destroyed ones and those whose ``__init__`` failed."""
+        with self._lock:
+            entries = [(reference(), identity) for reference, identity, _ in self._made]
+        return [node for node, identity in entries if node is not None and identity.context is context]
+
+
+def _identity_to_be(node_name: str, options: dict[str, Any]) -> NodeIdentity:
+    """Return the identity of the node that ``Node.__init__`` will make from these arguments."""
+    namespace = str(options.get("namespace") or "").strip("/")
+    return NodeIdentity(
+        name="/".join(["", *filter(None, [namespace]), str(node_name)]),
+        context=options.get("context") or get_default_context(),
+    )
+
+
+def _has_begun(node: Node) -> bool:
+    """Return True if the node is usable: not destroyed, and its ``__init__`` did not fail."""
+    try:
+        return not is_destroyed(node)
+    except AttributeError:
+        return False
+
+
+class NodeEndedError(RuntimeError):
+    """The node was destroyed, or ROS was shut down."""
+
+
+def destroy_node(node: Node) -> None:
+    """Destroy a node with its action servers and clients. If it is already destroyed, do nothing.
+
+    ``Node.destroy_node`` does not destroy action servers and clients. As long as one of these lives, the node stays on
+    the graph, and clients would still send it goals. Code that waits for an answer to a request of this node gets a
+    ``NodeEndedError``, because the answer can no longer come.
+    """
+    release_waiting_calls(node)
+    for waitable in _parts(node, "waitables"):
+        if hasattr(waitable, "destroy"):
+            with suppress(InvalidHandle):
+                waitable.destroy()
+    # A node whose __init__ failed lacks some of its attributes.
+    with suppress(InvalidHandle, AttributeError):
+        node.destroy_node()
+
+
+def node_label(node: Any) -> str:
+    """Return the node's name or, if the node is destroyed, the name of its class."""
+    if node is None:
+        return "a node"
+    try:
+        return str(node.get_name())
+    except (InvalidHandle, AttributeError):  # the node is destroyed, or super().__init__() was never called
+        return type(node).__name__
+
+
+def is_destroyed(node: Node) -> bool:
+    """Return True if the node was destroyed."""
+    try:
+        with node.handle:
+            return False
+    except InvalidHandle:
+        return True
+
+
+def release_waiting_calls(node: Node) -> None:
+    """Make each call of this node that waits for an answer raise a ``NodeEndedError``."""
+    error = NodeEndedError(f"{node_label(node)} {_STOPPED}")
+    for future in list(_pending_answers(node)):
+        if not future.done():
+            with warnings.catch_warnings():
+                # A callback that waits for the answer gets this error, as intended. Suppress rclpy's warning about this
+                # error.
+                warnings.filterwarnings("ignore", f".* {_STOPPED}", UserWarning)
+                future.set_exception(error)
+            # Read the exception. Otherwise rclpy writes it to stderr when the future is garbage-collected.
+            future.exception()
+
+
+def _pending_answers(node: Node) -> Iterator[Future]:
+    # Look into the dictionaries in which rclpy's clients keep the futures of the answers for which they wait
+    # (rclpy/client.py, rclpy/action/client.py).
+    for client in (*_parts(node, "clients"), *_parts(node, "waitables")):
+        for name, requests in vars(client).items():
+            if name.startswith("_pending_") and isinstance(requests, dict):
+                yield from (future for future in list(requests.values()) if isinstance(future, Future))
+
+
+def _parts(node: Node, kind: str) -> list[Any]:
+    """Return the node's ``clients`` or ``waitables``; an empty list if ``__init__`` failed before it made them."""
+    try:
+        return list(getattr(node, kind))
+    except AttributeError:
+        return []

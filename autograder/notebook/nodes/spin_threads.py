@@ -26,8 +26,8 @@ from typing import TYPE_CHECKING, Any
 from rclpy.exceptions import InvalidHandle
 from rclpy.executors import ConditionReachedException, ExternalShutdownException, ShutdownException
 
-from autograder.notebook.nodes.kernel_nodes import NodeEndedError, destroy_node, release_waiting_calls
 from autograder.notebook.nodes.lending_executors import make_executor, wake_global_executor
+from autograder.notebook.nodes.ros_session import NodeEndedError, destroy_node, release_waiting_calls
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

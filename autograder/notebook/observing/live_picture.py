@@ -14,7 +14,7 @@ from rclpy._rclpy_pybind11 import InvalidHandle, RCLError
 from rclpy.exceptions import NotInitializedException
 from rclpy.executors import ExternalShutdownException
 
-from autograder.notebook.cells.cell_output import notebook_shell
+from autograder.notebook.cell_output import notebook_shell
 from autograder.notebook.checking.card_display import is_live
 from autograder.notebook.observing.ros_graph import hidden_node
 

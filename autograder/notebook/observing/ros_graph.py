@@ -1,12 +1,13 @@
-"""Reads the running graph as plain data: nodes, and the topics, services and actions that connect them."""
+"""Reads the running graph as plain data: nodes, what connects them, and the rates of messages on topics."""
 
 from __future__ import annotations
 
+import importlib
 import time
 from contextlib import contextmanager
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import rclpy
 from rclpy.action import (
@@ -14,11 +15,14 @@ from rclpy.action import (
     get_action_server_names_and_types_by_node,
 )
 from rclpy.node import NodeNameNonExistentError
+from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
     from rclpy.node import Node
+    from rclpy.subscription import Subscription
+
 
 READER = "_graph_reader"
 """The name of the node that reads the graph. It begins with an underscore, so that ROS hides the node."""
@@ -198,3 +202,89 @@ def _channels(kind: ChannelKind, names_and_types: Iterable[tuple[str, list[str]]
         hidden = any(part.startswith("_") for part in name.split("/"))
         if not common and not hidden:
             yield from (GraphChannel(kind, name, type_name) for type_name in types)
+
+
+MOST_COUNTED = 200
+"""The maximum number of messages on a topic that can be counted between two calls of :meth:`TopicTraffic.look`. If
+there are more, the rate is only a lower bound.
+"""
+UNDEMANDING_QOS = QoSProfile(
+    depth=MOST_COUNTED,
+    history=HistoryPolicy.KEEP_LAST,
+    # The least demanding QoS matches every publisher.
+    reliability=ReliabilityPolicy.BEST_EFFORT,
+    durability=DurabilityPolicy.VOLATILE,
+)
+
+
+@dataclass
+class _Counted:
+    subscription: Subscription
+    since: float
+
+
+class TopicTraffic:
+    """Counts messages with a node that is not spun. Messages wait in the middleware until :meth:`look` takes them."""
+
+    def __init__(self, node: Node) -> None:
+        self._node = node
+        self._counted: dict[GraphChannel, _Counted | None] = {}
+
+    def look(self, channels: Iterable[GraphChannel]) -> dict[GraphChannel, float]:
+        """Return the messages per second on each of these topics since the last call. New topics are left out."""
+        wanted = {channel for channel in channels if channel.kind is ChannelKind.TOPIC}
+        for channel in self._counted.keys() - wanted:
+            self._forget(channel)
+        rates = {}
+        for channel in wanted:
+            if channel not in self._counted:
+                self._counted[channel] = self._subscribed(channel)
+            elif (counted := self._counted[channel]) is not None:
+                now = time.monotonic()
+                rates[channel] = _rounded(_taken(counted.subscription) / max(now - counted.since, 1e-3))
+                counted.since = now
+        return rates
+
+    def _subscribed(self, channel: GraphChannel) -> _Counted | None:
+        try:
+            kind = message_class(channel.type)
+        except LookupError:
+            return None
+        subscription = self._node.create_subscription(
+            kind, channel.name, lambda _: None, UNDEMANDING_QOS, raw=True
+        )
+        return _Counted(subscription, time.monotonic())
+
+    def _forget(self, channel: GraphChannel) -> None:
+        counted = self._counted.pop(channel)
+        if counted is not None:
+            self._node.destroy_subscription(counted.subscription)
+
+
+def message_class(type_name: str) -> Any:
+    """Return the class of a message type such as ``"std_msgs/msg/String"``.
+
+    Raises:
+        LookupError: The type is not installed in this environment.
+    """
+    try:
+        package, kind, name = type_name.split("/")
+        return getattr(importlib.import_module(f"{package}.{kind}"), name)
+    except (ValueError, ImportError, AttributeError) as error:
+        raise LookupError(f"the message type {type_name} is not installed here") from error
+
+
+def _taken(subscription: Subscription) -> int:
+    """Take the messages that have arrived, and return their number."""
+    count = 0
+    with subscription.handle:
+        while (
+            count < MOST_COUNTED and subscription.handle.take_message(subscription.msg_type, True) is not None
+        ):
+            count += 1
+    return count
+
+
+def _rounded(rate: float) -> float:
+    """Return a rate, rounded to a whole number or a half, so that a steady rate does not change in the picture."""
+    return round(rate) if rate >= 5 else round(rate * 2) / 2

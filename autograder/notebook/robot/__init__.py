@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from autograder.notebook.robot.starting import LiveRobot
+    from autograder.notebook.robot.live_robot import LiveRobot
 
 
 def start_robot() -> LiveRobot:
@@ -17,7 +17,7 @@ def start_robot() -> LiveRobot:
     date for half an hour; ``.show()`` shows a new picture.
     """
     # Import this here: it imports many message types, which only notebooks with the robot need.
-    from autograder.notebook.robot.starting import LiveRobot
+    from autograder.notebook.robot.live_robot import LiveRobot
 
     robot = LiveRobot()
     robot.show()

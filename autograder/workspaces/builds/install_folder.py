@@ -14,13 +14,13 @@ from typing import TYPE_CHECKING
 
 import re2
 
-from autograder.temporary_folders import scratch_folder
+from autograder.safe_files import scratch_folder
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
-    from autograder.workspaces.builds.colcon import Build
-    from autograder.workspaces.byte_budget import ByteBudget
+    from autograder.workspaces.builds.colcon_build import Build
+    from autograder.workspaces.sources import ByteBudget
 
 LIBRARY = f"lib/python{sys.version_info.major}.{sys.version_info.minor}/site-packages"
 BESIDE = ("build", "log")

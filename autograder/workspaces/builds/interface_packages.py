@@ -18,7 +18,7 @@ from autograder.workspaces.packages import DEFINITIONS, UNREADABLE
 from autograder.workspaces.sources import Tree
 
 if TYPE_CHECKING:
-    from autograder.messages.workspaces import Source
+    from autograder.messages.workspace_messages import Source
     from autograder.workspaces.packages import Package
 
 MAX_SIMPLIFIED = 50_000

@@ -1,8 +1,8 @@
 # Ask the grader to build the package with more sources than the workspace has by then: a cell has few seconds.
 import os
 
-from autograder.messages.lines import Lines
-from autograder.messages.workspaces import BuildRequest, BuildAnswer
+from autograder.messages.json_lines import Lines
+from autograder.messages.workspace_messages import BuildAnswer, BuildRequest
 from autograder.workspaces.sources import collect_workspace
 
 

@@ -2,8 +2,8 @@
 import importlib._bootstrap_external
 import os
 
-from autograder.messages.lines import Lines
-from autograder.messages.workspaces import BuildRequest, BuildAnswer, Source
+from autograder.messages.json_lines import Lines
+from autograder.messages.workspace_messages import BuildAnswer, BuildRequest, Source
 from autograder.workspaces.sources import collect_workspace
 
 IN_PLACE_OF_SETUPTOOLS = """

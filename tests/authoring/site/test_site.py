@@ -13,14 +13,26 @@ import pytest
 from nbformat.v4 import new_code_cell, new_notebook, new_output
 
 from autograder import course
-from autograder.authoring.site.building import LARGEST, course_of
-from autograder.authoring.site.outputs import MOVING, RECORDED, _run, moving_picture, show_as_a_students
-from autograder.authoring.site.pages import CLASS, EDITIONS, SELF, SUMMARY, book_page
+from autograder.authoring.executed_masters import (
+    MOVING_PICTURES,
+    RECORDED,
+    _run,
+    moving_picture,
+    show_as_a_students,
+)
+from autograder.authoring.site_building import (
+    CLASS_EDITION,
+    EDITIONS,
+    MAX_PAGE_BYTES,
+    SELF_EDITION,
+    SOLUTION_SUMMARY,
+    book_page,
+    course_of,
+)
 from autograder.course import SOLUTION
-from autograder.masters.first_cell import NAME as SET_UP_CELL
-from autograder.masters.first_cell import links
-from autograder.masters.layout import masters
-from autograder.masters.source import source_notebook
+from autograder.masters.master_files import masters
+from autograder.masters.source_notebooks import SET_UP_CELL as SET_UP_CELL
+from autograder.masters.source_notebooks import service_links, source_notebook
 from environment.python_child import python_child
 
 pytest.importorskip("sphinx_book_theme")
@@ -52,7 +64,7 @@ def test_every_lab_has_a_page_and_every_page_is_small_and_loads_nothing(book: tu
         "glossary",
         "search",
     } <= names
-    assert not [page.name for page in pages if page.stat().st_size > LARGEST]
+    assert not [page.name for page in pages if page.stat().st_size > MAX_PAGE_BYTES]
     assert not [page.name for page in pages if ELSEWHERE.search(page.read_text(encoding="utf-8"))]
 
 
@@ -67,7 +79,7 @@ def test_a_page_with_all_that_it_loads_is_small_for_a_phone(book: tuple[str, Pat
     for page in book[1].rglob("*.html"):
         files = {(page.parent / name).resolve() for name in LOADED.findall(page.read_text(encoding="utf-8"))}
         sizes[page.name] = sent(page) + sum(map(sent, files))
-    assert max(sizes.values()) < LARGEST, sizes
+    assert max(sizes.values()) < MAX_PAGE_BYTES, sizes
     icons = (book[1] / "_static/scripts/fontawesome.js").read_text(encoding="utf-8")
     assert {
         name
@@ -91,11 +103,11 @@ def test_solutions_are_folded_or_absent(book: tuple[str, Path]) -> None:
     text = re.sub(r"<[^>]*>", "", page)
     assert "Learning Outcomes" in text
     assert "Set the course up, outside of" not in text
-    assert (SUMMARY in text) == (edition == SELF)
-    assert ("create_timer(0.5, self.say_hello)" in text) == (edition == SELF)
+    assert (SOLUTION_SUMMARY in text) == (edition == SELF_EDITION)
+    assert ("create_timer(0.5, self.say_hello)" in text) == (edition == SELF_EDITION)
     assert "TODO: make the publisher and the timer here" in text
     films = [page.name for page in folder.rglob("*") if "lab.gif" in page.name]
-    assert bool(films) == (edition == SELF), "README's film types a solution"
+    assert bool(films) == (edition == SELF_EDITION), "README's film types a solution"
 
 
 def test_no_output_shows_a_class_what_a_solution_has_written() -> None:
@@ -108,21 +120,21 @@ def test_no_output_shows_a_class_what_a_solution_has_written() -> None:
         edition: [out.text for cell in book_page(source, edition).cells for out in cell.get("outputs", ())]
         for edition in EDITIONS
     }
-    assert shown == {SELF: [solved.source, "a plain line"], CLASS: ["a plain line"]}
+    assert shown == {SELF_EDITION: [solved.source, "a plain line"], CLASS_EDITION: ["a plain line"]}
 
 
 def test_a_page_of_a_public_course_opens_its_notebook_in_a_browser(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(course, "repository", lambda _: "https://github.com/ada/ros")
     for master in masters(ROOT):
-        text = str(book_page(source_notebook(master), SELF))
+        text = str(book_page(source_notebook(master), SELF_EDITION))
         notebook = f"chapters/{master.parents[1].name}/{master.parent.name}.ipynb"
-        for link in links("https://github.com/ada/ros", notebook).values():
+        for link in service_links("https://github.com/ada/ros", notebook).values():
             assert f"]({link})" in text
 
 
 def test_the_cards_of_a_classes_book_offer_no_solution(tmp_path: Path) -> None:
-    assert course_of(SELF, ROOT, tmp_path) == ROOT
-    handed_out = course_of(CLASS, ROOT, tmp_path)
+    assert course_of(SELF_EDITION, ROOT, tmp_path) == ROOT
+    handed_out = course_of(CLASS_EDITION, ROOT, tmp_path)
     assert list(handed_out.rglob("*.reference.json"))
     assert not list(handed_out.rglob(f"*{SOLUTION}"))
 
@@ -158,7 +170,7 @@ thread.join()"""
 def test_a_picture_that_moves_while_a_later_cell_runs_is_recorded() -> None:
     """So the robot does: one cell shows it, and the next ones drive it."""
     done = _run(new_notebook(cells=[new_code_cell(SHOW), new_code_cell(MEANWHILE)]), "robot", ROOT)
-    (drawn,) = done.metadata[MOVING].values()
+    (drawn,) = done.metadata[MOVING_PICTURES].values()
     assert re.findall(r'cx="(\d)"', drawn) == list("012345")
     assert RECORDED in done.cells[0].outputs[0].data["text/html"]
 

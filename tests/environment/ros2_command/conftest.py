@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from autograder.judge.serving.domain import lease
+from autograder.judge.ros_setup import lease
 from environment.ros2_command.install import LAUNCH_FRONT
 
 if TYPE_CHECKING:

@@ -17,8 +17,8 @@ from test_nbgrader_and_ours import nbgrader_autograde, nbgrader_generate_feedbac
 from tiny_class import GRADE, LISTENER, TALKER, FakeEngine, TinyClass
 
 from autograder.grading.classes.class_directory import ClassDirectory
-from autograder.grading.errors import ClassBusy
-from autograder.grading.running import engine
+from autograder.grading.grading_errors import ClassBusy
+from autograder.grading.running import execution_backends
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -172,14 +172,14 @@ def test_a_batch_does_nothing_while_nbgrader_grades(
     tiny: TinyClass, fake_engine: FakeEngine, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     tiny.submit("ada", 3, 4)
-    usual = engine.execute_all
+    usual = execution_backends.execute_all
 
     def meanwhile(*args: Any, **kw: Any) -> Any:
         with pytest.raises(ClassBusy, match=WHO):
             tiny.grade()
         return usual(*args, **kw)
 
-    monkeypatch.setattr(engine, "execute_all", meanwhile)
+    monkeypatch.setattr(execution_backends, "execute_all", meanwhile)
     nbgrader_autograde(tiny)
     assert tiny.scores("ada") == {TALKER: 3, LISTENER: 4}
     assert tiny.grade().executed == 0

@@ -14,18 +14,18 @@ from tiny_class import QUIET
 
 from autograder import exercises
 from autograder.appeals import appeal_file, replaying
-from autograder.grading.appeal import write_appeal
+from autograder.grading.appeal_writing import write_appeal
 from autograder.grading.classes import sample_class
 from autograder.grading.classes.sample_class import SampleNotebook, demo, sample_notebooks
-from autograder.grading.errors import ClassExists, GradingError
-from autograder.judge.verdicts.crowding import TOO_BUSY
+from autograder.grading.grading_errors import ClassExists, GradingError
+from autograder.judge.machine_fitness import TOO_BUSY
 from tests.tiers import asked_for
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-    from autograder.grading.reporting.report import GradeReport
+    from autograder.grading.reporting.grade_report import GradeReport
 
 pytestmark = pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning")
 NBGRADER = (sys.executable, "-W", "ignore", "-m", "nbgrader")

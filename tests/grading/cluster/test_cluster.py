@@ -20,14 +20,14 @@ from autograder import course
 from autograder.boxes.sandbox import why_impossible
 from autograder.grading.batch import grade
 from autograder.grading.classes.class_directory import ClassDirectory
-from autograder.grading.running import dispatcher, sandboxing
-from autograder.grading.running.dispatcher import NoWorkers, SchedulerGone
+from autograder.grading.running import execution_backends, task_dispatcher
+from autograder.grading.running.task_dispatcher import NoWorkers, SchedulerGone
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-    from autograder.grading.reporting.report import GradeReport
+    from autograder.grading.reporting.grade_report import GradeReport
 
 pytest.importorskip("distributed", reason="./course setup --with cluster installs it")
 pytestmark = pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning")
@@ -42,12 +42,12 @@ def cluster() -> Iterator[DaskCluster]:
 @pytest.fixture(autouse=True)
 def _unboxed(monkeypatch: pytest.MonkeyPatch) -> None:
     """Boxes have tests of their own; here what a notebook does to the machine shows where it ran."""
-    monkeypatch.setattr(dispatcher, "course_version", lambda: VERSION)
+    monkeypatch.setattr(task_dispatcher, "course_version", lambda: VERSION)
 
 
 @pytest.fixture
 def unboxed(tiny: TinyClass) -> TinyClass:
-    sandboxing.switch_off(tiny.path)
+    execution_backends.switch_off(tiny.path)
     return tiny
 
 
@@ -134,7 +134,7 @@ def test_a_failure_on_a_crowded_worker_counts_only_where_nothing_else_runs_there
 PICKLER = """
 import os, pickle
 from distributed import get_worker
-from autograder.grading.cluster import calls
+from autograder.grading.cluster import dask_calls as calls
 
 class Bomb:
     def __reduce__(self):
@@ -151,18 +151,20 @@ calls.execute_order = execute_order
 STOCK_CLIENT = """
 import sys
 from distributed import Client
-from autograder.grading.cluster import calls
+from autograder.grading.cluster import dask_calls as calls
 
 with Client(sys.argv[1]) as client:
     client.submit(calls.execute_order, b"", workers=[sys.argv[2]], key="probe").result()
     client.sync(client.scheduler.identity)
 """
 
-TOO_LARGE = "from autograder.grading.cluster import calls; calls.execute_order = lambda _: bytes(40_000_000)"
-NO_BYTES = "from autograder.grading.cluster import calls; calls.execute_order = lambda _: {'score': 10}"
+TOO_LARGE = (
+    "from autograder.grading.cluster import dask_calls as c; c.execute_order = lambda _: bytes(40_000_000)"
+)
+NO_BYTES = "from autograder.grading.cluster import dask_calls as c; c.execute_order = lambda _: {'score': 10}"
 FORGES = """
 import re
-from autograder.grading.cluster import calls
+from autograder.grading.cluster import dask_calls as calls
 honest = calls.execute_order
 calls.execute_order = lambda order: re.sub(rb'"score":[0-9.]+', b'"score":1000', honest(order))
 """
@@ -232,10 +234,10 @@ def test_a_worker_of_another_version_is_refused_by_name_and_the_batch_goes_on(
 def test_where_nobody_can_execute_anything_the_class_stays_as_it_is(
     cluster: DaskCluster, tiny: TinyClass, with_fake_judge: str
 ) -> None:
-    sandboxing.switch_off(tiny.path)
+    execution_backends.switch_off(tiny.path)
     tiny.submit("ada", 4)
     tiny.grade(judge=with_fake_judge)
-    sandboxing._off.clear()
+    execution_backends._off.clear()
     with (
         cluster.worker("bare"),
         pytest.raises(NoWorkers, match=rf"bare .*the worker has no sandbox: {UNBOXED}"),
@@ -253,9 +255,9 @@ import sys
 from pathlib import Path
 from rich.console import Console
 from autograder.grading.rebuilding import task_making
-from autograder.grading.running import sandboxing
+from autograder.grading.running import execution_backends as sandboxing
 from autograder.grading.batch import grade
-from autograder.grading.running import dispatcher
+from autograder.grading.running import task_dispatcher as dispatcher
 task_making.course_version = lambda: "test"
 dispatcher.course_version = lambda: "test"
 sandboxing.switch_off(Path(sys.argv[1]))
@@ -304,7 +306,7 @@ def test_a_lab_is_graded_on_a_worker_as_it_is_here(
         (path / "submitted" / student / "lab_1_2" / "lab_1_2.ipynb").write_text(text)
     obstacle = why_impossible()
     if obstacle:
-        sandboxing.switch_off(path)
+        execution_backends.switch_off(path)
     options: dict[str, Any] = {"console": Console(quiet=True), "feedback": False}
     with cluster.worker("one", 2, obstacle=obstacle):
         there = grade(path, scheduler=cluster.address, **options)

@@ -19,10 +19,10 @@ from typing import TYPE_CHECKING, Any
 from unittest.mock import Mock
 
 from autograder.cli import cli
-from autograder.grading.cluster import dask_worker, start_worker
-from autograder.grading.cluster.connection import connected
-from autograder.grading.running import dispatcher
-from autograder.grading.running.dispatcher import SchedulerGone
+from autograder.grading.cluster import dask_worker
+from autograder.grading.running import task_dispatcher
+from autograder.grading.running.execution_backends import connected
+from autograder.grading.running.task_dispatcher import SchedulerGone
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 
 def test_without_a_sandbox_it_does_not_start(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(start_worker, "why_impossible", lambda: "bubblewrap is not installed")
+    monkeypatch.setattr(dask_worker, "why_impossible", lambda: "bubblewrap is not installed")
     done = CliRunner().invoke(cli, ["worker", "tcp://127.0.0.1:1"])
     assert done.exit_code == 2
     assert "No sandbox is possible here: bubblewrap is not installed." in done.output
@@ -56,8 +56,8 @@ def test_what_is_no_address_is_refused(address: str) -> None:
 
 def test_without_a_scheduler_it_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
 
-    monkeypatch.setattr(start_worker, "_CONNECT_SECONDS", 0.5)
-    monkeypatch.setattr(start_worker, "why_impossible", lambda: "")
+    monkeypatch.setattr(dask_worker, "_CONNECT_SECONDS", 0.5)
+    monkeypatch.setattr(dask_worker, "why_impossible", lambda: "")
     done = CliRunner().invoke(cli, ["worker", "tcp://127.0.0.1:1"])
     assert done.exit_code == 2, done.output
     assert "No Dask scheduler answers at tcp://127.0.0.1:1" in done.output
@@ -112,7 +112,7 @@ def certificates(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
 def test_with_certificates_all_speak_tls_and_who_has_none_stays_outside(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr(dispatcher, "course_version", lambda: VERSION)
+    monkeypatch.setattr(task_dispatcher, "course_version", lambda: VERSION)
     options: dict[str, Any] = {"judge": "a:B", "boxed": False}
     with DaskCluster("tls") as cluster, cluster.worker("w"):
         assert cluster.address.startswith("tls://")

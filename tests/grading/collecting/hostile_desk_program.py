@@ -7,7 +7,7 @@ import socket
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from autograder.grading.collecting.reading import desk_program
+from autograder.grading.collecting import download_desk_process
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 def prepare() -> None:
     """Be as ready as a desk."""
-    desk_program.prepare()
+    download_desk_process.prepare()
 
 
 def run(call: Mapping[str, Any], descriptors: Sequence[int]) -> None:

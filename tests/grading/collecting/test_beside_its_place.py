@@ -11,12 +11,12 @@ from tiny_class import LISTENER, TALKER
 
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.classes.new_class import release
-from autograder.grading.errors import MasterUnusable
+from autograder.grading.grading_errors import MasterUnusable
 
 if TYPE_CHECKING:
     from tiny_class import FakeEngine, TinyClass
 
-    from autograder.grading.reporting.report import GradeReport
+    from autograder.grading.reporting.grade_report import GradeReport
 
 
 def refused(report: GradeReport) -> str:

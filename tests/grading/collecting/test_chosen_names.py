@@ -11,10 +11,9 @@ from test_collect import lies, placed, why, work
 from test_lms_file_names import add_assignment
 from test_real_forms import METADATA, STEALS, gradescope_export
 
-from autograder.boxes import desk
+from autograder.boxes import reading_desks
 from autograder.grading.collecting.collect import collect
-from autograder.grading.collecting.line import LineState
-from autograder.grading.collecting.records import CollectedRecords
+from autograder.grading.collecting.collected_files import CollectedRecords, LineState
 
 if TYPE_CHECKING:
     from datetime import datetime
@@ -121,7 +120,7 @@ def test_a_list_that_takes_gigabytes_to_read_is_a_line_that_waits(
     klass: TinyClass, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """50 MB of YAML took 4.6 GB of memory; now the memory of the desk ends that, and a smaller one ends it sooner."""
-    monkeypatch.setattr(desk, "MEMORY_BYTES", 200_000_000)
+    monkeypatch.setattr(reading_desks, "MEMORY_BYTES", 200_000_000)
     files = gradescope_export("assignment_1_export/", work(klass, 1), work(klass, 2))
     (name,) = (name for name in files if name.endswith(".yml"))
     files[name] += "a: b\n" * 1_000_000

@@ -11,7 +11,7 @@ from downloads import ROSTER, write_zip, zipped
 from test_collect import lies, placed, stamp, why, work
 
 from autograder.grading.collecting.collect import collect
-from autograder.grading.collecting.line import LineState
+from autograder.grading.collecting.collected_files import LineState
 
 if TYPE_CHECKING:
     from collections.abc import Callable

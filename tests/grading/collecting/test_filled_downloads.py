@@ -14,12 +14,12 @@ from test_collect import placed, why, work
 from test_collected_table import edit
 from tiny_class import LISTENER, TALKER
 
+from autograder.grading.collecting import downloaded_files
 from autograder.grading.collecting.collect import collect
-from autograder.grading.collecting.line import LineState
-from autograder.grading.collecting.reading import archives
-from autograder.grading.collecting.reading.lms_file_names import base_of
-from autograder.grading.rebuilding.submission import read_bytes
-from autograder.regular_files import remove_unfinished
+from autograder.grading.collecting.collected_files import LineState
+from autograder.grading.collecting.submitted_file_names import base_of
+from autograder.grading.rebuilding.submitted_notebook import read_bytes
+from autograder.safe_files import remove_unfinished
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -63,7 +63,7 @@ def in_moodle(klass: TinyClass, path: Path, of_ben: dict[str, bytes]) -> Path:
 def test_the_archives_of_one_student_have_one_room(
     klass: TinyClass, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(archives.Room.__init__, "__defaults__", (100, 10 * MB))
+    monkeypatch.setattr(downloaded_files.Room.__init__, "__defaults__", (100, 10 * MB))
     blanks = zipped({f"{number}.txt": b" " * (4 * MB) for number in range(1)})
     of_ben = {f"{number}.zip": blanks for number in range(4)}
     report = collect(klass.path, [in_moodle(klass, tmp_path / "m.zip", of_ben)])
@@ -77,7 +77,7 @@ def test_the_archives_of_one_student_have_one_room(
 def test_of_archives_named_one_by_one_one_student_has_one_room(
     klass: TinyClass, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(archives.Room.__init__, "__defaults__", (100, 10 * MB))
+    monkeypatch.setattr(downloaded_files.Room.__init__, "__defaults__", (100, 10 * MB))
     blanks = zipped({"x.txt": b" " * (4 * MB)})
     for number in range(4):
         (tmp_path / f"barben_102_{number}00_x.zip").write_bytes(blanks)
@@ -122,7 +122,7 @@ def test_an_archive_that_says_what_cannot_be_keeps_nobodys_work_from_being_colle
 def test_many_small_archives_have_no_more_room_than_one(
     klass: TinyClass, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(archives.Room.__init__, "__defaults__", (50, MB))
+    monkeypatch.setattr(downloaded_files.Room.__init__, "__defaults__", (50, MB))
     small = zipped({f"{number}.txt": "" for number in range(10)})
     of_ben = {f"{number}.zip": small for number in range(7)} | {"w.zip": zipped({"a.zip": small})}
     report = collect(klass.path, [in_moodle(klass, tmp_path / "m.zip", of_ben)])
@@ -148,7 +148,7 @@ def test_a_name_with_many_numbers_is_read_in_a_moment() -> None:
 def test_what_a_class_hands_in_together_is_in_nobodys_room(
     klass: TinyClass, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(archives.Room.__init__, "__defaults__", (20, MB))
+    monkeypatch.setattr(downloaded_files.Room.__init__, "__defaults__", (20, MB))
     ids = [f"s{number:03}" for number in range(30)]
     (klass.path / "students.csv").write_text("\n".join(["id", *ids]))
     archive = zipped({"lab_1_2.ipynb": work(klass), "bag.db3": bytes(MB // 3)})
@@ -160,7 +160,7 @@ def test_what_a_class_hands_in_together_is_in_nobodys_room(
 def test_who_has_too_many_files_hides_nobody_behind(
     klass: TinyClass, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, form: str
 ) -> None:
-    monkeypatch.setattr(archives, "MOST_FILES", 20)
+    monkeypatch.setattr(downloaded_files, "MOST_FILES", 20)
     download = cloned(klass, tmp_path / "download")
     for number in range(30):
         (download / "ben" / "node_modules").mkdir(parents=True, exist_ok=True)

@@ -10,14 +10,14 @@ from downloads import write_zip, zipped
 from test_collect import kept, lies, why, work
 
 from autograder.grading.collecting.collect import collect
-from autograder.grading.collecting.line import LineState
+from autograder.grading.collecting.collected_files import LineState
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from tiny_class import TinyClass
 
-    from autograder.grading.collecting.outcomes import CollectReport
+    from autograder.grading.collecting.collect import CollectReport
 
 COPY = "lab_1_2 (your copy, 2026-11-21).ipynb"
 

@@ -23,10 +23,10 @@ from tiny_class import LISTENER, TALKER
 from autograder.boxes import syscalls
 from autograder.boxes.sandbox import why_impossible
 from autograder.grading.classes.class_directory import ClassDirectory
-from autograder.grading.collecting import apply, collected_csv, inbox
+from autograder.grading.collecting import collected_csv, collected_files, submitted_folder
 from autograder.grading.collecting.collect import collect
-from autograder.grading.collecting.line import LineState
-from autograder.grading.errors import ClassBusy, GradingError
+from autograder.grading.collecting.collected_files import LineState
+from autograder.grading.grading_errors import ClassBusy, GradingError
 
 if TYPE_CHECKING:
     from types import ModuleType
@@ -193,7 +193,8 @@ def test_two_instructors_at_once_are_told_so(klass: TinyClass, tmp_path: Path) -
 
 
 @pytest.mark.parametrize(
-    ("module", "name"), [(inbox, "keep_whole"), (apply, "write_whole"), (collected_csv, "write_whole")]
+    ("module", "name"),
+    [(collected_files, "keep_whole"), (submitted_folder, "write_whole"), (collected_csv, "write_whole")],
 )
 def test_a_full_disk_has_a_sentence_and_the_same_command_goes_on(
     klass: TinyClass, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, module: ModuleType, name: str

@@ -14,12 +14,11 @@ from typing import TYPE_CHECKING
 import pytest
 from downloads import zipped
 
-from autograder.boxes import desk as desk_of_boxes
-from autograder.boxes.desk import Desk
+from autograder.boxes import reading_desks as desk_of_boxes
+from autograder.boxes.reading_desks import Desk
 from autograder.boxes.sandbox import why_impossible
-from autograder.grading.collecting.reading import desk
-from autograder.grading.collecting.reading.archives import Archives, File, NotTaken, Room
-from autograder.grading.collecting.reading.desk import read_list
+from autograder.grading.collecting import downloaded_files
+from autograder.grading.collecting.downloaded_files import Archives, File, NotTaken, Room, read_list
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -187,7 +186,7 @@ def test_a_folder_of_a_download_has_so_many_files(archives: Archives, tmp_path: 
 def taken_over(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     """The program of the desk is one that an archive has taken over."""
     hostile = Desk("tests.grading.collecting.hostile_desk_program", {"PYTHONPATH": str(ROOT)})
-    monkeypatch.setattr(desk.desk, "_desk", hostile)
+    monkeypatch.setattr(downloaded_files.desk, "_desk", hostile)
     yield
     hostile.close()
 
@@ -209,7 +208,7 @@ def test_what_a_desk_writes_is_not_believed(archives: Archives, tmp_path: Path, 
 def test_a_limit_that_is_met_is_a_reason(
     archives: Archives, tmp_path: Path, act: bytes, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(desk, "_CPU_SECONDS", 1)
+    monkeypatch.setattr(downloaded_files, "_CPU_SECONDS", 1)
     assert "unpacking the archive would exceed a limit" in str(within(archives, tmp_path, act)[""])
     assert read_list("list.csv", act) is None
     assert within(archives, tmp_path, b"reach") == {"reached": b""}, "the next archive needs no new desk"
@@ -226,7 +225,7 @@ def test_many_archives_need_one_box(
             made.append(self)
 
     monkeypatch.setattr(desk_of_boxes, "Desk", Counted)
-    desk.desk.close()
+    downloaded_files.desk.close()
     for _ in range(3):
         assert within(archives, tmp_path, archive(["a.ipynb"])) == {"a.ipynb": b"x"}
     assert len(made) == 1
@@ -237,9 +236,11 @@ def test_without_a_sandbox_the_same_limits_hold(
 ) -> None:
     which = shutil.which
     monkeypatch.setattr(shutil, "which", lambda name: None if name == "bwrap" else which(name))
-    monkeypatch.setattr(desk, "why_impossible", why_impossible.__wrapped__)  # not what an earlier test found
-    desk.desk.close()
+    monkeypatch.setattr(
+        downloaded_files, "why_impossible", why_impossible.__wrapped__
+    )  # not what an earlier test found
+    downloaded_files.desk.close()
     assert within(archives, tmp_path, archive(["a.ipynb"])) == {"a.ipynb": b"x"}
     assert "unpacks to 60 MB" in refusals(archives, tmp_path, [archive(["a.ipynb"], said=60_000_000)])[0]
-    assert "bubblewrap is not installed" in desk.without_sandbox()
-    desk.desk.close()
+    assert "bubblewrap is not installed" in downloaded_files.without_sandbox()
+    downloaded_files.desk.close()

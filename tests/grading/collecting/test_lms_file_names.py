@@ -15,14 +15,14 @@ from autograder.cli import cli
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.classes.new_class import release
 from autograder.grading.collecting.collect import collect
-from autograder.grading.collecting.line import LineState
+from autograder.grading.collecting.collected_files import LineState
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from tiny_class import TinyClass
 
-    from autograder.grading.collecting.outcomes import CollectReport
+    from autograder.grading.collecting.collect import CollectReport
 
 UTC = ZoneInfo("UTC")
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from downloads import write_zip
 
 from autograder.grading.collecting.collect import collect
-from autograder.grading.collecting.line import LineState
+from autograder.grading.collecting.collected_files import LineState
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -9,8 +9,7 @@ from downloads import ROSTER, write_zip, zipped
 from test_collect import lies, placed, why, work
 
 from autograder.grading.collecting.collect import collect
-from autograder.grading.collecting.line import LineState
-from autograder.grading.collecting.records import CollectedRecords
+from autograder.grading.collecting.collected_files import CollectedRecords, LineState
 
 if TYPE_CHECKING:
     from pathlib import Path

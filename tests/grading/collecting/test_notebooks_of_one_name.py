@@ -9,14 +9,14 @@ from downloads import write_zip
 from test_collect import why, work
 
 from autograder.grading.collecting.collect import collect
-from autograder.grading.collecting.line import LineState
+from autograder.grading.collecting.collected_files import LineState
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from tiny_class import TinyClass
 
-    from autograder.grading.collecting.outcomes import CollectReport
+    from autograder.grading.collecting.collect import CollectReport
 
 NAME = "Ada Lovelace_1_assignsubmission_file_{}"
 

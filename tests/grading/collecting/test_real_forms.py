@@ -40,8 +40,8 @@ from test_collect import lies, stamp, why, work
 
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.collecting.collect import collect
-from autograder.grading.collecting.line import LineState
-from autograder.grading.collecting.reading.desk import read_list
+from autograder.grading.collecting.collected_files import LineState
+from autograder.grading.collecting.downloaded_files import read_list
 from autograder.grading.table.roster import read_students_csv
 
 if TYPE_CHECKING:

@@ -16,8 +16,8 @@ from test_collect import placed, stamp, why, work
 from test_collected_table import edit
 
 from autograder.grading.collecting.collect import collect
-from autograder.grading.collecting.reading.lms_file_names import read_time
-from autograder.grading.errors import GradingError
+from autograder.grading.collecting.submitted_file_names import read_time
+from autograder.grading.grading_errors import GradingError
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from tiny_class import TinyClass
 
-    from autograder.grading.collecting.outcomes import CollectReport
+    from autograder.grading.collecting.collect import CollectReport
 
 
 def gathered(

@@ -13,15 +13,15 @@ from test_where_it_goes import other_lab
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.collecting.collect import collect
 from autograder.grading.collecting.collected_csv import Table
-from autograder.grading.collecting.line import LineState
+from autograder.grading.collecting.collected_files import LineState
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from tiny_class import TinyClass
 
+    from autograder.grading.collecting.collect import CollectReport
     from autograder.grading.collecting.collected_csv import Waiting
-    from autograder.grading.collecting.outcomes import CollectReport
 
 
 @pytest.fixture

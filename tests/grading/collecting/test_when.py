@@ -13,7 +13,7 @@ from test_where_it_goes import MOODLE, gathered
 
 from autograder.cli import cli
 from autograder.grading.collecting.collect import collect
-from autograder.grading.collecting.line import LineState
+from autograder.grading.collecting.collected_files import LineState
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -21,20 +21,20 @@ from tiny_class import TinyClass
 
 from autograder.cli import cli
 from autograder.grading.classes.class_directory import ClassDirectory
-from autograder.grading.collecting import apply, collected_csv, records
+from autograder.grading.collecting import collected_csv, collected_files, submitted_folder
 from autograder.grading.collecting.collect import collect
 from autograder.grading.collecting.collected_csv import Table
-from autograder.grading.collecting.line import LineState
-from autograder.grading.exporting.export_files import export
-from autograder.grading.report_page.page import write_report
-from autograder.regular_files import write_whole
+from autograder.grading.collecting.collected_files import LineState
+from autograder.grading.reporting.export_files import export
+from autograder.grading.reporting.report_page import write_report
+from autograder.safe_files import write_whole
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from tiny_class import FakeEngine
 
-    from autograder.grading.collecting.outcomes import CollectReport
+    from autograder.grading.collecting.collect import CollectReport
 
 UTC = ZoneInfo("UTC")
 MOODLE = "{}_1_assignsubmission_file_{}"
@@ -405,7 +405,7 @@ def test_killed_at_any_write_nothing_is_lost_and_nothing_is_there_twice(
         written(path, data)
 
     with monkeypatch.context() as patch:
-        for module in (apply, records, collected_csv):
+        for module in (submitted_folder, collected_files, collected_csv):
             patch.setattr(module, "write_whole", write)
         try:
             gathered(klass, tmp_path, first)

@@ -7,13 +7,13 @@ import unicodedata
 import zipfile
 from typing import TYPE_CHECKING
 
-from autograder.grading.collecting.reading.lms_file_names import read_at
+from autograder.grading.collecting.submitted_file_names import read_at
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
     from pathlib import Path
 
-    from autograder.grading.collecting.reading.lms_file_names import Found
+    from autograder.grading.collecting.submitted_file_names import Found
 
 ROSTER = """\
 id,first_name,last_name,email,canvas,github

@@ -9,8 +9,8 @@ import nbformat
 from nbformat.v4 import new_code_cell, new_notebook
 from tiny_class import FakeEngine
 
-from autograder.boxes.limits import Ended
-from autograder.execution.cells import Cell, CellRun, CellType, Execution
+from autograder.boxes.run_limits import Ended
+from autograder.execution.executed_cells import Cell, CellRun, CellType, Execution
 from autograder.execution.verdicts_without_judge import verdict_by_tests, zero_points
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.classes.new_class import release
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from tiny_class import TinyClass
 
-    from autograder.grading.task import Task
+    from autograder.grading.grading_task import Task
 
 STUB = "def add(a, b):\n    ### BEGIN SOLUTION\n    return a + b\n    ### END SOLUTION"
 TESTS = {

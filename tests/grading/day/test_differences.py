@@ -16,7 +16,7 @@ from autograder.grading import batch
 from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.rebuilding import task_making
-from autograder.grading.running import engine
+from autograder.grading.running import execution_backends
 
 if TYPE_CHECKING:
     import pytest
@@ -86,7 +86,7 @@ def test_a_run_of_one_student_changes_no_words_about_the_others(
 def test_a_run_of_one_assignment_changes_no_words_about_the_others(
     tiny: TinyClass, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(engine, "execute_all", EngineWithAsserts().execute_all)
+    monkeypatch.setattr(execution_backends, "execute_all", EngineWithAsserts().execute_all)
     write_assignment(tiny)
     hand_in(tiny, "ada", "def add(a, b):\n    return 3")
     tiny.submit("ada", 4, 7)

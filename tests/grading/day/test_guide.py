@@ -19,12 +19,12 @@ from tiny_class import TALKER
 
 from autograder import exercises
 from autograder.cli import cli
-from autograder.execution.cells import Execution
+from autograder.execution.executed_cells import Execution
 from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.class_directory import ClassDirectory, Submission
 from autograder.grading.rebuilding.task_making import tasks_of
-from autograder.grading.running import sandboxing
-from autograder.judge.verdicts import keeping, reference, trial
+from autograder.grading.running import execution_backends
+from autograder.judge import evidence_files, one_check
 from autograder.kit.evidence import Evidence
 
 if TYPE_CHECKING:
@@ -45,15 +45,15 @@ def run(*arguments: object) -> str:
 @pytest.fixture
 def unboxed(monkeypatch: pytest.MonkeyPatch) -> None:
     """Nothing is executed, so no box is needed."""
-    monkeypatch.setattr(sandboxing, "require", lambda _: None)
+    monkeypatch.setattr(execution_backends, "require", lambda _: None)
 
 
 def keep_evidence(tiny: TinyClass, student: str, exercise: str) -> None:
     """Have the class keep of a check what the reference solution does."""
-    stored = reference.load(exercise)
+    stored = evidence_files.load_reference(exercise)
     seen = Evidence(stored.parts, stored)
-    verdict = trial.decide(exercises.get(exercise), seen, "s")
-    packed = keeping.pack(verdict, seen, reference.digest(exercise), at=1.8e9)
+    verdict = one_check.decide(exercises.get(exercise), seen, "s")
+    packed = evidence_files.pack(verdict, seen, evidence_files.reference_digest(exercise), at=1.8e9)
     directory = ClassDirectory(tiny.path)
     (task,) = tasks_of(
         directory, Submission(student, "lab_1_2", tiny.path / "submitted" / student / "lab_1_2")

@@ -25,9 +25,8 @@ from autograder.boxes.sandbox import why_impossible
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.collecting.collect import collect
 from autograder.grading.collecting.collected_csv import Table
-from autograder.grading.collecting.inbox import Inbox
-from autograder.grading.collecting.records import CollectedRecords
-from autograder.regular_files import write_whole
+from autograder.grading.collecting.collected_files import CollectedRecords, Inbox
+from autograder.safe_files import write_whole
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -12,9 +12,9 @@ import pytest
 from rich.console import Console
 from tiny_class import LISTENER, MASTER, TALKER, FakeEngine, TinyClass, write_master
 
-from autograder.grading.classes import changed_masters
+from autograder.grading.classes import class_checks
 from autograder.grading.classes.new_class import new_class, renew
-from autograder.grading.errors import DiskFull, GradingError
+from autograder.grading.grading_errors import DiskFull, GradingError
 
 pytestmark = pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning")
 
@@ -57,13 +57,13 @@ def test_a_class_hears_of_a_task_that_was_changed(tiny: TinyClass, course: Path)
 def test_a_class_hears_of_a_change_in_a_course_that_has_moved(
     course: Path, tmp_path: Path, fake_engine: FakeEngine, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(changed_masters, "course", SimpleNamespace(root=lambda: course))
+    monkeypatch.setattr(class_checks, "course", SimpleNamespace(root=lambda: course))
     new_class(tmp_path / "class", course)
     tiny = TinyClass(tmp_path / "class")
     tiny.submit("ada", 4, 7)
     shutil.copytree(course, tmp_path / "clone")
     change(tmp_path / "clone", "TODO: return ten.", "TODO: return twelve.")
-    monkeypatch.setattr(changed_masters, "course", SimpleNamespace(root=lambda: tmp_path / "clone"))
+    monkeypatch.setattr(class_checks, "course", SimpleNamespace(root=lambda: tmp_path / "clone"))
     assert "lab_1_2: the course's tasks have changed" in "\n".join(said(tiny))
 
 

@@ -11,8 +11,8 @@ import pytest
 from nbgrader.api import Gradebook
 from own_assignment import TESTS, graded_cells, hand_in, write_assignment
 
-from autograder.boxes.limits import Ended
-from autograder.execution.cells import CellCheck, CellRun
+from autograder.boxes.run_limits import Ended
+from autograder.execution.executed_cells import CellCheck, CellRun
 from autograder.execution.verdicts_without_judge import verdict_by_tests
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.classes.new_class import release

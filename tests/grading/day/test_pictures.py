@@ -15,7 +15,7 @@ from own_assignment import EngineWithAsserts, marked
 
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.classes.new_class import release
-from autograder.grading.running import engine
+from autograder.grading.running import execution_backends
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -45,7 +45,7 @@ ANSWER = "Look:\n\n![shot](attachment:shot.png)\n\n![drawn](attachment:drawn.svg
 @pytest.fixture
 def quiz(tiny: TinyClass, monkeypatch: pytest.MonkeyPatch) -> TinyClass:
     """A class with an assignment whose question has a picture for all, and its solution one for those who grade."""
-    monkeypatch.setattr(engine, "execute_all", EngineWithAsserts().execute_all)
+    monkeypatch.setattr(execution_backends, "execute_all", EngineWithAsserts().execute_all)
     why = marked(new_markdown_cell(QUESTION, attachments=PICTURES), "why", 5)
     why.metadata.nbgrader.update(solution=True, locked=False)
     cells = [marked(new_code_cell("assert True"), "test", 1), why]

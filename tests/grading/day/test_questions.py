@@ -12,7 +12,7 @@ from test_true_table import page, rows, total
 from tiny_class import MASTER, FakeEngine, TinyClass, write_master
 
 from autograder.grading.classes.new_class import new_class
-from autograder.grading.returning.page_head import without_dead_links
+from autograder.grading.returning.page_exporter import without_dead_links
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -81,7 +81,7 @@ def test_a_person_sees_what_earns_points_and_gives_them(asked: TinyClass) -> Non
 
 
 def test_a_question_that_somebody_has_answered_is_not_built_over(asked: TinyClass) -> None:
-    from autograder.masters.chapters import holds_work
+    from autograder.masters.chapter_building import holds_work
 
     released = asked.path / "release" / "lab_1_2" / "lab_1_2.ipynb"
     assert not holds_work(released)

@@ -15,15 +15,14 @@ from nbgrader.coursedir import CourseDirectory
 from rich.console import Console
 from tiny_class import LISTENER, TALKER, FakeEngine, TinyClass
 
-from autograder.grading.classes import timestamps
+from autograder.grading.classes import submission_times
 from autograder.grading.classes.class_directory import ClassDirectory
-from autograder.grading.errors import ClassIncomplete
-from autograder.grading.reporting.report import report_json
-from autograder.grading.reporting.report_table import show
-from autograder.grading.returning.feedback import FeedbackPages
+from autograder.grading.grading_errors import ClassIncomplete
+from autograder.grading.reporting.grade_report import report_json, show
+from autograder.grading.returning.feedback_pages import FeedbackPages
 
 if TYPE_CHECKING:
-    from autograder.grading.reporting.report import GradeReport
+    from autograder.grading.reporting.grade_report import GradeReport
 
 pytestmark = pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning")
 
@@ -158,7 +157,7 @@ def test_a_grade_stays_where_the_clock_goes_wrong_afterwards(
     tiny.submit("ada", 4, 7).with_name("timestamp.txt").write_text(LATE)
     tiny.grade(feedback=True)
     with monkeypatch.context() as patch:
-        patch.setattr(timestamps, "_AHEAD", timedelta(days=-36_500))  # as if it were a century ago
+        patch.setattr(submission_times, "_MAX_AHEAD", timedelta(days=-36_500))  # as if it were a century ago
         report = tiny.grade(feedback=True)
     assert (report.executed, report.written, report.problems) == (0, 0, ())
     assert nbgraders_total(tiny, "ada") == 11

@@ -21,10 +21,10 @@ from tiny_class import FakeEngine, TinyClass
 
 from autograder.cli import cli
 from autograder.grading.collecting.collect import collect
-from autograder.grading.errors import GradingError
-from autograder.grading.exporting.export_files import export
-from autograder.grading.report_page.page import write_report
-from autograder.grading.running import engine
+from autograder.grading.grading_errors import GradingError
+from autograder.grading.reporting.export_files import export
+from autograder.grading.reporting.report_page import write_report
+from autograder.grading.running import execution_backends
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -303,7 +303,7 @@ def test_what_counts_can_be_said_at_any_time_and_changed_again(graded: TinyClass
 def test_the_lowest_assignments_leave_the_total_and_nothing_else(
     graded: TinyClass, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(engine, "execute_all", EngineWithAsserts().execute_all)
+    monkeypatch.setattr(execution_backends, "execute_all", EngineWithAsserts().execute_all)
     write_assignment(graded)
     for student in ("ada", "jose"):
         put_own_work(graded, student, "def add(a, b):\n    return abs(a) - abs(b)")

@@ -15,7 +15,7 @@ from downloads import ROSTER, write_zip
 
 from autograder.cli import cli
 from autograder.grading.collecting.collect import collect
-from autograder.grading.exporting.export_files import export
+from autograder.grading.reporting.export_files import export
 from autograder.verdict import not_checked
 
 if TYPE_CHECKING:

@@ -14,7 +14,7 @@ from test_collect import work
 from tiny_class import TALKER
 
 from autograder.grading.collecting.collect import collect
-from autograder.grading.exporting.export_files import export
+from autograder.grading.reporting.export_files import export
 
 if TYPE_CHECKING:
     from pathlib import Path

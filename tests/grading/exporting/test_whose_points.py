@@ -12,10 +12,10 @@ from bs4 import BeautifulSoup
 from downloads import ROSTER
 from own_assignment import EngineWithAsserts, hand_in, write_assignment
 
-from autograder.grading.errors import GradingError
-from autograder.grading.exporting.export_files import export
-from autograder.grading.report_page.page import write_report
-from autograder.grading.running import engine
+from autograder.grading.grading_errors import GradingError
+from autograder.grading.reporting.export_files import export
+from autograder.grading.reporting.report_page import write_report
+from autograder.grading.running import execution_backends
 from autograder.verdict import not_checked
 
 if TYPE_CHECKING:
@@ -68,7 +68,7 @@ def test_who_is_excused_from_what_there_is_not_is_named(klass: TinyClass) -> Non
 def test_an_assignment_whose_source_is_damaged_is_named_and_not_left_out_in_silence(
     klass: TinyClass, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(engine, "execute_all", EngineWithAsserts().execute_all)
+    monkeypatch.setattr(execution_backends, "execute_all", EngineWithAsserts().execute_all)
     write_assignment(klass)
     hand_in(klass, "ben", "def add(a, b):\n    return a + b")
     klass.grade()

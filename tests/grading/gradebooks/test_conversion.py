@@ -16,15 +16,14 @@ from bs4 import BeautifulSoup
 from nbgrader.preprocessors import AssignLatePenalties, GetGrades, SaveAutoGrades
 from tiny_class import LISTENER, TALKER, FakeEngine, TinyClass
 
-from autograder.execution.cells import CellCheck
+from autograder.execution.executed_cells import CellCheck
+from autograder.grading.classes import gradebook_writing, result_writer
 from autograder.grading.classes.class_directory import ClassDirectory
-from autograder.grading.classes.timestamps import handed_in_at
-from autograder.grading.gradebooks import conversion, gradebook
-from autograder.grading.gradebooks.gradebook_reading import read_entries
-from autograder.grading.returning.page_exporter import PageExporter
-from autograder.grading.returning.page_head import mark_waiting
+from autograder.grading.classes.gradebook_reading import read_entries
+from autograder.grading.classes.submission_times import handed_in_at
+from autograder.grading.grading_task import points
+from autograder.grading.returning.page_exporter import PageExporter, mark_waiting
 from autograder.grading.returning.sanitize import make_harmless
-from autograder.grading.task import points
 from autograder.verdict import State, Verdict
 
 pytestmark = pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning")
@@ -36,7 +35,7 @@ def test_points_are_written_with_all_their_digits(worth: int) -> None:
     check = CellCheck("lab.one", "One", points=3, worth=worth, limit=2)
     verdict = Verdict("lab.one", "One", State.FAILED, 1, 3)
     given = points(check, verdict)
-    *_, value = conversion._graded_outputs(check, verdict, [])
+    *_, value = result_writer._graded_outputs(check, verdict, [])
     assert float(value["data"]["text/plain"]) == given
 
 
@@ -164,7 +163,7 @@ def test_what_cannot_be_converted_leaves_zero_and_a_word(
     tiny.grade()
     tiny.submit("ada", 9)
     tiny.submit("ben", 9)
-    usual = gradebook.enter
+    usual = gradebook_writing.enter
 
     def fail(url: str, assignment: str, student: str, *rest: Any) -> bool:
         entered = usual(url, assignment, student, *rest)
@@ -172,7 +171,7 @@ def test_what_cannot_be_converted_leaves_zero_and_a_word(
             raise RuntimeError("no more")
         return entered
 
-    monkeypatch.setattr(gradebook, "enter", fail)
+    monkeypatch.setattr(gradebook_writing, "enter", fail)
     report = tiny.grade()
     assert tiny.scores("ada") == {TALKER: 0, LISTENER: 0}
     assert tiny.scores("ben")[TALKER] == 9
@@ -188,7 +187,7 @@ def test_what_is_entered_for_a_submission_is_one_transaction(
     def fail(*_: object) -> None:
         raise RuntimeError("in the middle")
 
-    monkeypatch.setattr(gradebook, "_enter_comments", fail)
+    monkeypatch.setattr(gradebook_writing, "_enter_comments", fail)
     report = tiny.grade()
     assert "in the middle" in report.problems[0]
     assert everything(tiny.path)["grade g"] == everything(tiny.path)["student"] == []

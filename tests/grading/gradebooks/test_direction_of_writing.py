@@ -7,9 +7,9 @@ from typing import Any
 import nbformat
 import pytest
 
-from autograder.cards.readable import one_line, printable
-from autograder.grading.reporting.spreadsheet import defused
+from autograder.cards.readable_text import one_line, printable
 from autograder.grading.returning.sanitize import harmless_markdown, make_harmless, visible
+from autograder.grading.table.spreadsheet_csv import defused
 
 TURNS = [chr(code) for code in (0x061C, 0x200E, 0x200F, *range(0x202A, 0x202F), *range(0x2066, 0x206A))]
 

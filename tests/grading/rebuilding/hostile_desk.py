@@ -20,9 +20,9 @@ import msgspec
 import re2
 
 from autograder.boxes.seccomp_filter import ARCHITECTURES
-from autograder.execution.cells import CellType
-from autograder.grading.rebuilding import desk_process
-from autograder.grading.rebuilding.submission import ReadNotebook, SubmittedCell, Unreadable
+from autograder.execution.executed_cells import CellType
+from autograder.grading.rebuilding import notebook_parsing
+from autograder.grading.rebuilding.submitted_notebook import ReadNotebook, SubmittedCell, Unreadable
 from tests.boxes.reach import reached
 
 if TYPE_CHECKING:
@@ -55,7 +55,7 @@ CRAFTED: tuple[bytes, ...] = (
 
 def prepare() -> None:
     """Be as ready as a desk."""
-    desk_process.prepare()
+    notebook_parsing.prepare()
 
 
 def run(call: Mapping[str, Any], descriptors: Sequence[int]) -> None:
@@ -63,7 +63,7 @@ def run(call: Mapping[str, Any], descriptors: Sequence[int]) -> None:
     source, answer = descriptors
     named = _NAMED.search(os.pread(source, 1_000_000, 0))
     if named is None:
-        desk_process.run(call, descriptors)
+        notebook_parsing.run(call, descriptors)
     else:
         globals()[named[1].decode()](answer, int(named[2] or 0))
 

@@ -9,10 +9,10 @@ from pathlib import Path
 import pytest
 
 from autograder import course
-from autograder.grading.cluster import start_worker
-from autograder.grading.rebuilding import fingerprints
+from autograder.grading.cluster import dask_worker
+from autograder.grading.rebuilding import submission_fingerprints
 from autograder.grading.rebuilding.course_version import counted_files, course_version
-from autograder.grading.running import dispatcher
+from autograder.grading.running import task_dispatcher
 
 ROOT = Path(__file__).resolve().parents[3]
 # What git keeps of these counts. That list is not taken from the code under test.
@@ -103,5 +103,5 @@ def test_it_does_not_depend_on_where_the_course_lies(copy: Path, monkeypatch: py
 
 def test_results_grades_and_clusters_go_by_the_same_value() -> None:
     # What tasks go by stands still in these tests (conftest.py).
-    modules = (fingerprints, start_worker, dispatcher)
+    modules = (submission_fingerprints, dask_worker, task_dispatcher)
     assert {vars(module)["course_version"] for module in modules} == {course_version}

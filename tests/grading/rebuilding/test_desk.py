@@ -13,15 +13,20 @@ from typing import TYPE_CHECKING
 import pytest
 from tiny_class import LISTENER, TALKER, FakeEngine, TinyClass
 
-from autograder.boxes import desk as desk_of_boxes
-from autograder.boxes.channel import ChannelClosed
-from autograder.boxes.desk import Desk
+from autograder.boxes import reading_desks as desk_of_boxes
+from autograder.boxes.process_channel import ChannelClosed
+from autograder.boxes.reading_desks import Desk
 from autograder.boxes.sandbox import why_impossible
-from autograder.grading.rebuilding import desk
-from autograder.grading.rebuilding.desk import DeskFailed, checked, document_of, read_notebook, why_unreadable
-from autograder.grading.rebuilding.desk_process import answer_to
-from autograder.grading.rebuilding.parsing import parse
-from autograder.grading.rebuilding.submission import MAX_CELL_CHARACTERS, UnreadableSubmission
+from autograder.grading.rebuilding import submission_desk
+from autograder.grading.rebuilding.notebook_parsing import answer_to, parse
+from autograder.grading.rebuilding.submission_desk import (
+    DeskFailed,
+    checked,
+    document_of,
+    read_notebook,
+    why_unreadable,
+)
+from autograder.grading.rebuilding.submitted_notebook import MAX_CELL_CHARACTERS, UnreadableSubmission
 from tests.grading.rebuilding.hostile_desk import CRAFTED, SCRIPT
 
 if TYPE_CHECKING:
@@ -54,8 +59,8 @@ def hostile() -> Iterator[Desk]:
 @pytest.fixture
 def taken_over(hostile: Desk, monkeypatch: pytest.MonkeyPatch) -> Desk:
     """The desk of this process is one whose program students can choose."""
-    monkeypatch.setattr(desk._desk, "_desk", hostile)
-    monkeypatch.setattr(desk, "CPU_SECONDS", 1)
+    monkeypatch.setattr(submission_desk._desk, "_desk", hostile)
+    monkeypatch.setattr(submission_desk, "CPU_SECONDS", 1)
     return hostile
 
 
@@ -84,8 +89,8 @@ def test_a_desk_reads_what_its_parser_reads() -> None:
 
 
 def test_a_desk_is_in_a_box_if_one_can_be_had() -> None:
-    read_notebook(desk._SAMPLE)
-    assert desk._desk.is_unboxed is bool(why_impossible())
+    read_notebook(submission_desk._SAMPLE)
+    assert submission_desk._desk.is_unboxed is bool(why_impossible())
 
 
 @pytest.mark.parametrize("act", FAULTS)
@@ -94,7 +99,7 @@ def test_hostile_code_at_a_desk_is_the_fault_of_its_own_file(taken_over: Desk, a
     assert FAULTS[act] in said
     assert said.isprintable()
     assert why_unreadable(b"[]") == "The file is JSON, but not a Jupyter notebook."
-    assert desk._desk._desk is taken_over, "the others need no new desk"
+    assert submission_desk._desk._desk is taken_over, "the others need no new desk"
 
 
 def test_a_desk_reaches_nothing_not_even_without_a_box(
@@ -186,8 +191,8 @@ def test_a_lost_desk_is_no_file_s_fault(monkeypatch: pytest.MonkeyPatch) -> None
 def test_a_desk_that_cannot_read_a_sample_reads_no_student_s_file(
     hostile: Desk, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(desk, "_SAMPLE", notebook("crash"))
-    monkeypatch.setattr(desk._desk, "_desk", None)
+    monkeypatch.setattr(submission_desk, "_SAMPLE", notebook("crash"))
+    monkeypatch.setattr(submission_desk._desk, "_desk", None)
     monkeypatch.setattr(desk_of_boxes, "Desk", lambda _: hostile)
     monkeypatch.setattr(hostile, "close", lambda: None)
     with pytest.raises(DeskFailed, match="not even a sample"):

@@ -10,10 +10,10 @@ import nbformat
 import pytest
 from nbformat import NotebookNode
 
-from autograder.execution.cells import CellType
-from autograder.grading.rebuilding.parsing import parse
-from autograder.grading.rebuilding.rebuild import rebuild
-from autograder.grading.rebuilding.submission import SubmittedCell
+from autograder.execution.executed_cells import CellType
+from autograder.grading.rebuilding.notebook_parsing import parse
+from autograder.grading.rebuilding.notebook_rebuilding import rebuild
+from autograder.grading.rebuilding.submitted_notebook import SubmittedCell
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -4,9 +4,9 @@ import nbformat
 import pytest
 from nbformat import NotebookNode
 
-from autograder.execution.cells import CellType
-from autograder.grading.rebuilding.rebuild import rebuild, rebuild_unreadable
-from autograder.grading.rebuilding.submission import SubmittedCell
+from autograder.execution.executed_cells import CellType
+from autograder.grading.rebuilding.notebook_rebuilding import rebuild, rebuild_unreadable
+from autograder.grading.rebuilding.submitted_notebook import SubmittedCell
 from autograder.grading.rebuilding.task_making import cells_of
 
 

@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from autograder.execution.cells import CellType
-from autograder.grading.rebuilding import submission
-from autograder.grading.rebuilding.parsing import parse
-from autograder.grading.rebuilding.submission import SubmittedCell, UnreadableSubmission, read_bytes
+from autograder.execution.executed_cells import CellType
+from autograder.grading.rebuilding import submitted_notebook
+from autograder.grading.rebuilding.notebook_parsing import parse
+from autograder.grading.rebuilding.submitted_notebook import SubmittedCell, UnreadableSubmission, read_bytes
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -95,7 +95,7 @@ def test_says_why_a_file_is_no_notebook(data: bytes, says: str) -> None:
 
 def test_a_million_cells_are_too_many() -> None:
     with pytest.raises(UnreadableSubmission, match="the limit is"):
-        parse(notebook(*[0] * (submission.MAX_CELLS + 1)))
+        parse(notebook(*[0] * (submitted_notebook.MAX_CELLS + 1)))
 
 
 def test_names_what_was_found_in_place_of_the_notebook(tmp_path: Path) -> None:
@@ -156,7 +156,7 @@ def test_a_folder_of_that_name_is_no_notebook(tmp_path: Path) -> None:
 
 def test_a_file_that_is_too_large_is_not_read(tmp_path: Path) -> None:
     with (tmp_path / "mine.ipynb").open("wb") as file:
-        file.truncate(submission.MAX_BYTES + 1)
+        file.truncate(submitted_notebook.MAX_BYTES + 1)
     with pytest.raises(UnreadableSubmission, match="the limit is 50 MB"):
         read_bytes(tmp_path / "mine.ipynb")
 

@@ -18,13 +18,13 @@ from tiny_class import FakeEngine, TinyClass
 from autograder.cli import cli
 from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.class_directory import ClassDirectory
-from autograder.grading.errors import GradingError
-from autograder.grading.rebuilding.fingerprints import Fingerprints
+from autograder.grading.grading_errors import GradingError
 from autograder.grading.rebuilding.source_points import read_released
-from autograder.grading.report_page import statistics as figures
-from autograder.grading.report_page.page import write_report
-from autograder.grading.reporting.rows import Row
+from autograder.grading.rebuilding.submission_fingerprints import Fingerprints
+from autograder.grading.reporting import class_statistics as figures
+from autograder.grading.reporting.report_page import write_report
 from autograder.grading.table.class_table import ClassTable, read_table
+from autograder.grading.table.rows import Row
 from autograder.verdict import CriterionResult, Diagnosis, Verdict
 
 if TYPE_CHECKING:

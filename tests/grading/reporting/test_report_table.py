@@ -11,9 +11,8 @@ import pytest
 from rich.console import Console
 
 from autograder.grading.classes.class_directory import RefusedFile
-from autograder.grading.reporting.report import GradeReport
-from autograder.grading.reporting.report_table import show, tables
-from autograder.grading.reporting.rows import Row, columns
+from autograder.grading.reporting.grade_report import GradeReport, show, tables
+from autograder.grading.table.rows import Row, columns
 
 if TYPE_CHECKING:
     from tiny_class import FakeEngine, TinyClass

@@ -13,10 +13,10 @@ import pytest
 from nbgrader.api import Gradebook
 
 from autograder.grading.classes.class_directory import ClassDirectory
-from autograder.grading.exporting.export_files import export
-from autograder.grading.reporting.rows import Row, write_csv
-from autograder.grading.reporting.spreadsheet import csv_rows, csv_text, defused, original
+from autograder.grading.reporting.export_files import export
 from autograder.grading.table.roster import read_students_csv
+from autograder.grading.table.rows import Row, write_csv
+from autograder.grading.table.spreadsheet_csv import csv_rows, csv_text, defused, original
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from tiny_class import TALKER, TinyClass
 
-from autograder.execution.cells import CellType
+from autograder.execution.executed_cells import CellType
 from autograder.grading.classes.class_directory import ClassDirectory, Submission
-from autograder.grading.gradebooks.gradebook_reading import CellEntry, SubmissionEntry
+from autograder.grading.classes.gradebook_reading import CellEntry, SubmissionEntry
 from autograder.grading.rebuilding import nbformat_nodes
-from autograder.grading.returning import feedback
+from autograder.grading.returning import feedback_pages
 from autograder.grading.returning.page_exporter import POLICY, PageExporter, Remembered
 
 if TYPE_CHECKING:
@@ -120,9 +120,11 @@ class Pages:
     def __init__(self, path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         self.directory = ClassDirectory(path)
         self.entry = entered(CellEntry(2.0, judged=1.0))
-        monkeypatch.setattr(feedback, "read_entry", lambda *_: self.entry)
+        monkeypatch.setattr(feedback_pages, "read_entry", lambda *_: self.entry)
 
-    def make(self, maker: feedback.FeedbackPages, change: Callable[[Any], None], **metadata: Any) -> str:
+    def make(
+        self, maker: feedback_pages.FeedbackPages, change: Callable[[Any], None], **metadata: Any
+    ) -> str:
         cells = one_of_each()
         change(cells)
         notebook = nbformat_nodes.notebook(cells, {"language_info": {"name": "python", **metadata}})
@@ -138,8 +140,8 @@ class Pages:
         return self.make(self._forgetful, change, **metadata)
 
     @functools.cached_property
-    def _forgetful(self) -> feedback.FeedbackPages:
-        maker = feedback.FeedbackPages(self.directory)
+    def _forgetful(self) -> feedback_pages.FeedbackPages:
+        maker = feedback_pages.FeedbackPages(self.directory)
         maker._exporter._parts = Remembered(0)
         return maker
 
@@ -152,7 +154,7 @@ def pages(tiny: TinyClass, monkeypatch: pytest.MonkeyPatch) -> Pages:
 def test_no_page_has_a_part_of_another_one(pages: Pages) -> None:
     expected = {change: pages.fresh(change) for change in CHANGES}
     assert len(set(expected.values())) == len(CHANGES), "each of them shows on the page"
-    maker = feedback.FeedbackPages(pages.directory)
+    maker = feedback_pages.FeedbackPages(pages.directory)
     for change in [*CHANGES, *reversed(CHANGES)]:
         assert pages.make(maker, change) == expected[change], change.__name__
 
@@ -165,7 +167,7 @@ def test_points_comments_and_language_show_in_remembered_parts(pages: Pages) -> 
         entered(CellEntry(2.0, judged=0.5, comment=f"well {_SCRIPT} done")),
     ]
     kinds: list[dict[str, Any]] = [{}, {"pygments_lexer": "ipython3"}, {"name": "c"}]
-    maker = feedback.FeedbackPages(pages.directory)
+    maker = feedback_pages.FeedbackPages(pages.directory)
     seen = []
     for _ in range(2):
         for entry in entries:
@@ -178,7 +180,7 @@ def test_points_comments_and_language_show_in_remembered_parts(pages: Pages) -> 
 
 
 def test_no_page_runs_anything(pages: Pages) -> None:
-    maker = feedback.FeedbackPages(pages.directory)
+    maker = feedback_pages.FeedbackPages(pages.directory)
     for change in CHANGES * 2:
         page = pages.make(maker, change)
         assert page.startswith("<!DOCTYPE html>")
@@ -188,7 +190,7 @@ def test_no_page_runs_anything(pages: Pages) -> None:
 
 
 def test_what_the_chapter_gives_is_rendered_once(pages: Pages, monkeypatch: pytest.MonkeyPatch) -> None:
-    maker = feedback.FeedbackPages(pages.directory)
+    maker = feedback_pages.FeedbackPages(pages.directory)
     pages.make(maker, keep)
     rendered = []
     usual = PageExporter._part

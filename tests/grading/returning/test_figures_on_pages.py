@@ -11,9 +11,9 @@ import pytest
 from nbconvert.exporters import HTMLExporter
 from nbformat import NotebookNode
 
-from autograder.execution.cells import CellType
-from autograder.grading.rebuilding.rebuild import rebuild, rebuild_unreadable
-from autograder.grading.rebuilding.submission import SubmittedCell
+from autograder.execution.executed_cells import CellType
+from autograder.grading.rebuilding.notebook_rebuilding import rebuild, rebuild_unreadable
+from autograder.grading.rebuilding.submitted_notebook import SubmittedCell
 from autograder.grading.returning.page_exporter import markdown_to_html
 from autograder.grading.returning.sanitize import harmless_markdown, make_harmless
 

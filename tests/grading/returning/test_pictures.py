@@ -8,7 +8,7 @@ import struct
 import nbformat
 import pytest
 
-from autograder.grading.returning.pictures import MOST_POINTS, points_of
+from autograder.grading.returning.browser_memory import MOST_POINTS, points_of
 from autograder.grading.returning.sanitize import harmless_markdown, make_harmless
 
 WIDTH, HEIGHT = 640, 480

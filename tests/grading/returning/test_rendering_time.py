@@ -8,8 +8,8 @@ import nbformat
 import pytest
 from nbconvert.exporters import HTMLExporter
 
-from autograder.execution.cells import Cell, CellType
-from autograder.grading.rebuilding.submission import HARMLESS_LENGTH
+from autograder.execution.executed_cells import Cell, CellType
+from autograder.grading.rebuilding.submitted_notebook import HARMLESS_LENGTH
 from autograder.grading.returning import rendering_trial
 from autograder.grading.returning.rendering_time import too_costly
 from autograder.grading.returning.sanitize import make_harmless

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from autograder.grading.returning.browser_memory import places_in_tables
 from autograder.grading.returning.sanitize import clean, harmless_markdown
-from autograder.grading.returning.tables import places_in_tables
 
 
 def table(*rows: str) -> str:

@@ -9,18 +9,24 @@ import msgspec
 import pytest
 from tiny_class import FakeEngine, TinyClass
 
-from autograder.boxes.limits import Ended
-from autograder.execution.cells import CellRun, Execution
+from autograder.boxes.run_limits import Ended
+from autograder.execution.executed_cells import CellRun, Execution
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.rebuilding.task_making import tasks_of
-from autograder.grading.running.admission import LARGEST_OFFER, Forged, admitted, admitted_offer
-from autograder.grading.running.orders import LARGEST_ANSWER, Offer
+from autograder.grading.running.worker_messages import (
+    LARGEST_ANSWER,
+    LARGEST_OFFER,
+    Forged,
+    Offer,
+    admitted,
+    admitted_offer,
+)
 from autograder.verdict import State
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from autograder.grading.task import Task
+    from autograder.grading.grading_task import Task
 
 pytestmark = pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning")
 

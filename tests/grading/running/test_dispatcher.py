@@ -22,10 +22,10 @@ from fake_link import (
 from tiny_class import FakeEngine, TinyClass
 
 from autograder.grading.classes.class_directory import ClassDirectory
-from autograder.grading.running import dispatcher as dispatcher_module
-from autograder.grading.running import engine
-from autograder.grading.running.dispatcher import ATTEMPTS, NoWorkers, SchedulerGone
-from autograder.grading.running.orders import (
+from autograder.grading.running import execution_backends
+from autograder.grading.running import task_dispatcher as dispatcher_module
+from autograder.grading.running.task_dispatcher import ATTEMPTS, NoWorkers, SchedulerGone
+from autograder.grading.running.worker_messages import (
     Answered,
     Asked,
     Broken,
@@ -39,8 +39,8 @@ from autograder.grading.running.orders import (
 )
 
 if TYPE_CHECKING:
-    from autograder.grading.running.dispatcher import Done
-    from autograder.grading.task import Task
+    from autograder.grading.grading_task import Task
+    from autograder.grading.running.task_dispatcher import Done
 
 pytestmark = pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning")
 
@@ -333,7 +333,7 @@ def test_tasks_go_on_while_the_caller_of_a_cluster_holds_a_result(tasks: list[Ta
         if task == tasks[-1]:
             last_began.set()
 
-    running = engine.dispatch(dispatcher, tasks, began)
+    running = execution_backends.dispatch(dispatcher, tasks, began)
     next(running)
     assert last_began.wait(60)
     running.close()

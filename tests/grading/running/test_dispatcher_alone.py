@@ -10,15 +10,15 @@ import pytest
 from fake_link import FakeLink, honest, joined, make_dispatcher, students, tasks_of_six, troubled
 from tiny_class import FakeEngine, TinyClass
 
-from autograder.grading.running import dispatcher as dispatcher_module
-from autograder.grading.running.dispatcher import ATTEMPTS, NoWorkers
-from autograder.grading.running.orders import Answered, Asked, Give, Left, News, Offer
+from autograder.grading.running import task_dispatcher as dispatcher_module
+from autograder.grading.running.task_dispatcher import ATTEMPTS, NoWorkers
+from autograder.grading.running.worker_messages import Answered, Asked, Give, Left, News, Offer
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from autograder.grading.running.dispatcher import Done
-    from autograder.grading.task import Task
+    from autograder.grading.grading_task import Task
+    from autograder.grading.running.task_dispatcher import Done
 
 pytestmark = pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning")
 

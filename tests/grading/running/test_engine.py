@@ -10,10 +10,11 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 import pytest
 
-from autograder.boxes.limits import Ended
-from autograder.execution.cells import Cell, CellRun, Execution
-from autograder.grading.running import dispatcher, engine
-from autograder.grading.running.orders import (
+from autograder.boxes.run_limits import Ended
+from autograder.execution.executed_cells import Cell, CellRun, Execution
+from autograder.grading.grading_task import Task
+from autograder.grading.running import execution_backends, task_dispatcher
+from autograder.grading.running.worker_messages import (
     ADDRESS,
     Answered,
     Broken,
@@ -25,7 +26,6 @@ from autograder.grading.running.orders import (
     Offer,
     Order,
 )
-from autograder.grading.task import Task
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -98,10 +98,10 @@ def run(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Any:
         cells: int = 0,
     ) -> Any:
         machine = FakeMachine(answer, together)
-        monkeypatch.setattr(engine, "this_machine", machine)
+        monkeypatch.setattr(execution_backends, "this_machine", machine)
         # A worker is not told the name of the student: the notebook has it, too.
         tasks = [Task(student, "lab", student, (Cell(""),) * cells, "0", "1") for student in students]
-        done = list(engine.execute_all(tasks, tmp_path / "scratch" / "x", workers))
+        done = list(execution_backends.execute_all(tasks, tmp_path / "scratch" / "x", workers))
         return {d.task.student: d.execution for d in done}, machine.seen, done
 
     return made
@@ -173,12 +173,12 @@ def test_with_one_worker_everybody_has_all_the_memory_at_once(run: Any) -> None:
 @pytest.mark.parametrize(("gib", "number"), [(64, 8), (16, 8), (6, 8), (4, 4), (2, 1)])
 def test_there_are_never_more_at_once_than_have_room_if_each_takes_its_share(gib: int, number: int) -> None:
     free = gib * 2**30
-    assert engine.at_once(2, free) == number
-    assert number == 1 or number * engine.BOX_BYTES < free
+    assert execution_backends.at_once(2, free) == number
+    assert number == 1 or number * execution_backends.BOX_BYTES < free
 
 
 def test_so_many_are_at_work_at_once_and_no_more(run: Any, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(engine, "cores", lambda: 1)
+    monkeypatch.setattr(execution_backends, "cores", lambda: 1)
     _, seen, _ = run(lambda task, times: Execution(()), "abcdefghijkl", None, together=4)
     assert max(together for _, _, together in seen) == 4
 
@@ -189,7 +189,7 @@ def test_an_answer_that_is_not_possible_is_never_used(run: Any) -> None:
     assert "gave an impossible answer: the answer has 2 cells, and the notebook has 0" in results["b"].trouble
     assert not results["b"].cells
     assert not results["a"].trouble + results["c"].trouble
-    assert [student for student, _, _ in seen].count("b") == dispatcher.ATTEMPTS
+    assert [student for student, _, _ in seen].count("b") == task_dispatcher.ATTEMPTS
 
 
 def test_an_error_of_the_grader_is_trouble_of_one_task(run: Any) -> None:
@@ -209,4 +209,4 @@ def test_an_error_while_a_task_is_prepared_reaches_the_caller(tmp_path: Path) ->
         yield
 
     with pytest.raises(LookupError, match="no such student"):
-        list(engine.execute_all(tasks(), tmp_path, 2))
+        list(execution_backends.execute_all(tasks(), tmp_path, 2))

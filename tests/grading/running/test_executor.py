@@ -18,13 +18,13 @@ import pytest
 from nbgrader.api import Gradebook
 from tiny_class import GRADE, LISTENER, TALKER, FakeEngine, TinyClass
 
-from autograder.boxes.limits import Ended
-from autograder.execution.cells import Cell, CellCheck, CellRun, Execution
+from autograder.boxes.run_limits import Ended
+from autograder.execution.executed_cells import Cell, CellCheck, CellRun, Execution
 from autograder.grading.classes.class_directory import ClassDirectory
-from autograder.grading.running import engine
-from autograder.grading.running.orders import ADDRESS, Give, Order
+from autograder.grading.grading_task import Task
+from autograder.grading.running import execution_backends
 from autograder.grading.running.task_execution import a_check_was_stopped
-from autograder.grading.task import Task
+from autograder.grading.running.worker_messages import ADDRESS, Give, Order
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -125,7 +125,7 @@ def batch(
     """A batch of four in a process of its own; one of them had full marks before."""
     tiny.submit("ada", 10, 10)
     with monkeypatch.context() as patch:
-        patch.setattr(engine, "execute_all", FakeEngine().execute_all)
+        patch.setattr(execution_backends, "execute_all", FakeEngine().execute_all)
         tiny.grade()
     assert tiny.scores("ada")[TALKER] == 10
     for number, student in enumerate(("ada", "ben", "cleo", "dora")):
@@ -244,7 +244,7 @@ def test_fork_servers_that_die_are_started_anew(tiny: TinyClass, with_fake_judge
 
 EXECUTOR = """
 import sys, threading
-from autograder.grading.running import executor
+from autograder.grading.running import order_executor as executor
 executor.LAST_SECONDS = 0.5
 def execute(*_):
     print("at work", flush=True)
@@ -279,10 +279,10 @@ def test_an_executor_that_waits_for_what_never_comes_ends_with_its_batch(tmp_pat
 
 WITH_A_DESK = """
 import sys
-from autograder.execution.cells import Cell, CellType
-from autograder.grading.rebuilding.submission import HARMLESS_LENGTH
+from autograder.execution.executed_cells import Cell, CellType
+from autograder.grading.rebuilding.submitted_notebook import HARMLESS_LENGTH
 from autograder.grading.returning.rendering_time import too_costly
-from autograder.grading.running import executor
+from autograder.grading.running import order_executor as executor
 too_costly([Cell("a " * HARMLESS_LENGTH, CellType.MARKDOWN, own=True)])
 executor.main([sys.argv[1], "1"])
 """

@@ -6,7 +6,7 @@ import threading
 import pytest
 from rich.console import Console
 
-from autograder.grading.running.progress import BatchProgress
+from autograder.grading.running.batch_progress import BatchProgress
 
 
 def lines_of(total: int, failed: set[int] = frozenset()) -> list[str]:  # type: ignore[assignment]

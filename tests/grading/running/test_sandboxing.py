@@ -9,8 +9,8 @@ from click.testing import CliRunner
 
 from autograder import cli
 from autograder.boxes import sandbox
-from autograder.grading.running import sandboxing
-from autograder.grading.running.sandboxing import NOTE, SandboxMissing
+from autograder.grading.running import execution_backends
+from autograder.grading.running.execution_backends import NOTE, SandboxMissing
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -24,7 +24,7 @@ WHY = "bubblewrap is not installed: type this"
 def _no_sandbox(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     monkeypatch.setattr(sandbox, "why_impossible", lambda: WHY)
     yield
-    sandboxing._off.clear()
+    execution_backends._off.clear()
 
 
 @pytest.mark.usefixtures("_no_sandbox")
@@ -42,7 +42,7 @@ def test_what_was_typed_is_noted_in_the_report_and_in_the_feedback(
     tiny: TinyClass, with_fake_judge: str
 ) -> None:
     tiny.submit("ada", 10, 7)
-    sandboxing.switch_off(tiny.path)
+    execution_backends.switch_off(tiny.path)
     report = tiny.grade(judge=with_fake_judge, feedback=True)
     assert tiny.scores("ada") == {"lab_1_2-talker": 10, "lab_1_2-listener": 7}
     assert report.note == NOTE
@@ -65,10 +65,10 @@ def test_a_class_of_which_nothing_is_executed_needs_none(
 
 def test_a_result_without_a_sandbox_never_stands_for_one_with(tiny: TinyClass, with_fake_judge: str) -> None:
     tiny.submit("ada", 10)
-    sandboxing.switch_off(tiny.path)
+    execution_backends.switch_off(tiny.path)
     assert tiny.grade(judge=with_fake_judge).executed == 1
     assert tiny.grade(judge=with_fake_judge).executed == 0
-    sandboxing._off.clear()
+    execution_backends._off.clear()
     report = tiny.grade(judge=with_fake_judge)
     assert (report.executed, report.note) == (1, "")
 
@@ -78,7 +78,7 @@ def test_the_configuration_can_say_so_too(tiny: TinyClass) -> None:
     from autograder.grading.classes.class_directory import ClassDirectory
 
     with pytest.raises(SandboxMissing, match="unsafe_no_sandbox"):
-        sandboxing.require(ClassDirectory(tiny.path))
+        execution_backends.require(ClassDirectory(tiny.path))
     config = tiny.path / "nbgrader_config.py"
     config.write_text(config.read_text() + "\nc.WireExecute.unsafe_no_sandbox = True\n")
-    sandboxing.require(ClassDirectory(tiny.path))
+    execution_backends.require(ClassDirectory(tiny.path))

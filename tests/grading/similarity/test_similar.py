@@ -17,9 +17,9 @@ from answers_of_students import ALSO_NEAR, COPIED, NEAR, OF_ONES_OWN, SOLUTION, 
 
 from autograder.cli import cli
 from autograder.grading.classes.class_directory import ClassDirectory
-from autograder.grading.errors import GradingError
-from autograder.grading.similarity.close_pairs import Similar, find_similar
-from autograder.grading.similarity.similarity_page import page
+from autograder.grading.grading_errors import GradingError
+from autograder.grading.similarity.similar_pairs import Similar, find_similar
+from autograder.grading.similarity.similarity_report import page_html
 
 if TYPE_CHECKING:
     from tiny_class import TinyClass
@@ -153,7 +153,7 @@ def test_two_students_are_one_pair_however_many_cells_they_share(class_: TinyCla
     assert len(similar.pairs) > 2
     _, output = run(class_)
     assert output.count("ada, ben") == 1
-    shown = BeautifulSoup(page(similar), "html.parser")
+    shown = BeautifulSoup(page_html(similar), "html.parser")
     assert [heading.get_text() for heading in shown.find_all("h2")] == ["1. ada and ben"]
     assert [link["href"] for link in shown.find_all("a")] == ["#pair-1"]
     assert len(shown.find_all("section")) == 2 * len(similar.pairs)
@@ -163,7 +163,7 @@ def test_the_page_shows_both_sides_and_runs_nothing(class_: TinyClass) -> None:
     (class_.path / "students.csv").write_text("id,first_name\nada,<img src=x onerror=alert(1)>\n")
     hand_in(class_, "ada", OF_ONES_OWN)
     hand_in(class_, "eve", COPIED + '# \u202e </code></pre><a href="https://x.example">\x1b[31m\x00 &lt;\n')
-    text = page(found(class_))
+    text = page_html(found(class_))
     shown = BeautifulSoup(text, "html.parser")
     assert not shown.find_all(["script", "img", "link", "iframe", "pre", "form"])
     assert [link["href"] for link in shown.find_all("a")] == ["#pair-1"]

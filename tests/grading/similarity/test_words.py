@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from autograder.grading.similarity.words import chosen_names, neutral, words
+from autograder.grading.similarity.own_words import chosen_names, neutral, words
 
 
 @pytest.mark.parametrize(

@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from autograder.grading.collecting.records import CollectedRecords
-from autograder.grading.exporting import class_workbook
-from autograder.grading.exporting.layouts import gradebook
-from autograder.grading.report_page import statistics as figures
-from autograder.grading.reporting.rows import Row
+from autograder.grading.collecting.collected_files import CollectedRecords
+from autograder.grading.reporting import class_statistics as figures
+from autograder.grading.reporting import export_files
+from autograder.grading.reporting.lms_gradebooks import gradebook
 from autograder.grading.table.class_table import ClassTable
 from autograder.grading.table.roster import Roster, Student
+from autograder.grading.table.rows import Row
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -48,7 +48,7 @@ def table() -> ClassTable:
     [
         lambda table: gradebook("sakai", table, NO_RECORDS, ASSIGNMENTS),
         lambda table: gradebook("moodle", table, NO_RECORDS, ASSIGNMENTS),
-        lambda table: class_workbook.as_csv(table, ASSIGNMENTS),
+        lambda table: export_files.class_csv(table, ASSIGNMENTS),
         lambda table: [table.max_score(one) for _ in CLASS for one in ("", *ASSIGNMENTS)],
         lambda table: [table.assignments and table.students for _ in CLASS],
         figures.bands,

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from autograder.grading.reporting.rows import DROPPED, NOT_SUBMITTED, WAITS, Row
-from autograder.grading.table.what_counts import WhatCounts
+from autograder.grading.table.rows import DROPPED, NOT_SUBMITTED, WAITS, Row
+from autograder.grading.table.weighted_rows import WhatCounts
 
 
 @pytest.mark.parametrize(

@@ -12,9 +12,9 @@ import pytest
 from rclpy.context import Context
 from rclpy.node import Node
 
+from autograder.judge import ros_setup
 from autograder.judge.bench.bench import TestBench
-from autograder.judge.serving import domain
-from autograder.judge.subjects.command_subject import CommandSubject
+from autograder.judge.subject import CommandSubject
 from autograder.kit.model import Pace
 
 if TYPE_CHECKING:
@@ -39,7 +39,7 @@ def bench_of(tmp_path: Path) -> BenchOf:
     def opened(text: str, reference: Reference) -> Iterator[TestBench]:
         program = tmp_path / "program.py"
         program.write_text(text)
-        with domain.lease() as domain_id:
+        with ros_setup.lease() as domain_id:
             subject = CommandSubject([sys.executable, str(program)])
             subject.begin(domain_id)
             with contextlib.closing(

@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING, Any, cast
 
 import pytest
 
-from autograder.judge.bench.announcements import MOST, Announcements, _waiting, process_of
+from autograder.judge import ros_setup
+from autograder.judge.bench.discovery import MAX_PROCESSES, Announcements, _waiting, process_of
+from autograder.judge.bench.judge_nodes import Wire
+from autograder.judge.bench.recorded_topics import LogReader
 from autograder.judge.bench.recorder import Recorder
-from autograder.judge.bench.topics import LogReader
-from autograder.judge.bench.wire import Wire
-from autograder.judge.serving import domain
-from autograder.judge.settings import subject_environment
+from autograder.judge.ros_setup import subject_environment
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -28,7 +28,7 @@ MAKES_A_NODE = "import os, rclpy\nrclpy.init()\nrclpy.create_node('simple_node')
 
 @pytest.fixture
 def domain_id() -> Iterator[int]:
-    with domain.lease() as leased:
+    with ros_setup.lease() as leased:
         yield leased
 
 
@@ -59,7 +59,7 @@ class _Flooded:
 
 
 def test_a_flood_does_not_hold_the_judge_up() -> None:
-    assert len(list(_waiting(cast("Any", _Flooded())))) == MOST
+    assert len(list(_waiting(cast("Any", _Flooded())))) == MAX_PROCESSES
 
 
 def run(program: str, environment: dict[str, str]) -> None:

@@ -8,7 +8,7 @@ import warnings
 from types import SimpleNamespace
 from typing import Any
 
-from autograder.judge.bench.answering import ATTEMPTS, LateAnswers, patiently
+from autograder.judge.bench.recorded_services import ATTEMPTS, LateAnswers, patiently
 
 
 def service(lost: int, sent: list[int]) -> Any:

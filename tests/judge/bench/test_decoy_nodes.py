@@ -7,16 +7,16 @@ from typing import TYPE_CHECKING
 import pytest
 import rclpy
 
-from autograder.judge.subjects.command_subject import CommandSubject
+from autograder.judge.subject import CommandSubject
 from autograder.kit.evidence import Reference
-from autograder.notebook.checking.check_context import CheckContext
+from autograder.notebook.checking.judge_link import CheckContext
 
 if TYPE_CHECKING:
     from collections.abc import Callable
     from contextlib import AbstractContextManager
 
     from autograder.judge.bench.bench import TestBench
-    from autograder.judge.bench.graph import Endpoint
+    from autograder.judge.bench.discovery import Endpoint
 
     BenchOf = Callable[[str, Reference], AbstractContextManager[TestBench]]
 

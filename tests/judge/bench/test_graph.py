@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, cast
 
-from autograder.judge.bench.graph import NodeName, subject_nodes
+from autograder.judge.bench.discovery import NodeName, subject_nodes
 
 if TYPE_CHECKING:
     from rclpy.node import Node

@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from autograder.judge.bench.interfaces import expected_hashes, filled, interface, to_data, type_hash
+from autograder.judge.bench.ros_interfaces import expected_hashes, filled, interface, to_data, type_hash
 
 pytestmark = pytest.mark.ros
 

@@ -6,35 +6,35 @@ from typing import TYPE_CHECKING, Any, cast
 
 import pytest
 
-from autograder.judge.bench import graph
-from autograder.judge.bench import presence as presence_module
-from autograder.judge.bench.presence import AT_WORK, GRAPH_POLL, START_POLL, Presence
+from autograder.judge.bench import discovery
+from autograder.judge.bench import subject_presence as presence_module
 from autograder.judge.bench.recorder import Recorder
+from autograder.judge.bench.subject_presence import GRAPH_POLL, MAX_RESTARTS, START_POLL, Presence
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from autograder.judge.subjects.subject import Subject
+    from autograder.judge.subject import Subject
 
 TOPIC, TYPE = "/chatter", "std_msgs/msg/String"
 
 
-def _interface(*, publishes: bool = False) -> graph.Interface:
-    return {role: {TOPIC: TYPE} if publishes and role == "publisher" else {} for role in graph.ROLES}
+def _interface(*, publishes: bool = False) -> discovery.Interface:
+    return {role: {TOPIC: TYPE} if publishes and role == "publisher" else {} for role in discovery.ROLES}
 
 
 def _presence(
     monkeypatch: pytest.MonkeyPatch,
     subject: object,
-    survey: Callable[[Any], graph.Interface],
+    survey: Callable[[Any], discovery.Interface],
     *,
-    nodes: Sequence[graph.NodeName] = (),
+    nodes: Sequence[discovery.NodeName] = (),
     announced: bool = False,
 ) -> tuple[Presence, Recorder]:
     """A subject's presence on a graph that shows this, and where it is written down."""
-    monkeypatch.setattr(graph, "survey", survey)
-    monkeypatch.setattr(graph, "subject_nodes", lambda *_: nodes)
-    monkeypatch.setattr(graph, "topic_ends", lambda *_: [])
+    monkeypatch.setattr(discovery, "survey", survey)
+    monkeypatch.setattr(discovery, "subject_nodes", lambda *_: nodes)
+    monkeypatch.setattr(discovery, "topic_ends", lambda *_: [])
     recorder = Recorder()
     recorder.begin("a part", {})
     seen = cast("Subject", subject)
@@ -57,10 +57,10 @@ def test_a_publisher_that_comes_with_the_sign_that_all_is_made_is_seen(
         announced.append(True)
         return True
 
-    def survey(_: Any) -> graph.Interface:
+    def survey(_: Any) -> discovery.Interface:
         return _interface(publishes=bool(announced))
 
-    monkeypatch.setattr(graph, "shows", shows)
+    monkeypatch.setattr(discovery, "shows", shows)
     presence, recorder = _presence(monkeypatch, _ASubject(), survey)
     assert presence.await_endpoint("publisher", TOPIC)
     assert recorder.part().endpoints("publisher") == {TOPIC: TYPE}
@@ -83,9 +83,9 @@ class _ACommand:
 @pytest.mark.parametrize(
     ("works_for", "publishes_after", "appears", "spans"),
     [
-        pytest.param(AT_WORK, AT_WORK, True, AT_WORK, id="it builds and then publishes"),
+        pytest.param(MAX_RESTARTS, MAX_RESTARTS, True, MAX_RESTARTS, id="it builds and then publishes"),
         pytest.param(0, 99, False, 1, id="it hangs: nothing more is waited for"),
-        pytest.param(99, 99, False, AT_WORK + 1, id="it starts processes for ever"),
+        pytest.param(99, 99, False, MAX_RESTARTS + 1, id="it starts processes for ever"),
     ],
 )
 def test_who_goes_on_starting_processes_is_waited_for(
@@ -93,7 +93,7 @@ def test_who_goes_on_starting_processes_is_waited_for(
 ) -> None:
     subject = _ACommand(works_for)
 
-    def survey(_: Any) -> graph.Interface:
+    def survey(_: Any) -> discovery.Interface:
         return _interface(publishes=subject.asked >= 2 * publishes_after)
 
     monkeypatch.setattr(presence_module, "APPEAR", 0.2)
@@ -112,12 +112,12 @@ class _AProgram:
     ("announced", "shown", "events"),
     [
         pytest.param(True, [], ["interface", "announced"], id="the graph never told of it"),
-        pytest.param(True, [graph.NodeName("talker", "/")], ["interface"], id="the graph told of it"),
+        pytest.param(True, [discovery.NodeName("talker", "/")], ["interface"], id="the graph told of it"),
         pytest.param(False, [], ["interface"], id="it never made a node"),
     ],
 )
 def test_a_node_that_was_there_for_a_moment_is_written_down(
-    monkeypatch: pytest.MonkeyPatch, announced: bool, shown: list[graph.NodeName], events: list[str]
+    monkeypatch: pytest.MonkeyPatch, announced: bool, shown: list[discovery.NodeName], events: list[str]
 ) -> None:
     presence, recorder = _presence(
         monkeypatch, _AProgram(), lambda _: _interface(), nodes=shown, announced=announced

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from autograder.judge.bench import receiving_threads
+from autograder.judge.bench import judge_nodes
+from autograder.judge.bench.judge_nodes import _Thread, await_turns
 from autograder.judge.bench.patience import Patience
-from autograder.judge.bench.receiving_threads import _Thread, await_turns
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -46,19 +46,19 @@ class Kernel:
 )
 def test_a_turn_ends_in_sleep(receiver: list[_Thread], looks: int, monkeypatch: pytest.MonkeyPatch) -> None:
     kernel = Kernel(receiver=receiver)
-    monkeypatch.setattr(receiving_threads, "_look", kernel.look)
+    monkeypatch.setattr(judge_nodes, "_thread_states", kernel.look)
     assert await_turns(Patience(60.0))
     assert kernel.looks == looks
 
 
 def test_who_never_sleeps_uses_up_the_patience(monkeypatch: pytest.MonkeyPatch) -> None:
     kernel = Kernel(receiver=[AWAKE])
-    monkeypatch.setattr(receiving_threads, "_look", kernel.look)
+    monkeypatch.setattr(judge_nodes, "_thread_states", kernel.look)
     assert not await_turns(Patience(0.05))
 
 
 def test_the_kernel_tells_of_threads_that_are_there_and_of_no_others() -> None:
     own, nobody = threading.get_native_id(), 2**22 + 1
-    seen = receiving_threads._look([own, nobody])
+    seen = judge_nodes._thread_states([own, nobody])
     assert set(seen) == {own}
     assert seen[own].awake

@@ -8,9 +8,9 @@ from typing import Any
 
 from builtin_interfaces.msg import Time
 
-from autograder.judge.bench.actions import ScriptedActionServer
+from autograder.judge.bench.recorded_actions import ScriptedActionServer
+from autograder.judge.bench.recorded_services import RecordedServer
 from autograder.judge.bench.recorder import Recorder
-from autograder.judge.bench.services import RecordedServer
 
 LONG_ENOUGH = 0.2
 """Seconds in which a request would be answered that is not kept waiting."""

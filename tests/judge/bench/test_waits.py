@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 from unittest.mock import create_autospec
 
 from autograder.judge.bench.bench import TestBench
-from autograder.judge.bench.presence import Presence
 from autograder.judge.bench.recorder import Recorder
+from autograder.judge.bench.subject_presence import Presence
 from autograder.kit.evidence import Evidence, Reference
 from autograder.kit.model import Pace
 

@@ -10,8 +10,8 @@ from pathlib import Path
 
 import pytest
 
-from autograder.judge.serving import domain
-from autograder.judge.settings import subject_environment
+from autograder.judge import ros_setup
+from autograder.judge.ros_setup import subject_environment
 
 SEGMENT = "fastrtps_0123456789abcdef"
 MAKES_A_NODE = (
@@ -29,19 +29,19 @@ def segment(tmp_path: Path) -> Path:
 def test_a_segment_without_an_owner_is_removed(segment: Path) -> None:
     other = segment.with_name("lttng-ust-wait-6")
     other.write_bytes(b"")
-    domain.remove_abandoned(segment.parent, age=0.0)
+    ros_setup.remove_abandoned(segment.parent, age=0.0)
     assert list(segment.parent.iterdir()) == [other]
 
 
 def test_a_young_one_stays(segment: Path) -> None:
-    domain.remove_abandoned(segment.parent)
+    ros_setup.remove_abandoned(segment.parent)
     assert segment.exists()
 
 
 def test_one_whose_owner_lives_stays(segment: Path) -> None:
     with segment.with_name(f"{SEGMENT}_el").open("rb") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
-        domain.remove_abandoned(segment.parent, age=0.0)
+        ros_setup.remove_abandoned(segment.parent, age=0.0)
     assert segment.exists()
 
 
@@ -49,17 +49,17 @@ def test_a_lock_that_leads_elsewhere_is_left_alone(segment: Path, tmp_path: Path
     lock = segment.with_name(f"{SEGMENT}_el")
     lock.unlink()
     lock.symlink_to(tmp_path / "elsewhere")
-    domain.remove_abandoned(segment.parent, age=0.0)
+    ros_setup.remove_abandoned(segment.parent, age=0.0)
     assert segment.exists()
 
 
 def test_without_shared_memory_there_is_nothing_to_do(tmp_path: Path) -> None:
-    domain.remove_abandoned(tmp_path / "missing")
+    ros_setup.remove_abandoned(tmp_path / "missing")
 
 
 @pytest.mark.ros
 def test_a_program_that_is_killed_leaves_what_is_then_removed() -> None:
-    with domain.lease() as domain_id:
+    with ros_setup.lease() as domain_id:
         program = [sys.executable, "-c", MAKES_A_NODE]
         environment = subject_environment(domain_id)
         with subprocess.Popen(
@@ -70,16 +70,16 @@ def test_a_program_that_is_killed_leaves_what_is_then_removed() -> None:
             segment = _segment_of(process.pid)
             lock = segment.with_name(f"{segment.name}_el")
             with pytest.raises(BlockingIOError):
-                domain.remove_if_abandoned(lock, time.time() + 1.0)
+                ros_setup.remove_if_abandoned(lock, time.time() + 1.0)
             process.kill()
         assert segment.exists()
-        domain.remove_if_abandoned(lock, time.time() + 1.0)
+        ros_setup.remove_if_abandoned(lock, time.time() + 1.0)
         assert not segment.exists()
         assert not lock.exists()
 
 
 def _segment_of(process: int) -> Path:
     lines = Path(f"/proc/{process}/maps").read_text(encoding="ascii").splitlines()
-    mapped = {Path(line.split()[-1]) for line in lines if f"{domain.FOLDER}/fastrtps_" in line}
+    mapped = {Path(line.split()[-1]) for line in lines if f"{ros_setup.SHARED_MEMORY}/fastrtps_" in line}
     (segment,) = (path for path in mapped if not path.name.startswith("fastrtps_port"))
     return segment

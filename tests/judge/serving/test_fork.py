@@ -8,10 +8,8 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from autograder.judge.serving import fork
-from autograder.judge.serving.fork import Child
-from autograder.judge.verdicts import deciding
-from autograder.judge.verdicts.deciding import Undecided, limited
+from autograder.judge import check_process
+from autograder.judge.check_process import Child, Undecided, limited
 
 if TYPE_CHECKING:
     import pytest
@@ -88,8 +86,8 @@ def test_a_judge_that_is_deciding_at_its_limit_says_so_and_one_that_is_looking_i
             return b"undecided"
 
     with monkeypatch.context() as patched:
-        patched.setattr(fork, "LAST_WORDS", 600.0)
-        patched.setattr(deciding, "SURE", 0.0)
+        patched.setattr(check_process, "LAST_WORDS", 600.0)
+        patched.setattr(check_process, "SURE", 0.0)
         child = Child(ponders, limit=600.0)
         os.read(heard, 1)
         assert child.result(within=0.0).data == b"undecided"
@@ -112,7 +110,7 @@ def test_a_judge_that_has_hardly_begun_to_decide_at_its_limit_has_no_verdict(
             return b"undecided"
         return b""
 
-    monkeypatch.setattr(fork, "LAST_WORDS", 0.3)
+    monkeypatch.setattr(check_process, "LAST_WORDS", 0.3)
     child = Child(decides, limit=600.0)
     os.read(heard, 1)
     outcome = child.result(within=0.0)

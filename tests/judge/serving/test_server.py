@@ -15,16 +15,16 @@ from typing import TYPE_CHECKING, Any, cast
 import msgspec
 import pytest
 
-from autograder.judge.serving.fork import ChildResult
-from autograder.judge.serving.process import JudgeDied, JudgeProcess, _Child
-from autograder.judge.serving.server import JudgeServer
-from autograder.judge.verdicts import keeping
-from autograder.messages.orders import Report
+from autograder.judge import evidence_files
+from autograder.judge.check_process import ChildResult
+from autograder.judge.check_server import JudgeServer
+from autograder.judge.controlled_judge import JudgeDied, JudgeProcess, _Child
+from autograder.messages.judge_messages import Report
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from autograder.judge.serving.fork import Child
+    from autograder.judge.check_process import Child
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "notebook"))
 from checked import _Changed
@@ -89,7 +89,7 @@ def test_the_evidence_comes_with_the_verdict_where_it_is_asked_for(judge: JudgeP
     judge.open("lab_1_2.talker")
     told = Kernel(judge).fail_at_once("lab_1_2.talker")
     report = judge.close_report()
-    kept = keeping.unpack(report.evidence)
+    kept = evidence_files.unpack(report.evidence)
     assert "evidence" not in told
     assert report.verdict == replace(kept.verdict, timeline=report.verdict.timeline if report.verdict else ())
     (part,) = kept.looks[0].parts
@@ -97,7 +97,7 @@ def test_the_evidence_comes_with_the_verdict_where_it_is_asked_for(judge: JudgeP
 
 
 def test_evidence_that_cannot_be_packed_costs_no_verdict(tmp_path: Path) -> None:
-    change = "import autograder.judge.verdicts.keeping as keeping; keeping.pack = lambda *_, **__: 1 / 0"
+    change = "import autograder.judge.evidence_files as keeping; keeping.pack = lambda *_, **__: 1 / 0"
     start = partial(_Changed, change)
     with JudgeProcess(tmp_path / "judge", seed="s", start=start) as judge:
         judge.keeps_evidence = True

@@ -7,9 +7,9 @@ from typing import Any, cast
 import pytest
 
 from autograder.judge.bench.recorder import Recorder
-from autograder.judge.subjects.remote_subject import RemotePath
+from autograder.judge.notebook_subject import RemotePath
 from autograder.kit.workspace_report import WorkspaceReport, as_line
-from autograder.messages.checks import Output
+from autograder.messages.judge_messages import Output
 
 
 @pytest.mark.parametrize(

@@ -12,8 +12,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from autograder.judge.bench.recorder import Recorder
-from autograder.judge.subjects.command_subject import MAX_OUTPUT, CommandSubject
-from autograder.judge.subjects.subject import CannotStart
+from autograder.judge.subject import MAX_OUTPUT, CannotStart, CommandSubject
 
 if TYPE_CHECKING:
     from collections.abc import Callable

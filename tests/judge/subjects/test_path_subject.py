@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from autograder.judge.bench.recorder import Recorder
-from autograder.judge.subjects.path_subject import PathSubject, as_words
+from autograder.judge.path_subject import PathSubject, as_words
 from autograder.kit.evidence import REPORTS
-from autograder.messages.checks import Check, Collect, Constructed, Judged, Output, Sources
-from autograder.messages.lines import Lines
-from autograder.messages.workspaces import ProgramExited, Source
+from autograder.messages.json_lines import Lines
+from autograder.messages.judge_messages import Check, Collect, Constructed, Judged, Output, Sources
+from autograder.messages.workspace_messages import ProgramExited, Source
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "workspaces"))
 from graded import graders_judge, judged
@@ -23,7 +23,7 @@ from graded import graders_judge, judged
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from autograder.judge.serving.process import JudgeProcess
+    from autograder.judge.controlled_judge import JudgeProcess
     from autograder.verdict import Verdict
 
 pytestmark = pytest.mark.ros

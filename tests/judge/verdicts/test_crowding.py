@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from autograder.judge.verdicts import crowding
-from autograder.judge.verdicts.crowding import ANSWER_WITHIN, Crowding, Hurry, OutOfTime
+from autograder.judge import machine_fitness
+from autograder.judge.machine_fitness import ANSWER_WITHIN, Crowding, Hurry, OutOfTime
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 def test_the_average_of_the_look_decides(
     monkeypatch: pytest.MonkeyPatch, counts: Iterable[int], too_busy: bool
 ) -> None:
-    monkeypatch.setattr(crowding, "_EVERY", 0.0)
+    monkeypatch.setattr(machine_fitness, "_COUNT_EVERY", 0.0)
     waiting, taken = iter(counts), []
 
     def runnable() -> int:

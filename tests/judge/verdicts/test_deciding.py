@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from autograder import exercises
-from autograder.judge.verdicts import deciding, reference, trial
+from autograder.judge import check_process, evidence_files, one_check
 from autograder.kit.evidence import Evidence, Part
 from autograder.kit.model import Criterion, Finding
 from autograder.verdict import State
@@ -44,12 +44,14 @@ def looked(exercise: Exercise, monkeypatch: pytest.MonkeyPatch) -> list[str]:
     """Have every look bring nothing; the looks that were made."""
     looks: list[str] = []
 
-    def look(*words: object, **_: object) -> trial.Seen:
+    def look(*words: object, **_: object) -> one_check.Seen:
         looks.append(str(words[3]))
-        return trial.Seen(Evidence([Part("main")], reference.load(exercise.id)), doubtful=False)
+        return one_check.Seen(
+            Evidence([Part("main")], evidence_files.load_reference(exercise.id)), doubtful=False
+        )
 
-    monkeypatch.setattr(trial, "look", look)
-    monkeypatch.setattr(trial, "limited", lambda: deciding.limited(0.3))
+    monkeypatch.setattr(one_check, "look", look)
+    monkeypatch.setattr(one_check, "limited", lambda: check_process.limited(0.3))
     return looks
 
 
@@ -62,10 +64,10 @@ def test_a_criterion_without_an_end_is_zero_with_a_reason(
     exercise = replace(usual, criteria=(endless,))
     looks = looked(usual, monkeypatch)
     subject: object = Anybody()
-    verdict = trial.check(
+    verdict = one_check.check(
         exercise,
         subject,  # type: ignore[arg-type]
-        reference.load(usual.id),
+        evidence_files.load_reference(usual.id),
         seed="s",
         domain_id=0,
     ).verdict
@@ -76,7 +78,7 @@ def test_a_criterion_without_an_end_is_zero_with_a_reason(
 
 
 def test_what_is_decided_in_time_is_not_disturbed() -> None:
-    with deciding.limited(0.2):
+    with check_process.limited(0.2):
         pass
     for _ in range(2_000_000):
         pass
@@ -89,18 +91,18 @@ def test_a_decision_that_loses_the_first_word_is_told_once_more() -> None:
     def loses_the_first(evidence: Evidence) -> None:
         try:
             ponders(evidence)
-        except deciding.Undecided as told:
+        except check_process.Undecided as told:
             lost.append(told)
         ponders(evidence)
 
-    with pytest.raises(deciding.Undecided), deciding.limited(0.05):
-        loses_the_first(Evidence([], reference.load("lab_1_2.listener")))
+    with pytest.raises(check_process.Undecided), check_process.limited(0.05):
+        loses_the_first(Evidence([], evidence_files.load_reference("lab_1_2.listener")))
     assert lost
 
 
 def test_nothing_is_told_when_the_decision_is_over() -> None:
-    before = signal.getsignal(deciding.SIGNAL)
-    with deciding.limited(60.0):
+    before = signal.getsignal(check_process.STOP_SIGNAL)
+    with check_process.limited(60.0):
         pass
     assert signal.getitimer(signal.ITIMER_VIRTUAL) == (0.0, 0.0)
-    assert signal.getsignal(deciding.SIGNAL) == before
+    assert signal.getsignal(check_process.STOP_SIGNAL) == before

@@ -8,14 +8,14 @@ import select
 import socket
 from typing import TYPE_CHECKING
 
-from autograder.judge.verdicts import delivery
+from autograder.judge import machine_fitness
 
 if TYPE_CHECKING:
     import pytest
 
 
 def test_a_machine_delivers() -> None:
-    assert delivery.delivers()
+    assert machine_fitness.delivers()
 
 
 def test_not_where_nothing_more_may_be_watched(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -30,7 +30,7 @@ def test_not_where_nothing_more_may_be_watched(monkeypatch: pytest.MonkeyPatch) 
             raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
     monkeypatch.setattr(select, "epoll", Full)
-    assert not delivery.delivers()
+    assert not machine_fitness.delivers()
 
 
 def test_not_where_a_socket_has_room_for_a_few_datagrams_only(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -40,5 +40,5 @@ def test_not_where_a_socket_has_room_for_a_few_datagrams_only(monkeypatch: pytes
             super().bind(address)  # type: ignore[arg-type]
 
     monkeypatch.setattr(socket, "socket", Small)
-    monkeypatch.setattr(delivery, "_ARRIVES_WITHIN", 0.2)
-    assert not delivery.delivers()
+    monkeypatch.setattr(machine_fitness, "_ARRIVES_WITHIN", 0.2)
+    assert not machine_fitness.delivers()

@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from autograder import exercises
-from autograder.judge.verdicts import keeping, reference
+from autograder.judge import evidence_files
 from autograder.kit.evidence import Event, Evidence, Part, Reference
 from autograder.verdict import State, Verdict
 
@@ -20,24 +20,26 @@ EXPECTED = Reference("lab_1_2.talker", {})
 
 def packed(*events: Event, before: Evidence | None = None) -> bytes:
     seen = Evidence([Part("talking", {"order": 4}, events)], EXPECTED, before is not None, before)
-    return keeping.pack(VERDICT, seen, "abc", at=1.5)
+    return evidence_files.pack(VERDICT, seen, "abc", at=1.5)
 
 
 def back(data: bytes) -> Evidence:
-    return keeping.evidence_of(keeping.unpack(data), EXPECTED)
+    return evidence_files.evidence_of(evidence_files.unpack(data), EXPECTED)
 
 
 @pytest.mark.parametrize("exercise_id", exercises.all_ids())
 def test_what_is_expected_of_each_exercise_comes_back_as_it_is(exercise_id: str) -> None:
-    stored = reference.load(exercise_id)
+    stored = evidence_files.load_reference(exercise_id)
     seen = Evidence(stored.parts, stored)
-    kept = keeping.unpack(keeping.pack(VERDICT, seen, reference.digest(exercise_id), at=1.5))
-    found = keeping.evidence_of(kept, stored)
+    kept = evidence_files.unpack(
+        evidence_files.pack(VERDICT, seen, evidence_files.reference_digest(exercise_id), at=1.5)
+    )
+    found = evidence_files.evidence_of(kept, stored)
     assert [(part.name, part.inputs, list(part.events)) for part in found] == [
         (part.name, part.inputs, list(part.events)) for part in seen
     ]
     assert (kept.at, kept.verdict, kept.cut) == (1.5, VERDICT, "")
-    assert kept.reference == reference.digest(exercise_id)
+    assert kept.reference == evidence_files.reference_digest(exercise_id)
 
 
 def test_both_looks_come_back() -> None:
@@ -83,9 +85,9 @@ def test_a_flood_is_cut_and_says_so(text: str) -> None:
         for i in range(20_000)
     ]
     data = packed(*flood)
-    assert len(data) <= keeping.MAX_BYTES + 1000
-    assert len(zlib.decompress(data, 31)) <= keeping.MAX_RAW_BYTES + 1000
-    kept = keeping.unpack(data)
+    assert len(data) <= evidence_files.MAX_BYTES + 1000
+    assert len(zlib.decompress(data, 31)) <= evidence_files.MAX_RAW_BYTES + 1000
+    kept = evidence_files.unpack(data)
     seen = kept.looks[0].parts[0].events
     assert 100 < len(seen) < 20_000
     assert [event.data["number"] for event in seen] == list(range(len(seen)))
@@ -94,8 +96,8 @@ def test_a_flood_is_cut_and_says_so(text: str) -> None:
 
 
 def test_a_single_event_that_is_too_large_is_left_out() -> None:
-    large = Event(0.1, "log", "talker", {"text": random.Random(1).randbytes(keeping.MAX_BYTES).hex()})
-    kept = keeping.unpack(packed(Event(0.0, "log", "talker", {"text": "small"}), large))
+    large = Event(0.1, "log", "talker", {"text": random.Random(1).randbytes(evidence_files.MAX_BYTES).hex()})
+    kept = evidence_files.unpack(packed(Event(0.0, "log", "talker", {"text": "small"}), large))
     assert [event.data["text"] for event in kept.looks[0].parts[0].events] == ["small"]
     assert kept.cut
 
@@ -111,15 +113,15 @@ def test_a_single_event_that_is_too_large_is_left_out() -> None:
         lambda data: zlib.compress(b"{}", wbits=31),
         lambda data: zlib.compress(b"[1]\n[2]\n[3]", wbits=31),
         lambda data: zlib.compress(b"[" * 100_000, wbits=31),
-        lambda data: zlib.compress(bytes(3 * keeping.MAX_RAW_BYTES), wbits=31),
+        lambda data: zlib.compress(bytes(3 * evidence_files.MAX_RAW_BYTES), wbits=31),
     ],
 )
 def test_what_is_no_evidence_is_named(spoilt: Any) -> None:
-    with pytest.raises(keeping.NoEvidence):
-        keeping.unpack(spoilt(packed(Event(0.1, "log", "talker", {"text": "x"}))))
+    with pytest.raises(evidence_files.NoEvidence):
+        evidence_files.unpack(spoilt(packed(Event(0.1, "log", "talker", {"text": "x"}))))
 
 
 def test_where_nothing_was_seen_there_is_nothing_to_decide() -> None:
-    empty = keeping.Kept(1.5, "abc", VERDICT, [])
-    with pytest.raises(keeping.NoEvidence):
-        keeping.evidence_of(empty, EXPECTED)
+    empty = evidence_files.Kept(1.5, "abc", VERDICT, [])
+    with pytest.raises(evidence_files.NoEvidence):
+        evidence_files.evidence_of(empty, EXPECTED)

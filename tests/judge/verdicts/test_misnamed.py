@@ -8,11 +8,10 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from autograder import exercises
-from autograder.judge.subjects.command import check_and_keep
-from autograder.judge.verdicts import keeping, reference
-from autograder.judge.verdicts.misnamed import misnamed
-from autograder.judge.verdicts.timeline import moments
-from autograder.judge.verdicts.trial import decide
+from autograder.judge import evidence_files
+from autograder.judge.command_check import check_and_keep
+from autograder.judge.one_check import decide, misnamed
+from autograder.judge.verdict_timeline import moments
 from autograder.kit.evidence import Event, Evidence, Part, Reference
 from autograder.verdict import CriterionResult, State, Verdict
 
@@ -106,7 +105,9 @@ def checked(tmp_path: Path, exercise: str, program: str) -> tuple[Verdict, Evide
     file = tmp_path / "program.py"
     file.write_text(program)
     verdict, packed = check_and_keep(exercise, [sys.executable, str(file)], seed="a seed")
-    return verdict, keeping.evidence_of(keeping.unpack(packed), reference.load(exercise))
+    return verdict, evidence_files.evidence_of(
+        evidence_files.unpack(packed), evidence_files.load_reference(exercise)
+    )
 
 
 @pytest.mark.ros

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any, cast
 
 import pytest
 
-from autograder.judge.verdicts import record
-from autograder.judge.verdicts.trial import Seen
+from autograder.judge import reference_recording
+from autograder.judge.one_check import Seen
 from autograder.kit.evidence import Event, Evidence, Part, Reference
 from autograder.kit.model import Advice, Criterion, Exercise, Finding, Mistake
 
@@ -59,7 +59,7 @@ class _Looks:
         pytest.param(
             (2, None, 1), 1, 3, id="the first message was lost once, and once it did not follow the clock"
         ),
-        pytest.param((2,) * record.LOOKS, 2, record.LOOKS, id="never right"),
+        pytest.param((2,) * reference_recording.LOOKS, 2, reference_recording.LOOKS, id="never right"),
         pytest.param((0,), 0, 1, id="surely wrong"),
     ],
 )
@@ -77,8 +77,8 @@ def test_no_look_follows_when_the_time_of_a_check_is_over(monkeypatch: pytest.Mo
 
 
 def test_what_was_doubtful_each_time_is_not_recorded(monkeypatch: pytest.MonkeyPatch) -> None:
-    with pytest.raises(record.NotRecordable, match="Wait until the machine is less busy"):
-        _record(monkeypatch, _Looks(*(None,) * record.LOOKS))
+    with pytest.raises(reference_recording.NotRecordable, match="Wait until the machine is less busy"):
+        _record(monkeypatch, _Looks(*(None,) * reference_recording.LOOKS))
 
 
 def test_an_endpoint_that_is_announced_after_the_first_one_is_recorded_too(
@@ -96,10 +96,10 @@ def test_an_endpoint_that_is_announced_after_the_first_one_is_recorded_too(
         def await_any_endpoint(self, roles: tuple[str, ...]) -> dict[str, dict[str, str]]:
             return {"publisher": {"/blink": "a type"}, "service": {} if roles else {"/lamp": "another"}}
 
-    monkeypatch.setattr(record, "TestBench", Bench)
-    monkeypatch.setattr(record, "look", _Looks(1))
+    monkeypatch.setattr(reference_recording, "TestBench", Bench)
+    monkeypatch.setattr(reference_recording, "look", _Looks(1))
     exercise = replace(EXERCISE, roles=("publisher", "service"))
-    taken = record.record(exercise, cast("Any", Bench()), domain_id=1)
+    taken = reference_recording.record(exercise, cast("Any", Bench()), domain_id=1)
     assert taken.interface == {"publisher": {"/blink": "a type"}, "service": {"/lamp": "another"}}
 
 
@@ -108,6 +108,6 @@ def _record(monkeypatch: pytest.MonkeyPatch, look: _Looks, exercise: Exercise = 
         def begin(self, _: int) -> None:
             pass
 
-    monkeypatch.setattr(record, "look", look)
-    monkeypatch.setattr(record, "_interface", lambda *_: {})
-    return record.record(exercise, cast("Any", Subject()), domain_id=1)
+    monkeypatch.setattr(reference_recording, "look", look)
+    monkeypatch.setattr(reference_recording, "_endpoints_of_solution", lambda *_: {})
+    return reference_recording.record(exercise, cast("Any", Subject()), domain_id=1)

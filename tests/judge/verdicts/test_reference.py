@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from autograder import exercises
-from autograder.judge.verdicts import reference
+from autograder.judge import evidence_files
 from autograder.kit.evidence import Event, Part, Reference
 
 if TYPE_CHECKING:
@@ -37,7 +37,7 @@ REFERENCE = Reference(
 
 
 def test_what_the_machine_decides_is_left_out() -> None:
-    text = reference.dump(REFERENCE)
+    text = evidence_files.dump_reference(REFERENCE)
     assert json.loads(text)["parts"][0]["events"] == [
         {"kind": "message", "name": "/chatter", "sim": 0.0, "data": {"fields": {"data": "ä 0"}}},
         {"kind": "message", "name": "/chatter", "sim": 0.5, "data": {"fields": {"data": "ä 1"}}},
@@ -46,15 +46,17 @@ def test_what_the_machine_decides_is_left_out() -> None:
 
 
 def test_reading_and_writing_give_the_same_text() -> None:
-    text = reference.dump(REFERENCE)
-    assert reference.dump(reference.parse(json.loads(text))) == text
+    text = evidence_files.dump_reference(REFERENCE)
+    assert evidence_files.dump_reference(evidence_files.parse_reference(json.loads(text))) == text
 
 
 @pytest.mark.parametrize("exercise_id", exercises.all_ids())
 def test_every_exercise_has_one(exercise_id: str) -> None:
-    stored = reference.load(exercise_id)
+    stored = evidence_files.load_reference(exercise_id)
     assert stored.exercise == exercise_id
-    assert reference.dump(stored) == exercises.reference_path(exercise_id).read_text(encoding="utf-8")
+    assert evidence_files.dump_reference(stored) == exercises.reference_path(exercise_id).read_text(
+        encoding="utf-8"
+    )
 
 
 @pytest.mark.parametrize("content", [None, "{", "{}", '{"parts": [{"name": 1}]}'])
@@ -62,8 +64,8 @@ def test_a_missing_or_broken_one_says_what_to_do(
     content: str | None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     file = tmp_path / "talker.reference.json"
-    monkeypatch.setattr(reference, "reference_path", lambda _: file)
+    monkeypatch.setattr(evidence_files, "reference_path", lambda _: file)
     if content is not None:
         file.write_text(content, encoding="utf-8")
-    with pytest.raises(reference.NoReference, match=r"./course record lab_1_2\.talker"):
-        reference.load("lab_1_2.talker")
+    with pytest.raises(evidence_files.NoReference, match=r"./course record lab_1_2\.talker"):
+        evidence_files.load_reference("lab_1_2.talker")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from autograder.judge.verdicts.timeline import MAX_MOMENTS, moments
+from autograder.judge.verdict_timeline import MAX_MOMENTS, moments
 from autograder.kit import launch_report, workspace_report
 from autograder.kit.evidence import Event, Evidence, Part, Reference
 from autograder.kit.workspace_report import WorkspaceReport, as_line

@@ -8,11 +8,10 @@ from typing import TYPE_CHECKING, Any, cast
 import pytest
 
 from autograder import exercises
-from autograder.cards.text import card_text
-from autograder.judge.verdicts import crowding, reference, trial
-from autograder.judge.verdicts.crowding import ANSWER_WITHIN, Crowding, TooBusy
-from autograder.judge.verdicts.delivery import NotDelivered
-from autograder.judge.verdicts.exercise_code import WHAT_TO_DO, ExerciseFailed
+from autograder.cards.text_rendering import card_text
+from autograder.judge import evidence_files, machine_fitness, one_check
+from autograder.judge.machine_fitness import ANSWER_WITHIN, Crowding, NotDelivered, TooBusy
+from autograder.judge.one_check import WHAT_TO_DO, ExerciseFailed
 from autograder.kit.evidence import Event, Evidence, Part
 from autograder.kit.model import Advice, Criterion, Finding, Mistake, Pace
 from autograder.kit.rules import value
@@ -66,18 +65,18 @@ def test_the_last_look_that_is_needed_decides(
     monkeypatch: pytest.MonkeyPatch, judged: Exercise, seen: list[str], looks: list[Pace], passed: bool
 ) -> None:
     made: list[Pace] = []
-    stored = reference.load(USUAL.id)
+    stored = evidence_files.load_reference(USUAL.id)
 
-    def look(*words: Any, **_: object) -> trial.Seen:
+    def look(*words: Any, **_: object) -> one_check.Seen:
         name = seen[len(made)]
         made.append(words[3])
         part = Part("good" if name == "doubtful" else name)
-        return trial.Seen(Evidence([part], stored), doubtful=name == "doubtful")
+        return one_check.Seen(Evidence([part], stored), doubtful=name == "doubtful")
 
-    monkeypatch.setattr(trial, "look", look)
+    monkeypatch.setattr(one_check, "look", look)
     monkeypatch.setattr(Crowding, "too_busy", False)  # whatever else this machine does
     subject: Any = Anybody()
-    checked = trial.check(judged, subject, stored, seed="s", domain_id=0)
+    checked = one_check.check(judged, subject, stored, seed="s", domain_id=0)
     assert made == looks
     assert checked.verdict.passed is passed
     assert (checked.evidence.before is not None) is (len(looks) == 2)
@@ -97,31 +96,31 @@ def test_the_last_look_that_is_needed_decides(
 def test_a_failure_that_may_be_the_machines_is_marked(
     monkeypatch: pytest.MonkeyPatch, judged: Exercise, seen: list[str], too_busy: bool, crowded: bool
 ) -> None:
-    stored = reference.load(USUAL.id)
+    stored = evidence_files.load_reference(USUAL.id)
     looks = iter(seen)
 
-    def look(*_: Any, **__: object) -> trial.Seen:
+    def look(*_: Any, **__: object) -> one_check.Seen:
         name = next(looks)
         part = Part("bad" if name == "unmet" else name)
-        return trial.Seen(Evidence([part], stored), doubtful=False, unmet=name == "unmet")
+        return one_check.Seen(Evidence([part], stored), doubtful=False, unmet=name == "unmet")
 
-    monkeypatch.setattr(trial, "look", look)
+    monkeypatch.setattr(one_check, "look", look)
     monkeypatch.setattr(Crowding, "too_busy", too_busy)
     subject: Any = Anybody()
-    checked = trial.check(judged, subject, stored, seed="s", domain_id=0, marks_crowded=True)
+    checked = one_check.check(judged, subject, stored, seed="s", domain_id=0, marks_crowded=True)
     assert checked.crowded is crowded
 
 
 def test_who_checks_by_hand_is_told_that_the_machine_is_too_busy_to_tell(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    stored = reference.load(USUAL.id)
-    seen = trial.Seen(Evidence([Part("bad")], stored), doubtful=False)
-    monkeypatch.setattr(trial, "look", lambda *_, **__: seen)
+    stored = evidence_files.load_reference(USUAL.id)
+    seen = one_check.Seen(Evidence([Part("bad")], stored), doubtful=False)
+    monkeypatch.setattr(one_check, "look", lambda *_, **__: seen)
     monkeypatch.setattr(Crowding, "too_busy", True)
     subject: Any = Anybody()
     with pytest.raises(TooBusy, match="The machine is too busy"):
-        trial.check(exercise(), subject, stored, seed="s", domain_id=0)
+        one_check.check(exercise(), subject, stored, seed="s", domain_id=0)
 
 
 @pytest.mark.parametrize("place", ["criteria", "mistakes"])
@@ -131,16 +130,16 @@ def test_an_exception_of_the_exercise_is_no_trouble_of_the_moment(
     def fails(*_: object) -> Any:
         return value(Event(0.0, "message", "/any", {}))  # a line of the kit, as an author calls it
 
-    stored = reference.load(USUAL.id)
-    seen = trial.Seen(Evidence([Part("bad")], stored), doubtful=False)
-    monkeypatch.setattr(trial, "look", lambda *_, **__: seen)
+    stored = evidence_files.load_reference(USUAL.id)
+    seen = one_check.Seen(Evidence([Part("bad")], stored), doubtful=False)
+    monkeypatch.setattr(one_check, "look", lambda *_, **__: seen)
     if place == "criteria":
         judged = replace(exercise(), criteria=(Criterion("good", "Good", 10, fails),))
     else:
         judged = replace(exercise(), mistakes=(Mistake("mistake", fails),))
     subject: Any = Anybody()
     with pytest.raises(ExerciseFailed, match=r"KeyError: 'fields' \(rules\.py, line \d+\)") as failed:
-        trial.check(judged, subject, stored, seed="s", domain_id=0)
+        one_check.check(judged, subject, stored, seed="s", domain_id=0)
     card = card_text(not_checked(judged.id, judged.title, 10, str(failed.value)))
     assert WHAT_TO_DO in card
     assert "again" not in card
@@ -151,15 +150,15 @@ class BusyFor:
 
     def __init__(self, *seconds: float) -> None:
         self._seconds, self._now = iter(seconds), 0.0
-        self.stored = reference.load(USUAL.id)
+        self.stored = evidence_files.load_reference(USUAL.id)
 
-    def hurry(self, **how: Any) -> crowding.Hurry:
-        return crowding.Hurry(lambda: 16, 2, lambda: self._now, **how)
+    def hurry(self, **how: Any) -> machine_fitness.Hurry:
+        return machine_fitness.Hurry(lambda: 16, 2, lambda: self._now, **how)
 
-    def look(self, *_: Any, hurry: Any, **__: Any) -> trial.Seen:
+    def look(self, *_: Any, hurry: Any, **__: Any) -> one_check.Seen:
         self._now += next(self._seconds)
         hurry()
-        return trial.Seen(Evidence([Part("bad")], self.stored), doubtful=False)
+        return one_check.Seen(Evidence([Part("bad")], self.stored), doubtful=False)
 
 
 @pytest.mark.parametrize(
@@ -171,10 +170,10 @@ def test_who_waits_on_a_busy_machine_is_told_what_is_known(
     monkeypatch: pytest.MonkeyPatch, seconds: tuple[float, ...], known: bool
 ) -> None:
     busy, subject = BusyFor(*seconds), Anybody()
-    monkeypatch.setattr(trial, "Hurry", busy.hurry)
-    monkeypatch.setattr(trial, "look", busy.look)
+    monkeypatch.setattr(one_check, "Hurry", busy.hurry)
+    monkeypatch.setattr(one_check, "look", busy.look)
     with pytest.raises(TooBusy, match="The machine is too busy") as raised:
-        trial.check(exercise(), cast("Any", subject), busy.stored, seed="s", domain_id=0)
+        one_check.check(exercise(), cast("Any", subject), busy.stored, seed="s", domain_id=0)
     assert ("It says b." in str(raised.value)) is known
     assert ["It says b." in words for words in subject.told] == [True] * known
 
@@ -183,9 +182,9 @@ def test_a_grader_lets_a_check_take_its_time_and_a_submission_hears_nothing(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     busy, subject = BusyFor(100.0, 100.0), Anybody()
-    monkeypatch.setattr(trial, "Hurry", busy.hurry)
-    monkeypatch.setattr(trial, "look", busy.look)
-    checked = trial.check(
+    monkeypatch.setattr(one_check, "Hurry", busy.hurry)
+    monkeypatch.setattr(one_check, "look", busy.look)
+    checked = one_check.check(
         exercise(), cast("Any", subject), busy.stored, seed="s", domain_id=0, marks_crowded=True
     )
     assert not checked.verdict.passed
@@ -196,15 +195,15 @@ def test_a_grader_lets_a_check_take_its_time_and_a_submission_hears_nothing(
 def test_silence_proves_nothing_where_the_machine_loses_messages(
     monkeypatch: pytest.MonkeyPatch, when: list[bool]
 ) -> None:
-    stored = reference.load(USUAL.id)
+    stored = evidence_files.load_reference(USUAL.id)
     subject: Any = Anybody()
     monkeypatch.setattr(Crowding, "too_busy", False)
 
     def checked(judged: Exercise, name: str) -> bool:
-        seen = trial.Seen(Evidence([Part(name)], stored), doubtful=False)
-        monkeypatch.setattr(trial, "look", lambda *_, **__: seen)
-        monkeypatch.setattr(trial, "delivers", iter(when).__next__)
-        return trial.check(judged, subject, stored, seed="s", domain_id=0).verdict.passed
+        seen = one_check.Seen(Evidence([Part(name)], stored), doubtful=False)
+        monkeypatch.setattr(one_check, "look", lambda *_, **__: seen)
+        monkeypatch.setattr(one_check, "delivers", iter(when).__next__)
+        return one_check.check(judged, subject, stored, seed="s", domain_id=0).verdict.passed
 
     assert checked(exercise(), "good")
     assert not checked(exercise(certain=True), "bad")
@@ -214,7 +213,7 @@ def test_silence_proves_nothing_where_the_machine_loses_messages(
 
 @pytest.mark.parametrize(("name", "missed"), [("good", False), ("bad", True)])
 def test_a_card_shows_what_was_expected_only_where_something_is_missing(name: str, missed: bool) -> None:
-    stored = reference.load("lab_1_2.talker")
+    stored = evidence_files.load_reference("lab_1_2.talker")
     stored = replace(stored, parts=[replace(stored.part("talking"), name=name)])
-    verdict = trial.judge(exercise(), Evidence([Part(name)], stored), "seed")
+    verdict = one_check.judge(exercise(), Evidence([Part(name)], stored), "seed")
     assert any(moment.direction == "expected" for moment in verdict.timeline) is missed

@@ -9,7 +9,7 @@ import pytest
 import rclpy.executors
 
 import autograder.notebook
-from autograder.notebook.cells.cell_output import is_students
+from autograder.notebook.cell_output import is_students
 
 PACKAGE = Path(autograder.notebook.__file__).parent
 

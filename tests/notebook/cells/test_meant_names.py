@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from autograder.notebook.checking.subject_run import formatted
+from autograder.notebook.checking.subject_runs import formatted
 
 CELL = """
 class Driver:

@@ -9,7 +9,7 @@ import pytest
 from jupyter_client.manager import start_new_kernel
 
 from autograder.masters.code_cells import COPIED
-from autograder.notebook.cells.program_files import NotRunError, with_definitions
+from autograder.notebook.program_magic import NotRunError, with_definitions
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -15,8 +15,8 @@ import pytest
 from rclpy.node import Node
 from std_msgs.msg import String
 
-from autograder.notebook.checking import captured_output
-from autograder.notebook.checking.captured_output import CapturedOutput
+from autograder.notebook.checking import subject_reports
+from autograder.notebook.checking.subject_reports import CapturedOutput
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 from checked import a_judge
@@ -168,7 +168,7 @@ def test_a_subject_that_asks_for_input_finds_none_and_the_front_end_shows_no_box
             return f"an answer to {prompt}"
 
     kernel, ended = Kernel(), list[str]()
-    monkeypatch.setattr(captured_output, "notebook_shell", lambda: SimpleNamespace(kernel=kernel))
+    monkeypatch.setattr(subject_reports, "notebook_shell", lambda: SimpleNamespace(kernel=kernel))
 
     def subject() -> None:
         try:

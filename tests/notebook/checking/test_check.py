@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from autograder import course, exercises
-from autograder.messages.checks import SOCKET_VARIABLE
+from autograder.messages.judge_messages import SOCKET_VARIABLE
 from autograder.notebook.checking import check as check_cell
-from autograder.student import journal
-from autograder.student.journal import JournalEntry
+from autograder.student import check_journal
+from autograder.student.check_journal import JournalEntry
 from autograder.verdict import State, Verdict
 
 if TYPE_CHECKING:
@@ -36,8 +36,8 @@ def shown(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
 
 @pytest.fixture
 def kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    file = tmp_path / journal.NAME
-    monkeypatch.setenv(journal.VARIABLE, str(file))
+    file = tmp_path / check_journal.NAME
+    monkeypatch.setenv(check_journal.VARIABLE, str(file))
     return file
 
 
@@ -51,7 +51,7 @@ def test_the_check_that_ends_the_chapter_shows_the_certificate_once(shown: list[
     check_cell.keep(passed(last))
     (words,) = shown
     assert words[:2] == (chapter.title, 10.0 * (len(others) + 1))
-    assert len(journal.entries(kept)) == len(others) + 2
+    assert len(check_journal.entries(kept)) == len(others) + 2
 
 
 def test_the_certificate_is_a_card_of_its_own(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -78,7 +78,7 @@ def test_no_trouble_of_the_journal_breaks_a_check(
     if trouble == "a folder":
         kept.mkdir()
     else:
-        monkeypatch.delenv(journal.VARIABLE)
+        monkeypatch.delenv(check_journal.VARIABLE)
         monkeypatch.setenv("AUTOGRADER_COURSE", str(kept))
     check_cell.keep(passed("lab_1_2.talker"))
     assert shown == []
@@ -86,7 +86,7 @@ def test_no_trouble_of_the_journal_breaks_a_check(
 
 def test_what_ended_before_is_not_shown_again(shown: list[Any], kept: Path) -> None:
     for name in exercises.all_ids():
-        journal.note(JournalEntry("check", name, 1, 10, 10))
+        check_journal.note(JournalEntry("check", name, 1, 10, 10))
     check_cell.keep(passed(exercises.all_ids()[0]))
     assert shown == []
 

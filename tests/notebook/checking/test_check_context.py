@@ -11,7 +11,7 @@ pytestmark = pytest.mark.ros
 
 LEFT_AND_MADE_AGAIN = """
 import rclpy
-from autograder.notebook.checking.check_context import CheckContext
+from autograder.notebook.checking.judge_link import CheckContext
 
 rclpy.init()
 with CheckContext(7, "_keeper") as place:

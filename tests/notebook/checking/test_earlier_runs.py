@@ -19,7 +19,7 @@ pytestmark = pytest.mark.ros
 
 LATE_NEWS = """
 import threading
-from autograder.judge.bench.services import RecordedServer
+from autograder.judge.bench.recorded_services import RecordedServer
 usual = RecordedServer.close
 def close(server):
     # Nobody answers any more, but it is seen for another second.

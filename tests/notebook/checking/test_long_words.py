@@ -11,14 +11,14 @@ import pytest
 from rclpy.node import Node
 from std_msgs.msg import String
 
-from autograder.messages.checks import Constructed, Started
+from autograder.messages.judge_messages import Constructed, Started
 from autograder.notebook.checking.judge_link import JudgeLink
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 from checked import a_judge
 
 if TYPE_CHECKING:
-    from autograder.messages.lines import Message
+    from autograder.messages.json_lines import Message
 
 pytestmark = pytest.mark.ros
 

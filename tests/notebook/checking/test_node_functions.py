@@ -13,13 +13,13 @@ import rclpy
 from rclpy.node import Node
 from std_msgs.msg import String
 
-from autograder.notebook.checking.subject_run import SubjectRun
+from autograder.notebook.checking.subject_runs import SubjectRun
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 from checked import a_judge
 
 if TYPE_CHECKING:
-    from autograder.messages.lines import Message
+    from autograder.messages.json_lines import Message
 
 pytestmark = [pytest.mark.ros, pytest.mark.slow]
 

@@ -10,18 +10,18 @@ import pytest
 sys.path.insert(0, str(Path(__file__).parents[1]))
 from checked import a_judge
 
-from autograder.authoring.answers import named
+from autograder.authoring.answer_bank import answer_named
 
 pytestmark = [pytest.mark.ros, pytest.mark.slow]
 
 BLIND = """
-from autograder.judge.bench import graph
+from autograder.judge.bench import discovery as graph
 graph.subject_nodes = lambda *_, **__: []
 """
 
 
 def test_a_node_is_there_though_the_graph_had_no_time_to_tell(tmp_path: Path) -> None:
-    answer = named("lab_1_1.hello/right/ends_after_its_line.workspace")
+    answer = answer_named("lab_1_1.hello/right/ends_after_its_line.workspace")
     *_, workspace = answer.unpack(tmp_path)
     with a_judge(change=BLIND) as check:
         verdict = check("lab_1_1.hello", workspace)

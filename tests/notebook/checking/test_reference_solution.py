@@ -8,11 +8,11 @@ from typing import Any
 import pytest
 
 from autograder import exercises
-from autograder.cards.wording import SOLUTION
-from autograder.messages.checks import SOCKET_VARIABLE
+from autograder.cards.card_wording import SOLUTION
+from autograder.messages.judge_messages import SOCKET_VARIABLE
 from autograder.notebook.checking import card_display
 from autograder.notebook.checking.card_display import solution_of
-from autograder.student.handing_out import hand_out
+from autograder.student.handout import hand_out
 from autograder.verdict import State, Verdict
 
 ROOT = Path(__file__).resolve().parents[3]

@@ -9,8 +9,8 @@ from rclpy.action import ActionClient
 from rclpy.client import Client
 from rclpy.node import Node
 
-from autograder.messages.checks import Called, Looked
-from autograder.notebook.checking.told_calls import LOOKS_TOLD, TOLD, ToldCalls
+from autograder.messages.judge_messages import Called, Looked
+from autograder.notebook.checking.subject_reports import LOOKS_TOLD, TOLD, ToldCalls
 
 
 @pytest.fixture

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from autograder.messages.checks import SOCKET_VARIABLE
+from autograder.messages.judge_messages import SOCKET_VARIABLE
 from autograder.notebook.checking import watch_mode
 
 if TYPE_CHECKING:

@@ -14,15 +14,19 @@ from rclpy.executors import Executor
 from rclpy.node import Node
 
 from autograder.notebook.nodes import spin_threads
-from autograder.notebook.nodes.background import spin_in_background, stop_all
-from autograder.notebook.nodes.kernel_nodes import NodeEndedError, is_destroyed, release_waiting_calls
-from autograder.notebook.nodes.ros_session import start_ros
+from autograder.notebook.nodes.background_nodes import spin_in_background, stop_all
+from autograder.notebook.nodes.ros_session import (
+    NodeEndedError,
+    is_destroyed,
+    release_waiting_calls,
+    start_ros,
+)
 from autograder.notebook.nodes.spin_threads import CallbackBrokenOff
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from autograder.notebook.nodes.background import Background
+    from autograder.notebook.nodes.background_nodes import Background
 
 pytestmark = [pytest.mark.ros, pytest.mark.usefixtures("ros")]
 

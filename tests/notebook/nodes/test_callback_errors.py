@@ -11,8 +11,8 @@ from my_robot_interfaces.srv import AddTwoInts
 from rclpy.action import ActionClient, ActionServer
 from rclpy.node import Node
 
-from autograder.notebook.nodes.background import spin_in_background, spinning
-from autograder.notebook.nodes.callback_errors import CallbackFailedError
+from autograder.notebook.nodes.background_nodes import spin_in_background, spinning
+from autograder.notebook.nodes.node_errors import CallbackFailedError
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -21,7 +21,7 @@ import threading, time
 import rclpy
 from rclpy.node import Node
 from my_robot_interfaces.srv import AddTwoInts
-from autograder.notebook.nodes.background import spin_in_background, spinning, stop_all
+from autograder.notebook.nodes.background_nodes import spin_in_background, spinning, stop_all
 from autograder.notebook.nodes.ros_session import start_ros
 start_ros()
 begun = threading.Event()

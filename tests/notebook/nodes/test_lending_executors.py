@@ -13,7 +13,7 @@ from my_robot_interfaces.srv import AddTwoInts
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 
-from autograder.notebook.nodes.background import spin_in_background, spinning
+from autograder.notebook.nodes.background_nodes import spin_in_background, spinning
 from autograder.notebook.nodes.spin_threads import CallbackBrokenOff
 
 if TYPE_CHECKING:

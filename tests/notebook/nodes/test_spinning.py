@@ -16,7 +16,7 @@ from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.executors import MultiThreadedExecutor, SingleThreadedExecutor
 from rclpy.node import Node
 
-from autograder.notebook.nodes.background import Interrupted, spinning
+from autograder.notebook.nodes.background_nodes import Interrupted, spinning
 
 if TYPE_CHECKING:
     from collections.abc import Callable

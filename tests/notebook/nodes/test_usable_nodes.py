@@ -10,14 +10,14 @@ import rclpy
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 
-from autograder.notebook.nodes.background import spin_in_background, spinning
-from autograder.notebook.nodes.ros_session import start_ros
-from autograder.notebook.nodes.usable_nodes import (
+from autograder.notebook.nodes.background_nodes import spin_in_background, spinning
+from autograder.notebook.nodes.node_errors import (
     NodeBusyError,
     NotANodeError,
     SettingError,
     UnusableNodeError,
 )
+from autograder.notebook.nodes.ros_session import start_ros
 
 if TYPE_CHECKING:
     from collections.abc import Callable

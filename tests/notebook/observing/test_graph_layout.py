@@ -7,7 +7,7 @@ import random
 
 import pytest
 
-from autograder.notebook.observing.graph_layout import GAP_BESIDE, GraphLayout, lay_out
+from autograder.notebook.observing.graph_picture import GAP_BESIDE, GraphLayout, lay_out
 
 GAP = 50.0
 

@@ -94,7 +94,7 @@ watch.stop()
 def test_it_ends_with_ros_and_when_everything_is_stopped(run: Callable[..., list[Any]]) -> None:
     *_, said = run(
         "watch = watch_graph()",
-        "from autograder.notebook.nodes.background import stop_all\n"
+        "from autograder.notebook.nodes.background_nodes import stop_all\n"
         "stop_all(); watch._thread.join(); print(watch.running)",
         "watch = watch_graph()",
         "rclpy.shutdown(); watch._thread.join(); print(watch.running)",

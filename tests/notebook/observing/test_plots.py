@@ -9,7 +9,7 @@ import pytest
 from geometry_msgs.msg import Twist
 from std_msgs.msg import Float64, Float64MultiArray, String
 
-from autograder.notebook.observing.plots import WINDOW, PlotPicture, number_in, plot
+from autograder.notebook.observing.topic_plots import WINDOW, PlotPicture, number_in, plot
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -74,7 +74,7 @@ import time
 from rclpy.node import Node
 from std_msgs.msg import Float64
 from autograder.notebook import plot, spin_in_background, start_ros
-import autograder.notebook.observing.plots as plots
+import autograder.notebook.observing.topic_plots as plots
 start_ros()
 plots.PERIOD = 0.02
 curve = plot("speed", "data")

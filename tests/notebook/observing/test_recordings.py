@@ -15,7 +15,7 @@ from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from std_msgs.msg import String
 
 from autograder.mcap_files import definition
-from autograder.notebook.observing.recordings import read_recording, recording
+from autograder.notebook.observing.message_recordings import read_recording, recording
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -17,10 +17,10 @@ from sensor_msgs.msg import LaserScan
 from small_robot_interfaces.action import WalkTo
 from std_srvs.srv import SetBool, Trigger
 
-from autograder.notebook.nodes.background import spin_in_background
-from autograder.notebook.robot import walk_to_action
-from autograder.notebook.robot.motion import START
-from autograder.notebook.robot.node import RAYS, RobotNode
+from autograder.notebook.nodes.background_nodes import spin_in_background
+from autograder.notebook.robot import robot_drivers
+from autograder.notebook.robot.robot_motion import START
+from autograder.notebook.robot.robot_node import RAYS, RobotNode
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -80,7 +80,7 @@ def robot(ros: None) -> RobotNode:
 @pytest.fixture
 def endless(monkeypatch: pytest.MonkeyPatch) -> None:
     """No walk arrives, however long the machine takes for the rest of the test."""
-    monkeypatch.setattr(walk_to_action, "NEAR_ENOUGH", -1.0)
+    monkeypatch.setattr(robot_drivers, "NEAR_ENOUGH", -1.0)
 
 
 @pytest.fixture

@@ -10,10 +10,9 @@ from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any, cast
 
-from autograder.notebook.robot.motion import START, Pose, Velocity
-from autograder.notebook.robot.node import RobotState
-from autograder.notebook.robot.picture import RobotPicture
-from autograder.notebook.robot.starting import _RobotPictures
+from autograder.notebook.robot.live_robot import RobotPicture, _RobotPictures
+from autograder.notebook.robot.robot_motion import START, Pose, Velocity
+from autograder.notebook.robot.robot_node import RobotState
 
 
 def place(picture: RobotPicture) -> tuple[float, float, float]:

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 import msgspec
 import pytest
 
-from autograder.workspaces.builds import artefacts, cache
-from autograder.workspaces.builds.artefacts import BadArtefacts, Kind, PackedEntry, pack, unpack
+from autograder.workspaces.builds import build_artefacts, build_cache
+from autograder.workspaces.builds.build_artefacts import BadArtefacts, Kind, PackedEntry, pack, unpack
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -119,17 +119,17 @@ def test_what_is_packed_is_unpacked(tmp_path: Path) -> None:
 
 def test_too_much_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     with pytest.raises(BadArtefacts, match="too large"):
-        unpack(packed(("a", Kind.FILE, 11)), tmp_path / "bytes", most=2 * artefacts.BLOCK + 10)
+        unpack(packed(("a", Kind.FILE, 11)), tmp_path / "bytes", most=2 * build_artefacts.BLOCK + 10)
     copies = [(name, Kind.LINK, "a") for name in "bcd"]
     with pytest.raises(BadArtefacts, match="too large"):
-        unpack(packed(("a", Kind.FILE, 3), *copies), tmp_path / "copies", most=5 * artefacts.BLOCK + 10)
-    monkeypatch.setattr(artefacts, "MAX_FILES", 2)
+        unpack(packed(("a", Kind.FILE, 3), *copies), tmp_path / "copies", most=5 * build_artefacts.BLOCK + 10)
+    monkeypatch.setattr(build_artefacts, "MAX_FILES", 2)
     with pytest.raises(BadArtefacts, match="too large"):
         unpack(packed(*((name, Kind.FOLDER, 0) for name in "abc")), tmp_path / "files")
 
 
 def test_millions_of_entries_are_not_even_read(tmp_path: Path) -> None:
-    said = msgspec.msgpack.encode([[b"a", "file"]] * (artefacts.MOST_ENTRIES + 1))
+    said = msgspec.msgpack.encode([[b"a", "file"]] * (build_artefacts.MOST_ENTRIES + 1))
     with pytest.raises(BadArtefacts, match="length"):
         unpack(said, tmp_path / "install")
 
@@ -138,19 +138,19 @@ def test_a_full_disk_is_no_fault_of_the_build(tmp_path: Path, monkeypatch: pytes
     def write(*_: object) -> int:
         raise OSError(errno.ENOSPC, "No space left on device")
 
-    monkeypatch.setattr(artefacts, "_take", write)
+    monkeypatch.setattr(build_artefacts, "_take", write)
     with pytest.raises(OSError, match="No space left"):
         unpack(packed(("a", Kind.FILE, 1)), tmp_path / "install")
 
 
 def test_empty_files_and_folders_take_room_too(tmp_path: Path) -> None:
     few = packed(*((f"{number}", Kind.FILE, 0) for number in range(9)))
-    unpack(few, tmp_path / "few", most=10 * artefacts.BLOCK)
-    assert cache.size_of(tmp_path / "few") == 10 * artefacts.BLOCK
+    unpack(few, tmp_path / "few", most=10 * build_artefacts.BLOCK)
+    assert build_cache.size_of(tmp_path / "few") == 10 * build_artefacts.BLOCK
     many = packed(*((f"{number}", Kind.FILE, 0) for number in range(10)))
     with pytest.raises(BadArtefacts, match="too large"):
-        unpack(many, tmp_path / "many", most=10 * artefacts.BLOCK)
+        unpack(many, tmp_path / "many", most=10 * build_artefacts.BLOCK)
     # A file's path makes folders that the archive does not list.
     deep = packed(("/".join("abcdefghijk"), Kind.FILE, 0))
     with pytest.raises(BadArtefacts, match="too large"):
-        unpack(deep, tmp_path / "deep", most=10 * artefacts.BLOCK)
+        unpack(deep, tmp_path / "deep", most=10 * build_artefacts.BLOCK)

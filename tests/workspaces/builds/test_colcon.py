@@ -10,20 +10,20 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from autograder.workspaces.builds import own_builds
-from autograder.workspaces.builds.colcon import look
+from autograder.workspaces.builds import students_builds
+from autograder.workspaces.builds.colcon_build import look
 from autograder.workspaces.builds.install_folder import CannotPlace, place, with_prefixes
 
 sys.path.insert(0, str(Path(__file__).parent))
 from made_workspaces import interface_package, python_package
 
 if TYPE_CHECKING:
-    from autograder.workspaces.builds.colcon import Build, Targets
+    from autograder.workspaces.builds.colcon_build import Build, Targets
 
 
 def build(workspace: Path, targets: Targets | None = None) -> Build:
     """What comes of building a folder."""
-    return own_builds.OwnBuilds().build(look(workspace), targets)
+    return students_builds.OwnBuilds().build(look(workspace), targets)
 
 
 def run_program(made: Build) -> str:

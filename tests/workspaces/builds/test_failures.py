@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from autograder.workspaces.builds.failures import telling_line
+from autograder.workspaces.builds.colcon_build import telling_line
 
 LOGS = {
     "compiler": (

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from rosidl_adapter.parser import InvalidSpecification, parse_service_string
 
-from autograder.messages.workspaces import Source
+from autograder.messages.workspace_messages import Source
 from autograder.workspaces.builds.interface_packages import (
     holds_only_interfaces,
     simple_cmake,

@@ -11,12 +11,11 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from autograder.workspaces.builds.colcon import look
+from autograder.workspaces.builds.colcon_build import look
 from autograder.workspaces.builds.install_folder import LIBRARY
-from autograder.workspaces.builds.own_builds import OwnBuilds, StudentsBuilds
-from autograder.workspaces.builds.own_install import changed_since, is_current
+from autograder.workspaces.builds.students_builds import OwnBuilds, StudentsBuilds, changed_since, is_current
 from autograder.workspaces.graded_builds import GradedBuilds
-from autograder.workspaces.running.plain_jobs import PlainJobs
+from autograder.workspaces.jobs import PlainJobs
 from environment.python_child import python_child
 
 sys.path.insert(0, str(Path(__file__).parent))
@@ -25,7 +24,7 @@ from test_colcon import run_program
 from test_service import FakeJobs
 
 if TYPE_CHECKING:
-    from autograder.workspaces.builds.colcon import Build
+    from autograder.workspaces.builds.colcon_build import Build
 
 SAYS = "hello from the workspace\n"
 

@@ -18,20 +18,20 @@ import pytest
 from autograder.boxes.fork_server import BESIDE, SUPERVISOR_MODULE, ForkServer
 from autograder.boxes.sandbox import Enclosure, why_impossible
 from autograder.kit.runners import LaunchesFromPackage
-from autograder.workspaces import preparation
-from autograder.workspaces.builds.colcon import look
+from autograder.workspaces import program_preparation
+from autograder.workspaces.boxed_jobs import BoxedJobs, BoxedProgram
+from autograder.workspaces.builds.colcon_build import look
 from autograder.workspaces.graded_builds import GradedBuilds
-from autograder.workspaces.preparation import Preparation
+from autograder.workspaces.jobs import Built, ProgramJob
 from autograder.workspaces.program_plans import course_interfaces, plan_for
-from autograder.workspaces.running.boxed_jobs import BoxedJobs, BoxedProgram
-from autograder.workspaces.running.jobs import Built, ProgramJob
+from autograder.workspaces.program_preparation import Preparation
 
 sys.path.insert(0, str(Path(__file__).parent))
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from autograder.workspaces.builds.colcon import Build
+    from autograder.workspaces.builds.colcon_build import Build
 
 pytestmark = pytest.mark.skipif(bool(why_impossible()), reason=f"no boxes here: {why_impossible()}")
 
@@ -111,7 +111,7 @@ def test_a_launch_file_finds_the_files_of_its_package_beside_the_programs_that_a
     builds: GradedBuilds, jobs: BoxedJobs, workspace: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     shutil.copytree(workspace, tmp_path / "course")
-    monkeypatch.setattr(preparation, "reference_workspace", lambda: tmp_path / "course")
+    monkeypatch.setattr(program_preparation, "reference_workspace", lambda: tmp_path / "course")
     package = workspace / "src" / "tiny_pkg"
     (package / "tiny_pkg" / "hello.py").unlink()
     (package / "launch").mkdir()

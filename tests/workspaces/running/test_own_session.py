@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from autograder.workspaces.running.own_session import OwnSession
+from autograder.workspaces.program_processes import OwnSession
 
 FOREVER = 1000.0
 
@@ -94,7 +94,7 @@ def test_it_may_end_by_itself_after_an_interrupt() -> None:
 
 KILLED = """
 import os, sys
-from autograder.workspaces.running.own_session import OwnSession
+from autograder.workspaces.program_processes import OwnSession
 program = OwnSession(["/bin/sh", "-c", sys.argv[1]], os.environ)
 said = b""
 while said.count(b"\\n") < 3:

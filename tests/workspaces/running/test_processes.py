@@ -12,10 +12,10 @@ import pytest
 
 from autograder.kit.launch_report import MARK
 from autograder.process_trees import descendants, kill, known
+from autograder.workspaces import program_processes
 from autograder.workspaces.__main__ import _run
-from autograder.workspaces.preparation import Prepared
-from autograder.workspaces.running import processes
-from autograder.workspaces.running.processes import watched
+from autograder.workspaces.program_preparation import Prepared
+from autograder.workspaces.program_processes import watched
 
 RENAMES_ITSELF = """
 import ctypes, time
@@ -32,8 +32,8 @@ def test_what_renames_itself_all_the_time_fills_nobody_s_memory(
     monkeypatch: pytest.MonkeyPatch, more: str, most: int
 ) -> None:
     """Twenty of these, with command lines of 1.2 MB, took 80 MB of the grader's memory each second."""
-    monkeypatch.setattr(processes, "MAX_COMMAND_LINE", 2_000)
-    monkeypatch.setattr(processes, "MAX_COMMAND_LINES", 5)
+    monkeypatch.setattr(program_processes, "MAX_COMMAND_LINE", 2_000)
+    monkeypatch.setattr(program_processes, "MAX_COMMAND_LINES", 5)
     reported: list[str] = []
     starts_it = "import subprocess, sys; subprocess.run(sys.argv[1:])"
     with subprocess.Popen(

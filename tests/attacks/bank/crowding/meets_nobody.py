@@ -7,7 +7,7 @@
 # %% extra
 import time
 
-from autograder.notebook.checking.check_context import CheckContext
+from autograder.notebook.checking.judge_link import CheckContext
 
 asked = []
 

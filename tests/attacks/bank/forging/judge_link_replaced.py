@@ -9,7 +9,7 @@ import sys
 import msgspec
 
 import autograder.notebook.checking.judge_link
-from autograder.messages.checks import Judged
+from autograder.messages.judge_messages import Judged
 from autograder.verdict import Verdict
 
 

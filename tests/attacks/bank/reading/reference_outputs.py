@@ -11,8 +11,8 @@ for pattern in ("<<repository>>/solutions/*/*/*.json", sys.prefix + "/**/talker.
     for name in glob.iglob(pattern, recursive=pattern.count("**") == 1 and not pattern.startswith("/**")):
         print("LEAK:", name)
 try:
-    from autograder.judge.verdicts import reference
+    from autograder.judge import evidence_files
 
-    print("LEAK:", reference.load("lab_1_2.talker").parts[0].events[:2])
+    print("LEAK:", evidence_files.load_reference("lab_1_2.talker").parts[0].events[:2])
 except Exception as error:
     print(type(error).__name__)

@@ -8,8 +8,8 @@
 import base64
 import sys
 
-from autograder.messages.checks import Sources
-from autograder.messages.workspaces import Source
+from autograder.messages.judge_messages import Sources
+from autograder.messages.workspace_messages import Source
 
 check_module = sys.modules["autograder.notebook.checking.check"]
 DATA = base64.b64encode(b"attack").decode()

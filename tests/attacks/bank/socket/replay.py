@@ -8,7 +8,7 @@
 <<talks_to_the_judge>>
 
 import autograder.notebook.checking.judge_link as judge_link
-from autograder.messages.lines import encode
+from autograder.messages.json_lines import encode
 
 said = []
 usual_say = judge_link.JudgeLink.say

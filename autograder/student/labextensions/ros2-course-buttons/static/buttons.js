@@ -174,7 +174,7 @@ window._JUPYTERLAB["ros2-course-buttons"] = (() => {
           while (changed) {
             changed = false;
             const [ahead, left] = [...pressed].map(key => KEYS[key]).reduce((a, b) => [a[0] + b[0], a[1] + b[1]], [0, 0]);
-            const said = await ask(kernel, "autograder.notebook.robot.keyboard", `drive(${ahead}, ${left})`).catch(() => "");
+            const said = await ask(kernel, "autograder.notebook.robot.robot_drivers", `drive(${ahead}, ${left})`).catch(() => "");
             if (said && endDriving) { endDriving(); say(said); }
           }
           sends = false;

@@ -1,0 +1,264 @@
+"""The bank: right and wrong answers to the exercises, and the verdict that the judge must reach for each.
+
+Many answers are judged in parallel, each in a fork of a process that has already imported the slow modules.
+"""
+
+from __future__ import annotations
+
+import select
+from collections import deque
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Generic, Protocol, TypeVar
+
+from autograder import exercises
+from autograder.authoring.answer_tables import (
+    WORKSPACE,
+    ListedAnswer,
+    answer_settings,
+    listed_answers,
+    unpack_workspace,
+)
+from autograder.safe_files import HeldFolder
+from autograder.standard_output import private_stdout
+from autograder.verdict import State, Verdict, from_json, to_json
+from environment.python_child import installed_program
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Iterator, Sequence
+    from pathlib import Path
+
+    from autograder.judge.one_check import Checked
+
+
+JUDGING_LIMIT = 240.0
+"""Time limit in seconds of wall time for judging one answer."""
+
+
+class Judgeable(Protocol):
+    """Something that can be judged: an answer of the bank, or an automatically changed copy (a mutant)."""
+
+    @property
+    def name(self) -> str:
+        """The name that messages use."""
+        ...
+
+    def verdict(self, seed: str) -> bytes:
+        """Judge the answer in the process that calls this method. Return the verdict as JSON."""
+        ...
+
+
+T = TypeVar("T", bound=Judgeable)
+
+
+@dataclass(frozen=True)
+class Turn(Generic[T]):
+    """An answer to judge once, with one seed.
+
+    Attributes:
+        subject: The answer to judge.
+        seed: The seed of the random inputs.
+    """
+
+    subject: T
+    seed: str
+
+
+def judge_all(
+    turns: Iterable[Turn[T]],
+    *,
+    jobs: int,
+    done: Callable[[Turn[T], Verdict], None],
+    failed: Callable[[Turn[T], str], None],
+) -> None:
+    """Judge answers, in the given order, in forks of this process. The process must have no other threads.
+
+    If an answer gets no verdict, it is judged again at the end, when no other answer is judged.
+
+    Args:
+        turns: The answers to judge, each with a seed.
+        jobs: The number of answers to judge at the same time.
+        done: Called with each verdict when it is ready.
+        failed: Called with each answer that got no verdict, even alone, and the reason.
+    """
+    again: list[Turn[T]] = []
+    for turn, verdict, _ in _judged(turns, jobs):
+        if verdict is not None and verdict.state != State.NOT_CHECKED:
+            done(turn, verdict)
+        else:
+            again.append(turn)
+    for turn, verdict, trouble in _judged(again, 1):
+        if verdict is not None:
+            done(turn, verdict)
+        else:
+            failed(turn, trouble)
+
+
+def _judged(turns: Iterable[Turn[T]], jobs: int) -> Iterator[tuple[Turn[T], Verdict | None, str]]:
+    """Judge several answers at the same time. Yield each answer with its verdict, or with why it has no verdict."""
+    from autograder.judge.check_process import Child
+
+    waiting = deque(turns)
+    running: dict[int, tuple[Turn[T], Child]] = {}
+    while waiting or running:
+        while waiting and len(running) < jobs:
+            turn = waiting.popleft()
+            child = Child(lambda turn=turn: _verdict_in_child(turn), JUDGING_LIMIT)  # type: ignore[misc]
+            running[child.reading] = (turn, child)
+        ready, _, _ = select.select(list(running), [], [])
+        for descriptor in ready:
+            turn, child = running.pop(descriptor)
+            outcome = child.result()
+            yield turn, from_json(outcome.data) if outcome.data is not None else None, outcome.trouble
+
+
+def _verdict_in_child(turn: Turn[T]) -> bytes:
+    # The parent writes verdicts to its standard output, so the child must not write there.
+    private_stdout().close()
+    return turn.subject.verdict(turn.seed)
+
+
+def warm_up() -> None:
+    """Import the modules that every fork needs, so that no fork has to import them."""
+    from autograder.judge import ros_setup
+
+    ros_setup.prepare_judge()
+    from autograder.judge import controlled_judge
+
+    controlled_judge.imports()
+
+
+_PROGRAMS = {name: str(installed_program(name)) for name in ("python3", "ros2")}
+"""The paths of the programs that run the answers, in the Python environment of this process."""
+
+
+@dataclass(frozen=True)
+class Answer:
+    """An answer in the bank, with the verdict that the judge must reach.
+
+    Attributes:
+        exercise: The exercise's id.
+        file: The program; if it is stored as an edit, the path that the program would have.
+        command: The command that runs the program, with placeholders ``{file}`` and ``{workspace}``.
+        diagnoses: The accepted diagnoses, as keys of mistakes; empty for a right answer.
+        base: The workspace that the answer edits; None for a program.
+        edit: The answer's entry in a table, if the answer is stored there as an edit.
+        says: Words that the diagnosis has to contain.
+    """
+
+    exercise: str
+    file: Path
+    command: tuple[str, ...]
+    diagnoses: tuple[str, ...]
+    base: Path | None = None
+    edit: ListedAnswer | None = None
+    says: str = ""
+
+    @property
+    def name(self) -> str:
+        """The name of the answer, such as ``lab_1_2.talker/wrong/topic_name.py``."""
+        return f"{self.exercise}/{self.short_name}"
+
+    @property
+    def short_name(self) -> str:
+        """The name of the answer without the exercise, such as ``wrong/topic_name.py``."""
+        return f"{self.file.parent.name}/{self.file.name}"
+
+    @property
+    def text(self) -> str:
+        """The text of the program. For a workspace, its first line and its edit.
+
+        Raises:
+            BadTable: The edit does not fit the base.
+        """
+        return self.edit.text() if self.edit else self.file.read_text(encoding="utf-8")
+
+    def unpack(self, folder: Path) -> list[str]:
+        """Write the program or workspace into a folder if the answer is stored as an edit.
+
+        Args:
+            folder: An empty folder.
+
+        Returns:
+            The command that runs the answer.
+
+        Raises:
+            BadTable: The edit does not fit the base.
+        """
+        file, workspace = self.file, folder / "ros2_ws"
+        if self.base is not None:
+            unpack_workspace(self.text, self.base, workspace)
+        elif self.edit is not None:
+            file = folder / file.name
+            file.write_text(self.text, encoding="utf-8")
+        return [part.format(file=file, workspace=workspace) for part in self.command]
+
+    def checked(self, seed: str) -> tuple[Verdict, Checked | None]:
+        """Judge the answer in this process. Return the verdict, and the evidence unless the judge itself failed."""
+        from autograder.judge.command_check import checked_here
+
+        exercise = exercises.get(self.exercise)
+        with HeldFolder("autograder-answer-") as folder:
+            return checked_here(exercise, self.unpack(folder.path), seed, None)
+
+    def verdict(self, seed: str) -> bytes:
+        """Judge the answer in this process. Return the verdict as JSON."""
+        return to_json(self.checked(seed)[0])
+
+    def objection(self, verdict: Verdict) -> str:
+        """Return in words how a verdict differs from the expected one; empty if it is as expected."""
+        if verdict.state == State.NOT_CHECKED:
+            why = verdict.diagnosis.text if verdict.diagnosis and not verdict.detail else verdict.detail
+            return f"could not be checked: {why}"
+        key = verdict.diagnosis.key if verdict.diagnosis else ""
+        missed = "; ".join(f"{c.name}: {c.seen}" for c in verdict.criteria if not c.passed)
+        if not self.diagnoses:
+            return "" if verdict.passed else f"a correct answer got {verdict.score:g} ({key}: {missed})"
+        if verdict.state != State.FAILED:
+            return f"a wrong answer is {verdict.state}"
+        if verdict.score >= verdict.max_score:
+            return "a wrong answer got full marks"
+        if key not in self.diagnoses:
+            return f"diagnosed as {key}, not as {' or '.join(self.diagnoses)} ({missed})"
+        words = f"{verdict.diagnosis.text} {verdict.diagnosis.next_step}" if verdict.diagnosis else ""
+        return "" if self.says in words else f"the card does not contain “{self.says}”, but: {words}"
+
+
+def answers(of: Sequence[str] = ()) -> Iterator[Answer]:
+    """Yield the bank's answers to exercises, in the order of the tables.
+
+    Args:
+        of: Ids of exercises; all exercises if empty.
+
+    Raises:
+        UnknownExercise: An exercise does not exist.
+        BadTable: A table cannot be used.
+    """
+    for exercise_id in of or exercises.all_ids():
+        folder = answers_folder(exercise_id)
+        usual = answer_settings(folder)
+        for one in listed_answers(folder):
+            first, *rest = one.entry.command or usual.command
+            command = (_PROGRAMS.get(first, first), *rest)
+            diagnoses = (one.entry.diagnosis, *one.entry.also) if one.entry.diagnosis else ()
+            base = folder / usual.base if one.file.suffix == WORKSPACE else None
+            edit = one if one.entry.change else None
+            yield Answer(exercise_id, one.file, command, diagnoses, base, edit, one.entry.says)
+
+
+def answer_named(name: str) -> Answer:
+    """Return the answer with a name such as ``lab_1_2.talker/wrong/topic_name.py``.
+
+    Raises:
+        StopIteration: The answer does not exist.
+    """
+    return next(answer for answer in answers() if answer.name == name)
+
+
+def answers_folder(exercise_id: str) -> Path:
+    """Return the folder with the answers to an exercise."""
+    return exercises.path(exercise_id).with_suffix(".answers")
+
+
+def longest_first(wanted: Iterable[Answer]) -> list[Answer]:
+    """Sort answers so that slow ones start first. Otherwise a slow answer could run alone at the end."""
+    return sorted(wanted, key=lambda answer: -exercises.get(answer.exercise).limit)

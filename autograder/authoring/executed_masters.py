@@ -1,0 +1,207 @@
+"""Executes the masters as a student would in JupyterLab. Returns them with their outputs, including animations."""
+
+from __future__ import annotations
+
+import base64
+import os
+import subprocess
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import re2
+from nbclient import NotebookClient
+from nbclient.exceptions import CellExecutionComplete
+from nbclient.util import ensure_async
+from nbconvert.preprocessors import CoalesceStreamsPreprocessor
+
+from autograder import course
+from autograder.dds_discovery import DOMAIN_VARIABLE, claim_free_domain
+from autograder.masters.master_files import lab_name
+from autograder.masters.source_notebooks import source_notebook
+from autograder.safe_files import HeldFolder
+from autograder.student import check_journal
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from nbformat import NotebookNode
+
+
+CELL_LIMIT = 600
+"""Time limit in seconds for one cell. The slowest cells build a workspace."""
+NOTEBOOKS_AT_ONCE = 3
+"""The maximum number of notebooks that run at the same time."""
+MOST_FRAMES = 60
+FRAME_SECONDS = 0.25
+RECORDED = "Recorded while the notebook ran"
+MOVING_PICTURES = "moving_pictures"
+"""The key in a notebook's metadata for its animations: the texts of SVG files by the files' names."""
+_SVG_DATA = re2.compile(r'src="data:image/svg\+xml;base64,([A-Za-z0-9+/=]+)"')
+_STYLE = re2.compile(r"(?s)<style>(.*?)</style>")
+_INNER = re2.compile(r"(?s)^<svg([^>]*)>(.*)</svg>$")
+_TITLE = re2.compile(r"(?s)<title>.*?</title>")
+
+
+def run_masters(masters: Sequence[Path], root: Path, tell: Callable[[str], None]) -> dict[str, NotebookNode]:
+    """Execute masters, each in a new kernel with its own folder and ROS domain, and return them with outputs.
+
+    Args:
+        masters: The files of the masters.
+        root: The top folder of the course whose exercises the kernels and judges use.
+        tell: Called with a line about each notebook that is done.
+
+    Returns:
+        The executed source notebooks, by the names of the labs.
+
+    Raises:
+        nbclient.exceptions.CellExecutionError: A cell raised an error.
+    """
+
+    def run(master: Path) -> tuple[str, NotebookNode]:
+        done = _run(source_notebook(master), lab_name(master), root)
+        tell(f"executed   {lab_name(master)}")
+        return lab_name(master), done
+
+    with ThreadPoolExecutor(NOTEBOOKS_AT_ONCE) as pool:
+        return dict(pool.map(run, masters))
+
+
+def execute_in_new_kernel(client: NotebookClient, folder: Path, lines: Path, **variables: str) -> None:
+    """Execute a client's notebook as JupyterLab would: in a new kernel, with rclpy's log lines in the outputs.
+
+    Args:
+        client: nbclient's client of the notebook. This function sets its time limit and its kernel.
+        folder: The working folder of the kernel.
+        lines: The path of the journal, the file in which a student's checks are recorded.
+        variables: More environment variables for the kernel.
+
+    Raises:
+        nbclient.exceptions.CellExecutionError: A cell raised an error.
+        nbclient.exceptions.CellTimeoutError: A cell took longer than ``CELL_LIMIT``.
+        nbclient.exceptions.DeadKernelError: The kernel ended.
+    """
+    client.timeout, client.kernel_name = CELL_LIMIT, "python3"
+    client.resources = {"metadata": {"path": str(folder)}}
+    environment = {**os.environ, **variables, check_journal.VARIABLE: str(lines)}
+    # Remove this variable, because with it ipykernel does not show rclpy's log lines in the cells.
+    environment.pop("PYTEST_CURRENT_TEST", None)
+    # rclpy also writes the log lines to the kernel's standard output and error. Drop this copy, which no reader sees.
+    client.execute(env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+
+
+def _run(notebook: NotebookNode, name: str, root: Path) -> NotebookNode:
+    with HeldFolder("course-site-") as held:
+        folder = held.path / "notebooks"
+        folder.mkdir()
+        client = _Recorder(notebook)
+        claim = claim_free_domain()
+        variables = {DOMAIN_VARIABLE: str(claim.domain), "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
+        variables[course.VARIABLE] = str(root)
+        variables["GIT_CONFIG_GLOBAL"] = (
+            os.devnull
+        )  # otherwise `ros2 pkg create` would write the builder's email address into a package
+        try:
+            execute_in_new_kernel(client, folder, held.path / "journal.jsonl", **variables)
+        finally:
+            claim.release()
+        _put_moving_pictures(notebook, name, client.frames)
+        show_as_a_students(notebook, str(folder))
+    return notebook
+
+
+class _Recorder(NotebookClient):
+    """A client that stores every frame of a live picture. nbclient's own client keeps only the last frame."""
+
+    def __init__(self, *arguments: Any, **options: Any) -> None:
+        super().__init__(*arguments, **options)
+        self.frames: dict[str, list[str]] = {}
+
+    def process_message(self, msg: dict[str, Any], cell: NotebookNode, cell_index: int) -> Any:
+        content = msg["content"]
+        display = content.get("transient", {}).get("display_id")
+        if display and (found := _SVG_DATA.search(content.get("data", {}).get("text/html", ""))):
+            self.frames.setdefault(display, []).append(found[1])
+        return super().process_message(msg, cell, cell_index)
+
+    async def _async_poll_output_msg(self, parent_msg_id: str, cell: NotebookNode, cell_index: int) -> None:
+        """Process a cell's messages, and new frames of live pictures in earlier cells, which nbclient would ignore."""
+        assert self.kc is not None
+        while True:
+            msg = await ensure_async(self.kc.iopub_channel.get_msg(timeout=None))
+            if (
+                msg["msg_type"] == "update_display_data"
+                or msg["parent_header"].get("msg_id") == parent_msg_id
+            ):
+                try:
+                    self.process_message(msg, cell, cell_index)
+                except CellExecutionComplete:
+                    return
+
+
+def _put_moving_pictures(notebook: NotebookNode, name: str, frames: dict[str, list[str]]) -> None:
+    """Replace the last frame of each live picture by an animation of all its frames."""
+    pictures: dict[str, str] = {}
+    for shown in frames.values():
+        if len(set(shown)) < 3:
+            continue
+        for cell in notebook.cells:
+            for output in cell.get("outputs", ()):
+                page = output.get("data", {}).get("text/html", "")
+                if shown[-1] in page:
+                    file = f"{name}-{len(pictures) + 1}.svg"
+                    pictures[file] = moving_picture([base64.b64decode(one).decode() for one in shown])
+                    picture = page.replace(f"data:image/svg+xml;base64,{shown[-1]}", f"../../_static/{file}")
+                    output["data"]["text/html"] = (
+                        f'<details class="moving" open><summary>{RECORDED}</summary>{picture}</details>'
+                    )
+    notebook.metadata[MOVING_PICTURES] = pictures
+
+
+def moving_picture(frames: Sequence[str]) -> str:
+    """Return one SVG that shows the given SVGs in turn, repeatedly; the last one if the reader prefers no motion.
+
+    Args:
+        frames: The texts of the SVGs, at least one. All have the same size and style.
+    """
+    step = -(-len(frames) // MOST_FRAMES)
+    kept = [*frames[:-1:step], frames[-1]]
+    last = _INNER.match(kept[-1])
+    style = _STYLE.search(kept[0])
+    title = _TITLE.search(kept[-1])
+    pause = 6
+    parts = len(kept) + pause
+    seconds = parts * FRAME_SECONDS
+    share = 100 / parts
+    motion = (
+        ".frame { visibility: hidden; } .frame:last-of-type { visibility: visible; } "
+        "@media (prefers-reduced-motion: no-preference) { "
+        f".frame {{ animation: shown {seconds:g}s step-end infinite; }} "
+        f".frame:last-of-type {{ visibility: hidden; animation-name: last; }} }} "
+        f"@keyframes shown {{ 0% {{ visibility: visible; }} {share:.3f}% {{ visibility: hidden; }} }} "
+        f"@keyframes last {{ 0% {{ visibility: visible; }} {share * (pause + 1):.3f}% {{ visibility: hidden; }} }}"
+    )
+    drawn = []
+    for number, frame in enumerate(kept):
+        inner = _TITLE.sub("", _STYLE.sub("", _INNER.match(frame)[2]))
+        delay = number * FRAME_SECONDS
+        drawn.append(f'<g class="frame" style="animation-delay:{delay:g}s">{inner}</g>')
+    head = (title[0] if title else "") + f"<style>{style[1] if style else ''}{motion}</style>"
+    return f"<svg{last[1]}>{head}{''.join(drawn)}</svg>"
+
+
+def show_as_a_students(notebook: NotebookNode, folder: str) -> None:
+    """Make a cell's outputs the same in every run: join printed pieces, and replace the temporary folder's path.
+
+    Args:
+        notebook: An executed notebook.
+        folder: The folder in which the notebook was executed.
+    """
+    CoalesceStreamsPreprocessor().preprocess(notebook, {})
+    for cell in notebook.cells:
+        for output in cell.get("outputs", ()):
+            for holder in (output, output.get("data", {})):
+                for key, text in holder.items():
+                    if isinstance(text, str):
+                        shown = text.replace(folder, "/home/you/course")
+                        holder[key] = shown.replace(str(Path(folder).parent), "/home/you")

@@ -1,0 +1,268 @@
+"""Lists for an author the faults of an exercise that the project's tests and linters would report.
+
+The faults include those of the master by the house rules for masters, such as a limit on the words before the first
+task.
+"""
+
+from __future__ import annotations
+
+import itertools
+import os
+import re  # noqa: TID251  (not what a student handed in)
+import subprocess
+from collections import Counter
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from autograder import course, exercises
+from autograder.masters.code_cells import find_region
+from autograder.masters.master_cells import COPY, CellRole, parse_master
+from autograder.masters.source_notebooks import named_cells
+from environment.installation import installing
+from environment.python_child import installed_program
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Sequence
+
+    from autograder.authoring.answer_bank import Answer
+    from autograder.kit.model import Exercise
+    from autograder.masters.source_notebooks import NamedCell
+
+
+ENOUGH_ANSWERS = {"right": 5, "wrong": 8}
+"""The minimum numbers of right and wrong answers that an exercise needs in the bank. An exercise with fewer answers
+works, but its author cannot know whether its verdicts are fair.
+"""
+MISTAKES_PAGE = "docs/mistakes.md"
+"""The page that explains each diagnosis to students. The key of the diagnosis is the heading of its paragraph."""
+_PACKAGE = Path(course.__file__).resolve().parents[1]
+_SETTINGS = _PACKAGE / "pyproject.toml"
+
+
+def still_to_do(exercise_id: str, listed: Sequence[Answer]) -> Iterator[str]:
+    """Yield a line for each thing that an exercise still lacks before it can be committed.
+
+    Args:
+        exercise_id: The exercise's id, such as ``"lab_1_2.talker"``.
+        listed: All answers to the exercise in the bank.
+
+    Raises:
+        autograder.exercises.UnknownExercise: The exercise does not exist.
+        autograder.exercises.BrokenExercise: The exercise's file is not a valid exercise.
+        autograder.masters.master_files.MasterError: The lab's master cannot be used.
+    """
+    yield from _of_answers(listed)
+    yield from _of_mistakes(exercise_id, listed)
+    lab = exercises.path(exercise_id).parent
+    yield from _of_text(exercise_id, lab / course.LAB)
+    yield from (f"{course.LAB}: {rule}" for rule in broken_rules(lab / course.LAB))
+    yield from _of_linters(lab)
+
+
+def _of_answers(listed: Sequence[Answer]) -> Iterator[str]:
+    there = Counter(answer.file.parent.name for answer in listed)
+    few = [f"{there[kind]} {kind}" for kind, enough in ENOUGH_ANSWERS.items() if there[kind] < enough]
+    if few:
+        yield (
+            f"answers: the bank has only {' and '.join(few)} answers; before students get a new exercise, write at "
+            f"least {ENOUGH_ANSWERS['right']} right answers in different styles and {ENOUGH_ANSWERS['wrong']} wrong "
+            "answers"
+        )
+    for answer in listed:
+        if answer.diagnoses and not answer.file.name.startswith(answer.diagnoses[0]):
+            yield (
+                f"answers: rename {answer.short_name}, so that its name begins with its diagnosis, "
+                f"{answer.diagnoses[0]}"
+            )
+
+
+def _of_mistakes(exercise_id: str, listed: Sequence[Answer]) -> Iterator[str]:
+    page = course.root() / MISTAKES_PAGE
+    if page.is_file():
+        told = set(re.findall(r"^### `(\w+)`$", page.read_text(encoding="utf-8"), re.MULTILINE))
+        used = {mistake.key for mistake in exercises.get(exercise_id).mistakes}
+        used |= {key for answer in listed for key in answer.diagnoses}
+        yield from (f"{MISTAKES_PAGE}: no paragraph about `{key}` yet" for key in sorted(used - told))
+
+
+def _of_text(exercise_id: str, master: Path) -> Iterator[str]:
+    """Yield a line for each fault in ``Exercise.text``, which maps sentences of the lab to criteria."""
+    exercise = exercises.get(exercise_id)
+    if not exercise.text:
+        yield "text: map words of the task to the criteria that judge them (the argument text of the exercise)"
+        return
+    said = "\n".join(one.cell.source for one in named_cells(master))
+    yield from (f"text: {fault}" for fault in faults_of_text(exercise, said))
+
+
+def faults_of_text(exercise: Exercise, said: str) -> Iterator[str]:
+    """Yield the faults of ``Exercise.text``: sentences that the lab does not contain, missing or unknown criteria.
+
+    Args:
+        exercise: The exercise.
+        said: All texts of the lab, in one string.
+    """
+    whole = " ".join(said.split())
+    sentences = (" ".join(words.split()) for words in exercise.text)
+    yield from (f"{course.LAB} does not say “{words}”" for words in sentences if words not in whole)
+    judged = {name for names in exercise.text.values() for name in names.split()}
+    known = {criterion.name for criterion in exercise.criteria}
+    yield from (
+        f"the criterion {name} is not mapped to any words of the task" for name in sorted(known - judged)
+    )
+    yield from (f"the criterion {name} does not exist" for name in sorted(judged - known))
+
+
+def _of_linters(lab: Path) -> Iterator[str]:
+    """Yield what ruff and mypy report about a lab's files, and a line for each linter that is not installed."""
+    if not _SETTINGS.is_file():
+        return
+    programs = {name: installed_program(name) for name in ("ruff", "mypy")}
+    for name, program in programs.items():
+        if not program.is_file():
+            yield f"{name}: not installed, so nothing was checked. Type: {installing('dev', clone='--tests')}"
+    files = [str(file) for file in sorted(lab.glob("*.py"))]
+    for name, *words in (
+        ("ruff", "check", "--quiet", "--output-format=concise", f"--config={_SETTINGS}"),
+        ("ruff", "format", "--check", "--quiet", f"--config={_SETTINGS}"),
+        ("mypy", "--no-error-summary", f"--config-file={_SETTINGS}"),
+    ):
+        if programs[name].is_file():
+            done = subprocess.run(
+                [programs[name], *words, *files],
+                cwd=_PACKAGE,
+                env=os.environ | {"MYPYPATH": str(lab.parent)},
+                capture_output=True,
+                text=True,
+                check=False,
+            )
+            if words[0] == "format" and done.returncode == 1:  # ruff's output would be a long diff
+                yield f"ruff: a file is not formatted. Type: {programs[name]} format --config={_SETTINGS} {lab}"
+            else:
+                yield from (f"{name}: {line}" for line in (done.stdout + done.stderr).splitlines())
+
+
+MAX_HEAD_WORDS, MAX_WORDS_BEFORE_A_TASK, MAX_SOLUTION_LINES = 150, 400, 8
+"""Three limits of a master: the words before the first code cell, the words before the first task, and the lines that
+a student writes in one cell.
+"""
+_MINUTES = re.compile(r"^\*\d+ minutes · for ", re.MULTILINE)
+_PICTURE = re.compile(r"!\[[^\]]*\]\([^)]*\)")
+"""Matches a figure. The figure's alternative text does not count as words of the master, because it replaces the
+figure for readers who cannot see it.
+"""
+PREDICTION = "**Before you run it:**"
+"""The first words of a question that students answer before they run a demonstration."""
+_PARAGRAPH = re.compile(r"\n\s*\n|\n(?=\d+\. |- )")
+_CODE = re.compile(r"`[^`]*`|\]\([^)]*\)")
+"""Matches code and the address of a link. Parentheses there do not count as parentheses of a text."""
+_PARENTHESIS = re.compile(r"\([^)]*\)")
+_FOLD = re.compile(r"<details>.*?</details>", re.DOTALL)
+"""Matches folded text. Its words do not count, because students open it only if they want to."""
+_SELF_CHECK = re.compile(
+    r"\*\*Check yourself:\*\*.*?\n\n(?P<choices>(?:<details>.*?</details>\s*)*)", re.DOTALL
+)
+_REPLY = re.compile(r"</summary>\s*(\S)")
+
+
+def broken_rules(master: Path) -> list[str]:
+    """Return a line for each house rule that a master breaks. A line contains the rule's name and what to write.
+
+    Args:
+        master: The path of a file ``lab.md``.
+
+    Raises:
+        autograder.masters.master_files.MasterError: The file is not a valid master.
+    """
+    copying = {cell.line for cell in parse_master(master) if COPY.search(cell.source)}
+    cells = [
+        one for one in named_cells(master) if one.cell.line
+    ]  # the last cell, which links to the neighboring labs, is left out
+    return [
+        *_beginning(cells),
+        *_solutions(one for one in cells if one.cell.line not in copying),
+        *_introductions(cells),
+        *_predictions(cells),
+        *_tasks(cells),
+        *_self_checks(filter(_is_text, cells)),
+        *_end(cells),
+    ]
+
+
+def _beginning(cells: list[NamedCell]) -> Iterator[str]:
+    head = list(itertools.takewhile(_is_text, cells))
+    if _words(head) > MAX_HEAD_WORDS:
+        yield f"begin by doing: {_words(head)} words before the first code cell; at most {MAX_HEAD_WORDS} are allowed"
+    if not head or not _MINUTES.search(head[0].cell.source):
+        yield (
+            "minutes: write in the first text how long the lab takes and for whom, such as *20 minutes · for "
+            "beginners*"
+        )
+    task = next((place for place, one in enumerate(cells) if one.cell.kind is CellRole.SOLUTION), 0)
+    if (before := _words(filter(_is_text, cells[:task]))) > MAX_WORDS_BEFORE_A_TASK:
+        most = MAX_WORDS_BEFORE_A_TASK
+        yield f"the first task comes soon: {before} words before the first task; at most {most} are allowed"
+
+
+def _solutions(cells: Iterable[NamedCell]) -> Iterator[str]:
+    for one in cells:
+        if one.cell.kind is CellRole.SOLUTION:
+            written = sum(bool(line.strip()) for line in find_region(one.cell.source).answer)
+            if not 1 <= written <= MAX_SOLUTION_LINES:
+                yield (
+                    f"a task is small: the cell {one.name} (line {one.cell.line}) asks for {written} lines; at most "
+                    f"{MAX_SOLUTION_LINES} are allowed: give students the other lines, or split the cell in two"
+                )
+
+
+def _introductions(cells: list[NamedCell]) -> Iterator[str]:
+    for before, one in itertools.pairwise(cells):
+        said = [line for line in before.cell.source.splitlines() if line.strip() and not line.startswith("#")]
+        if not _is_text(one) and not (_is_text(before) and said):
+            yield f"a code cell is introduced: write a sentence before the code cell at line {one.cell.line}"
+
+
+def _predictions(cells: list[NamedCell]) -> Iterator[str]:
+    for before, one in itertools.pairwise(cells):
+        # A cell that only defines or stops something has no result that a student could predict.
+        shows = one.cell.source.startswith("%%bash") or "print(" in one.cell.source
+        if one.cell.kind is CellRole.DEMONSTRATION and shows and PREDICTION not in before.cell.source:
+            yield (
+                f"a demonstration is predicted: write a question '{PREDICTION} …?' before line {one.cell.line}, "
+                "and its answer in a <details>"
+            )
+
+
+def _tasks(cells: list[NamedCell]) -> Iterator[str]:
+    for before, one in itertools.pairwise(cells):
+        if one.cell.kind is CellRole.SOLUTION and _is_text(before):
+            for paragraph in _PARAGRAPH.split(_FOLD.sub("", before.cell.source)):
+                if len(_PARENTHESIS.findall(_CODE.sub("", paragraph))) > 1:
+                    yield (
+                        f"a task is plain: a paragraph before line {one.cell.line} has more than one "
+                        "parenthesis: write sentences, or a list 'What counts' below the task"
+                    )
+
+
+def _self_checks(texts: Iterable[NamedCell]) -> Iterator[str]:
+    for one in texts:
+        for found in _SELF_CHECK.finditer(one.cell.source):
+            replies = _REPLY.findall(found["choices"])
+            if set(replies) != {"✓", "✗"} or replies.count("✓") > 1:
+                yield (
+                    f"a self-check is answered by a click: in the text at line {one.cell.line}, write a <details> for "
+                    "each choice. Its reply begins with ✓ for the right choice and with ✗ for the others"
+                )
+
+
+def _end(cells: list[NamedCell]) -> Iterator[str]:
+    if not cells or "https://docs.ros.org/en/jazzy/" not in cells[-1].cell.source:
+        yield "closing link: add a link for further reading to the last text, such as https://docs.ros.org/en/jazzy/..."
+
+
+def _is_text(one: NamedCell) -> bool:
+    return one.cell.kind is CellRole.TEXT
+
+
+def _words(cells: Iterable[NamedCell]) -> int:
+    return len(_FOLD.sub("", _PICTURE.sub("", "\n".join(one.cell.source for one in cells))).split())

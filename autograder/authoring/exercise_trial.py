@@ -1,0 +1,247 @@
+"""``try-exercise``: compares the judge's verdicts on right and wrong answers with what their author expects."""
+
+from __future__ import annotations
+
+import textwrap
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from autograder import exercises
+from autograder.authoring import reference_recording
+from autograder.authoring.answer_bank import Answer, Turn, answers, answers_folder, judge_all, warm_up
+from autograder.authoring.answer_tables import BadTable, CannotEdit
+from autograder.authoring.exercise_faults import still_to_do
+from autograder.cards.text_rendering import card_text
+from autograder.safe_files import HeldFolder
+from autograder.verdict import to_json
+from environment.installation import COMMAND
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Sequence
+
+    from autograder.kit.evidence import Evidence
+    from autograder.verdict import Verdict
+
+
+JOBS = 4
+"""The default number of answers to judge at the same time. It may exceed the number of cores, because judging mostly
+waits.
+"""
+
+
+class NothingToTry(LookupError):
+    """No answer has the requested name. The message lists the answers that exist, or says where to write one."""
+
+
+@dataclass(frozen=True)
+class Surprise:
+    """An answer whose verdict differs from what its author expects.
+
+    Attributes:
+        name: The name of the answer, such as ``"wrong/counter_stuck.py"``.
+        objection: The difference, in words.
+        card: The card that a student would see.
+    """
+
+    name: str
+    objection: str
+    card: str
+
+
+@dataclass(frozen=True)
+class Transcribed(Answer):
+    """An answer whose evidence is written into a file when it is judged.
+
+    Attributes:
+        folder: The folder for the files, one for each answer, such as ``wrong/topic_name.py.txt``. A file has one line
+            for each event.
+    """
+
+    folder: Path = Path()
+
+    def verdict(self, seed: str) -> bytes:
+        """Judge the answer in this process, and write its evidence into the file. Return the verdict as JSON."""
+        verdict, found = self.checked(seed)
+        if found is not None:
+            file = self.folder / f"{self.short_name}.txt"
+            file.parent.mkdir(parents=True, exist_ok=True)
+            file.write_text("".join(_transcript(found.evidence)), encoding="utf-8")
+        return to_json(verdict)
+
+
+def _transcript(evidence: Evidence) -> Iterator[str]:
+    if evidence.before is not None:
+        yield from _transcript(evidence.before)
+        yield "\n"
+    for part in evidence:
+        yield f"== {part.name} {'in real time ' * evidence.real_time}{dict(part.inputs)}\n"
+        for event in part.events:
+            stepped = f" sim {event.sim:.2f}" if event.sim is not None else ""
+            yield f"{event.t:8.3f}{stepped}  {event.kind} {event.name} {dict(event.data)}\n"
+
+
+def try_exercise(
+    exercise_id: str,
+    *,
+    only: Sequence[str] = (),
+    jobs: int = JOBS,
+    repeat: int = 1,
+    transcript: Path | None = None,
+    tell: Callable[[str], object],
+) -> bool:
+    """Try an exercise: check its recording, judge the answers, and print surprises and what is left to do.
+
+    Edits that do not fit are reported before anything runs. A missing reference output is recorded. If the stored
+    reference output differs from a new recording, it stays unchanged, and no answer is judged until the author has
+    decided. The notebook as students get it must earn no points.
+
+    Args:
+        exercise_id: The exercise's id, such as ``"lab_1_2.talker"``.
+        only: Only answers whose name contains one of these texts are judged; all answers if empty.
+        jobs: The number of answers to judge at the same time.
+        repeat: The number of times to judge each answer, each time with different random inputs.
+        transcript: The folder for the evidence of each answer from its last run; None to write none.
+        tell: Called with each line or card for the author.
+
+    Returns:
+        True if everything is as the author expects.
+
+    Raises:
+        autograder.exercises.UnknownExercise: The exercise does not exist.
+        autograder.exercises.BrokenExercise: The exercise's file is not a valid exercise.
+        autograder.authoring.answer_tables.BadTable: A table of the exercise's answers cannot be used.
+        autograder.authoring.reference_recording.CannotRecord: The master's solution cannot be recorded.
+        NothingToTry: No answer has one of the requested names.
+    """
+    exercises.get(exercise_id)
+    wanted: Sequence[Answer] = chosen(exercise_id, only)
+    _fit(wanted)
+    if not (only and exercises.reference_path(exercise_id).exists()) and not _is_in_step(exercise_id, tell):
+        return False
+    gifts = [] if only else list(_given(exercise_id))
+    if transcript is not None:
+        wanted = [Transcribed(**vars(answer), folder=transcript) for answer in wanted]
+    surprises = judged(wanted, jobs=jobs, repeat=repeat, tell=tell)
+    for surprise in surprises:
+        tell(f"\n{surprise.name}: {surprise.objection}\n{textwrap.indent(surprise.card, '    ')}")
+    times = f", each judged {repeat} times" if repeat > 1 else ""
+    count = f"{len(wanted)} answer{'s' * (len(wanted) != 1)}{times}"
+    tell(f"\n{count}, {len(surprises) or 'none'} not as expected")
+    for line in gifts:
+        tell(f"the unsolved notebook earns points: {line}")
+    if not only:
+        for line in still_to_do(exercise_id, wanted):
+            tell(f"to do: {line}")
+    return not surprises and not gifts
+
+
+def chosen(exercise_id: str, only: Sequence[str] = ()) -> list[Answer]:
+    """Return the answers to an exercise, in the order of their tables.
+
+    Args:
+        exercise_id: The exercise's id, such as ``"lab_1_2.talker"``.
+        only: Parts of names. Only answers whose name contains one of these parts are returned; all answers if empty.
+
+    Raises:
+        NothingToTry: No answer has a name with one of these parts.
+    """
+    found = list(answers([exercise_id]))
+    if not found:
+        raise NothingToTry(
+            f"{exercise_id} has no answers yet: write some in the folders right and wrong of "
+            f"{answers_folder(exercise_id)}, as docs/adding-an-exercise.md shows"
+        )
+    wanted = [answer for answer in found if not only or any(part in answer.short_name for part in only)]
+    if not wanted:
+        raise NothingToTry(
+            f"no answer to {exercise_id} has {' or '.join(only)} in its name. The answers are: "
+            + ", ".join(answer.short_name for answer in found)
+        )
+    return wanted
+
+
+def judged(
+    wanted: Sequence[Answer], *, jobs: int = JOBS, repeat: int = 1, tell: Callable[[str], object]
+) -> list[Surprise]:
+    """Judge answers, and print each result.
+
+    Args:
+        wanted: The answers to judge.
+        jobs: The number of answers to judge at the same time.
+        repeat: The number of times to judge each answer, with different random inputs.
+        tell: Called with a line for each result.
+
+    Returns:
+        The answers with an unexpected verdict, in the given order. Each is returned once, with its first unexpected
+        verdict.
+    """
+    turns = [Turn(answer, f"try {lap}" if lap else "try") for lap in range(repeat) for answer in wanted]
+    surprises: dict[str, Surprise] = {}
+    done = 0
+
+    def take(turn: Turn[Answer], verdict: Verdict) -> None:
+        nonlocal done
+        done += 1
+        answer, objection = turn.subject, turn.subject.objection(verdict)
+        sign, points = ("✗" if objection else "✓"), f"{verdict.score:g} of {verdict.max_score:g}"
+        key = verdict.diagnosis.key if verdict.diagnosis else ""
+        tell(f"{done:>3}/{len(turns)} {sign} {answer.short_name:<40} {points:>8}  {key}".rstrip())
+        if objection:
+            surprises.setdefault(answer.name, Surprise(answer.short_name, objection, card_text(verdict)))
+
+    def fail(turn: Turn[Answer], trouble: str) -> None:
+        nonlocal done
+        done += 1
+        name = turn.subject.short_name
+        tell(f"{done:>3}/{len(turns)} ✗ {name:<40} no verdict")
+        surprise = Surprise(name, f"no verdict: {trouble}", "The error stands above.")
+        surprises.setdefault(turn.subject.name, surprise)
+
+    warm_up()
+    judge_all(turns, jobs=jobs, done=take, failed=fail)
+    return [surprises[answer.name] for answer in wanted if answer.name in surprises]
+
+
+def _fit(wanted: Sequence[Answer]) -> None:
+    """Unpack each answer once, to find edits that do not fit their bases.
+
+    Raises:
+        BadTable: An edit does not fit its base. The message has a line for each such edit.
+    """
+    troubles = []
+    for answer in wanted:
+        with HeldFolder("autograder-answer-") as folder:
+            try:
+                answer.unpack(folder.path)
+            except BadTable as error:
+                troubles.append(str(error))
+            except CannotEdit as error:
+                troubles.append(f"{answer.short_name}: the edit does not fit: {error}")
+    if troubles:
+        raise BadTable("\n".join(troubles))
+
+
+def _given(exercise_id: str) -> Iterator[str]:
+    """Yield a line for each criterion that a notebook meets as students get it, before they write anything."""
+    verdict = reference_recording.unsolved(exercise_id)
+    for one in verdict.criteria if verdict is not None else ():
+        if one.passed:
+            yield (
+                f"{one.points:g} for “{one.title}”. Give students less code, or change this criterion so that "
+                "the given code fails"
+            )
+
+
+def _is_in_step(exercise_id: str, tell: Callable[[str], object]) -> bool:
+    """Return True if the stored reference output equals a new recording. If none is stored, store the new one."""
+    there = exercises.reference_path(exercise_id).exists()
+    changed = reference_recording.record([exercise_id], only_check=there, tell=tell)
+    if not (there and changed):
+        return True
+    tell(
+        "The solution or the scenario has changed since the reference output was recorded. "
+        f"If the change is intended, run `{COMMAND} record {exercise_id}`, "
+        "look at the difference, and try again."
+    )
+    return False

@@ -1,0 +1,159 @@
+"""Records reference outputs: a judge watches the solution in each master, as it watches a student's answer.
+
+The grader expects of students what the recorded solution did. After a change of a solution, record it again.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import secrets
+import subprocess
+from typing import TYPE_CHECKING
+
+from autograder import course, exercises
+from autograder.judge.controlled_judge import JudgeDied, JudgeProcess
+from autograder.masters.master_files import MasterError
+from autograder.masters.reference_solutions import reference_source
+from autograder.messages.judge_messages import SOCKET_VARIABLE
+from autograder.safe_files import HeldFolder
+from environment.python_child import installed_program
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+    from pathlib import Path
+
+    from autograder.messages.judge_messages import Report
+    from autograder.verdict import Verdict
+
+
+RUN_LIMIT = 600.0
+"""Time limit in seconds for running one reference solution, which may build a workspace twice."""
+
+_CALL = """
+
+from autograder.notebook import check, start_ros
+start_ros()
+check({exercise!r}, {subject})
+"""
+
+
+class CannotRecord(RuntimeError):
+    """A reference solution could not be run, or does not meet the criteria of its exercise."""
+
+
+def record(wanted: Sequence[str], *, only_check: bool, tell: Callable[[str], object]) -> list[str]:
+    """Record reference outputs and store them.
+
+    Args:
+        wanted: Exercise ids; all exercises if empty.
+        only_check: True to compare with the stored reference outputs, and to store nothing.
+        tell: Called with one line for each exercise.
+
+    Returns:
+        The ids of the exercises whose new reference output differs from the stored one, or has no stored one.
+
+    Raises:
+        CannotRecord: A solution could not be recorded. The reference outputs recorded before it are stored.
+    """
+    changed = []
+    for exercise_id in wanted or exercises.all_ids():
+        text = recording(exercise_id)
+        file = exercises.reference_path(exercise_id)
+        if file.exists() and file.read_text(encoding="utf-8") == text:
+            tell(f"{exercise_id}: unchanged")
+            continue
+        changed.append(exercise_id)
+        if only_check:
+            tell(f"{exercise_id}: differs from {file.relative_to(course.root())}")
+        else:
+            file.write_text(text, encoding="utf-8")
+            tell(f"{exercise_id}: recorded in {file.relative_to(course.root())}")
+    return changed
+
+
+def recording(exercise_id: str) -> str:
+    """Record the reference output of an exercise, and return it as text.
+
+    Raises:
+        CannotRecord: No master has the exercise, or the solution does not meet the criteria of the exercise.
+    """
+    try:
+        exercise = exercises.get(exercise_id)
+    except (exercises.UnknownExercise, exercises.BrokenExercise) as error:
+        raise CannotRecord(str(error)) from error
+    report, output = _judged(exercise.id, program(exercise.id), record=True)
+    if report.reference is None or report.verdict is None:
+        raise CannotRecord(
+            f"{exercise.id}: {report.trouble or 'the solution never called check'}\n{output}".strip()
+        )
+    if not report.verdict.passed:
+        there = json.loads(report.reference)["interface"]
+        missing = " and no ".join(role for role in exercise.roles if role not in there)
+        has_none = f" The solution has no {missing}, which this recipe judges." * bool(missing)
+        failed = (criterion for criterion in report.verdict.criteria if not criterion.passed)
+        missed = "".join(f"\n  {c.title}: expected {c.expected}; seen {c.seen}" for c in failed)
+        raise CannotRecord(
+            f"{exercise.id}: the solution in {course.LAB} does not meet the criteria of its exercise.{has_none}{missed}"
+        )
+    return report.reference
+
+
+def unsolved(exercise_id: str) -> Verdict | None:
+    """Return the verdict on the notebook as students get it; None if the notebook ends before its check.
+
+    Raises:
+        CannotRecord: No master checks the exercise, or its master cannot be used.
+    """
+    report, _ = _judged(exercise_id, program(exercise_id, solved=False), record=False)
+    return report.verdict
+
+
+def _judged(exercise_id: str, text: str, *, record: bool) -> tuple[Report, str]:
+    """Run a program next to a judge. Return the judge's report, and what the program printed."""
+    with HeldFolder("autograder-record-") as folder:
+        file = folder.path / "reference_solution.py"
+        file.write_text(text, encoding="utf-8")
+        try:
+            with JudgeProcess(folder.path / "judge", seed=secrets.token_hex(8)) as judge:
+                judge.open(exercise_id, record=record)
+                output = _run(file, judge.socket_path)
+                return judge.close_report(), output
+        except JudgeDied as error:
+            raise CannotRecord(f"{exercise_id}: {error}") from error
+        except subprocess.TimeoutExpired as error:
+            raise CannotRecord(f"{exercise_id}: the notebook did not end within {RUN_LIMIT:g} s") from error
+
+
+def program(exercise_id: str, *, solved: bool = True) -> str:
+    """Return a notebook's code up to and including the check of an exercise, as one program.
+
+    Raises:
+        CannotRecord: No master checks the exercise, or its master cannot be used.
+    """
+    master = exercises.path(exercise_id).with_name(course.LAB)
+    if not master.is_file() or exercise_id not in master.read_text(encoding="utf-8"):
+        raise CannotRecord(f"{master} does not check {exercise_id}")
+    try:
+        solution = reference_source(master, exercise_id, solved=solved)
+    except MasterError as error:
+        raise CannotRecord(str(error)) from error
+    return solution.source + _CALL.format(exercise=exercise_id, subject=solution.subject)
+
+
+def _run(file: Path, socket: Path) -> str:
+    """Run the program. Return its output for an error message."""
+    done = subprocess.run(
+        [str(installed_program("python3")), str(file)],
+        # A solution that consists of files writes these files into the current folder.
+        cwd=file.parent,
+        env=os.environ | {SOCKET_VARIABLE: str(socket)},
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        errors="replace",
+        timeout=RUN_LIMIT,
+        check=False,
+    )
+    return done.stdout[-4000:]

@@ -1,0 +1,347 @@
+"""``autograder site``: builds the course's website with Sphinx, without access to a network.
+
+The website consists of HTML pages made from the labs, the guides and the list of mistakes. Their sources for Sphinx are
+notebooks and Markdown pages, in the folders that their links need.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+from urllib.parse import unquote
+
+import nbformat
+import re2
+import sphinx.addnodes
+from docutils import nodes
+from nbformat.v4 import new_code_cell, new_markdown_cell
+from sphinx.application import Sphinx
+
+from autograder import course
+from autograder.authoring.executed_masters import MOVING_PICTURES, run_masters
+from autograder.masters.chapter_building import release_text
+from autograder.masters.master_files import chapter_path, lab_name, masters
+from autograder.masters.source_notebooks import SET_UP_CELL as SET_UP_CELL
+from autograder.masters.source_notebooks import source_notebook
+from autograder.safe_files import HeldFolder
+from autograder.student.handout import hand_out
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from nbformat import NotebookNode
+
+
+SELF_EDITION, CLASS_EDITION = "self", "class"
+EDITIONS = (SELF_EDITION, CLASS_EDITION)
+"""The editions of the website: ``self`` for learners on their own, with solutions; ``class`` without solutions."""
+SOLUTION_SUMMARY = "Solution (click to expand)"
+STATIC_FOLDER = "_static"
+_ATTACHMENT = re2.compile(r"\(attachment:([^)]+)\)")
+_NOTEBOOK_LINK = re2.compile(r"\]\(([\w./-]*\.ipynb)#([^)]+)\)")
+_README_PICTURE = re2.compile(r"!\[[^\]]*\]\(docs/images/[^)]+\)")
+_WAYS = re2.compile(r"^(← Previous: |Next: )")
+_OUTCOME = re2.compile(r"(?m)^\| ([^|]+) \| [^|]+ \| .*/([\w-]+)\.ipynb\) \|$")
+_READER = re2.compile(r"(?m)^\*\*(.+)\*\*$")
+_TARGET = re2.compile(r"\]\(([^)#:]+)[^)]*\)")
+
+
+def write_sources(root: Path, folder: Path, edition: str, executed: Mapping[str, NotebookNode]) -> None:
+    """Write the sources of the website.
+
+    Args:
+        root: The top folder of the course.
+        folder: An empty folder.
+        edition: A value from ``EDITIONS``.
+        executed: The executed source notebooks, by the names of the labs. The pages of other labs have no outputs.
+    """
+    (folder / STATIC_FOLDER).mkdir()
+    if (root / "docs").is_dir():
+        shutil.copytree(root / "docs", folder / "docs", ignore=shutil.ignore_patterns("*.py", "*.json"))
+    (folder / "index.md").write_text(f"# {course.chapters(root)[0].title}{_contents(root)}", encoding="utf-8")
+    for page in root.glob("*.md"):
+        name = "index.md" if page.name == "README.md" else page.name
+        text = page.read_text(encoding="utf-8")
+        if name == "index.md" and edition == CLASS_EDITION:  # the pictures in README may show a solution
+            text = _README_PICTURE.sub("", text)
+        (folder / name).write_text(text + _contents(root) if name == "index.md" else text, encoding="utf-8")
+    for page in folder.rglob("*.md"):
+        text = (
+            page.read_text(encoding="utf-8")
+            .replace("../README.md", "../index.md")
+            .replace("](README.md", "](index.md")
+        )
+        page.write_text(_with_plain_anchors(text), encoding="utf-8")
+    outcomes = _outcomes(root)
+    for master in masters(root):
+        source = executed.get(lab_name(master)) or source_notebook(master)
+        for name, picture in source.metadata.pop(MOVING_PICTURES, {}).items():
+            (folder / STATIC_FOLDER / name).write_text(picture, encoding="utf-8")
+        file = folder / chapter_path(root, master).relative_to(root)
+        file.parent.mkdir(parents=True, exist_ok=True)
+        figures = {svg.with_suffix(".png").name: svg for svg in master.parents[1].glob("**/figures/*.svg")}
+        notebook = book_page(source, edition, outcomes.get(lab_name(master), ()))
+        for cell in notebook.cells:
+            for name in _ATTACHMENT.findall(cell.source):
+                shutil.copyfile(figures[unquote(name)], file.with_name(figures[unquote(name)].name))
+            cell.source = _ATTACHMENT.sub(lambda found: f"({unquote(found[1])[:-4]}.svg)", cell.source)
+            cell.pop("attachments", None)
+        nbformat.write(notebook, file)
+
+
+def book_page(source: NotebookNode, edition: str, outcomes: tuple[str, ...] = ()) -> NotebookNode:
+    """Return a lab's page as a notebook with the cells that students get, and folded solutions for learners alone.
+
+    Args:
+        source: The source notebook, with or without outputs.
+        edition: A value from ``EDITIONS``.
+        outcomes: The learning outcomes of the lab, each completing the sentence "After this notebook you can".
+    """
+    page = nbformat.reads(release_text(source), as_version=4)
+    secret = _lines_of_solutions(source, page) if edition == CLASS_EDITION else frozenset[str]()
+    cells = []
+    for solved, cell in zip(source.cells, page.cells, strict=True):
+        # Leave out the links between notebooks, because the website has its own, and the cell that prepares a kernel.
+        if _WAYS.match(cell.source) or cell.get("id") == SET_UP_CELL:
+            continue
+        changed = solved.source != cell.source
+        outputs = [one for one in solved.get("outputs", []) if secret.isdisjoint(_printed(one))]
+        cell.metadata = {}
+        if cell.cell_type == "markdown":
+            cell.source = _with_plain_anchors(cell.source)
+        else:
+            cell.outputs = [] if changed else outputs
+        cells.append(cell)
+        if changed and edition == SELF_EDITION:
+            cells.append(_folded(solved, outputs))
+    if outcomes:
+        listed = "\n".join(f"- {one}" for one in outcomes)
+        cells.insert(
+            1,
+            new_markdown_cell(
+                f":::{{admonition}} Learning Outcomes\nAfter this notebook you can\n\n{listed}\n:::"
+            ),
+        )
+    page.cells = cells
+    page.metadata.pop("celltoolbar", None)
+    return page
+
+
+def _lines_of_solutions(source: NotebookNode, page: NotebookNode) -> frozenset[str]:
+    """Return the lines that only the solutions contain. An output that shows such a line gives a solution away."""
+    solved, open_ = (
+        {line.strip() for cell in notebook.cells for line in cell.source.split("\n")}
+        for notebook in (source, page)
+    )
+    return frozenset(line for line in solved - open_ if any(map(str.isalnum, line)))
+
+
+def _printed(output: NotebookNode) -> set[str]:
+    text = str(output.get("text", "")) + str(output.get("data", {}).get("text/plain", ""))
+    return {line.strip() for line in text.split("\n")}
+
+
+def _folded(solved: NotebookNode, outputs: list[NotebookNode]) -> NotebookNode:
+    if solved.cell_type == "markdown":
+        return new_markdown_cell(
+            f"<details>\n<summary>{SOLUTION_SUMMARY}</summary>\n\n{solved.source}\n\n</details>"
+        )
+    lines = solved.source.split("\n")
+    shown = [line for line in lines if "### BEGIN SOLUTION" not in line and "### END SOLUTION" not in line]
+    said = {"code_prompt_show": SOLUTION_SUMMARY, "code_prompt_hide": "Solution (click to fold)"}
+    return new_code_cell("\n".join(shown), outputs=outputs, metadata={"tags": ["hide-input"], "mystnb": said})
+
+
+def _with_plain_anchors(text: str) -> str:
+    """Return a text whose links to headings of notebooks have anchors in lower case, as Sphinx writes them."""
+
+    def plain(link: re2._Match[str]) -> str:
+        anchor = re2.sub(r"[^\w\- ]", "", unquote(link[2]).lower()).replace(" ", "-")
+        return f"]({link[1]}#{anchor})"
+
+    return _NOTEBOOK_LINK.sub(plain, text)
+
+
+def _outcomes(root: Path) -> dict[str, tuple[str, ...]]:
+    """Return the learning outcomes of each lab, from ``docs/learning-outcomes.md``, by the names of the labs."""
+    found: dict[str, tuple[str, ...]] = {}
+    page = root / "docs" / "learning-outcomes.md"
+    for outcome, lab in _OUTCOME.findall(page.read_text(encoding="utf-8")) if page.exists() else ():
+        found[lab] = (*found.get(lab, ()), outcome)
+    return found
+
+
+def _contents(root: Path) -> str:
+    """Return the table of contents as Markdown: first the chapters, then the guides for each kind of reader."""
+    trees = {}
+    for chapter in course.chapters(root):
+        trees[chapter.title] = [f"chapters/{chapter.folder.name}/{lab.name}" for lab in chapter.labs]
+    for title, pages in _guides(root.resolve()).items():
+        trees[title] = [str(page.relative_to(root.resolve()).with_suffix("")) for page in pages]
+    return "".join(
+        f'\n\n```{{toctree}}\n:hidden:\n:caption: "{title}"\n\n' + "\n".join(pages) + "\n```\n"
+        for title, pages in trees.items()
+        if pages
+    )
+
+
+def _guides(root: Path) -> dict[str, list[Path]]:
+    """Return the guides by kind of reader, as listed in ``docs/README.md``. Pages that are not listed come last."""
+    index = root / "docs" / "README.md"
+    _, *parts = _READER.split(index.read_text(encoding="utf-8") if index.is_file() else "")
+    left = {*root.glob("*.md"), *(root / "docs").rglob("*.md")} - {root / "README.md"}
+    found = {}
+    for reader, listed in zip(parts[::2], parts[1::2], strict=True):
+        places = [(index.parent / target).resolve() for target in _TARGET.findall(listed)]
+        pages = [
+            page for place in places for page in (sorted(place.glob("*.md")) if place.is_dir() else [place])
+        ]
+        found[f"For {reader[:1].lower()}{reader[1:]}"] = [
+            page for page in dict.fromkeys(pages) if page in left
+        ]
+        left.difference_update(pages)
+    return found | {"About": sorted(left)}
+
+
+MAX_PAGE_BYTES = 1_000_000
+"""The maximum size of a page in bytes."""
+STYLE_SHEET = "book.css"
+_ICON = re2.compile(r'(?:"?([\w-]+)"?):\[\d+,\d+,\[([^\]]*)\],"[0-9a-f]*",(?:"[^"]*"|\[[^\]]*\])\],?')
+"""Matches one of the 2,000 icons in the theme's script: its name, size, other names, code and drawing."""
+_ICON_NAME = re2.compile(r"\bfa-([\w-]+)")
+_SPHINX_SETTINGS: dict[str, Any] = {
+    "author": "The maintainers of this course",
+    "extensions": ["myst_nb", "sphinx_copybutton", "autograder.authoring.site_building"],
+    "html_theme": "sphinx_book_theme",
+    "html_static_path": [STATIC_FOLDER],
+    "html_css_files": [STYLE_SHEET],
+    "html_theme_options": {
+        "navbar_persistent": [],
+        "show_navbar_depth": 1,
+        "use_download_button": False,
+        "use_fullscreen_button": False,
+        "pygments_light_style": "a11y-high-contrast-light",
+        "pygments_dark_style": "a11y-high-contrast-dark",
+    },
+    "html_context": {"default_mode": "auto"},
+    "html_copy_source": False,
+    "html_show_sphinx": False,
+    "language": "en",
+    "nb_execution_mode": "off",
+    # Without this line, pages would load scripts for Jupyter widgets from another host. No page has such widgets.
+    "nb_ipywidgets_js": {},
+    "myst_enable_extensions": ["colon_fence", "html_image"],
+    "myst_heading_anchors": 6,
+    "copybutton_prompt_text": "$ ",
+    "suppress_warnings": ["myst.header", "misc.highlighting_failure"],
+}
+
+
+def build_site(root: Path, folder: Path, edition: str, *, outputs: bool, tell: Callable[[str], None]) -> int:
+    """Build the website of a course.
+
+    Args:
+        root: The top folder of the course.
+        folder: The folder for the pages. Pages from an earlier build in it are replaced.
+        edition: A value from ``autograder.authoring.site_building.EDITIONS``.
+        outputs: True to execute the notebooks first and show their outputs.
+        tell: Called with each line to print.
+
+    Returns:
+        The number of problems: links that lead nowhere, and pages that are too large.
+    """
+    with HeldFolder("course-site-") as held:
+        executed = run_masters(masters(root), course_of(edition, root, held.path), tell) if outputs else {}
+        sources, pages = held.path / "sources", held.path / "pages"
+        sources.mkdir()
+        write_sources(root, sources, edition, executed)
+        shutil.copyfile(Path(__file__).with_name(STYLE_SHEET), sources / STATIC_FOLDER / STYLE_SHEET)
+        title = next(iter(course.chapters(root))).title
+        address = course.repository(root)
+        files = f"{address}/blob/{course.BRANCH}" if address else ""
+        settings = _SPHINX_SETTINGS | {"project": title, "html_title": title, "course_files": files}
+        with (held.path / "warnings").open("w+", encoding="utf-8") as warnings:
+            app = Sphinx(
+                sources, None, pages, held.path / "trees", "html", settings, status=None, warning=warnings
+            )
+            app.build()
+            warnings.seek(0)
+            problems = [line.strip().replace(f"{sources}/", "") for line in warnings if line.strip()]
+        problems += [
+            f"{page.relative_to(pages)} has {page.stat().st_size} bytes: at most {MAX_PAGE_BYTES} are allowed"
+            for page in pages.rglob("*.html")
+            if page.stat().st_size > MAX_PAGE_BYTES
+        ]
+        _leave_out_what_no_page_needs(pages)
+        if folder.exists():
+            shutil.rmtree(folder)
+        shutil.move(pages, folder)
+    for problem in problems:
+        tell(problem)
+    return len(problems)
+
+
+def _leave_out_what_no_page_needs(pages: Path) -> None:
+    """Delete templates, source maps and icons that no page uses. A first visit then loads 1.5 MB less."""
+    for file in [*(pages / STATIC_FOLDER).glob("*macros.html"), *(pages / STATIC_FOLDER).rglob("*.map")]:
+        file.unlink()
+    script = pages / STATIC_FOLDER / "scripts" / "fontawesome.js"
+    texts = (file.read_text(encoding="utf-8") for kind in ("html", "js") for file in pages.rglob(f"*.{kind}"))
+    shown = {name for text in texts for name in _ICON_NAME.findall(text)}
+
+    def kept(icon: re2._Match[str]) -> str:
+        names = {icon[1], *icon[2].replace('"', "").split(",")}
+        return "" if names.isdisjoint(shown) else icon[0]
+
+    script.write_text(_ICON.sub(kept, script.read_text(encoding="utf-8")), encoding="utf-8")
+
+
+def course_of(edition: str, root: Path, folder: Path) -> Path:
+    """Return the course to execute for an edition. For a class, make a hand-out: its cards do not offer solutions.
+
+    Raises:
+        autograder.student.handout.CannotHandOut: A notebook of the chapters contains the author's own work.
+    """
+    if edition == SELF_EDITION:
+        return root
+    return hand_out(folder / "handed-out", root).place
+
+
+def _settle_what_is_elsewhere(app: Sphinx, tree: nodes.document) -> None:
+    """Change what points outside the website: pictures on other hosts, and links to files of the repository.
+
+    A picture is replaced by its alternative text. A link gets the file's full address; if the course knows no address
+    of its repository, the link becomes plain text.
+    """
+    for picture in list(tree.findall(nodes.image)):
+        if str(picture["uri"]).startswith(("http:", "https:")):
+            picture.replace_self(nodes.Text(picture.get("alt", "")))
+    for link in list(tree.findall(sphinx.addnodes.pending_xref)):
+        target = str(link["reftarget"]).partition("#")[0]
+        file = os.path.normpath(Path(link["refdoc"]).parent / target)
+        if link.get("reftype") != "myst" or not target or Path(file).parts[0] == "..":
+            continue
+        if (course.root() / file).exists() and not (Path(app.srcdir) / file).is_file():
+            base = app.config.course_files
+            shown = nodes.reference(refuri=f"{base}/{file}") if base else nodes.inline()
+            shown.extend(link.children)
+            link.replace_self(shown)
+
+
+def _let_the_keyboard_move_tables(
+    _app: Sphinx, _page: str, _template: str, context: dict[str, Any], _tree: nodes.document | None
+) -> None:
+    """Make tables focusable, so that readers can scroll a wide table with the arrow keys."""
+    context["body"] = context.get("body", "").replace(
+        '<table class="table"', '<table class="table" tabindex="0"'
+    )
+
+
+def setup(app: Sphinx) -> dict[str, Any]:
+    """Register this module as an extension of Sphinx."""
+    app.connect("html-page-context", _let_the_keyboard_move_tables)
+    app.add_config_value("course_files", "", "html")
+    app.connect("doctree-read", _settle_what_is_elsewhere)
+    return {"parallel_read_safe": True}

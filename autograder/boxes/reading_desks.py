@@ -1,0 +1,210 @@
+"""Desks: processes in a box, each of which parses one file of a student, so that no trusted process has to parse it.
+
+.. code-block:: python
+
+    desk = KeptDesk("autograder.grading.rebuilding.desk_process")
+    with in_memory(data) as source, in_memory() as answer:
+        code = desk.ask(source, answer, most=1_000_000, seconds=20)
+
+All desk processes of one :class:`Desk` enter the same box. This is safe because a desk process cannot open files, start
+processes or use a network (:func:`autograder.boxes.seccomp_filter.filter_for_readers`), so it leaves no data of one
+student for the next. If no box can be made on this machine, a desk is still a separate process with limits and a filter
+of system calls.
+"""
+
+from __future__ import annotations
+
+import atexit
+import contextlib
+import os
+import shutil
+import signal
+import threading
+from typing import TYPE_CHECKING, Any
+
+from autograder.boxes.enter_box import Entrance
+from autograder.boxes.fork_server import BESIDE, FOLDER_PREFIX, INSIDE, SUPERVISOR_MODULE, ForkServer
+from autograder.boxes.process_channel import ChannelClosed
+from autograder.boxes.running_boxes import ForkedProcess
+from autograder.boxes.sandbox import Enclosure, NoSandbox
+from autograder.boxes.visible_host import base_environment
+from autograder.safe_files import HeldFolder
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Mapping
+    from pathlib import Path
+
+    from autograder.boxes.running_boxes import Box
+
+
+MEMORY_BYTES = 700_000_000
+"""The maximum address space of a desk process, in bytes. The worst notebook of 50 MB takes two thirds of it: a large
+picture in text form and one emoji, which makes Python store each character of the text in four bytes.
+"""
+_WALL_SECONDS = 600.0
+"""Time limit in seconds of wall time. A desk cannot sleep, so the limit of processor time usually ends it earlier."""
+
+
+class Desk:
+    """The fork server of desk processes, and the box that they enter.
+
+    The server and the box end when :meth:`close` is called or this process ends.
+
+    Args:
+        module: The module that a desk process runs.
+        extra: Additional environment variables of the desk processes.
+    """
+
+    def __init__(self, module: str, extra: Mapping[str, str] | None = None) -> None:
+        with contextlib.ExitStack() as started:
+            folder = HeldFolder(FOLDER_PREFIX)
+            started.callback(folder.remove)
+            server = ForkServer(INSIDE, module, folder.path / "desks", extra=extra)
+            started.callback(server.stop)
+            self._address = server.address
+            self._box = _box_in(folder.path, started)
+            self._open = started.pop_all()
+
+    @property
+    def is_boxed(self) -> bool:
+        """True if a box could be made here."""
+        return self._box is not None
+
+    def ask(
+        self, source: int, answer: int, most: int, seconds: int, call: Mapping[str, Any] | None = None
+    ) -> int:
+        """Start a desk process that reads a file and writes an answer into another file. Return its exit code.
+
+        Args:
+            source: The descriptor of the file to read.
+            answer: The descriptor of an empty file for the answer.
+            most: The maximum size of the answer in bytes.
+            seconds: The maximum processor time in seconds. If it is exceeded, the exit code is ``-SIGXCPU``.
+            call: The argument for the function ``run`` of the module.
+
+        Raises:
+            ChannelClosed: The desk process was lost or killed for a reason other than the file.
+        """
+        entrance = Entrance(
+            cwd="/",
+            environment=base_environment(),
+            boxed=self.is_boxed,
+            rlimits={"RLIMIT_AS": MEMORY_BYTES, "RLIMIT_FSIZE": most, "RLIMIT_CORE": 1},
+            call=call or {},
+            reader_seconds=seconds,
+        )
+        place = [self._box.pidfd] if self._box else []
+        process = ForkedProcess(self._address, entrance, [*place, source, answer])
+        try:
+            if not process.wait(_WALL_SECONDS) or process.status is None:
+                raise ChannelClosed("the process that reads files was lost")
+            code = os.waitstatus_to_exitcode(process.status)
+            if code == -signal.SIGKILL:
+                # A desk cannot kill itself, so Linux has killed it, usually because the machine is short of memory.
+                raise ChannelClosed("the process that reads files was killed")
+            return code
+        finally:
+            process.end()
+
+    def close(self) -> None:
+        """End all desk processes. This may be called twice."""
+        self._open.close()
+
+
+def _box_in(folder: Path, started: contextlib.ExitStack) -> Box | None:
+    """Return the box for desk processes, or None if none can be made here. The box ends when ``started`` is closed."""
+    if shutil.which("bwrap") is None:
+        return None
+    supervisors = ForkServer(BESIDE, SUPERVISOR_MODULE, folder / "supervisors")
+    started.callback(supervisors.stop)
+    with contextlib.suppress(NoSandbox):
+        return started.enter_context(Enclosure(supervisors.address, folder / "box")).box(
+            "desk", scratch=False
+        )
+    return None
+
+
+class KeptDesk:
+    """A desk that is started when it is first needed, and kept until this process ends. Any thread may use it.
+
+    Args:
+        module: The module that a desk process runs.
+        attempts: The maximum number of desks that one call of :meth:`ask` tries, each after the loss of the one before.
+        rehearse: Called with each new desk before its first file, to test it. It may raise ``ChannelClosed``.
+    """
+
+    def __init__(
+        self, module: str, *, attempts: int = 3, rehearse: Callable[[Desk], None] = lambda _: None
+    ) -> None:
+        self._module, self._attempts, self._rehearse = module, attempts, rehearse
+        self._changing = threading.Lock()
+        self._desk: Desk | None = None
+        atexit.register(self.close)
+
+    @property
+    def is_unboxed(self) -> bool:
+        """True if a desk was started, and no box could be made for it."""
+        return self._desk is not None and not self._desk.is_boxed
+
+    def ask(
+        self, source: int, answer: int, most: int, seconds: int, call: Mapping[str, Any] | None = None
+    ) -> int:
+        """Do the same as :meth:`Desk.ask`. If the desk is lost, start another desk and try again.
+
+        Raises:
+            ChannelClosed: All attempts failed for a reason other than the file. The message is about the last attempt.
+        """
+        reason = ""
+        for _ in range(self._attempts):
+            desk = None
+            try:
+                desk = self._started()
+                os.ftruncate(answer, 0)
+                return desk.ask(source, answer, most, seconds, call)
+            except (ChannelClosed, NoSandbox, OSError) as error:
+                reason = str(error)
+                self._forget(desk)
+        raise ChannelClosed(reason)
+
+    def close(self) -> None:
+        """End the desk if it was started. The next call of :meth:`ask` starts another desk."""
+        self._forget(self._desk)
+
+    def _started(self) -> Desk:
+        with self._changing:
+            if self._desk is None:
+                desk = Desk(self._module)
+                try:
+                    self._rehearse(desk)
+                except BaseException:
+                    desk.close()
+                    raise
+                self._desk = desk
+            return self._desk
+
+    def _forget(self, desk: Desk | None) -> None:
+        with self._changing:
+            if desk is not None and desk is self._desk:
+                self._desk = None
+                desk.close()
+
+
+@contextlib.contextmanager
+def in_memory(data: bytes = b"") -> Iterator[int]:
+    """Make a file in memory that contains ``data``, and yield its descriptor. The ``with`` block closes the file.
+
+    Raises:
+        ChannelClosed: The bytes do not fit into memory.
+    """
+    descriptor = os.memfd_create("desk")
+    try:
+        if os.pwrite(descriptor, data, 0) < len(data):
+            raise ChannelClosed("the file does not fit into memory")
+        yield descriptor
+    finally:
+        os.close(descriptor)
+
+
+def answer_in(descriptor: int, most: int) -> bytes:
+    """Return the answer that a desk wrote into the file with this descriptor, at most ``most`` bytes."""
+    return os.pread(descriptor, min(os.fstat(descriptor).st_size, most), 0)

@@ -1,0 +1,434 @@
+"""Running boxes, the connection to the supervisor that makes and ends them, and the processes inside.
+
+Everything here belongs to the process that started the boxes. A process inside is either the child of a fork server
+(:class:`ForkedProcess`) or a command (:class:`Running`, :class:`WarmCommand`).
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import select
+import signal
+import threading
+import time
+from dataclasses import asdict, dataclass
+from typing import TYPE_CHECKING, Any, Self
+
+from autograder.boxes.process_channel import Channel, ChannelClosed, close_all
+from autograder.process_trees import signal_group
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from autograder.boxes.enter_box import Entrance
+
+
+ANSWER_SECONDS = 30.0
+"""Time limit in seconds of wall time for an answer from a supervisor."""
+
+
+class NoSandbox(RuntimeError):
+    """No box can be made on this machine. The exception's text gives the reason, and says what to do about it."""
+
+
+@dataclass(frozen=True)
+class Box:
+    """A running box.
+
+    Attributes:
+        name: The name of this box, unique among the boxes of its supervisor.
+        pid: The PID of the box's first process, as seen from the host.
+        pidfd: A pidfd of the box's first process, which a fork server needs to enter the box; -1 for a command that
+            ended at once. ``supervision`` closes it.
+        guarded: True if the guard's limits apply to every process that enters the box.
+        supervision: The connection to the supervisor, through which this box is ended.
+    """
+
+    name: str
+    pid: int
+    pidfd: int
+    guarded: bool
+    supervision: Supervision
+
+    @property
+    def lost(self) -> bool:
+        """True if the supervisor has ended, and with it this box. An exit code then says nothing about student code."""
+        return self.supervision.lost
+
+    def end(self) -> int:
+        """Kill the box, and wait until none of its processes is alive. This may be called twice.
+
+        Returns:
+            The exit code of the box's command; if a signal ended it, 128 plus the number of the signal.
+
+        Raises:
+            ChannelClosed: The supervisor has ended.
+        """
+        return self.supervision.end(self.name)
+
+    def wait_end(self) -> int:
+        """Wait until the box ends by itself. Return the exit code, as :meth:`end` does.
+
+        Raises:
+            ChannelClosed: The box did not end in time, or the supervisor has ended.
+        """
+        return self.supervision.wait_end(self.name)
+
+
+class Supervision:
+    """A connection to one supervisor process, which several threads may use.
+
+    Args:
+        supervisors: The socket address of the fork server that starts supervisors.
+        words: The arguments of the supervisor's method `_open`, such as the path and size of the scratch.
+
+    Raises:
+        NoSandbox: The supervisor could not make the namespaces.
+    """
+
+    def __init__(self, supervisors: str, **words: Any) -> None:
+        self._boxes: dict[str, Box] = {}
+        self._ended: dict[str, int] = {}
+        self._turn = threading.RLock()
+        self._channel = Channel.to(supervisors)
+        try:
+            self._ask("opened", say="open", **words)
+        except BaseException:
+            self._channel.close()
+            raise
+
+    def start(
+        self, name: str, descriptors: Sequence[int] = (), *, guarded: bool = False, **words: Any
+    ) -> Box:
+        """Start a box.
+
+        Args:
+            name: A name that no other box of this supervisor has.
+            descriptors: Standard input, output and error for the box's command, if it has one. The caller keeps its
+                own copies.
+            guarded: True if the guard's limits apply to every process that enters; see :class:`Box`.
+            words: The remaining arguments of the supervisor's method `_start`.
+
+        Raises:
+            NoSandbox: The supervisor could not make the box.
+        """
+        with self._turn:
+            message, received = self._ask("started", descriptors, say="start", name=name, **words)
+            pidfd = received[0] if received else -1
+            box = self._boxes[name] = Box(name, message["pid"], pidfd, guarded, self)
+        return box
+
+    @property
+    def lost(self) -> bool:
+        """True if the supervisor has ended, and with it all its boxes."""
+        return self._channel.hung_up
+
+    def end(self, name: str) -> int:
+        """Kill the box with this name; see :meth:`Box.end`."""
+        with self._turn:
+            if name not in self._ended:
+                self._channel.send({"say": "kill", "name": name})
+            return self.wait_end(name)
+
+    def wait_end(self, name: str) -> int:
+        """Wait for the box with this name to end by itself; see :meth:`Box.wait_end`."""
+        with self._turn:
+            while name not in self._ended:
+                self._take(*self._channel.receive(ANSWER_SECONDS))
+            box = self._boxes.pop(name, None)
+            if box is not None:
+                close_all([box.pidfd])
+            return self._ended[name]
+
+    def abandon(self) -> None:
+        """Make the supervisor end all boxes, but do not wait. Any thread may call this, even if another one waits."""
+        self._channel.hang_up()
+
+    def close(self) -> None:
+        """End all boxes, and wait until none of their processes is alive. This may be called twice."""
+        try:
+            for name in list(self._boxes):
+                self.end(name)
+        except ChannelClosed:
+            pass  # the supervisor has ended, and its boxes with it
+        finally:
+            self._channel.close()
+            close_all([box.pidfd for box in self._boxes.values()])
+            self._boxes.clear()
+
+    def _ask(
+        self, expected: str, descriptors: Sequence[int] = (), **message: Any
+    ) -> tuple[dict[str, Any], list[int]]:
+        try:
+            with self._turn:
+                self._channel.send(message, descriptors)
+                while True:
+                    answer, received = self._channel.receive(ANSWER_SECONDS)
+                    if answer["say"] == expected:
+                        return answer, received
+                    self._take(answer, received)
+        except ChannelClosed as error:
+            raise NoSandbox(f"the supervisor of the boxes has ended: {error}") from error
+
+    def _take(self, message: dict[str, Any], descriptors: Sequence[int]) -> None:
+        close_all(descriptors)
+        if message["say"] == "ended":
+            self._ended[message["name"]] = message["status"]
+        elif message["say"] == "failed":
+            raise NoSandbox(message["why"])
+
+
+_START_SECONDS = 60.0
+_CLOSING_SECONDS = 10.0
+"""Seconds for which a command may still run after it closed its output."""
+_ITS_TIME = 1e6
+"""Time limit in seconds for a program of a check. The judge ends the program earlier, so the limit is never reached."""
+
+
+class ForkedProcess:
+    """A process that a fork server has forked on request.
+
+    The forked process is killed as soon as the connection to it is closed, for example because the grader has crashed.
+
+    Args:
+        address: The socket address of the fork server.
+        entrance: The settings with which the process starts.
+        descriptors: File descriptors for the process. The caller keeps its own copies.
+        box: The box that the process enters, and that ends with the process; None if it runs outside any box.
+
+    Raises:
+        ChannelClosed: The fork server has ended, or the child could not enter the box.
+    """
+
+    def __init__(
+        self, address: str, entrance: Entrance, descriptors: Sequence[int], box: Box | None = None
+    ) -> None:
+        self._box = box
+        self._channel = Channel.to(address)
+        self._status: int | None = None
+        self._lost = False
+        try:
+            self._channel.send(asdict(entrance), [*([box.pidfd] if box else []), *descriptors])
+            message, _ = self._channel.receive(_START_SECONDS)
+        except BaseException:
+            self._channel.close()
+            raise
+        self.pid = int(message["pid"])
+        """The process id, as seen from the host."""
+
+    def fileno(self) -> int:
+        """Return the descriptor that becomes readable when the process has ended."""
+        return self._channel.fileno()
+
+    @property
+    def alive(self) -> bool:
+        """True if the process still runs."""
+        self._look(0.0)
+        return self._status is None and not self._lost
+
+    @property
+    def status(self) -> int | None:
+        """The wait status of the process (wait(2)); None while the process runs, or if the status is lost."""
+        self._look(0.0)
+        return self._status
+
+    @property
+    def lost(self) -> bool:
+        """True if the supervisor or the box ended before the process, so that the process has no status of its own."""
+        self._look(0.0)
+        return self._lost or (self._box is not None and self._box.lost)
+
+    def interrupt(self) -> None:
+        """Send SIGINT to the process and its process group."""
+        if self.alive:
+            signal_group(self.pid, signal.SIGINT)
+
+    def wait(self, within: float) -> bool:
+        """Wait for the process to end. Return True if it has ended.
+
+        Args:
+            within: The maximum number of seconds to wait.
+        """
+        self._look(within)
+        return self._status is not None or self._lost
+
+    def abandon(self) -> None:
+        """Kill the process, which then counts as lost, but do not wait for its end. Any thread may call this."""
+        self._channel.hang_up()
+
+    def end_box(self) -> None:
+        """Kill every process in the box. The exit status of this process can still be read."""
+        if self._box is not None:
+            with contextlib.suppress(OSError):
+                self._box.end()
+
+    def end(self) -> None:
+        """Kill the process and everything that it started in its box. This may be called twice."""
+        self.end_box()
+        if self._channel.fileno() < 0:
+            return
+        if self.alive:
+            with contextlib.suppress(ProcessLookupError):
+                os.kill(self.pid, signal.SIGKILL)
+            self.wait(_START_SECONDS)
+        self._channel.close()
+
+    def _look(self, within: float) -> None:
+        if self._status is not None or self._lost or self._channel.fileno() < 0:
+            return
+        if not select.select([self._channel], [], [], max(0.0, within))[0]:
+            return
+        try:
+            self._status = int(self._channel.receive()[0]["status"])
+        except ChannelClosed:
+            self._lost = True
+
+
+@dataclass(frozen=True)
+class Finished:
+    """The result of a command that ran in a box.
+
+    Attributes:
+        returncode: As in :class:`subprocess.Popen`: the exit code, or a negative number if a signal ended it. None if
+            the command was stopped at its time limit.
+        output: Standard output and standard error, in the order of arrival, cut to the allowed number of bytes.
+        cut: True if output was dropped, because there was more than the allowed number of bytes.
+    """
+
+    returncode: int | None
+    output: bytes
+    cut: bool
+
+
+class Running:
+    """A command that runs in a box. At the end of the ``with`` block, it and everything that it started are ended."""
+
+    def __init__(self, box: Box, output: int, most: int) -> None:
+        self._box, self._output, self._most = box, output, most
+        self._began = time.monotonic()
+        self._kept = bytearray()
+        self._cut = False
+        self.pid = box.pid
+        """The PID, as seen from outside the box, of the box's first process."""
+
+    def read(self, within: float) -> bool:
+        """Read available output. Return False once the command has ended.
+
+        Args:
+            within: The maximum number of seconds to wait for output.
+        """
+        piece = self.next_output(max(0.0, within))
+        if piece is None:
+            return True
+        room = self._most - len(self._kept)
+        self._kept += piece[:room]
+        self._cut = self._cut or len(piece) > room
+        return bool(piece)
+
+    @property
+    def said(self) -> bytes:
+        """Return the output that has been read and kept so far."""
+        return bytes(self._kept)
+
+    def wait(self, limit: float) -> Finished:
+        """Wait until the command ends. At the limit, stop it.
+
+        Args:
+            limit: Seconds of wall time, counted from the start of the command.
+        """
+        deadline = self._began + limit
+        running = True
+        while running and time.monotonic() < deadline:
+            running = self.read(deadline - time.monotonic())
+        if running:
+            self._box.end()
+        returncode = None if running else _returncode(self._box.wait_end())
+        return Finished(returncode, self.said, self._cut)
+
+    def next_output(self, within: float) -> bytes | None:
+        """Return the output since the last call, and do not keep it; None if there is none yet, b"" at the end.
+
+        Args:
+            within: The maximum number of seconds to wait for output.
+        """
+        if not select.select([self._output], [], [], within)[0]:
+            return None
+        return os.read(self._output, 1 << 16)
+
+    def exit_code(self) -> int | None:
+        """After the end of the output, wait until the box ends. Return the exit code as in ``Finished.returncode``."""
+        return self.wait(_ITS_TIME).returncode
+
+    def interrupt(self) -> None:
+        """Send Ctrl-C as a terminal does: to the whole process group at once.
+
+        If the processes got the signal one by one, a program could end, and `ros2 run` with it, before Ctrl-C reached
+        `ros2 run`. The box does not end, although its first process is in the group, too: a PID namespace's first
+        process ignores signals for which it has no handler (pid_namespaces(7)).
+        """
+        signal_group(self.pid, signal.SIGINT)
+
+    def end(self) -> None:
+        """Kill the command and everything that it started. This may be called twice."""
+        if self._output >= 0:
+            self._box.end()
+            os.close(self._output)
+            self._output = -1
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.end()
+
+
+class WarmCommand:
+    """A command that a fork server has forked into a separate box.
+
+    Args:
+        process: The process of the command. The box ends with it.
+        output: A descriptor from which the output of the command is read.
+        pid: The PID of the box's first process, as seen from the host.
+    """
+
+    def __init__(self, process: ForkedProcess, output: int, pid: int) -> None:
+        self._process, self._output, self.pid = process, output, pid
+
+    def next_output(self, within: float) -> bytes | None:
+        """Return new output; see :meth:`Running.next_output`. Once the command has ended, kill what it left running."""
+        process = self._process.fileno()
+        ready = select.select([self._output, process], [], [], within)[0]
+        if process in ready:
+            self._process.end_box()  # processes left behind may hold the output open, or write forever
+        return os.read(self._output, 1 << 16) if ready else None
+
+    def exit_code(self) -> int | None:
+        """Wait for the command's end, and return its exit code in the form of ``Finished.returncode``.
+
+        Call this only after the end of the output. The result is None if the exit code is unknown.
+        """
+        if not self._process.wait(_CLOSING_SECONDS):
+            self._process.end_box()  # the command closed its output but goes on; this is the last chance to stop it
+            self._process.wait(ANSWER_SECONDS)
+        status = self._process.status
+        if status is None:
+            return None
+        code = os.waitstatus_to_exitcode(status)
+        return _returncode(code) if code >= 0 else code
+
+    def interrupt(self) -> None:
+        """Send Ctrl-C as a terminal does: to the whole process group."""
+        self._process.interrupt()
+
+    def end(self) -> None:
+        """Kill the command and everything that it started. This may be called twice."""
+        if self._output >= 0:
+            self._process.end()
+            os.close(self._output)
+            self._output = -1
+
+
+def _returncode(status: int) -> int:
+    """Convert a shell's exit code, 128 plus the number of a signal, to that of :class:`subprocess.Popen`."""
+    return status if status < 128 else 128 - status

@@ -1,0 +1,332 @@
+"""The part of the host that a box sees: files, as arguments for bubblewrap, and environment variables.
+
+A box sees only what Python, ROS and the build of a workspace need, read-only: the system's programs and libraries, the
+Python installation, the environment with the course's packages, and this package. It sees no ``solutions/``, no class
+and no home folder, even if an installation lies inside one. It can write only to the scratch, a file system in memory
+that has a size limit and disappears with the box. Of the environment variables, a box gets only those that Python and
+ROS need.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import functools
+import os
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+
+
+_PACKAGE = Path(__file__).resolve().parents[1]
+SYSTEM = ("/usr", "/bin", "/sbin", "/lib", "/lib32", "/lib64", "/libx32")
+_ETC_OF_THE_HOST = ("ld.so.cache", "ld.so.conf", "localtime", "timezone", "protocols", "services")
+ETC_FOLDERS = ("alternatives", "ld.so.conf.d")
+_SEARCH_PATHS = ("AMENT_PREFIX_PATH", "CMAKE_PREFIX_PATH", "LD_LIBRARY_PATH", "PYTHONPATH", "PATH")
+
+USER = "student"
+"""The name of the user in a box. The user's id is 1000, as for the first user on many systems."""
+USER_ID = 1000
+HOME = Path("/home") / USER
+WORK = HOME / "notebook"
+"""The folder that contains the notebook's files: those next to the notebook, and those that it writes."""
+
+_PROC_HIDDEN = {"kcore", "kmsg", "keys", "key-users"}
+"""Files in ``/proc`` that say more about the machine and its users than a program needs."""
+
+ETC = "etc"
+"""The folder of the scratch that becomes the ``/etc`` of a box, to which no box can write."""
+TERMINALS = "pts"
+"""The folder of the scratch that contains the pseudo-terminals of all boxes of a supervisor."""
+_ETC_FILES = {
+    "passwd": f"{USER}:x:{USER_ID}:{USER_ID}::{HOME}:/bin/sh\n",
+    "group": f"{USER}:x:{USER_ID}:\n",
+    "hosts": "127.0.0.1 localhost box\n",
+    "nsswitch.conf": "passwd: files\ngroup: files\nhosts: files\n",
+}
+
+
+@dataclass(frozen=True)
+class Bind:
+    """A file or folder of the host that a box can see, but only read.
+
+    Attributes:
+        source: The path on the host.
+        place: The path in the box; None for the same path as on the host.
+    """
+
+    source: Path
+    place: Path | None = None
+
+    def arguments(self) -> list[str]:
+        """Return the arguments for bubblewrap."""
+        return ["--ro-bind", str(self.source), str(self.place or self.source)]
+
+
+@dataclass(frozen=True)
+class SymbolicLink:
+    """A symbolic link that exists only in the box.
+
+    Attributes:
+        place: The path of the link.
+        target: The path, in the box, to which the link leads.
+    """
+
+    place: Path
+    target: Path
+
+    def arguments(self) -> list[str]:
+        """Return the arguments for bubblewrap."""
+        return ["--symlink", str(self.target), str(self.place)]
+
+
+def box_arguments(
+    scratch: Path, binds: Sequence[Bind | SymbolicLink], *, scratch_visible: bool = True
+) -> list[str]:
+    """Return the arguments with which bubblewrap makes a box.
+
+    Args:
+        scratch: The supervisor's file system in memory.
+        binds: What the box sees in addition to the system, Python and this package.
+        scratch_visible: True if the box's home, ``/tmp`` and ``/dev/shm`` are folders of the scratch. If False, they
+            are small file systems of this box alone.
+    """
+    words = [
+        "--unshare-user", "--unshare-pid", "--unshare-ipc", "--unshare-uts", "--unshare-cgroup-try",
+        "--uid", str(USER_ID), "--gid", str(USER_ID), "--hostname", "box",
+        "--cap-drop", "ALL", "--die-with-parent", "--clearenv",
+    ]  # fmt: skip
+    words += system()
+    words += _etc(scratch)
+    words += [
+        "--proc",
+        "/proc",
+        *_proc_covers(),
+        "--dev",
+        "/dev",
+        "--dev-bind",
+        str(scratch / TERMINALS),
+        "/dev/pts",
+    ]
+    if scratch_visible:
+        for name, place in (("home", HOME), ("work", WORK), ("tmp", Path("/tmp")), ("shm", Path("/dev/shm"))):
+            words += ["--bind", str(scratch / name), str(place)]
+    else:
+        for place in (HOME, Path("/tmp"), Path("/dev/shm")):
+            words += ["--size", "64000000", "--tmpfs", str(place)]
+    cover = _course_below_the_scratch()
+    words += [word for folder in cover for word in ("--tmpfs", folder)]
+    for bind in (*(Bind(path) for path in installation()), *binds):
+        words += bind.arguments()
+    # The other folders that bubblewrap makes are file systems in memory without a size limit, so they are made
+    # read-only.
+    return [*words, *(word for folder in ("/dev", "/", *cover) for word in ("--remount-ro", folder))]
+
+
+def _course_below_the_scratch() -> tuple[str, ...]:
+    """Return the folder of the course's git clone if a box could write to it; else nothing.
+
+    A box can write to ``/tmp`` and its home. A clone in one of these is made read-only, because Python imports from the
+    clone. Nothing has to be done for a package installed with pip, because it is inside Python's own folder, which the
+    box sees read-only anyway.
+    """
+    folder = _PACKAGE.parent
+    if folder.is_relative_to(sys.prefix) or not any(map(folder.is_relative_to, (HOME, Path("/tmp")))):
+        return ()
+    return (str(folder),)
+
+
+def _etc(scratch: Path) -> list[str]:
+    """Return the mounts for the ``/etc`` of a box: the files that the supervisor wrote, and two folders of the host."""
+    words = ["--ro-bind", str(scratch / ETC), "/etc"]
+    for name in ETC_FOLDERS:
+        words += ["--ro-bind-try", f"/etc/{name}", f"/etc/{name}"]
+    return words
+
+
+@functools.cache
+def etc_files() -> Mapping[str, bytes]:
+    """Return the files for a box's ``/etc``, by name, such as those with the user, the host and the time zone."""
+    files = {name: text.encode() for name, text in _ETC_FILES.items()}
+    for name in _ETC_OF_THE_HOST:
+        with contextlib.suppress(OSError):
+            files[name] = Path("/etc", name).read_bytes()
+    return files
+
+
+@functools.cache
+def _proc_covers() -> tuple[str, ...]:
+    """Return bubblewrap's arguments that protect the writable files in ``/proc``, which affect the whole machine.
+
+    These arguments are needed if the grader is root: then the kernel treats the user of a box as root, too, and root
+    may write to the settings in ``/proc/sys`` even without any capability.
+    """
+    words: list[str] = []
+    for path in sorted(Path("/proc").iterdir()):
+        if path.name.isdecimal() or path.is_symlink():
+            continue
+        if path.is_dir():
+            # Bind only folders that need it, because bubblewrap reads the list of mounts again for each bind.
+            words += ["--ro-bind", str(path), str(path)] if _can_be_written_below(path) else []
+        elif path.name in _PROC_HIDDEN or path.stat().st_mode & 0o222:
+            words += ["--ro-bind", "/dev/null", str(path)]
+    return tuple(words)
+
+
+def _can_be_written_below(folder: Path) -> bool:
+    return any(
+        Path(place, name).lstat().st_mode & 0o222
+        for place, _, names in os.walk(folder)
+        for name in names
+        if not Path(place, name).is_symlink()
+    )
+
+
+def system() -> list[str]:
+    """Return the programs and libraries of the system, as arguments for bubblewrap."""
+    words: list[str] = []
+    for name in SYSTEM:
+        path = Path(name)
+        if path.is_symlink():
+            words += ["--symlink", str(path.readlink()), name]
+        elif path.is_dir():
+            words += ["--ro-bind", name, name]
+    return words
+
+
+@functools.cache
+def installation() -> tuple[Path, ...]:
+    """Return the folders of Python, ROS and this package that lie outside the system's folders.
+
+    For a virtual environment, these are its own prefix and that of the Python that made it. For a sourced ROS, they are
+    the folders in its search paths. But a folder from a search path is used only if it is an installation, that is,
+    below the prefix of ROS (``share/ament_index``) or of conda.
+    """
+    return _installation(os.environ)
+
+
+def _installation(variables: Mapping[str, str]) -> tuple[Path, ...]:
+    wanted = {Path(sys.prefix), Path(sys.base_prefix), Path(sys.base_prefix).resolve(), _PACKAGE}
+    helper = _PACKAGE.parent / "environment"
+    if (helper / "ros2_command").is_dir():
+        wanted.add(helper)
+    for name in _SEARCH_PATHS:
+        for entry in variables.get(name, "").split(os.pathsep):
+            prefix = _ros_prefix(Path(entry)) if entry.startswith("/") else None
+            if prefix is not None:
+                wanted.add(prefix)
+    return tuple(_outermost(path for path in wanted if path.is_dir() and not _in_system(path)))
+
+
+def _ros_prefix(path: Path) -> Path | None:
+    """Return the ROS installation that contains a path; None if there is none."""
+    for folder in (path, *path.parents):
+        if (folder / "share" / "ament_index").is_dir() or (folder / "conda-meta").is_dir():
+            return folder
+    return None
+
+
+def _in_system(path: Path) -> bool:
+    return any(path.is_relative_to(folder) for folder in SYSTEM)
+
+
+def _outermost(paths: Iterable[Path]) -> list[Path]:
+    """Return those folders that are not inside another one of them."""
+    every = sorted(set(paths))
+    return [
+        path for path in every if not any(path != other and path.is_relative_to(other) for other in every)
+    ]
+
+
+_KEPT = {
+    "PATH",
+    "LANG",
+    "LANGUAGE",
+    "TZ",
+    "LD_LIBRARY_PATH",
+    "PYTHONPATH",
+    "PYTHONUTF8",
+    "VIRTUAL_ENV",
+    "CONDA_PREFIX",
+}
+_KEPT_PREFIXES = (
+    "LC_",
+    "ROS_",
+    "RMW_",
+    "RCUTILS_",
+    "AMENT_",
+    "CMAKE_PREFIX",
+    "COLCON_PREFIX",
+    "FASTDDS_",
+    "_ROS_WHEELS_",
+)
+_NO_THREADS = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
+"""Variables that keep numpy's libraries from starting threads when they are loaded.
+
+A fork would lose these threads. A program in which ROS imports numpy would then wait in a busy loop for work that
+never comes.
+"""
+
+
+def base_environment(given: Mapping[str, str] | None = None) -> dict[str, str]:
+    """Return the environment of a fork server and of every box: what Python and ROS need, and nothing else.
+
+    Args:
+        given: The environment to take values from; None for the environment of this process.
+    """
+    found = (os.environ if given is None else given).items()
+    kept = {name: value for name, value in found if name in _KEPT or name.startswith(_KEPT_PREFIXES)}
+    own = {"HOME": "/nonexistent", "PYTHONNOUSERSITE": "1", "PYTHONDONTWRITEBYTECODE": "1"}
+    return {**kept, **_NO_THREADS, **own}
+
+
+def box_environment(
+    extra: Mapping[str, str] | None = None, given: Mapping[str, str] | None = None
+) -> dict[str, str]:
+    """Return the complete environment of a process in a box.
+
+    Args:
+        extra: Variables to set, whatever their values on the host.
+        given: The environment to take values from; None for the environment of this process.
+    """
+    return {
+        **base_environment(given),
+        "USER": USER,
+        "HOME": str(HOME),
+        "TMPDIR": "/tmp",
+        "ROS_LOG_DIR": str(HOME / ".ros" / "log"),
+        "IPYTHONDIR": str(HOME / ".ipython"),
+        "JUPYTER_CONFIG_DIR": str(HOME / ".jupyter"),
+        **(extra or {}),
+    }
+
+
+def kernel_environment(scratch: Path, extra: Mapping[str, str]) -> dict[str, str]:
+    """Return the complete environment of a kernel that has its home, temporary and log folders in ``scratch``.
+
+    Args:
+        scratch: An existing folder. The folders inside it are created here.
+        extra: Variables to set, whatever their values on the host.
+    """
+    kept = {
+        name: value for name, value in os.environ.items() if name in _KEPT or name.startswith(_KEPT_PREFIXES)
+    }
+    folders = {
+        "HOME": scratch / "home",
+        "TMPDIR": scratch / "tmp",
+        "ROS_LOG_DIR": scratch / "log",
+        "IPYTHONDIR": scratch / "home" / ".ipython",
+        "JUPYTER_CONFIG_DIR": scratch / "home" / ".jupyter",
+    }
+    for folder in folders.values():
+        folder.mkdir(parents=True, exist_ok=True)
+    return {
+        **kept,
+        **{name: str(folder) for name, folder in folders.items()},
+        "PYTHONNOUSERSITE": "1",
+        "PYTHONDONTWRITEBYTECODE": "1",
+        **extra,
+    }

@@ -1,0 +1,228 @@
+"""Renders HTML: the card of a verdict and the certificate of a chapter, as a notebook displays them; also other pages.
+
+The HTML of a card contains no script, no id and no URL, so several cards can share a page and nothing is loaded. If a
+notebook is not trusted, JupyterLab's sanitizer removes ``<style>``, ``<svg>`` and ``aria-*`` from the card. The card
+then still consists of a heading, sentences and tables in the right order.
+"""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+from functools import cache
+from importlib.resources import files
+from typing import TYPE_CHECKING, Any, Unpack
+
+from jinja2 import Environment, PackageLoader, StrictUndefined, Template
+
+from autograder.cards import card_wording
+from autograder.cards.card_content import ON_A_PAGE, Card, Choices
+from autograder.cards.readable_text import one_line, wrap
+from autograder.cards.text_rendering import card_text
+from autograder.cards.timeline_layout import HALF_WIDTH, WIDTH, Picture, picture
+from autograder.verdict import State
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from autograder.cards.card_traffic import TrafficPart
+    from autograder.verdict import Verdict
+
+
+_SYMBOLS = {State.PASSED: "✓", State.FAILED: "✗", State.NOT_CHECKED: "?"}
+
+# These colors are used only in an untrusted notebook, which has no style sheet. They are legible on white and on
+# black.
+_PLAIN_COLOURS = {State.PASSED: "#2f8f57", State.FAILED: "#c8641a", State.NOT_CHECKED: "#6482c8"}
+
+
+def card_bundle(verdict: Verdict, **choices: Unpack[Choices]) -> dict[str, str]:
+    """Return the card as ``display(..., raw=True)`` takes it: HTML for browsers, text for other front ends."""
+    html, text = card_html(verdict, buttons=True, **choices), card_text(verdict, **choices)
+    return {"text/html": html, "text/plain": text}
+
+
+def waiting_bundle(title: str, doing: str, *, over: bool = False) -> dict[str, str]:
+    """Return the placeholder for a card without a result.
+
+    Args:
+        title: The title of the exercise.
+        doing: The current step, or why there is no result.
+        over: True if the check has ended. If False, JupyterLab changes the card as soon as the kernel ends.
+    """
+    css, template = _templates()
+    waiting = template.environment.get_template("waiting.html.j2")
+    title, doing = one_line(title, 160), one_line(doing, 600)
+    html = waiting.render(title=title, doing=doing, over=over, css=css)
+    return {"text/html": html, "text/plain": f"{title}: {doing}"}
+
+
+def prepare_templates() -> None:
+    """Load the templates in advance, so that the first card appears about 40 ms sooner."""
+    _templates()
+
+
+def card_html(verdict: Verdict, *, buttons: bool = False, **choices: Unpack[Choices]) -> str:
+    """Return a verdict as HTML, with all texts escaped: for JupyterLab, nbgrader's feedback or any other page.
+
+    Args:
+        verdict: The verdict.
+        buttons: True to add the buttons Check, Watch and Next, which appear only in JupyterLab with the course's
+            commands.
+        choices: Further options for the card.
+    """
+    css, template = _templates()
+    card = Card.of(verdict, ON_A_PAGE, **choices)
+    width = WIDTH if len(card.traffic.parts) <= 2 else HALF_WIDTH
+    return template.render(
+        card=card,
+        parts=[_Part.of(part, width) for part in card.traffic.parts],
+        moments=[moment for part in card.traffic.parts for moment in part.moments],
+        css=css,
+        symbol=_SYMBOLS[card.state],
+        colour=_PLAIN_COLOURS[card.state],
+        facts=one_line(" · ".join(card.facts), 200),
+        buttons=buttons,
+    )
+
+
+@dataclass(frozen=True)
+class _Part:
+    """A part of the traffic: its picture, and a row of the table for each moment (time, lane, direction, words)."""
+
+    title: str
+    label: str
+    simulated: bool
+    picture: Picture | None
+    moments: tuple[tuple[str, str, str, str], ...]
+    gaps: Mapping[int, int]
+
+    @classmethod
+    def of(cls, part: TrafficPart, width: int) -> _Part:
+        title = one_line(part.title, 120)
+        label = "Traffic in its order" if part.stands_still else f"Traffic over {part.kind_of_time}"
+        return cls(
+            title=title,
+            label=label + (f", {title}" if title else ""),
+            simulated=part.simulated,
+            picture=picture(part, width) if part.is_worth_a_picture else None,
+            moments=tuple(
+                (
+                    part.when(index),
+                    one_line(moment.lane, 80),
+                    card_wording.direction(moment.direction),
+                    one_line(moment.label, 160),
+                )
+                for index, moment in enumerate(part.moments)
+            ),
+            gaps=part.gaps,
+        )
+
+
+@cache
+def _templates() -> tuple[Any, Template]:
+    """Return the style sheet and the template of the card. They are read only once."""
+    # Imported at the first use, because a terminal that only prints text does not need it.
+    from jinja2 import Environment, PackageLoader, StrictUndefined
+    from markupsafe import Markup
+
+    environment = Environment(
+        loader=PackageLoader("autograder.cards", ""), autoescape=True, undefined=StrictUndefined
+    )
+    environment.filters["breakable"] = _breakable
+    shapes: Any = environment.get_template("shapes.html.j2").module
+    environment.globals |= {"shape": shapes.shape, "wording": card_wording}
+    for name in environment.list_templates(extensions=["j2"]):
+        # Compile the included templates now, so that the first card does not have to wait for that.
+        environment.get_template(name)
+    css = (files("autograder.cards") / "card.css").read_text(encoding="utf-8")
+    return Markup(css), environment.get_template("card.html.j2")
+
+
+def _breakable(text: str) -> Any:
+    """Return ``text`` escaped, with a possible line break after each slash, because ROS names are long."""
+    from markupsafe import Markup, escape
+
+    return Markup("/<wbr/>").join(escape(part) for part in text.split("/"))
+
+
+CERTIFICATE_WORDS = "Made on your own machine, and checked by the judge there. It is not a grade."
+"""The line on each certificate that says what the certificate means."""
+_TITLE_WIDTH = 42
+"""The maximum length of a line of the title, in characters."""
+
+
+def certificate_svg(title: str, points: float, finished: float) -> str:
+    """Return the certificate as SVG, with all texts escaped.
+
+    Args:
+        title: The title of the chapter.
+        points: The total points of the chapter.
+        finished: The Unix time in seconds at which the last point was reached.
+    """
+    return _certificate_template().render(
+        label=certificate_text(title, points, finished),
+        title=_lines(title),
+        points=_points(points),
+        date=_date(finished),
+        words=CERTIFICATE_WORDS,
+    )
+
+
+def certificate_text(title: str, points: float, finished: float) -> str:
+    """Return the certificate in words.
+
+    Args:
+        title: The title of the chapter.
+        points: The total points of the chapter.
+        finished: The Unix time in seconds at which the last point was reached.
+    """
+    return (
+        f"Chapter complete: {one_line(title, 160)}. {_points(points)}, {_date(finished)}. {CERTIFICATE_WORDS}"
+    )
+
+
+def certificate_bundle(title: str, points: float, finished: float) -> dict[str, str]:
+    """Return the certificate as ``display(..., raw=True)`` takes it. For the arguments see :func:`certificate_svg`."""
+    return {
+        "text/html": f'<div class="agc-certificate">{certificate_svg(title, points, finished)}</div>',
+        "text/plain": certificate_text(title, points, finished),
+    }
+
+
+def _points(points: float) -> str:
+    return f"All {card_wording.points(points)} points of all exercises"
+
+
+def _date(finished: float) -> str:
+    day = time.localtime(finished)
+    return f"{day.tm_mday} {time.strftime('%B %Y', day)}"
+
+
+def _lines(title: str) -> Sequence[str]:
+    title = one_line(title, 2 * _TITLE_WIDTH)
+    name, colon, rest = title.partition(": ")
+    if colon and len(title) > _TITLE_WIDTH and max(len(name), len(rest)) < _TITLE_WIDTH:
+        return [f"{name}:", rest]
+    return wrap(title, _TITLE_WIDTH)[:2]
+
+
+@cache
+def _certificate_template() -> Template:
+    source = files("autograder.cards").joinpath("certificate.svg.j2").read_text(encoding="utf-8")
+    return Template(source, autoescape=True)
+
+
+def page_templates(package: str) -> Environment:
+    """Return the templates in the folder of a package.
+
+    Args:
+        package: The name of the package, such as ``"autograder.student"``.
+    """
+    return Environment(
+        loader=PackageLoader(package, ""),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )

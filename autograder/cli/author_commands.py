@@ -1,0 +1,200 @@
+"""The commands for authors: build, execute and record the course, and add an exercise."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import click
+
+from autograder.cli.command_results import NO, fail, need_ros
+from environment.installation import COMMAND
+
+
+@click.command()
+@click.option("--check", "only_check", is_flag=True, help="Write nothing; fail if a notebook is out of date.")
+def build(only_check: bool) -> None:
+    """Build the chapter notebooks from their masters."""
+    from autograder import course
+    from autograder.masters.chapter_building import build_command
+
+    sys.exit(build_command(course.root(), check=only_check))
+
+
+@click.command()
+@click.argument("notebooks", nargs=-1, metavar="[NOTEBOOK]...")
+@click.option(
+    "--jobs",
+    type=click.IntRange(min=1),
+    help="The number of notebooks to run at the same time. The default is as many as processors and memory allow.",
+)
+@click.option(
+    "--reports",
+    type=click.Path(path_type=Path),
+    help="Write the pages about failed notebooks into this folder.",
+)
+def execute(notebooks: tuple[str, ...], jobs: int | None, reports: Path | None) -> None:
+    """Run every notebook: masters must earn full marks. Students' notebooks must earn no points and cause no error."""
+    from autograder import course
+    from autograder.authoring.notebook_execution import NothingToExecuteError, execute_command
+    from autograder.masters.master_files import MasterError
+
+    need_ros()
+    try:
+        sys.exit(execute_command(course.root(), only=notebooks, jobs=jobs, reports=reports))
+    except (NothingToExecuteError, MasterError) as error:
+        fail(str(error))
+
+
+@click.command()
+@click.argument("exercises", nargs=-1, metavar="[EXERCISE]...")
+@click.option(
+    "--check",
+    "only_check",
+    is_flag=True,
+    help="Write nothing; fail if a solution now does something different from its recording.",
+)
+def record(exercises: tuple[str, ...], only_check: bool) -> None:
+    """Record what the reference solutions do on the wire. The grader compares answers with the recordings."""
+    from autograder.authoring import reference_recording
+
+    need_ros()
+    try:
+        changed = reference_recording.record(exercises, only_check=only_check, tell=click.echo)
+    except reference_recording.CannotRecord as error:
+        fail(str(error))
+    sys.exit(NO if only_check and changed else 0)
+
+
+@click.command("new-exercise")
+@click.argument("exercise")
+@click.option(
+    "--recipe",
+    default="publisher",
+    show_default=True,
+    help="The kind of program or notebook code that the exercise judges.",
+)
+@click.option(
+    "--chapter", help="The folder of the exercise's chapter in solutions/. The default is the last chapter."
+)
+@click.option(
+    "--interface",
+    "interfaces",
+    multiple=True,
+    metavar="PACKAGE/KIND/TYPE",
+    help="A new message, service or action type that the chapter defines; may be given several times.",
+)
+def new_exercise(exercise: str, recipe: str, chapter: str | None, interfaces: tuple[str, ...]) -> None:
+    """Make the folder of a new lab with one working EXERCISE, which you then change.
+
+    \b
+    new-exercise lab_8_1.battery --recipe publisher
+    """  # noqa: D301 (to click, the backspace keeps the lines below it apart)
+    from autograder import course
+    from autograder.authoring import new_exercise as making
+
+    root = course.root()
+    try:
+        made = making.new_exercise(root, exercise, recipe, chapter=chapter, interfaces=interfaces)
+    except (making.CannotMake, course.BrokenChapter) as error:
+        fail(str(error))
+    for file in made:
+        click.echo(f"written    {file.relative_to(root)}")
+    click.echo(f"\nNow: {COMMAND} try-exercise {exercise}")
+
+
+@click.command("try-exercise")
+@click.argument("exercise")
+@click.option(
+    "--only",
+    multiple=True,
+    help="Judge only answers whose names contain this text; may be given several times.",
+)
+@click.option("--jobs", type=click.IntRange(min=1), default=4, show_default=True, help="Answers at once.")
+@click.option(
+    "--repeat",
+    type=click.IntRange(min=1),
+    default=1,
+    help="Judge each answer this many times, each time with different random inputs.",
+)
+@click.option(
+    "--transcript",
+    type=click.Path(path_type=Path, file_okay=False),
+    help="Write what the judge saw of each answer into this folder.",
+)
+def try_exercise(
+    exercise: str, only: tuple[str, ...], jobs: int, repeat: int, transcript: Path | None
+) -> None:
+    """Record EXERCISE if it is new, judge its sample answers, right and wrong, and show unexpected results."""
+    from autograder import exercises
+    from autograder.authoring import exercise_trial, reference_recording
+    from autograder.authoring.answer_tables import BadTable
+    from autograder.masters.master_files import MasterError
+
+    need_ros()
+    try:
+        fits = exercise_trial.try_exercise(
+            exercise,
+            only=only,
+            jobs=jobs,
+            repeat=repeat,
+            transcript=transcript and transcript.absolute(),
+            tell=click.echo,
+        )
+    except (
+        BadTable,
+        exercises.BrokenExercise,
+        exercises.UnknownExercise,
+        MasterError,
+        reference_recording.CannotRecord,
+        exercise_trial.NothingToTry,
+    ) as error:
+        fail(str(error))
+    sys.exit(0 if fits else NO)
+
+
+@click.command()
+@click.option(
+    "--edition",
+    type=click.Choice(["self", "class"]),
+    default="self",
+    show_default=True,
+    help="self: for learners on their own, with folded solutions; class: without solutions.",
+)
+@click.option(
+    "--to",
+    "folder",
+    type=click.Path(path_type=Path, file_okay=False),
+    help="The folder to write the pages to. The default is site/.",
+)
+@click.option(
+    "--quick", is_flag=True, help="Do not execute the notebooks, so that the pages show no outputs."
+)
+def site(edition: str, folder: Path | None, quick: bool) -> None:
+    """Make a website of the labs, guides and known mistakes, as HTML files that need no server and no network."""
+    from autograder import course
+    from autograder.authoring.site_building import build_site
+    from autograder.student.handout import CannotHandOut
+
+    root = course.root()
+    folder = (folder or root / "site").absolute()
+    if folder.exists() and any(folder.iterdir()) and not (folder / "searchindex.js").is_file():
+        fail(f"{folder} contains files that are not part of a site: choose another folder with --to FOLDER")
+    try:
+        problems = build_site(root, folder, edition, outputs=not quick, tell=click.echo)
+    except CannotHandOut as error:
+        fail(str(error))
+    click.echo(f"written    {folder / 'index.html'}")
+    if problems:
+        click.echo(f"{problems} problems are listed above.", err=True)
+    sys.exit(NO if problems else 0)
+
+
+AUTHOR_COMMANDS = (
+    build,
+    execute,
+    site,
+    record,
+    new_exercise,
+    try_exercise,
+)

@@ -1,0 +1,300 @@
+"""The commands with which instructors make a class, collect submissions and grade them."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from zoneinfo import ZoneInfo
+
+import click
+
+from autograder.cli.command_results import (
+    INTERRUPTED,
+    as_json_option,
+    fail,
+    grading_errors,
+    need_ros,
+    print_json,
+)
+from environment.installation import COMMAND
+
+class_folder = click.argument("folder", type=click.Path(path_type=Path))
+only_assignments = click.option(
+    "--assignment", "assignments", multiple=True, help="Use only this assignment; may be given several times."
+)
+only_sections = click.option(
+    "--section",
+    "sections",
+    multiple=True,
+    help="Use only students with this value in the column section of students.csv.",
+)
+
+
+def _known_zone(_context: click.Context, _option: click.Parameter, name: str) -> ZoneInfo | None:
+    """Return the time zone with this name; None if the option was not given."""
+    try:
+        return ZoneInfo(name) if name else None
+    except (ValueError, OSError, LookupError):
+        fail(f"The time zone {name!r} does not exist. A name looks like Europe/Berlin.")
+
+
+@click.command("hand-out")
+@click.argument("place", type=click.Path(path_type=Path))
+@only_assignments
+@click.option("--zip", "as_zip", is_flag=True, help="Make PLACE a zip file.")
+@click.option(
+    "--with-solutions",
+    is_flag=True,
+    help="Show the reference solution on cards with full marks. Students could then also read it "
+    "earlier, in the folder exercises.",
+)
+def hand_out(place: Path, assignments: tuple[str, ...], as_zip: bool, with_solutions: bool) -> None:
+    """Make a hand-out for students in PLACE: notebooks and judge, without solutions, answers and grader."""
+    from autograder import course
+    from autograder.student import handout
+
+    try:
+        made = handout.hand_out(
+            place, course.root(), assignments=assignments, as_zip=as_zip, with_solutions=with_solutions
+        )
+    except (handout.CannotHandOut, OSError) as error:
+        fail(str(error))
+    click.echo(
+        f"{made.place}: {made.files} files, {made.size / 1e6:.1f} MB. To try it, type in that folder: {COMMAND} lab"
+    )
+
+
+@click.command("new-class")
+@class_folder
+@only_assignments
+@click.option(
+    "--timezone",
+    default="",
+    callback=_known_zone,
+    metavar="Europe/Berlin",
+    help="The time zone of due dates. The default is this machine's.",
+)
+def new_class(folder: Path, assignments: tuple[str, ...], timezone: ZoneInfo | None) -> None:
+    """Make an nbgrader course directory in FOLDER, ready for submissions."""
+    from autograder import course
+    from autograder.grading.classes import new_class as classes
+
+    with grading_errors():
+        made = classes.new_class(folder, course.root(), assignments=assignments, timezone=str(timezone or ""))
+    click.echo(made.summary())
+
+
+@click.command("renew-class")
+@class_folder
+@only_assignments
+def renew_class(folder: Path, assignments: tuple[str, ...]) -> None:
+    """Update the source notebooks of the class FOLDER to the present course, and keep copies of the old ones."""
+    from autograder import course
+    from autograder.grading.classes.new_class import renew
+
+    with grading_errors():
+        for line in renew(folder, course.root(), assignments):
+            click.echo(line)
+
+
+@click.command()
+@class_folder
+@click.argument("files", nargs=-1, type=click.Path(path_type=Path))
+@click.option(
+    "--assignment",
+    default="",
+    help="The assignment to which all files belong. The default is the one that cells and file names show.",
+)
+@click.option(
+    "--timezone",
+    default="",
+    callback=_known_zone,
+    metavar="Europe/Berlin",
+    help="The time zone of times in file names and in lists of an LMS. The default is the time zone of the class.",
+)
+@click.option(
+    "--from",
+    "form",
+    type=click.Choice(["moodle", "canvas", "blackboard", "brightspace", "gradescope", "sakai", "ilias"]),
+    default=None,
+    help="The system from which the files come, if file names do not show it. Needed for ILIAS.",
+)
+@click.option(
+    "--names",
+    default="",
+    metavar="'{id}-{last}_{assignment}'",
+    help="The pattern of file names, with id, email, login, number, name, first, last, assignment, time, file, any, or "
+    "a column of students.csv.",
+)
+@click.option(
+    "--handed-in",
+    default="",
+    metavar="2026-01-31T12:00",
+    help="The submission time of files for which no list and no file name gives one.",
+)
+@as_json_option
+def collect(
+    folder: Path,
+    files: tuple[Path, ...],
+    assignment: str,
+    timezone: ZoneInfo | None,
+    form: str | None,
+    names: str,
+    handed_in: str,
+    as_json: bool,
+) -> None:
+    """Put FILES that you downloaded from an LMS into the class directory FOLDER.
+
+    FILES are zips, folders and notebooks of Moodle, Canvas, Blackboard, Brightspace, Sakai, ILIAS or Gradescope, or
+    with names that --names describes, and the lists (.csv) that come with them. The file students.csv in FOLDER maps
+    files to students.
+
+    Exit code 0: every file was put into a submission; 2: some were not, and the printed lines say which and why.
+    """
+    from autograder.grading.collecting import collect as collecting
+    from autograder.grading.collecting.collect import show
+    from autograder.grading.collecting.submitted_file_names import read_time
+
+    when = read_time(handed_in) if handed_in else None
+    if handed_in and when is None:
+        fail(f"--handed-in {handed_in} is not a time. A time looks like 2026-01-31T12:00.")
+    with grading_errors():
+        report = collecting.collect(
+            folder, files, assignment=assignment, zone=timezone, form=form or "", names=names, handed_in=when
+        )
+    if as_json:
+        print_json(report)
+    else:
+        show(report)
+    sys.exit(report.exit_code)
+
+
+@click.command()
+@class_folder
+@only_assignments
+@click.option(
+    "--student", "students", multiple=True, help="Grade only this student; may be given several times."
+)
+@only_sections
+@click.option("--again", is_flag=True, help="Run unchanged submissions again.")
+@click.option(
+    "--jobs",
+    type=click.IntRange(min=1),
+    help="The number of notebooks to run at the same time. The default is as many as processors and memory allow.",
+)
+@as_json_option
+@click.option(
+    "--unsafe-no-sandbox",
+    is_flag=True,
+    help="If no sandbox is possible on this machine, run submissions with all your rights. They could change grades.",
+)
+@click.option(
+    "--scheduler",
+    metavar="tcp://HOST:PORT",
+    help=f"Have the workers of this Dask scheduler run the submissions (see `{COMMAND} worker`).",
+)
+@click.option(
+    "--dry-run",
+    is_flag=True,
+    help="Change no grade: run submissions that are new or changed, and show whose points would change.",
+)
+def grade(
+    folder: Path,
+    assignments: tuple[str, ...],
+    students: tuple[str, ...],
+    sections: tuple[str, ...],
+    again: bool,
+    jobs: int | None,
+    as_json: bool,
+    unsafe_no_sandbox: bool,
+    scheduler: str | None,
+    dry_run: bool,
+) -> None:
+    """Grade the submissions in the class directory FOLDER."""
+    from autograder.grading import batch
+    from autograder.grading.running import execution_backends
+
+    if scheduler is not None and jobs is not None:
+        fail(
+            f"--jobs is only for this machine. In a cluster, set it for each worker: {COMMAND} worker --jobs"
+        )
+    if scheduler is None:
+        need_ros()
+    if unsafe_no_sandbox:
+        execution_backends.switch_off(folder)
+    try:
+        with grading_errors():
+            report = batch.grade(
+                folder,
+                assignments=assignments,
+                students=students,
+                sections=sections,
+                again=again,
+                jobs=jobs,
+                scheduler=scheduler,
+                dry_run=dry_run,
+            )
+    except KeyboardInterrupt:
+        click.echo(
+            "autograder: stopped. Finished grades are stored; type the same command to grade the rest.",
+            err=True,
+        )
+        sys.exit(INTERRUPTED)
+    if as_json:
+        from autograder.grading.reporting.grade_report import report_json
+
+        print_json(report_json(report))
+    else:
+        from autograder.grading.reporting.grade_report import show
+
+        show(report)
+    sys.exit(report.exit_code)
+
+
+@click.command()
+@click.argument("scheduler", required=False, metavar="[tcp://HOST:PORT]")
+@click.option(
+    "--jobs",
+    type=click.IntRange(min=1),
+    help="The number of submissions to run at the same time. The default is the number of cores.",
+)
+@click.option(
+    "--name",
+    help="The name of this worker in messages. The default consists of the host's name and the process id.",
+)
+@click.option(
+    "--unsafe-no-sandbox",
+    is_flag=True,
+    help="Run submissions even if no sandbox is possible on this machine. The submissions then have all your rights.",
+)
+def worker(scheduler: str | None, jobs: int | None, name: str | None, unsafe_no_sandbox: bool) -> None:
+    """Run submissions for `grade --scheduler`, until you press Ctrl-C or the scheduler ends."""
+    from autograder.grading.running import execution_backends
+
+    with grading_errors():
+        execution_backends.check_dask()
+        from autograder.grading.cluster.dask_worker import start_worker
+
+        start_worker(scheduler, jobs=jobs, name=name, sandbox=not unsafe_no_sandbox, tell=click.echo)
+
+
+@click.command()
+@click.argument("folder", type=click.Path(path_type=Path), default=Path("demo-class"))
+def demo(folder: Path) -> None:
+    """Make a sample class, grade it and show the result."""
+    from autograder.grading.classes import sample_class
+
+    with grading_errors():
+        report = sample_class.demo(folder)
+    sys.exit(report.exit_code)
+
+
+CLASS_COMMANDS = (
+    demo,
+    hand_out,
+    new_class,
+    renew_class,
+    collect,
+    grade,
+    worker,
+)

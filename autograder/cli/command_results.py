@@ -1,0 +1,57 @@
+"""Prints the result of a command as JSON. Ends a command that fails with one line about the error."""
+
+from __future__ import annotations
+
+import sys
+from contextlib import contextmanager
+from importlib.util import find_spec
+from typing import TYPE_CHECKING, Any, NoReturn
+
+import click
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+
+NO = 1
+CANNOT = 2
+INTERRUPTED = 130
+"""The exit code after Ctrl-C, as in a shell: 128 plus the number of the signal SIGINT."""
+as_json_option = click.option("--json", "as_json", is_flag=True, help="Print the result as one JSON object.")
+
+
+def print_json(value: Any) -> None:
+    """Print a value as one line of JSON, without characters that control a terminal. Bytes are taken to be JSON."""
+    import msgspec
+
+    from autograder.cards.readable_text import printable_json
+
+    data = value if isinstance(value, bytes) else msgspec.json.encode(value, enc_hook=str)
+    click.echo(printable_json(data.decode()))
+
+
+def fail(message: str) -> NoReturn:
+    """Print an error message and end the command with exit code 2."""
+    click.echo(f"autograder: {message}", err=True)
+    sys.exit(CANNOT)
+
+
+def need_ros() -> None:
+    """End a command with an error if ROS is missing, before the command starts a judge.
+
+    Raises:
+        ModuleNotFoundError: ROS cannot be imported. ``autograder/__main__.py`` then says what to type.
+    """
+    if find_spec("rclpy") is None:
+        raise ModuleNotFoundError("No module named 'rclpy'", name="rclpy")
+
+
+@contextmanager
+def grading_errors() -> Iterator[None]:
+    """If the block raises a ``GradingError``, print its message and end the command with exit code 2."""
+    from autograder.grading.grading_errors import GradingError
+
+    try:
+        yield
+    except GradingError as error:
+        fail(str(error))

@@ -1,0 +1,368 @@
+"""The commands for instructors about graded work: report, export to the LMS, similar answers, changed points, appeals.
+
+For an appeal, they list a student's results, save one check with its evidence, and judge it again.
+"""
+
+from __future__ import annotations
+
+import sys
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import TYPE_CHECKING, NoReturn
+
+import click
+
+from autograder.cards.readable_text import printable
+from autograder.cli.class_commands import class_folder, only_assignments, only_sections
+from autograder.cli.command_results import as_json_option, fail, grading_errors, print_json
+from autograder.kit.in_words import counted
+from environment.installation import COMMAND
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from autograder.appeals.appeal_file import Appeal
+    from autograder.appeals.replaying import Replay
+    from autograder.judge.evidence_files import Kept
+    from autograder.verdict import Verdict
+
+
+@click.command()
+@class_folder
+@click.option(
+    "--to",
+    type=click.Choice(["canvas", "moodle", "blackboard", "brightspace", "sakai", "ilias", "csv", "xlsx"]),
+    required=True,
+    help="The LMS that will import the files.",
+)
+@only_assignments
+@only_sections
+@click.option(
+    "--into",
+    type=click.Path(path_type=Path),
+    help="Fill in this list, which was exported from the LMS given by --to.",
+)
+@click.option(
+    "--column",
+    "columns",
+    multiple=True,
+    metavar="ASSIGNMENT=COLUMN",
+    help="The column for an assignment in the list given by --into; may be given several times.",
+)
+@click.option(
+    "--absent",
+    type=click.Choice(["blank", "zero"]),
+    default="blank",
+    help="The value for students without a submission. The default is an empty cell.",
+)
+@click.option(
+    "--output",
+    type=click.Path(path_type=Path),
+    help="The folder to write the files to. The default is FOLDER/export.",
+)
+@as_json_option
+def export(
+    folder: Path,
+    to: str,
+    assignments: tuple[str, ...],
+    sections: tuple[str, ...],
+    into: Path | None,
+    columns: tuple[str, ...],
+    absent: str,
+    output: Path | None,
+    as_json: bool,
+) -> None:
+    """Write the points and the feedback (as a zip) in the format that an LMS imports."""
+    from autograder.grading.reporting.export_files import export as write_files
+
+    pairs = (one.partition("=") for one in columns)
+    named = {name.strip(): called.strip() for name, _, called in pairs}
+    if not all(named.values()):
+        fail('--column needs an assignment and the name of its column: --column "ASSIGNMENT=COLUMN"')
+    with grading_errors():
+        done = write_files(
+            folder,
+            to,
+            assignments=assignments,
+            into=into,
+            folder=output,
+            absent_zero=absent == "zero",
+            columns=named,
+            sections=sections,
+        )
+    if as_json:
+        files = [{"path": str(file), "purpose": purpose} for file, purpose in done.files]
+        print_json({"files": files, "notices": done.notices})
+        return
+    for file, purpose in done.files:
+        click.echo(f"{printable(str(file))}\n    {printable(purpose)}")
+    for notice in done.notices:
+        click.echo(f"note: {printable(notice)}")
+
+
+@click.command()
+@class_folder
+@only_sections
+@click.option(
+    "--without-names",
+    is_flag=True,
+    help="Show numbers instead of students' names, and no links to their pages.",
+)
+@click.option(
+    "--output", type=click.Path(path_type=Path), help="The page to write. The default is FOLDER/report.html."
+)
+@as_json_option
+def report(
+    folder: Path, sections: tuple[str, ...], without_names: bool, output: Path | None, as_json: bool
+) -> None:
+    """Write a page about the class FOLDER: points, mistakes, exercises and each student's progress."""
+    from autograder.grading.classes.class_directory import ClassDirectory
+    from autograder.grading.reporting.grade_report import table_json
+    from autograder.grading.reporting.report_page import write_report
+    from autograder.grading.table.class_table import read_table
+
+    if as_json and without_names:
+        fail(
+            "--json shows the ids of students, so it cannot be combined with --without-names: leave out one of the two."
+        )
+    with grading_errors():
+        page = write_report(folder, names=not without_names, to=output, sections=sections)
+        if as_json:
+            print_json(table_json(page, read_table(ClassDirectory(folder), sections)))
+        else:
+            click.echo(page)
+
+
+@click.command()
+@class_folder
+@click.argument("assignment", required=False, default="")
+@click.option(
+    "--output", type=click.Path(path_type=Path), help="The page to write. The default is FOLDER/similar.html."
+)
+@as_json_option
+def similar(folder: Path, assignment: str, output: Path | None, as_json: bool) -> None:
+    """Find pairs of submissions in the class FOLDER with more similar code than their task explains.
+
+    A pair is a hint, not a proof. If ASSIGNMENT is given, only its submissions are compared.
+
+    Exit code 0: all submissions were compared; 2: some were not, and the printed lines say which and why.
+    """
+    from autograder.grading.classes.class_directory import ClassDirectory
+    from autograder.grading.grading_errors import clear_disk_errors
+    from autograder.grading.similarity.similar_pairs import find_similar
+    from autograder.grading.similarity.similarity_report import show, similar_json, write_page
+
+    with grading_errors():
+        directory = ClassDirectory(folder)
+        with clear_disk_errors(directory.path):
+            found = find_similar(directory, assignment)
+            page = write_page(found, output)
+    if as_json:
+        print_json(similar_json(found, page))
+    else:
+        show(found, page)
+    sys.exit(found.exit_code)
+
+
+@click.command()
+@class_folder
+@click.argument("before", required=False, default="")
+@click.argument("after", required=False, default="")
+@as_json_option
+def compare(folder: Path, before: str, after: str, as_json: bool) -> None:
+    """Show whose points the last run of `grade` in the class FOLDER has changed.
+
+    BEFORE and AFTER select two other runs by their times, written as in the first line that this command prints.
+    """
+    from autograder.grading.class_store import ClassStore
+    from autograder.grading.classes.class_directory import ClassDirectory
+    from autograder.grading.table import class_table
+
+    with grading_errors(), ClassStore(ClassDirectory(folder)) as store:
+        old, new, found = class_table.compare(store, before, after)
+    if as_json:
+        print_json({"before": old, "after": new, "differences": found})
+        return
+    click.echo(f"{old} → {new}: {counted(len(found), 'difference')}")
+    for difference in found:
+        click.echo(printable(difference.line()))
+
+
+REPORT_COMMANDS = (
+    report,
+    export,
+    similar,
+    compare,
+)
+
+
+_MAX_COLUMNS = 4_000
+"""The maximum length of a printed line, in characters. Lines about ordinary appeals have at most half as many."""
+_MAX_LINES = 100
+"""The maximum number of differences to print, and also of notes. A damaged file could cause any number of them."""
+
+
+def _fail_safely(message: str) -> NoReturn:
+    """End the command with a message that may quote text from a student's file."""
+    fail(_shown(message))
+
+
+@click.command()
+@class_folder
+@click.argument("student")
+@as_json_option
+def attempts(folder: Path, student: str, as_json: bool) -> None:
+    """List the results of each time that STUDENT was graded in the class FOLDER."""
+    from autograder.grading.class_store import ClassStore
+    from autograder.grading.classes.class_directory import ClassDirectory
+
+    with grading_errors(), ClassStore(ClassDirectory(folder)) as store:
+        found = store.attempts(student)
+    if not found:
+        fail(f"No student with the id {student!r} was graded in this class.")
+    if as_json:
+        print_json({"student": student, "attempts": found})
+        return
+    for attempt in found:
+        click.echo(printable(attempt.line()))
+
+
+@click.command()
+@class_folder
+@click.argument("student")
+@click.argument("exercise")
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(path_type=Path),
+    help="The file to write. The default is FOLDER/appeals/STUDENT-EXERCISE.json.",
+)
+def appeal(folder: Path, student: str, exercise: str, output: Path | None) -> None:
+    """Save everything about the check of EXERCISE by STUDENT in the class FOLDER.
+
+    The file contains the student's code, the expected output, the judge's evidence and verdict, and the course's
+    version, as readable JSON. The command `replay` judges the check again from this file.
+    """
+    from autograder.grading.appeal_writing import write_appeal
+
+    with grading_errors():
+        click.echo(write_appeal(folder, student, exercise, output))
+
+
+def _shown(line: str) -> str:
+    """Return a line that is safe to print: shortened, and without characters that control a terminal."""
+    return printable(line if len(line) <= _MAX_COLUMNS else f"{line[:_MAX_COLUMNS]}…")
+
+
+@click.command()
+@click.argument("file", type=click.Path(path_type=Path))
+@click.option(
+    "--mcap",
+    type=click.Path(path_type=Path),
+    help="Also write the messages that the judge saw into this file, for Foxglove and other programs that open MCAP.",
+)
+@click.option(
+    "--bag",
+    type=click.Path(path_type=Path),
+    help="Also write the messages of topics into this file, for ros2 bag play.",
+)
+@as_json_option
+def replay(file: Path, mcap: Path | None, bag: Path | None, as_json: bool) -> None:
+    """Judge the check in an appeal FILE again, from its evidence and with the present version of the course.
+
+    This runs no code of the student, and starts no ROS node.
+
+    The file itself proves nothing, because any person can write such a file. For proof, have `appeal` write the file
+    from the class.
+
+    Exit code 0: the verdict is the same; 1: the verdict differs; 2: the check cannot be judged again.
+    """
+    from autograder.appeals import appeal_file, replaying
+
+    try:
+        for path in (mcap, bag):
+            if path is not None:
+                check_name(path)
+        appeal = appeal_file.read(file)
+        if mcap is not None:
+            click.echo(save_messages(appeal.seen, mcap), err=as_json)
+        if bag is not None:
+            click.echo(save_bag(appeal.seen, bag), err=as_json)
+        again = replaying.replay(appeal.seen)
+        lines = list(_lines_of_replay(appeal, again))
+    except (appeal_file.BadAppeal, replaying.CannotReplay) as error:
+        _fail_safely(str(error))
+    except Exception as error:  # a damaged file may cause any kind of error
+        _fail_safely(
+            f"{file} is not a valid appeal file ({type(error).__name__}: {error}). The file was edited, or comes from "
+            "a different version of the course: use the version that wrote it."
+        )
+    if as_json:
+        print_json({"student": appeal.student, "course": appeal.course, "replay": again})
+    else:
+        for line in lines:
+            click.echo(_shown(line))
+    sys.exit(1 if again.differences else 0)
+
+
+def check_name(path: Path) -> None:
+    """End the command with exit code 2 if the name of a file for messages does not end in .mcap."""
+    if path.suffix != ".mcap":
+        _fail_safely(
+            f"the name of a file for messages must end in .mcap, such as check.mcap; {path.name} does not"
+        )
+
+
+def save_messages(seen: Kept, path: Path) -> str:
+    """Write the messages of a check as MCAP, and return a line about the file. On failure, end with exit code 2."""
+    from autograder.appeals.evidence_as_mcap import write_messages
+
+    try:
+        with path.open("wb") as stream:
+            count = write_messages(seen, stream)
+    except OSError as error:
+        _fail_safely(f"{path} cannot be written: {error.strerror}")
+    return f"{path}: {count} events, as JSON"
+
+
+def save_bag(seen: Kept, path: Path) -> str:
+    """Write the messages of topics for ``ros2 bag play``. Return and fail in the same way as ``save_messages``."""
+    from autograder.appeals.evidence_as_mcap import write_bag
+
+    try:
+        with path.open("wb") as stream:
+            written, left_out = write_bag(seen, stream)
+    except OSError as error:
+        _fail_safely(f"{path} cannot be written: {error.strerror}")
+    missing = (
+        f" ({left_out} more were left out, because their type is not installed here)" if left_out else ""
+    )
+    return f"{path}: {written} messages of topics{missing}"
+
+
+def _lines_of_replay(appeal: Appeal, again: Replay) -> Iterator[str]:
+    """Yield the result of a replay as lines."""
+    then = again.then
+    at = datetime.fromtimestamp(appeal.seen.at, tz=UTC)
+    yield f"{then.exercise} by {appeal.student}, checked {at:%Y-%m-%d %H:%M:%S} UTC with course {appeal.course[:8]}"
+    yield f"then: {_told(then)}"
+    yield f"now:  {_told(again.now)}"
+    if again.differences:
+        yield "a different verdict:"
+        yield from (f"  {line}" for line in again.differences[:_MAX_LINES])
+    else:
+        yield "the same verdict, points and diagnosis"
+    yield from (f"note: {note}" for note in again.notes[:_MAX_LINES])
+    yield f"note: any person can write such a file; for proof, have `{COMMAND} appeal` write it from the class"
+
+
+def _told(verdict: Verdict) -> str:
+    diagnosis = f", {verdict.diagnosis.key}" if verdict.diagnosis else ""
+    return f"{verdict.state}, {verdict.score:g} of {verdict.max_score:g} points{diagnosis}"
+
+
+APPEAL_COMMANDS = (
+    attempts,
+    appeal,
+    replay,
+)

@@ -1,0 +1,230 @@
+"""The commands for students: check a program, open JupyterLab, show progress, reset a notebook, check the setup."""
+
+from __future__ import annotations
+
+import os
+import sys
+from contextlib import contextmanager, nullcontext
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from autograder.cli import result_commands
+from autograder.cli.command_results import CANNOT, NO, as_json_option, fail, need_ros, print_json
+from environment.installation import COMMAND
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from autograder.boxes.sandbox import OneCommandBox
+    from autograder.verdict import Verdict
+
+
+_notebooks = click.option(
+    "--folder",
+    type=click.Path(path_type=Path),
+    help="The folder of your notebooks. The default is chapters.",
+)
+
+
+@click.command(
+    help=f"""Run any COMMAND as the subject of EXERCISE and print the verdict.
+
+    \b
+    {COMMAND} check                                       lists the exercises
+    {COMMAND} check EXERCISE -- python3 my_program.py
+    {COMMAND} check EXERCISE --box -- python3 program_of_another_person.py
+
+    Exit code 0: passed; 1: not passed; 2: could not be checked."""
+)
+@click.argument("exercise", required=False)
+@click.argument("command", nargs=-1, type=click.UNPROCESSED)
+@as_json_option
+@click.option("--seed", help="The seed of the random inputs. The same seed gives the same inputs.")
+@click.option(
+    "--box",
+    "boxed",
+    is_flag=True,
+    help="Run COMMAND in the sandbox in which submissions of a class run. It can read only the current folder.",
+)
+@click.option(
+    "--mcap",
+    type=click.Path(path_type=Path),
+    help="Also write the messages that the judge saw into this file.",
+)
+def check(
+    exercise: str | None,
+    command: tuple[str, ...],
+    as_json: bool,
+    seed: str | None,
+    boxed: bool,
+    mcap: Path | None,
+) -> None:
+    """Run a command as the subject of an exercise and print the verdict."""
+    from autograder import course, exercises
+
+    # If the current folder is in a course, the code of that course judges the program. With --box the program's author
+    # is not trusted, and the author may have changed the code of the course, too. So the installed package judges.
+    if not boxed:
+        course.use_the_one_around(Path.cwd())
+    if exercise is None:
+        list_exercises()
+        return
+    try:
+        wanted = exercises.get(exercise)
+    except (exercises.UnknownExercise, exercises.BrokenExercise) as error:
+        fail(str(error))
+    if not command:
+        fail(
+            f"no command to check: write it after two dashes, such as {COMMAND} check {exercise} -- python3 my_file.py"
+            + (f" (it is called with {wanted.arguments})" if wanted.arguments else "")
+        )
+    if mcap is not None:
+        result_commands.check_name(mcap)
+    need_ros()
+    from autograder.judge.command_check import CommandNotFound, check_and_keep
+    from autograder.standard_output import stray_lines_on_stderr
+
+    try:
+        with _box(command) if boxed else nullcontext() as box, stray_lines_on_stderr():
+            verdict, evidence = check_and_keep(exercise, command, seed=seed, box=box)
+    except CommandNotFound as error:
+        fail(str(error))
+    # With --box, the program is another person's, so its result does not count as the user's progress.
+    if not boxed:
+        from autograder.student import check_journal
+
+        check_journal.note_check(verdict)
+    show(verdict, as_json=as_json)
+    if mcap is not None and evidence:
+        from autograder.judge.evidence_files import unpack
+
+        click.echo(result_commands.save_messages(unpack(evidence), mcap), err=as_json)
+    sys.exit({"passed": 0, "failed": NO}.get(verdict.state, CANNOT))
+
+
+@contextmanager
+def _box(command: Sequence[str]) -> Iterator[OneCommandBox]:
+    from contextlib import closing
+
+    from autograder.boxes.sandbox import OneCommandBox, why_impossible
+    from autograder.safe_files import HeldFolder
+
+    why = why_impossible()
+    if why:
+        fail(f"no sandbox is possible here: {why}")
+    with HeldFolder("autograder-box-") as scratch:
+        try:
+            box = OneCommandBox(scratch.path, Path.cwd(), command)
+        except ValueError as error:
+            fail(str(error))
+        with closing(box):
+            yield box
+
+
+def list_exercises() -> None:
+    """Print one line for each exercise: id, points and task."""
+    from autograder import exercises
+
+    for exercise_id in exercises.all_ids():
+        try:
+            exercise = exercises.get(exercise_id)
+        except exercises.BrokenExercise as error:
+            click.echo(f"autograder: {error}", err=True)
+            continue
+        click.echo(f"{exercise_id:<26} {exercise.points:>3g} points  {exercise.task}")
+
+
+def show(verdict: Verdict, *, as_json: bool) -> None:
+    """Print a verdict as a card or as JSON."""
+    if as_json:
+        print_json(verdict)
+        return
+    from autograder.cards.text_rendering import card_text
+
+    click.echo(card_text(verdict, color=sys.stdout.isatty()))
+
+
+@click.command(context_settings={"ignore_unknown_options": True})
+@click.option(
+    "--folder", type=click.Path(path_type=Path), help="Open this folder of notebooks instead of the chapters."
+)
+@click.argument("arguments", nargs=-1, type=click.UNPROCESSED, metavar="[JUPYTERLAB'S OPTIONS]...")
+def lab(folder: Path | None, arguments: tuple[str, ...]) -> None:
+    """Open JupyterLab with the course's notebooks, in a free ROS domain."""
+    from autograder import course
+    from autograder.dds_discovery import NoFreeDomainError
+    from autograder.student.lab import NoSuchFolderError, open_lab
+
+    try:
+        open_lab(folder or course.root() / course.CHAPTERS, arguments)
+    except (NoSuchFolderError, NoFreeDomainError, ValueError) as error:
+        fail(str(error))
+
+
+@click.command()
+@as_json_option
+@_notebooks
+def progress(as_json: bool, folder: Path | None) -> None:
+    """Show which points you have reached, and which task is next. This is not a grade."""
+    from autograder import course, exercises
+    from autograder.student import check_journal
+    from autograder.student.progress import standing, standing_json, standing_text
+
+    try:
+        root = course.root()
+        notebooks, kept = _notebooks_and_journal(root, folder)
+        found = standing(root, notebooks, check_journal.entries(kept))
+    except (course.NoCourse, course.BrokenChapter, exercises.BrokenExercise) as error:
+        fail(str(error))
+    click.echo(standing_json(found) if as_json else standing_text(found))
+
+
+@click.command()
+@click.argument("notebook")
+@_notebooks
+def reset(notebook: str, folder: Path | None) -> None:
+    """Replace NOTEBOOK, such as lab_1_2, by the original, and keep a copy of yours next to it."""
+    from autograder import course
+    from autograder.student import notebook_reset
+
+    try:
+        root = course.root()
+        notebooks, kept = _notebooks_and_journal(root, folder)
+        done = notebook_reset.reset(root, notebooks, notebook, kept)
+    except (course.NoCourse, course.BrokenChapter, notebook_reset.CannotReset) as error:
+        fail(str(error))
+    click.echo(f"{done.notebook} is the original again.")
+    if done.copy is not None:
+        click.echo(f"Your notebook was copied to {done.copy}")
+
+
+def _notebooks_and_journal(root: Path, folder: Path | None) -> tuple[Path, Path | None]:
+    """Return the folder with the student's notebooks, and the path of the journal that records their checks."""
+    from autograder import course
+    from autograder.student import check_journal
+    from autograder.student.lab import NOTEBOOKS_VARIABLE
+
+    if folder is not None:
+        return folder.resolve(), check_journal.place(folder.resolve())
+    session = os.environ.get(NOTEBOOKS_VARIABLE)
+    return Path(session) if session else root / course.CHAPTERS, check_journal.own_place()
+
+
+@click.command()
+@as_json_option
+def doctor(as_json: bool) -> None:
+    """Show what is installed, what is missing and how to install it."""
+    from environment import doctor as probes
+
+    sys.exit(probes.main(["--json"] if as_json else []))
+
+
+STUDENT_COMMANDS = (
+    check,
+    lab,
+    progress,
+    reset,
+    doctor,
+)

@@ -1,0 +1,126 @@
+"""Writes the appeal file of one check: the student's cells, the judge's evidence, and the verdict."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Any
+
+from autograder import exercises
+from autograder.appeals.appeal_file import Appeal, AppealedCell, dump
+from autograder.grading.class_store import ClassStore
+from autograder.grading.classes.class_directory import ClassDirectory
+from autograder.grading.grading_errors import (
+    GradingError,
+    clear_disk_errors,
+    clear_place_errors,
+    course_command,
+)
+from autograder.judge import evidence_files
+from autograder.judge.evidence_files import NoEvidence, unpack
+from autograder.safe_files import write_whole
+from environment.installation import COMMAND
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+    from pathlib import Path
+
+    from autograder.grading.class_records import Entered, RunCell
+
+
+FOLDER = "appeals"
+"""The name of a class's folder for appeal files."""
+
+
+def write_appeal(path: Path, student: str, exercise_id: str, to: Path | None = None) -> Path:
+    """Write the appeal file of one check, and return its path.
+
+    Args:
+        path: The class directory.
+        student: The student's id.
+        exercise_id: The exercise's id, such as ``"lab_1_2.talker"``.
+        to: The path of the appeal file; by default in the class's folder ``appeals``.
+
+    Raises:
+        GradingError: The check does not exist, or its evidence is not stored. The message says what to do.
+    """
+    directory = ClassDirectory(path)
+    try:
+        task = exercises.get(exercise_id).task
+    except (exercises.UnknownExercise, exercises.BrokenExercise) as error:
+        raise GradingError(f"{error} `{COMMAND} check` lists the exercises.") from error
+    with clear_disk_errors(directory.path), ClassStore(directory) as store:
+        content = dump(_appeal(directory, store, student, exercise_id, task))
+        to = (to or directory.path / FOLDER / f"{student}-{exercise_id}.json").absolute()
+        with clear_place_errors(to, "-o"):
+            write_whole(to, content)
+    return to
+
+
+def _appeal(
+    directory: ClassDirectory, store: ClassStore, student: str, exercise_id: str, task: str
+) -> Appeal:
+    again = course_command("grade", directory.path, "--student", student)
+    kept, entered = store.evidence(student, exercise_id), store.entered()
+    if kept is None:
+        raise GradingError(_why_nothing(directory, entered, student, exercise_id, again))
+    known = entered.get((student, kept.assignment))
+    if known is None or known.tasks.get(kept.notebook) != kept.task:
+        raise GradingError(
+            f"The points of {student} for this check of {kept.notebook} are not in the gradebook, for example "
+            f"because the last run was a `--dry-run`. Enter the points first: {again}"
+        )
+    try:
+        seen, cells = unpack(kept.checks[exercise_id]), kept.run_cells()
+    except (NoEvidence, ValueError) as error:
+        raise GradingError(
+            f"The evidence of {exercise_id} by {student} is damaged ({error}). Judge the check again: {again} --again"
+        ) from error
+    return Appeal(
+        student=student,
+        assignment=kept.assignment,
+        notebook=kept.notebook,
+        task=task,
+        course=kept.course,
+        solution=list(_before(cells, exercise_id)),
+        expected=_expected(exercise_id, seen.reference),
+        seen=seen,
+    )
+
+
+def _before(cells: list[RunCell], exercise_id: str) -> Iterator[AppealedCell]:
+    """Yield the cells that the student wrote and that ran before the check."""
+    for cell in cells:
+        if cell.checks == exercise_id:
+            return
+        if not cell.checks:
+            yield AppealedCell(cell.name, cell.text.splitlines())
+
+
+def _expected(exercise_id: str, digest: str) -> Any:
+    if evidence_files.reference_digest(exercise_id) != digest:
+        return None
+    return json.loads(exercises.reference_path(exercise_id).read_text(encoding="utf-8"))
+
+
+def _why_nothing(
+    directory: ClassDirectory,
+    entered: Mapping[tuple[str, str], Entered],
+    student: str,
+    exercise_id: str,
+    again: str,
+) -> str:
+    for assignment in directory.assignments():
+        known = entered.get((student, assignment))
+        for row in known.rows if known else ():
+            if row.exercise == exercise_id:
+                return (
+                    f"No evidence of {exercise_id} by {student} is stored. The state in the table is: {row.state}"
+                    f"{f', {row.diagnosis}' if row.diagnosis else ''}. {row.reason}".rstrip()
+                    + " If the check never began, for example after a cell that raised an error, no evidence exists. "
+                    f"If an older version of the course graded the check, type: {again} --again"
+                )
+    return (
+        f"No check of {exercise_id} by {student!r} was graded in this class. The class's assignments are: "
+        f"{', '.join(directory.assignments()) or 'none'}. To list a student's graded checks: "
+        f"{course_command('attempts', directory.path, 'STUDENT')}"
+    )

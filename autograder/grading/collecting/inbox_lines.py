@@ -1,0 +1,387 @@
+"""Finds, for each file in the inbox, its students, its notebook and its time; or the reason why they are unknown."""
+
+from __future__ import annotations
+
+import functools
+import itertools
+from collections import defaultdict
+from dataclasses import dataclass, replace
+from datetime import UTC, datetime
+from typing import TYPE_CHECKING
+from zoneinfo import ZoneInfo
+
+from autograder.grading.classes.class_directory import SUFFIX
+from autograder.grading.collecting.collected_files import BY_HAND, Line
+from autograder.grading.collecting.downloaded_files import read_list
+from autograder.grading.collecting.file_owners import Owners, StudentOf
+from autograder.grading.collecting.lms_lists import GRADESCOPE, ListEntry
+from autograder.grading.collecting.submitted_file_names import base_of
+from autograder.grading.rebuilding.submission_desk import read_notebook
+from autograder.grading.rebuilding.submitted_notebook import UnreadableSubmission
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
+    from datetime import tzinfo
+
+    from autograder.grading.classes.class_directory import ClassDirectory
+    from autograder.grading.collecting.collected_files import Arrival, Delivery, Inbox
+    from autograder.grading.rebuilding.cell_matching import Target
+    from autograder.grading.rebuilding.submitted_notebook import SubmittedCell
+    from autograder.grading.table.roster import Roster
+
+
+_UNDER = "under assignment in collected.csv"
+
+
+class NoTarget(ValueError):
+    """The notebook of a file is unclear, or the file is not to be collected now, for the reason in the message.
+
+    Args:
+        message: The reason, and what to type.
+        is_left_out: True if the file need not be collected: the instructor asked for another assignment, or the class
+            has no assignment with the file's cells.
+    """
+
+    def __init__(self, message: str, *, is_left_out: bool = False) -> None:
+        super().__init__(message)
+        self.is_left_out = is_left_out
+
+
+def is_notebook(name: str, data: bytes) -> bool:
+    """Return True if a file is a notebook, judged by its name or its content."""
+    head = data[:1000].lstrip(b"\xef\xbb\xbf \t\r\n")
+    held = head[:1] == b"{" and b'"nbformat"' in data and (b'"cells"' in data or b'"worksheets"' in data)
+    return held or name.lower().endswith(SUFFIX)
+
+
+def stem_of(name: str) -> str:
+    """Return the name of a file without ``.ipynb``, and without what programs add to a copy, such as `` (1)``."""
+    end = name.lower().find(SUFFIX)
+    return base_of(name[:end] if end > 0 else name.rpartition(".")[0] or name)
+
+
+class AssignmentOf:
+    """Finds out which notebook of a class a collected file is, by the name and the cells of the file.
+
+    Args:
+        directory: The class.
+    """
+
+    def __init__(self, directory: ClassDirectory) -> None:
+        self._directory = directory
+
+    def is_notebook(self, file: str) -> bool:
+        """Return True if a file with this name is a notebook of the class."""
+        return stem_of(file).casefold() in self._notebooks
+
+    def notebooks(self, assignment: str) -> list[str]:
+        """Return the notebooks of an assignment; none if the class has no assignment with this name."""
+        return [
+            notebook for several in self._notebooks.values() for of, notebook in several if of == assignment
+        ]
+
+    def named(self, name: str, asked: str) -> str:
+        """Return ``asked`` or, if that is empty, the assignment in a file's name; empty if there is none."""
+        stem = base_of(name.partition(".")[0])
+        assignments = {assignment for assignment, _ in self._notebooks.get(stem.casefold(), ())}
+        return asked or (assignments.pop() if len(assignments) == 1 else "")
+
+    def target(self, name: str, data: bytes, asked: str) -> tuple[Target, bool]:
+        """Return the assignment and the notebook of a file, and whether the file has the notebook's name.
+
+        Args:
+            name: The name that the student gave the file.
+            data: The content of the file.
+            asked: The assignment that the instructor named; empty to find it.
+
+        Raises:
+            NoTarget: The notebook is unclear, or the cells belong to several assignments, or they do not belong to the
+                assignment in the file's name or to ``asked``.
+        """
+        named = self._notebooks.get(stem_of(name).casefold(), [])
+        cells = _cells(data)
+        names = {cell.grade_id for cell in cells} - {""}
+        mixed = self._directory.named_cells.assignments(cells)
+        if len(mixed) > 1 and asked not in mixed:
+            raise NoTarget(
+                f"the file has cells of {' and of '.join(mixed)}: ask the student for a notebook for each, or write "
+                f"the name of one of these assignments {_UNDER}"
+            )
+        held = self._directory.named_cells.closest(names, asked if asked in mixed else "")
+        meant = [target for target in named if not held or target in held] or held
+        here = [target for target in meant if asked in ("", target[0])]
+        if meant and not here:
+            other = meant[0][0]
+            why = f"the file is the notebook of {other}, not of {asked}"
+            raise NoTarget(
+                f"{why}; to collect the file for {other}, write {other} {_UNDER}", is_left_out=True
+            )
+        if named and not asked and not set(named) & set(meant):
+            says, other = " or ".join(assignment for assignment, _ in named), held[0][0]
+            raise NoTarget(
+                f"the file's name is that of {says}, but the cells are those of {other}: ask the student for the right "
+                f"notebook, or write {other} {_UNDER}"
+            )
+        if asked and not here:
+            here = [(asked, one) for one in self._directory.notebooks(asked)]
+        if len(here) != 1:
+            # The file has named cells, but none from this class: it is another notebook of the course, such as its
+            # summary.
+            raise NoTarget(self._unclear(meant, asked), is_left_out=not meant and bool(names))
+        return here[0], here[0] in named
+
+    def _unclear(self, meant: list[Target], asked: str) -> str:
+        """Return a message with the notebooks or assignments that are possible."""
+        assignments = sorted({asked} if asked else {assignment for assignment, _ in meant})
+        if len(assignments) == 1:
+            names = ", ".join(self._directory.notebooks(assignments[0]))
+            which = (
+                f"which notebook of {assignments[0]} the file is ({names}): write the notebook under notebook in "
+                "collected.csv"
+            )
+        else:
+            known = ", ".join(assignments or self._directory.assignments())
+            which = f"which assignment the file is for ({known}): write the assignment {_UNDER}"
+        return f"it is not clear {which}"
+
+    @functools.cached_property
+    def _notebooks(self) -> dict[str, list[Target]]:
+        """Pairs of an assignment and a notebook, by the name of the notebook, which several assignments may use."""
+        found: dict[str, list[Target]] = defaultdict(list)
+        for assignment in self._directory.assignments():
+            for name in self._directory.notebooks(assignment):
+                found[name.casefold()].append((assignment, name))
+        return dict(found)
+
+
+def _cells(data: bytes) -> Sequence[SubmittedCell]:
+    """Return a notebook's cells; none if it cannot be read."""
+    try:
+        return read_notebook(data)[0]
+    except UnreadableSubmission:
+        return ()
+
+
+PAGES = ("index.html", "grades.csv", GRADESCOPE)
+"""The names of files that an LMS adds to a download."""
+NO_LIST = (
+    "the file is too large, or not a known list. Known lists are Moodle's grading worksheet, Canvas's gradebook or "
+    "submissions, GitHub Classroom's grades and Gradescope's scores. Write times into the column handed_in of "
+    "collected.csv, and a list of your students into students.csv of the class"
+)
+"""The reason why a list cannot be used."""
+_OTHER_ARCHIVES = (".rar", ".7z", ".gz", ".bz2", ".xz", ".zst")
+
+
+@dataclass(frozen=True)
+class Edit:
+    """What a person has written into a line of ``collected.csv``. An empty field changes nothing.
+
+    Attributes:
+        use: ``yes`` or ``no``.
+        student: Student ids, separated by semicolons.
+        assignment: The name of an assignment.
+        notebook: The name of a notebook of that assignment.
+        handed_in: A time in UTC, in the format of :meth:`datetime.isoformat`.
+    """
+
+    use: str = ""
+    student: str = ""
+    assignment: str = ""
+    notebook: str = ""
+    handed_in: str = ""
+
+
+def lines_of(
+    directory: ClassDirectory, inbox: Inbox, roster: Roster, edits: Mapping[str, Edit]
+) -> list[Line]:
+    """Return one line of ``collected.csv`` for each file, with what a person wrote or else what was found.
+
+    But if a file was collected for two assignments, it has two lines.
+
+    Args:
+        directory: The class.
+        inbox: The inbox of the class.
+        roster: The students of the class.
+        edits: What people have written into the table, by the key of the line.
+    """
+    assignments = AssignmentOf(directory)
+    entries = entries_of(inbox)
+    alone = {id_ for id_, of in inbox.deliveries.items() if all(file.is_list for file in of.arrivals)}
+    found: dict[str, list[Line]] = defaultdict(list)
+    for id_, delivery in inbox.deliveries.items():
+        # All lists, from any delivery, are used to map numbers to students. But the times in a list apply only to files
+        # in the same delivery, because a later list may be about a later file. Only if a list came alone do its times
+        # apply to all files.
+        student_of = StudentOf(
+            roster,
+            assignments.is_notebook,
+            delivery.form,
+            delivery.names,
+            itertools.chain(*entries.values()),
+            entries[id_],
+            [entry for one in alone - {id_} for entry in entries[one]],
+        )
+        zone = ZoneInfo(delivery.zone) if delivery.zone else directory.time_zone
+        for line in _Reading(inbox, assignments, student_of, delivery, id_, zone).lines(edits):
+            found[line.key].append(line)
+    lines = []
+    for several in found.values():
+        targets: dict[tuple[str, str], list[Line]] = defaultdict(list)
+        for one in several:
+            if not one.reason:
+                targets[one.assignment, one.notebook].append(one)
+        lines += [_merged(ones) for ones in targets.values()] or [_merged(several)]
+    return lines
+
+
+@dataclass(frozen=True)
+class _Reading:
+    """Interprets the files of one delivery."""
+
+    inbox: Inbox
+    assignments: AssignmentOf
+    student_of: StudentOf
+    delivery: Delivery
+    id: str
+    zone: tzinfo
+
+    def lines(self, edits: Mapping[str, Edit]) -> Iterator[Line]:
+        """Yield the line of each file. What a person wrote into an archive's line applies to the files in it, too."""
+        opened: dict[tuple[str, tuple[str, ...]], Edit | None] = {}
+        for arrival in self.delivery.arrivals:
+            place, edit = (arrival.source, arrival.parts), edits.get(arrival.key, Edit())
+            if arrival.is_archive:
+                is_open = edit.student or not self.student_of.reason_against(self._owners(arrival))
+                opened[place] = edit if is_open else None
+                if is_open:
+                    continue
+            given = opened.get(place, Edit()) if arrival.inner else Edit()
+            if given is not None:
+                yield self._line(arrival, edit, given)
+
+    def _owners(self, arrival: Arrival) -> Owners:
+        return self.student_of.owners(arrival.parts, arrival.levels, is_alone=arrival.is_own)
+
+    def _line(self, arrival: Arrival, edit: Edit, given: Edit) -> Line:
+        rank = bool(self.delivery.assignment) - bool(self.delivery.form or self.delivery.names)
+        line = Line(arrival.key, arrival.label, arrival.content, use=edit.use, rank=rank)
+        if arrival.is_list:
+            return replace(line, reason="the file was read as a list", is_soft=True, lms="list")
+        by_hand = self.delivery.form == BY_HAND
+        line = _by_hand(line, arrival) if by_hand else self._collected(line, arrival, edit, given)
+        return replace(line, when=datetime.fromisoformat(edit.handed_in)) if edit.handed_in else line
+
+    def _collected(self, line: Line, arrival: Arrival, edit: Edit, given: Edit) -> Line:
+        owners = self._owners(arrival)
+        asked = edit.assignment or given.assignment or self.delivery.assignment
+        if written := edit.student or given.student:
+            ids, reason = self.student_of.written(written)
+        else:
+            reason = self.student_of.reason_against(owners)
+            ids = () if reason else tuple(one.id for (one,) in owners.members)
+        if found := owners.found:
+            identity = found.identity
+            when = in_utc(found.when or self.student_of.time(identity), self.zone)
+            line = replace(
+                line,
+                lms=identity.lms,
+                number=identity.number or (identity.login if identity.name else ""),
+                name=identity.name or identity.login,
+                file="/".join(arrival.parts),
+                when=when or self.delivery.handed_in,
+                order=found.order,
+                late=found.late,
+                is_sure=owners.is_sure or bool(written),
+            )
+            # Use the assignment in a name only if the class has an assignment with that name.
+            asked = asked or (found.assignment if self.assignments.notebooks(found.assignment) else "")
+        # Inside a student's own archive, a name identifies the notebook but not the student.
+        name = found.file if found and not arrival.inner else arrival.name
+        named = self.assignments.named(name if owners.members else arrival.name, asked)
+        came_in = frozenset({f"{self.id}/{arrival.source}"})
+        line = replace(line, students=ids, assignment=named, came_in=came_in)
+        if arrival.refused:
+            is_work = arrival.name.lower().endswith((".ipynb", ".zip")) or not ids
+            return replace(line, reason=arrival.refused, is_soft=not is_work)
+        if arrival.is_archive:
+            return replace(line, reason=reason)
+        data = self.inbox.read(arrival.content)
+        if not is_notebook(arrival.name, data):
+            return _no_notebook(line, arrival)
+        if reason:
+            return replace(line, reason=reason)
+        if edit.assignment or edit.notebook:
+            return self._as_written(line, name, edit, asked)
+        try:
+            (assignment, notebook), is_named = self.assignments.target(name, data, asked)
+        except NoTarget as error:
+            return replace(line, reason=str(error), is_soft=error.is_left_out)
+        return replace(line, assignment=assignment, notebook=notebook, is_named=is_named)
+
+    def _as_written(self, line: Line, name: str, edit: Edit, asked: str) -> Line:
+        """Return the line completed with the notebook that a person wrote."""
+        several = self.assignments.notebooks(asked)
+        only = several[0] if len(several) == 1 else stem_of(name)
+        notebook = edit.notebook or only
+        if notebook in several:
+            return replace(line, assignment=asked, notebook=notebook)
+        reason = (
+            f"write the name of the notebook under notebook ({', '.join(several)})"
+            if several
+            else f"the class has no assignment {asked or 'here'}: correct the name under assignment"
+        )
+        return replace(line, assignment=asked if several else "", reason=reason)
+
+
+def _no_notebook(line: Line, arrival: Arrival) -> Line:
+    """Return the line for a file that is not a notebook, such as a picture, or a page of the LMS."""
+    if arrival.name in PAGES and not arrival.inner and not line.students:
+        return replace(line, assignment="", reason="the file is a page of the LMS", is_soft=True, lms="list")
+    if arrival.name.lower().endswith(_OTHER_ARCHIVES):
+        what = "archives of this kind are not opened: unpack the file into a folder named"
+        return replace(line, reason=f"{what} {line.student or 'STUDENT'}, and collect the folder")
+    return replace(line, reason="it is not a notebook", is_soft=True)
+
+
+def _by_hand(line: Line, arrival: Arrival) -> Line:
+    """Return the line of a file that a person put into ``submitted``. Its path names the student and the notebook."""
+    student, assignment, name = arrival.parts
+    return replace(
+        line,
+        students=(student,),
+        assignment=assignment,
+        notebook=name.removesuffix(SUFFIX),
+        lms=BY_HAND,
+        file=arrival.path,
+        is_sure=True,
+    )
+
+
+def in_utc(when: datetime | None, zone: tzinfo) -> datetime | None:
+    """Return a time in UTC; None for a time in the year 1 or 9999, which may not exist in another time zone."""
+    if when is None:
+        return None
+    try:
+        found = (when if when.tzinfo else when.replace(tzinfo=zone)).astimezone(UTC)
+    except (OverflowError, ValueError):
+        return None
+    return found if 1 < found.year < 9999 else None
+
+
+def entries_of(inbox: Inbox) -> dict[str, list[ListEntry]]:
+    """Return the entries of all lists in the inbox, by delivery."""
+    found: dict[str, list[ListEntry]] = defaultdict(list)
+    for id_, delivery in inbox.deliveries.items():
+        for one in delivery.arrivals:
+            found[id_] += read_list(one.name, inbox.read(one.content)) or [] if one.is_list else []
+    return found
+
+
+def _merged(several: Iterable[Line]) -> Line:
+    """Return one line for a file that came several times, with the most certain facts and the latest time."""
+    lines = sorted(several, key=lambda one: (bool(one.reason), one.is_soft, one.rank, one.label))
+    best = lines[0]
+    when = max((one.when for one in lines if one.when), default=None)
+    came_in = frozenset().union(*(one.came_in for one in lines))
+    return replace(best, when=when, came_in=came_in)

@@ -1,0 +1,109 @@
+"""Defines a task (one notebook of one student, ready to be executed), and computes the points from its verdicts."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Mapping  # noqa: TC003  (msgspec reads the annotations)
+from dataclasses import dataclass, field, replace
+
+import msgspec
+
+from autograder.boxes.run_limits import Limits
+from autograder.execution.executed_cells import Cell, CellCheck, Execution
+from autograder.execution.verdicts_without_judge import grader_trouble, zero_points
+from autograder.verdict import State, Verdict
+
+UNREADABLE = "unreadable"
+"""The diagnosis for a submission that is not a notebook."""
+
+
+@dataclass(frozen=True)
+class Task:
+    """A notebook to execute, with everything that a worker needs for it.
+
+    Attributes:
+        student: The student's id, for messages.
+        cells: The cells of the rebuilt notebook.
+        seed: The seed of the judge's random inputs.
+        course: The version of the course, a hash of all files that may influence a grade.
+        limits: The limits on time, memory and output.
+        files: The assignment's files next to the notebook, by relative path.
+        problem: The reason if the notebook cannot be executed; otherwise empty.
+        remarks: Sentences about repairs of the notebook.
+        pictures: A hash of the pictures that the student attached, so that changed pictures change the task's hash.
+        boxed: True to execute the notebook in a sandbox; False for the course's own notebooks, and if the instructor
+            allowed grading without a sandbox. A result without a sandbox is not reused for a boxed task, because the
+            two have different hashes.
+    """
+
+    student: str
+    assignment: str
+    notebook: str
+    cells: tuple[Cell, ...]
+    seed: str
+    course: str
+    limits: Limits = field(default_factory=Limits)
+    files: Mapping[str, bytes] = field(default_factory=dict)
+    problem: str = ""
+    remarks: tuple[str, ...] = ()
+    pictures: str = ""
+    boxed: bool = True
+
+    def beside_others(self, beside: bool) -> Task:
+        """Return the task with the memory limit for running beside other tasks, or alone if ``beside`` is False."""
+        return replace(self, limits=replace(self.limits, beside=beside))
+
+    @property
+    def label(self) -> str:
+        """The name of the task in messages, such as ``ada/lab_1_2/lab_1_2``."""
+        return f"{self.student}/{self.assignment}/{self.notebook}"
+
+    def key(self) -> str:
+        """Return a hash of the whole task: tasks with the same hash have the same result."""
+        return hashlib.sha256(msgspec.json.encode(self, order="deterministic")).hexdigest()
+
+    def without_execution(self) -> Execution:
+        """Return the result of a task that cannot be executed: no cell is run, and each check gets zero points."""
+        verdicts = {
+            index: zero_points(
+                cell.check, UNREADABLE, self.problem, "Hand in the notebook as JupyterLab saves it."
+            )
+            for index, cell in enumerate(self.cells)
+            if cell.check is not None
+        }
+        return Execution(cells=(), verdicts=verdicts)
+
+    def in_trouble(self, reason: str) -> Execution:
+        """Return the result of a task that was not executed because the grader failed: no check was made.
+
+        Args:
+            reason: Why the grader failed.
+        """
+        verdicts = {
+            index: grader_trouble(cell.check, reason) for index, cell in enumerate(self.cells) if cell.check
+        }
+        return Execution(cells=(), verdicts=verdicts, trouble=reason)
+
+
+def points(check: CellCheck, verdict: Verdict) -> float:
+    """Return the points for a verdict: the points of the check cell times the share that the judge gave."""
+    share = verdict.score / verdict.max_score if verdict.max_score > 0 else 0.0
+    return round(min(1.0, max(0.0, share)) * check.worth, 4)
+
+
+def scores_of(task: Task, execution: Execution) -> dict[str, float]:
+    """Return the points of each check cell of a task, by grade_id."""
+    return {
+        cell.name: points(cell.check, execution.verdicts[index])
+        for index, cell in enumerate(task.cells)
+        if cell.check is not None
+    }
+
+
+def unchecked(task: Task, execution: Execution) -> set[str]:
+    """Return the grade_ids of the check cells that could not be checked."""
+    return {
+        cell.name
+        for index, cell in enumerate(task.cells)
+        if cell.check is not None and execution.verdicts[index].state == State.NOT_CHECKED
+    }

@@ -1,0 +1,104 @@
+"""Reads the notebooks that students handed in. Each file is parsed by a desk, which is a separate process in a box.
+
+.. code-block:: python
+
+    cells, left_out = read_notebook(read_bytes(path))
+
+Even if a file takes over its desk, it can only change what is read from this one file, because the document that the
+desk returns is checked (:func:`autograder.grading.running.admission.admitted_notebook`). If the document is impossible,
+or the desk fails on the file, the file counts as unreadable.
+"""
+
+from __future__ import annotations
+
+import signal
+from typing import TYPE_CHECKING
+
+from autograder.boxes.process_channel import ChannelClosed
+from autograder.boxes.reading_desks import KeptDesk, answer_in, in_memory
+from autograder.grading.grading_errors import GradingError
+from autograder.grading.rebuilding.submitted_notebook import Unreadable, UnreadableSubmission
+from autograder.grading.running.worker_messages import LARGEST_DOCUMENT, Forged, admitted_notebook
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from autograder.boxes.reading_desks import Desk
+    from autograder.grading.rebuilding.submitted_notebook import SubmittedCell
+
+
+CPU_SECONDS = 20
+"""The maximum processor time of a desk process, in seconds. A file of 50 MB takes two seconds."""
+_SAMPLE = b'{"nbformat": 4, "metadata": {}, "cells": [{"cell_type": "code", "source": "x"}]}'
+_AS_SAVED = "Save the notebook in JupyterLab and hand in that file."
+_TOO_LONG = f"Reading the file takes far more time than reading a notebook. {_AS_SAVED}"
+_NOT_READ = f"The file is not a notebook: the program that reads notebooks failed on it. {_AS_SAVED}"
+
+
+class DeskFailed(GradingError):
+    """No file can be read, because desks do not work on this machine. The message says what to do."""
+
+
+def read_notebook(data: bytes) -> tuple[Sequence[SubmittedCell], int]:
+    """Return the valid cells of a submitted file, and the number of invalid cells that were left out.
+
+    Raises:
+        UnreadableSubmission: The file is not a notebook. The message is a sentence for the student.
+        DeskFailed: No file can be read on this machine.
+    """
+    try:
+        return checked(document_of(_desk, data))
+    except ChannelClosed as error:
+        raise DeskFailed(
+            f"No submitted file can be read on this machine: {error}. Usually the machine is short of memory: end "
+            "other programs, and type the command again."
+        ) from error
+
+
+def document_of(desk: Desk | KeptDesk, data: bytes) -> bytes:
+    """Let a desk process read the bytes of a file, and return the desk's document, which is not checked yet.
+
+    Raises:
+        UnreadableSubmission: The desk process failed because of the file.
+        ChannelClosed: No answer came, for a reason other than the file.
+    """
+    with in_memory(data) as source, in_memory() as answer:
+        code = desk.ask(source, answer, LARGEST_DOCUMENT + 1, CPU_SECONDS)
+        if code:
+            raise UnreadableSubmission(_TOO_LONG if code == -signal.SIGXCPU else _NOT_READ)
+        return answer_in(answer, LARGEST_DOCUMENT + 1)
+
+
+def checked(document: bytes) -> tuple[Sequence[SubmittedCell], int]:
+    """Check a desk's document, and return its cells and the number of invalid cells that the desk left out.
+
+    Raises:
+        UnreadableSubmission: The file is not a notebook, or the document is impossible.
+    """
+    try:
+        read = admitted_notebook(document)
+    except Forged as error:
+        raise UnreadableSubmission(_NOT_READ) from error
+    if isinstance(read, Unreadable):
+        raise UnreadableSubmission(read.reason)
+    return read.cells, read.left_out
+
+
+def why_unreadable(data: bytes) -> str:
+    """Return why a file cannot be read as a notebook, in words for the student; empty if it can be read."""
+    try:
+        read_notebook(data)
+    except UnreadableSubmission as error:
+        return str(error)
+    return ""
+
+
+def _rehearse(desk: Desk) -> None:
+    """Let a new desk read a sample, to find out whether this machine, and not a student's file, causes failures."""
+    try:
+        checked(document_of(desk, _SAMPLE))
+    except UnreadableSubmission as error:
+        raise ChannelClosed(f"not even a sample ({error})") from error
+
+
+_desk = KeptDesk("autograder.grading.rebuilding.notebook_parsing", rehearse=_rehearse)

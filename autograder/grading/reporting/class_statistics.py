@@ -1,0 +1,245 @@
+"""Statistics of a class, computed from its table of results."""
+
+from __future__ import annotations
+
+import statistics
+from collections import defaultdict
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from autograder.grading.table.rows import EXCUSED, LATE, NOT_SUBMITTED, columns
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from autograder.grading.class_records import Attempt
+    from autograder.grading.class_store import ClassStore
+    from autograder.grading.table.class_table import ClassTable
+    from autograder.grading.table.rows import Row
+
+
+BANDS = 10
+_ABSENT = (NOT_SUBMITTED, EXCUSED)
+_FEWEST = 3
+"""The minimum number of students for a meaningful correlation."""
+
+
+@dataclass(frozen=True)
+class Band:
+    """One of ten equal ranges of points, with the students in it.
+
+    Attributes:
+        low: The lower end in percent of the points.
+        high: The upper end in percent. Only the last band includes its upper end.
+        students: The ids of the students in the band.
+    """
+
+    low: int
+    high: int
+    students: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class CriterionFigures:
+    """How many submissions meet one criterion.
+
+    Attributes:
+        title: The criterion's title.
+        passed: The number of submissions that meet the criterion.
+        of: The number of submissions in which the criterion was judged.
+    """
+
+    title: str
+    passed: int
+    of: int
+
+
+@dataclass(frozen=True)
+class ItemFigures:
+    """The statistics of one exercise, over the students who handed it in.
+
+    Attributes:
+        exercise: The exercise's id. If several assignments have a cell with this name, the id follows the assignment's
+            name, such as ``lab_1.talker``.
+        handed_in: The number of students who have handed it in.
+        mean: The mean of these students' points.
+        full: The number of these students with full points.
+        none: The number of these students without points.
+        difficulty: The mean divided by the maximum points, so a high value means an easy exercise.
+        discrimination: Pearson's correlation, from -1 to 1, between students' points for this exercise and their
+            points for all other exercises; None if it cannot be computed.
+        criteria: How many submissions meet each criterion of the exercise.
+    """
+
+    exercise: str
+    max_score: float
+    handed_in: int
+    mean: float
+    full: int
+    none: int
+    difficulty: float
+    discrimination: float | None
+    criteria: tuple[CriterionFigures, ...] = ()
+
+
+@dataclass(frozen=True)
+class MistakeFigures:
+    """A mistake that was recognized, with the students who made it.
+
+    Attributes:
+        assignment: The assignment's name.
+        exercise: The exercise's id.
+        key: The mistake's key.
+        reason: The explanation in the diagnosis, as one of the students got it.
+        students: The ids of the students who made the mistake.
+    """
+
+    assignment: str
+    exercise: str
+    key: str
+    reason: str
+    students: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class AttemptProgress:
+    """A student's points from the judge in the first and the last attempt at an assignment.
+
+    Attributes:
+        student: The student's id.
+        assignment: The assignment's name.
+        attempts: The number of different submissions that were graded.
+        first: The points of the first attempt.
+        last: The points of the last attempt.
+        max_score: The maximum points that the judge gives.
+    """
+
+    student: str
+    assignment: str
+    attempts: int
+    first: float
+    last: float
+    max_score: float
+
+
+def progress(student: str, attempts: Iterable[Attempt]) -> list[AttemptProgress]:
+    """Return a student's progress in each assignment that the student submitted again after a change.
+
+    Args:
+        student: The student's id.
+        attempts: All graded attempts of the student, oldest first. But only attempts with the same version of the
+            course as the last attempt are used, because other attempts are not comparable.
+    """
+    found: dict[str, list[Attempt]] = defaultdict(list)
+    for attempt in attempts:
+        found[attempt.assignment].append(attempt)
+    shown = []
+    for assignment, all_of_it in found.items():
+        same = [one for one in all_of_it if one.course == all_of_it[-1].course]
+        works = len({one.work for one in same})
+        first, last = (sum(row.score for row in one.rows) for one in (same[0], same[-1]))
+        if works > 1:
+            most = sum(row.max_score for row in same[-1].rows)
+            shown.append(AttemptProgress(student, assignment, works, first, last, most))
+    return shown
+
+
+def bands(table: ClassTable) -> list[Band]:
+    """Return the distribution of total points in ten bands, without students who have no points."""
+    found: dict[int, list[str]] = defaultdict(list)
+    for student in handed_in(table):
+        if (points := table.score(student)) is None:
+            continue
+        most = sum(row.max_score for row in table.of(student))
+        share = points / most if most else 0.0
+        found[max(0, min(BANDS - 1, int(share * BANDS + 1e-9)))].append(student)
+    width = 100 // BANDS
+    return [Band(place * width, (place + 1) * width, tuple(found[place])) for place in range(BANDS)]
+
+
+def handed_in(table: ClassTable) -> list[str]:
+    """Return the ids of the students with at least one submission."""
+    return [
+        student
+        for student in table.students
+        if any(row.state not in _ABSENT and row.exercise != LATE for row in table.of(student))
+    ]
+
+
+def totals(table: ClassTable) -> list[float]:
+    """Return the total points of each student who has points."""
+    return [points for student in handed_in(table) if (points := table.score(student)) is not None]
+
+
+def items(table: ClassTable, store: ClassStore) -> list[ItemFigures]:
+    """Return the statistics of each exercise.
+
+    Args:
+        table: The table of the class.
+        store: The store of the class, which contains the judge's verdicts.
+    """
+    criteria = _criteria(table, store)
+    found = []
+    for key, name in columns(table.rows).items():
+        rows = [row for row in table.rows if _key(row) == key and not row.is_blank]
+        if not rows:
+            continue
+        scores, most = [row.score for row in rows], rows[0].max_score
+        mean = statistics.fmean(scores)
+        others = [sum(row.score for row in table.of(one.student) if _key(row) != key) for one in rows]
+        found.append(
+            ItemFigures(
+                name,
+                most,
+                len(rows),
+                mean,
+                sum(score >= most for score in scores),
+                sum(score <= 0 for score in scores),
+                mean / most if most else 0.0,
+                _correlation(scores, others),
+                tuple(criteria.get(key, ())),
+            )
+        )
+    return found
+
+
+def _key(row: Row) -> tuple[str, str]:
+    return row.assignment, row.exercise
+
+
+def mistakes(table: ClassTable) -> list[MistakeFigures]:
+    """Return the recognized mistakes with the students who made them, the most common mistake first."""
+    found: dict[tuple[str, str, str], list[Row]] = defaultdict(list)
+    for row in table.rows:
+        if row.diagnosis:
+            found[row.assignment, row.exercise, row.diagnosis].append(row)
+    names = columns(table.rows)
+    figures = [
+        MistakeFigures(
+            assignment, names[assignment, exercise], key, rows[0].reason, tuple(row.student for row in rows)
+        )
+        for (assignment, exercise, key), rows in found.items()
+    ]
+    return sorted(figures, key=lambda one: (-len(one.students), one.exercise, one.key))
+
+
+def _correlation(ours: Sequence[float], others: Sequence[float]) -> float | None:
+    if len(ours) < _FEWEST or len(set(ours)) == 1 or len(set(others)) == 1:
+        return None
+    return statistics.correlation(ours, others)
+
+
+def _criteria(table: ClassTable, store: ClassStore) -> dict[tuple[str, str], list[CriterionFigures]]:
+    """Return, for each exercise, how many of the graded submissions meet each criterion."""
+    counted = {(row.student, row.assignment) for row in table.rows if row.state in ("passed", "failed")}
+    seen: dict[tuple[str, str], dict[str, CriterionFigures]] = defaultdict(dict)
+    for student, assignment in sorted(counted):
+        for execution in store.results(student, assignment).values():
+            for verdict in execution.verdicts.values():
+                of_exercise = seen[assignment, verdict.exercise]
+                for criterion in verdict.criteria:
+                    known = of_exercise.get(criterion.name, CriterionFigures(criterion.title, 0, 0))
+                    of_exercise[criterion.name] = replace(
+                        known, passed=known.passed + criterion.passed, of=known.of + 1
+                    )
+    return {key: list(figures.values()) for key, figures in seen.items()}

@@ -1,0 +1,388 @@
+"""The result of a grading run: as an object, as the JSON of ``grade --json``, and as a table in the terminal."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass, field, replace
+from itertools import groupby
+from typing import TYPE_CHECKING, Any, Self
+
+import msgspec
+from rich import box
+from rich.cells import cell_len
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+from autograder.cards.readable_text import printable
+from autograder.grading.grading_task import UNREADABLE
+from autograder.grading.running.batch_progress import Timings, plain_line
+from autograder.grading.table.rows import (
+    DROPPED,
+    EXCUSED,
+    LATE,
+    NO_EXERCISE,
+    NOT_SUBMITTED,
+    WAITS,
+    Row,
+    columns,
+    remarks_on,
+    total,
+)
+from autograder.kit.in_words import counted
+from autograder.safe_files import name_as_text
+from autograder.verdict import State
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+    from datetime import datetime
+    from pathlib import Path
+
+    from autograder.grading.classes.class_directory import RefusedFile
+    from autograder.grading.table.class_table import ClassTable, Difference
+
+
+FORM = 2
+"""The version of the JSON format. It increases when a field is renamed or removed."""
+
+
+@dataclass(frozen=True)
+class GradeReport:
+    """The result of a grading run.
+
+    Attributes:
+        path: The class directory.
+        rows: The rows, sorted by student and then in the order of the course.
+        refused: Files and folders in ``submitted`` that cannot be graded, each with the reason.
+        problems: Sentences about other failures, for which no student has points.
+        notices: Sentences for the instructor that are not about a failure.
+        would_change: After a dry run, the points that would change; None if points were entered.
+        executed: The number of notebooks that were executed.
+        reused: The number of notebooks whose result was already known.
+        written: The number of submissions that this run entered into the gradebook.
+        seconds: The duration of the run, in seconds of wall time.
+        timings: The seconds that each step took.
+        note: A warning if submissions were run without a sandbox, so that the points may be forged; otherwise empty.
+        gradebook: The path of the gradebook's SQLite file; None if the gradebook is on a database server.
+        due: The due date of each assignment that has one, in the time zone of the class.
+    """
+
+    path: Path
+    rows: tuple[Row, ...]
+    refused: tuple[RefusedFile, ...] = ()
+    problems: tuple[str, ...] = ()
+    notices: tuple[str, ...] = ()
+    would_change: tuple[Difference, ...] | None = None
+    executed: int = 0
+    reused: int = 0
+    written: int = 0
+    seconds: float = 0.0
+    timings: Timings = field(default_factory=Timings)
+    note: str = ""
+    gradebook: Path | None = None
+    due: Mapping[str, datetime] = field(default_factory=dict)
+
+    @property
+    def csv(self) -> Path:
+        """The path of ``grades.csv``, which contains all rows."""
+        return self.path / "grades.csv"
+
+    @property
+    def feedback(self) -> Path:
+        """The folder with the feedback pages for students."""
+        return self.path / "feedback"
+
+    @property
+    def exit_code(self) -> int:
+        """The command's exit code: 0 if everything was graded; 2 if a check or a file could not be graded."""
+        unchecked = any(row.state == State.NOT_CHECKED for row in self.rows)
+        return 2 if self.refused or self.problems or unchecked else 0
+
+
+def report_json(report: GradeReport) -> bytes:
+    """Return the report as one line of JSON."""
+    return msgspec.json.encode(
+        {
+            "form": FORM,
+            "class": str(report.path),
+            "exit_code": report.exit_code,
+            "note": report.note,
+            "submissions": _submissions(report.rows),
+            "refused": [
+                {"path": name_as_text(str(refused.path)), "reason": name_as_text(refused.reason)}
+                for refused in report.refused
+            ],
+            "problems": [name_as_text(text) for text in report.problems],
+            "due": report.due,
+            "notices": [name_as_text(text) for text in report.notices],
+            "would_change": report.would_change,
+            "totals": {
+                "executed": report.executed,
+                "reused": report.reused,
+                "written": report.written,
+                "score": sum(row.score for row in report.rows),
+                "max_score": sum(row.max_score for row in report.rows),
+                "waiting_for_a_person": sum(row.waits for row in report.rows),
+                "not_checked": sum(row.state == State.NOT_CHECKED for row in report.rows),
+                "seconds": round(report.seconds, 3),
+            },
+            "timings": {name: round(value, 3) for name, value in asdict(report.timings).items()},
+        }
+    )
+
+
+def table_json(page: Path, table: ClassTable) -> bytes:
+    """Return a class's table of results and the path of the report page as one line of JSON."""
+    return msgspec.json.encode(
+        {
+            "form": FORM,
+            "page": str(page),
+            "submissions": _submissions(table.rows),
+            "waiting": [{"file": one.label, "reason": one.sentence} for one in table.unplaced],
+            "not_graded": table.stale,
+            "notices": table.notices,
+        }
+    )
+
+
+def _submissions(rows: tuple[Row, ...]) -> list[dict[str, Any]]:
+    """Return a JSON object for each submission, in the order of the rows."""
+    found = []
+    for (student, assignment), group in groupby(rows, key=lambda row: (row.student, row.assignment)):
+        all_rows = list(group)
+        exercises = [row for row in all_rows if row.exercise != DROPPED]
+        found.append(
+            {
+                "student": student,
+                "name": exercises[0].name,
+                "assignment": assignment,
+                "score": total(exercises),
+                "max_score": sum(row.max_score for row in exercises),
+                "is_dropped": exercises != all_rows,
+                "remarks": remarks_on(all_rows).get((student, assignment), ""),
+                "late_penalty": -sum(row.score for row in exercises if row.exercise == LATE),
+                "exercises": [
+                    {
+                        "exercise": row.exercise,
+                        "score": row.shown_score,
+                        "max_score": row.max_score,
+                        "state": row.state,
+                        "diagnosis": row.diagnosis,
+                        "reason": row.reason,
+                        "judge": row.judged,
+                        "by_hand": row.by_hand,
+                        "extra": row.extra,
+                        "waits_for_a_person": row.waits,
+                    }
+                    for row in exercises
+                    if row.exercise not in NO_EXERCISE
+                ],
+            }
+        )
+    return found
+
+
+_WIDE = 130
+_NAME = 30
+"""The maximum width of a student's id or name, in characters. Longer ids and names are wrapped."""
+_ANY_WIDTH = 10_000
+_STYLES = {State.PASSED: "green", State.FAILED: "red", State.NOT_CHECKED: "yellow", WAITS: "yellow"}
+
+
+def show(report: GradeReport, console: Console | None = None) -> None:
+    """Print the table of results, lines about refused files and problems, and the paths of written files.
+
+    Args:
+        report: The result of the run.
+        console: The console to print on; by default standard output.
+    """
+    console = console or Console()
+    if not report.rows:
+        submitted = _near(report.path / "submitted")
+        plain_line(console, f"Nothing was submitted: put notebooks into {submitted}/<student>/<assignment>/.")
+    elif console.width >= _WIDE:
+        console.print(*tables(report.rows, console, diagnoses=True))
+    else:
+        console.print(*tables(report.rows, console, diagnoses=False))
+        console.print(_diagnoses(report.rows))
+    if report.would_change is not None:
+        count = len(report.would_change)
+        found = f"{counted(count, 'result')} would change:" if count else "No result would change."
+        plain_line(console, f"Nothing was entered. {found}", "bold")
+        for change in report.would_change:
+            plain_line(console, f"would change {printable(change.line())}")
+    for words in _legend(report.rows):
+        plain_line(console, words)
+    for refused in report.refused:
+        plain_line(
+            console, f"refused      {printable(str(refused.path))}: {printable(refused.reason)}", "yellow"
+        )
+    for where, reason in _unreadable(report):
+        plain_line(console, f"unreadable   {printable(where)}: {printable(reason)}", "yellow")
+    for name, due in report.due.items():
+        plain_line(console, f"due          {name} {due:%Y-%m-%d %H:%M}, time zone {due.tzinfo}")
+    for (student, assignment), words in remarks_on(report.rows).items():
+        plain_line(console, f"remark       {printable(student)}/{assignment}: {words}")
+    for notice in report.notices:
+        plain_line(console, f"note         {printable(notice)}")
+    for problem in report.problems:
+        plain_line(console, f"problem      {printable(problem)}", "red")
+    if report.note:
+        plain_line(console, f"unsafe       {report.note}", "red")
+    ran, entered = counted(report.executed, "notebook"), counted(report.written, "submission")
+    plain_line(console, f"{ran} run, {report.reused} unchanged, {entered} entered, {report.seconds:.1f} s")
+    for name, path in (
+        ("gradebook", report.gradebook),
+        ("grades", report.csv),
+        ("feedback", report.feedback),
+    ):
+        if path and path.exists():
+            plain_line(console, f"{name:<10} {_near(path)}")
+    if report.executed:
+        plain_line(console, report.timings.line())
+
+
+def tables(rows: Sequence[Row], console: Console, *, diagnoses: bool) -> Iterator[Table]:
+    """Yield tables with a row per student and a column per exercise.
+
+    A table that is too wide is divided into several tables. The last table also has the total.
+
+    Args:
+        rows: The rows to show.
+        console: The console into which each table has to fit.
+        diagnoses: True to also show recognized mistakes, with which a table with four exercises is about 130 characters
+            wide.
+    """
+    grid = _Grid.of(rows, diagnoses=diagnoses)
+    left = list(grid.names)
+    # rich is slow at measuring many cells, so measure only the widest cell of each column.
+    widest = grid.of_the_widest()
+    no_column = _needs(widest.table([]), console)
+    widths = {key: _needs(widest.table([key]), console) - no_column for key in left}
+    without_total, with_total = _needs(grid.table([]), console), _needs(grid.table([], is_last=True), console)
+
+    def fits(count: int) -> bool:
+        bare = with_total if count == len(left) else without_total
+        return bare + sum(widths[key] for key in left[:count]) <= console.width
+
+    while left:
+        here = next((count for count in range(len(left), 1, -1) if fits(count)), 1)
+        yield grid.table(left[:here], is_last=here == len(left))
+        left = left[here:]
+
+
+def _needs(shown: Table, console: Console) -> int:
+    """Return the width of a table, in characters, at which no cell is cut off or wrapped."""
+    return console.measure(shown, options=console.options.update(width=_ANY_WIDTH)).maximum
+
+
+@dataclass(frozen=True)
+class _Grid:
+    """The content of the printed table.
+
+    Attributes:
+        names: The headings of the columns, by assignment and exercise.
+        students: The results of each student, by the student's id.
+        results: The result for each cell of the table, by student, assignment and exercise.
+        diagnoses: True if cells also show the mistake.
+    """
+
+    names: Mapping[tuple[str, str], str]
+    students: Mapping[str, Sequence[Row]]
+    results: Mapping[tuple[str, str, str], Row]
+    diagnoses: bool
+
+    @classmethod
+    def of(cls, rows: Sequence[Row], *, diagnoses: bool) -> Self:
+        students: dict[str, list[Row]] = {}
+        for row in rows:
+            students.setdefault(row.student, []).append(row)
+        results = {(row.student, row.assignment, row.exercise): row for row in rows}
+        return cls(columns(rows), students, results, diagnoses)
+
+    def of_the_widest(self) -> Self:
+        """Return a grid with one row, which consists of the widest cell of each column."""
+        student = next(iter(self.students))
+        by_width = sorted(self.results.values(), key=lambda row: cell_len(_cell(row, self.diagnoses).plain))
+        # The rows are sorted by width, and a dict keeps the last value for each key: the widest cell of each column.
+        results = {(student, row.assignment, row.exercise): row for row in by_width}
+        return replace(self, students={student: self.students[student]}, results=results)
+
+    def table(self, keys: Sequence[tuple[str, str]], *, is_last: bool = False) -> Table:
+        """Return a table of some columns; the last table also has columns for late penalty, dropped work and total."""
+        there = {exercise for _, _, exercise in self.results} if is_last else set()
+        late, dropped = LATE in there, DROPPED in there
+        shown = Table(header_style="bold", box=box.SIMPLE_HEAD, pad_edge=False)
+        shown.add_column("student", overflow="fold", max_width=_NAME)
+        for key in keys:
+            # With headings of two lines, four exercises fit into a terminal of 80 characters.
+            shown.add_column(self.names[key].replace(".", "\n."), no_wrap=True)
+        if late:
+            shown.add_column("late", justify="right", no_wrap=True)
+        if dropped:
+            shown.add_column("dropped", overflow="fold", max_width=_NAME)
+        if is_last:
+            shown.add_column("total", justify="right", no_wrap=True)
+        for student, own in self.students.items():
+            cells = [_cell(self.results.get((student, *key)), self.diagnoses) for key in keys]
+            if late:
+                cells.append(_taken_off(own))
+            if dropped:
+                names = [row.assignment for row in own if row.exercise == DROPPED]
+                cells.append(Text("\n".join(names), style="dim"))
+            if is_last:
+                points, most = total(own), sum(row.max_score for row in own)
+                cells.append(Text("–" if points is None else f"{points:g}/{most:g}"))
+            name = f"{student}\n{own[0].name}" if own[0].name else student
+            shown.add_row(Text("\n".join(map(printable, name.split("\n")))), *cells)
+        return shown
+
+
+def _taken_off(rows: Sequence[Row]) -> Text:
+    points = sum(row.score for row in rows if row.exercise == LATE)
+    return Text(f"{points:g}" if points else "", style="red")
+
+
+def _diagnoses(rows: Sequence[Row]) -> Table:
+    """Return a table of the recognized mistakes: a line for each student and exercise."""
+    names = columns(rows)
+    shown = Table.grid(padding=(0, 2))
+    for row in rows:
+        if row.diagnosis:
+            shown.add_row(Text(printable(row.student)), names[row.assignment, row.exercise], row.diagnosis)
+    return shown
+
+
+def _unreadable(report: GradeReport) -> list[tuple[str, str]]:
+    """Return pairs of a submission and the reason why its notebook cannot be read, without refused files."""
+    refused = {(entry.path.parent.parent.name, entry.path.parent.name) for entry in report.refused}
+    reasons = {
+        f"{row.student}/{row.assignment}": row.reason
+        for row in report.rows
+        if row.diagnosis == UNREADABLE and (row.student, row.assignment) not in refused
+    }
+    return list(reasons.items())
+
+
+def _cell(row: Row | None, diagnoses: bool) -> Text:
+    if row is None or row.state in (NOT_SUBMITTED, EXCUSED):
+        return Text("–" if row is None or row.state == NOT_SUBMITTED else "excused", style="dim")
+    text = Text(f"{row.score:g}/{row.max_score:g}{row.mark}", style=_STYLES.get(row.state, "yellow"))
+    if row.diagnosis and diagnoses:
+        text.append(f" {row.diagnosis}", style="default")
+    return text
+
+
+def _legend(rows: Sequence[Row]) -> list[str]:
+    """Return a line about each mark that appears after points in the table."""
+    waiting = sum(row.waits for row in rows)
+    marks = {row.mark for row in rows}
+    found = ["*  a person gave these points, or a part of them"] if "*" in marks else []
+    if waiting:
+        found.append(f"?  waits for a person ({waiting} in all): give the points in formgrader")
+    return found
+
+
+def _near(path: Path) -> Path:
+    """Return a path relative to the current folder; if it is outside of this folder, the path unchanged."""
+    here = path.cwd()
+    return path.relative_to(here) if path.is_relative_to(here) else path

@@ -1,0 +1,169 @@
+"""Writes the report page about a class: one HTML file that needs no scripts, no network and no colors."""
+
+from __future__ import annotations
+
+import statistics
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+from urllib.parse import quote
+
+from autograder.cards.html_rendering import page_templates
+from autograder.cards.readable_text import one_line, printable
+from autograder.grading.class_store import ClassStore
+from autograder.grading.classes.class_directory import ClassDirectory
+from autograder.grading.collecting.collected_csv import Table
+from autograder.grading.grading_errors import GradingError, clear_disk_errors, clear_place_errors
+from autograder.grading.reporting import class_statistics as figures
+from autograder.grading.returning.page_exporter import POLICY
+from autograder.grading.table.class_table import ClassTable, by_exercise, read_table
+from autograder.grading.table.rows import DROPPED, EXCUSED, columns, remarks_on
+from autograder.safe_files import write_whole
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from autograder.grading.table.rows import Row
+
+
+NAME = "report.html"
+_LONGEST_NAME = 200
+
+
+@dataclass(frozen=True)
+class _Person:
+    """A student as shown on the page.
+
+    Attributes:
+        shown: The name; or, if names are hidden, a number such as ``student 3``.
+        links: The links to feedback pages by assignment, relative to this page; empty if names are hidden.
+    """
+
+    shown: str
+    links: dict[str, str]
+
+
+def write_report(
+    path: Path, *, names: bool = True, to: Path | None = None, sections: Sequence[str] = ()
+) -> Path:
+    """Write the report page of a class.
+
+    Args:
+        path: The class directory.
+        names: True to show names, with links to the feedback pages.
+        to: The file to write; by default ``report.html`` in the class.
+        sections: The sections whose students are shown; all students if empty.
+
+    Returns:
+        The absolute path of the file.
+
+    Raises:
+        GradingError: The class has no submissions, or cannot be read.
+    """
+    directory = ClassDirectory(path)
+    to = (to or directory.path / NAME).absolute()
+    with clear_disk_errors(directory.path), ClassStore(directory) as store:
+        table = read_table(directory, sections)
+        table.check_usable()
+        if not figures.handed_in(table):
+            raise GradingError("The class has no submissions yet, so nothing can be reported.")
+        page = _page(directory, store, table, names=names, folder=to.parent)
+        with clear_place_errors(to, "--output"):
+            write_whole(to, page.encode())
+    return to
+
+
+def _page(
+    directory: ClassDirectory, store: ClassStore, table: ClassTable, *, names: bool, folder: Path
+) -> str:
+    environment = page_templates("autograder.grading.report_page")
+    people = _people(directory, table, names=names, folder=folder)
+    there = figures.handed_in(table)
+    totals = figures.totals(table)
+    environment.filters["printable"] = printable
+    template = environment.get_template("report.html.j2")
+    return template.render(
+        policy=POLICY,
+        title=directory.path.name,
+        table=table,
+        people=people,
+        there=there,
+        absent=[student for student in table.students if student not in there],
+        exercises=columns(table.rows),
+        rows={student: by_exercise(table.of(student)) for student in table.students},
+        dropped=_dropped(table),
+        cell=_cell,
+        mean=statistics.fmean(totals) if totals else None,
+        median=statistics.median(totals) if totals else None,
+        most=table.max_score(),
+        bands=figures.bands(table),
+        items=figures.items(table, store),
+        mistakes=figures.mistakes(table),
+        times=_times(directory, table),
+        progress=_progress(store, table),
+        remarks=remarks_on(table.rows),
+        names=names,
+    )
+
+
+def _people(directory: ClassDirectory, table: ClassTable, *, names: bool, folder: Path) -> dict[str, _Person]:
+    if not names:
+        return {student: _Person(f"student {place}", {}) for place, student in enumerate(table.students, 1)}
+    people = {}
+    for student in table.students:
+        links = {}
+        for assignment in table.assignments:
+            pages = sorted((directory.path / "feedback" / student / assignment).glob("*.html"))
+            if pages:
+                # A feedback page outside the folder of the report page is linked by its absolute path.
+                inside = pages[0].is_relative_to(folder)
+                links[assignment] = quote(str(pages[0].relative_to(folder))) if inside else pages[0].as_uri()
+        name = table.roster.students[student].name
+        # Students choose their names in an LMS, so a name may be very long or have several lines.
+        people[student] = _Person(one_line(f"{name} ({student})" if name else student, _LONGEST_NAME), links)
+    return people
+
+
+def _dropped(table: ClassTable) -> dict[str, list[str]]:
+    """Return the assignments of each student that do not count because of ``drop_lowest``."""
+    found: dict[str, list[str]] = {}
+    for row in table.rows:
+        if row.exercise == DROPPED:
+            found.setdefault(row.student, []).append(row.assignment)
+    return found
+
+
+def _cell(row: Row | None) -> str:
+    if row is None or row.is_blank:
+        return "excused" if row and row.state == EXCUSED else "–"
+    return f"{row.score:g}{row.mark}"
+
+
+def _progress(store: ClassStore, table: ClassTable) -> list[figures.AttemptProgress]:
+    """Return the progress of students over several attempts, those with the greatest improvement first."""
+    found = [one for student in table.students for one in figures.progress(student, store.attempts(student))]
+    return sorted(found, key=lambda one: one.first - one.last)
+
+
+def _times(directory: ClassDirectory, table: ClassTable) -> list[dict[str, object]]:
+    """Return, for each submission, its time, the hours before the due date, and its points."""
+    earlier = Table(directory).earlier()
+    found: list[dict[str, object]] = []
+    for (student, assignment), entry in sorted(
+        table.entries.items(), key=lambda item: str(item[1].handed_in)
+    ):
+        if entry.handed_in is None or student not in table.students:
+            continue
+        before = None if entry.due is None else (entry.due - entry.handed_in).total_seconds() / 3600
+        found.append(
+            {
+                "student": student,
+                "assignment": assignment,
+                "at": f"{entry.handed_in:%Y-%m-%d %H:%M}",
+                "before": before,
+                "attempts": 1 + earlier[student, assignment],
+                "score": table.score(student, assignment) or 0.0,
+                "max": table.max_score(assignment),
+            }
+        )
+    return found

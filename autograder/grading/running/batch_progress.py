@@ -1,0 +1,259 @@
+"""Measures and shows the progress of grading: the duration of each step, and a bar or plain lines.
+
+The bar is for terminals, the plain lines are for log files and Jupyter. The remaining time is estimated from the
+finished notebooks. If a notebook still runs after the estimated time, the text names this notebook instead, with how
+long it has been running, and when it will be stopped at the latest.
+"""
+
+from __future__ import annotations
+
+import threading
+import time
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Self
+
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, ProgressColumn, TimeElapsedColumn
+from rich.progress import TextColumn as Words
+from rich.text import Text
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Sequence
+
+    from rich.console import Console
+    from rich.progress import Task
+
+    from autograder.execution.executed_cells import Cell, Execution
+
+
+@dataclass
+class Timings:
+    """Wall time of each step of a batch, in seconds. The times of notebooks that run in parallel are added up.
+
+    Attributes:
+        boxes: Starting and ending the boxes, kernels and judges.
+        students: Executing the cells that contain no check by the judge.
+        judge: Executing the cells that contain a check by the judge. This includes the time of the subject.
+        rebuild: Reading submissions, and building the notebooks that are executed.
+        gradebook: Converting notebooks and entering grades.
+        feedback: Making feedback pages.
+        first_started: The start of the first notebook, in seconds since the start of the batch.
+        last_ended: The end of the last notebook, in seconds since the start of the batch.
+    """
+
+    boxes: float = 0.0
+    students: float = 0.0
+    judge: float = 0.0
+    rebuild: float = 0.0
+    gradebook: float = 0.0
+    feedback: float = 0.0
+    first_started: float = 0.0
+    last_ended: float = 0.0
+
+    def count(self, cells: Sequence[Cell], execution: Execution) -> None:
+        """Add the times of one executed notebook."""
+        spent = [run.seconds for run in execution.cells]
+        checks = sum(
+            seconds
+            for cell, seconds in zip(cells, spent, strict=False)
+            if cell.check and not cell.check.asserts
+        )
+        self.judge += checks
+        self.students += sum(spent) - checks
+        self.boxes += max(0.0, execution.seconds - sum(spent))
+
+    @contextmanager
+    def measure(self, part: str) -> Iterator[None]:
+        """Measure how long the ``with`` block takes, and add the time to the attribute named ``part``."""
+        began = time.monotonic()
+        try:
+            yield
+        finally:
+            setattr(self, part, getattr(self, part) + time.monotonic() - began)
+
+    def line(self) -> str:
+        """Return the times as a line of text; empty if they add up to almost nothing."""
+        parts = (
+            ("boxes and kernels", self.boxes),
+            ("students' code", self.students),
+            ("judge", self.judge),
+            ("rebuilding", self.rebuild),
+            ("gradebook", self.gradebook),
+            ("feedback", self.feedback),
+        )
+        total = sum(seconds for _, seconds in parts)
+        if total < 0.05:
+            return ""
+        return "time went into " + ", ".join(f"{name} {seconds:.1f} s" for name, seconds in parts)
+
+
+_LINES = 20
+"""The approximate number of lines that a large class gets in a log file, not counting a line for each failure."""
+_SILENCE = 30.0
+"""Seconds between two lines in a log file about a notebook that runs longer than estimated."""
+
+
+def plain_line(console: Console, text: str, style: str = "") -> None:
+    """Print a text unchanged: without markup, highlighting and line breaks."""
+    console.print(text, style=style, markup=False, highlight=False, soft_wrap=True)
+
+
+class _Now(ProgressColumn):
+    """A column of the progress bar with a text that is computed each time the bar is drawn."""
+
+    def __init__(self, now: Callable[[], str]) -> None:
+        super().__init__()
+        self._now = now
+
+    def render(self, task: Task) -> Text:
+        """Return the text of the column. Rich calls this each time it draws the bar."""
+        del task
+        return Text(self._now())
+
+
+class BatchProgress:
+    """Counts and shows the notebooks that are done, running, waiting or failed. Any thread may call it.
+
+    Args:
+        console: The console for the progress.
+        total: The number of notebooks to execute.
+        doing: The word for the work in progress, such as "grading".
+        did: The word for finished work, such as "graded".
+        longest: Seconds after which a notebook is stopped in any case; None if unknown.
+        clock: Returns the current time in seconds.
+    """
+
+    def __init__(
+        self,
+        console: Console,
+        total: int,
+        *,
+        doing: str = "grading",
+        did: str = "graded",
+        longest: float | None = None,
+        clock: Callable[[], float] = time.monotonic,
+    ) -> None:
+        self._console = console
+        self._total = total
+        self._did = did
+        self._done = 0
+        self._failed = 0
+        self._running: dict[str, float] = {}
+        self._longest = longest
+        self._clock = clock
+        self._began = self._last = clock()
+        self._closed = threading.Event()
+        self._lock = threading.Lock()
+        # Jupyter gets plain lines like a log file: it would show the control characters that move a terminal's cursor.
+        self._lively = console.is_terminal and not console.is_jupyter
+        self._bar = Progress(
+            Words(doing),
+            BarColumn(bar_width=None),
+            MofNCompleteColumn(),
+            _Now(lambda: ", ".join(self._now())),
+            TimeElapsedColumn(),
+            console=console,
+            transient=True,
+            refresh_per_second=4,
+        )
+        self._task = self._bar.add_task("", total=total)
+
+    def __enter__(self) -> Self:
+        if self._lively and self._total:
+            self._bar.start()
+        elif self._total:
+            threading.Thread(target=self._break_silence, daemon=True).start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._closed.set()
+        if self._bar.live.is_started:
+            self._bar.stop()
+
+    def started(self, label: str) -> None:
+        """Record that a notebook begins.
+
+        Args:
+            label: The name of the notebook.
+        """
+        with self._lock:
+            self._running[label] = self._clock()
+
+    def finished(self, label: str, failed: bool, note: str = "") -> None:
+        """Record that a notebook is done.
+
+        Args:
+            label: The name of the notebook, as in :meth:`started`.
+            failed: True if the grader itself failed on the notebook.
+            note: A text to show after the notebook's name.
+        """
+        with self._lock:
+            self._running.pop(label, None)
+            self._done += 1
+            self._failed += failed
+            self._last = self._clock()
+            self._bar.update(self._task, completed=self._done)
+            step = max(1, self._total // _LINES)
+            line = failed or self._done % step == 0 or self._done == self._total
+            text = f"{self._did} {self._done} of {self._total}: {label}{note}{self._rest()}"
+        if line and not self._lively:
+            plain_line(self._console, text)
+
+    def tell(self) -> None:
+        """Print a line about the slowest notebook if it runs longer than estimated."""
+        with self._lock:
+            late = self._is_late() and f"still {', '.join(self._now())}"
+        if late:
+            plain_line(self._console, late)
+
+    def _break_silence(self) -> None:
+        while not self._closed.wait(_SILENCE):
+            self.tell()
+
+    def _rest(self) -> str:
+        """Return the counts in parentheses, for the end of a line in the log file; empty in the last line."""
+        return f" ({', '.join(self._now())})" if self._done < self._total else ""
+
+    def _now(self) -> list[str]:
+        waiting = max(0, self._total - self._done - len(self._running))
+        words = [f"{len(self._running)} running", f"{waiting} waiting"]
+        if self._failed:
+            words.append(f"{self._failed} not checked")
+        if self._is_late():
+            words += self._slowest()
+        elif self._done:
+            words.append(_rate(1 / self._each()))
+            words.append(f"about {_duration(self._last + self._rest_of_all() - self._clock())} left")
+        return words
+
+    def _each(self) -> float:
+        """Return the average time in seconds between two finished notebooks."""
+        return max(1e-3, self._last - self._began) / max(1, self._done)
+
+    def _rest_of_all(self) -> float:
+        return self._each() * (self._total - self._done)
+
+    def _is_late(self) -> bool:
+        """Return True if the estimated time has passed and a notebook is still running."""
+        return bool(self._running and self._done) and self._clock() > self._last + self._rest_of_all()
+
+    def _slowest(self) -> list[str]:
+        # Copy the dictionary, because other threads add and remove notebooks.
+        label, since = min(self._running.copy().items(), key=lambda one: one[1])
+        seconds = self._clock() - since
+        words = [f"{label} for {_duration(seconds)} now"]
+        if self._longest is not None and seconds < self._longest:
+            words.append(f"it is stopped in {_duration(self._longest - seconds)} at the latest")
+        return words
+
+
+def _rate(per_second: float) -> str:
+    return f"{per_second:.1f}/s" if per_second >= 1 else f"{60 * per_second:.1f}/min"
+
+
+def _duration(seconds: float) -> str:
+    minutes, rest = divmod(round(seconds), 60)
+    hours, minutes = divmod(minutes, 60)
+    if hours:
+        return f"{hours} h {minutes:02} min"
+    return f"{minutes} min {rest:02} s" if minutes else f"{rest} s"

@@ -1,0 +1,281 @@
+"""The ways to execute tasks: on this machine or on the workers of a Dask cluster, in a sandbox unless switched off.
+
+On this machine, as many tasks are executed at the same time as the memory allows. On a cluster, each worker that has
+the same version of the course executes tasks. Without a sandbox, nothing is graded unless the user explicitly asked
+for that.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import functools
+import importlib.util
+import os
+import queue
+import re  # noqa: TID251  (an instructor's address)
+import threading
+from typing import TYPE_CHECKING
+
+import psutil
+
+from autograder.boxes.run_limits import BUILD_LIMITS, Limits
+from autograder.grading.grading_errors import GradingError
+from autograder.grading.running.process_link import client_of, this_machine
+from autograder.grading.running.task_dispatcher import Dispatcher, Done
+from autograder.grading.running.worker_messages import JUDGE
+from autograder.safe_files import HeldFolder, sweep
+from environment.installation import installing
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Generator, Iterable, Iterator
+    from pathlib import Path
+
+    from autograder.grading.classes.class_directory import ClassDirectory
+    from autograder.grading.grading_task import Task
+
+    Execute = Callable[[Iterable[Task], Callable[[Task], None]], Generator[Done, None, None]]
+    """Executes tasks in the given order, and yields each result as soon as it is ready. The second argument is called
+    when a task begins.
+    """
+
+
+NOTE = (
+    "Graded without a sandbox: the submissions ran with all rights of the person who graded them, "
+    "and could have changed any grade."
+)
+"""A warning that the report and every feedback page show if a class was graded without a sandbox."""
+
+
+class SandboxMissing(GradingError):
+    """Submissions cannot be boxed on this machine, and the user has not asked to grade without boxes."""
+
+
+_off: set[Path] = set()
+"""The folders of the classes that this process grades without boxes. Folders are stored, and not ``ClassDirectory``
+objects, because several such objects may represent one class.
+"""
+
+
+def switch_off(path: Path) -> None:
+    """Let this process grade the class in the folder ``path`` without boxes, as ``--unsafe-no-sandbox`` does."""
+    _off.add(path.resolve())
+
+
+def switched_off(directory: ClassDirectory) -> bool:
+    """Return True if this class is graded without boxes, because of its configuration or :func:`switch_off`."""
+    configured = directory.config.WireExecute.get("unsafe_no_sandbox", False)
+    return bool(configured) or directory.path.resolve() in _off
+
+
+def require(directory: ClassDirectory) -> None:
+    """Check that submissions of this class can be boxed, or that the user allowed grading without boxes.
+
+    Raises:
+        SandboxMissing: Submissions cannot be boxed, and the user did not allow grading without boxes. The message says
+            what to do.
+    """
+    if switched_off(directory):
+        return
+    from autograder.boxes.sandbox import why_impossible
+
+    why = why_impossible()
+    if why:
+        raise SandboxMissing(
+            f"Submissions cannot be isolated from your files and from each other here: {why}. To grade "
+            "them nevertheless, trusting every submission: --unsafe-no-sandbox, or "
+            "c.WireExecute.unsafe_no_sandbox = True in nbgrader_config.py."
+        )
+
+
+_PER_CORE = 4
+"""The maximum number of notebooks per processor at the same time. It is greater than one, because a notebook spends
+most of its time waiting: for a timer, for ROS discovery, or for a program to start.
+"""
+BOX_BYTES = Limits().beside_bytes + 150_000_000
+"""The memory in bytes that is reserved for each notebook with its sandbox and judge."""
+_RESERVE_BYTES = 1_000_000_000
+
+
+def cores() -> int:
+    """Return the number of processors that this process may use."""
+    return len(os.sched_getaffinity(0))
+
+
+def at_once(processors: int, free_bytes: int) -> int:
+    """Return the default number of notebooks to execute at once: as many as fit into memory with ``BOX_BYTES`` each.
+
+    Memory for the grader itself and for one build per processor is subtracted first. The result is at most
+    ``_PER_CORE`` for each processor. A notebook that needs more than ``BOX_BYTES`` is later executed again, alone.
+    """
+    room = free_bytes - _RESERVE_BYTES - processors * BUILD_LIMITS.beside_bytes
+    return max(1, min(processors * _PER_CORE, room // BOX_BYTES))
+
+
+def execute_all(
+    tasks: Iterable[Task],
+    scratch: Path,
+    workers: int | None = None,
+    *,
+    on_start: Callable[[Task], None] = lambda _: None,
+    judge: str = JUDGE,
+    boxed: bool = True,
+) -> Generator[Done, None, None]:
+    """Execute tasks in parallel on this machine, and yield results as they are ready.
+
+    Args:
+        tasks: The tasks in the order in which they begin.
+        scratch: The folder in which submissions run. The caller removes it.
+        workers: The number of notebooks to execute at the same time; None for the number that :func:`at_once`
+            returns.
+        on_start: Called in another thread when a task begins.
+        judge: The Python class of the judge, as ``module:class``.
+        boxed: True if the tasks are executed in boxes.
+    """
+    slots = workers or at_once(cores(), psutil.virtual_memory().available)
+    with this_machine(scratch, slots, boxed=boxed) as machine:
+        dispatcher = Dispatcher(machine, "", judge=judge, boxed=boxed, tell=lambda _: None)
+        yield from dispatch(dispatcher, tasks, on_start)
+
+
+def dispatch(
+    dispatcher: Dispatcher, tasks: Iterable[Task], on_start: Callable[[Task], None]
+) -> Generator[Done, None, None]:
+    """Let a dispatcher execute tasks in another thread, so that free slots get tasks while the caller stores a result.
+
+    If the caller leaves the loop early, the tasks that still run are ended.
+
+    Args:
+        dispatcher: The dispatcher. It cannot be used afterwards.
+        tasks: The tasks in the order in which they begin. The next task is taken, in the other thread, when a slot is
+            free.
+        on_start: Called in the other thread when a task begins.
+    """
+    results: queue.SimpleQueue[Done | BaseException | None] = queue.SimpleQueue()
+
+    def execute() -> None:
+        try:
+            for done in dispatcher.execute_all(tasks, on_start):
+                results.put(done)
+            results.put(None)
+        except BaseException as error:  # pass the error on, because the caller waits for results
+            results.put(error)
+
+    thread = threading.Thread(target=execute, daemon=True)
+    thread.start()
+    try:
+        while (result := results.get()) is not None:
+            if isinstance(result, BaseException):
+                raise result
+            yield result
+    finally:
+        dispatcher.stop()
+        thread.join()
+
+
+_ADDRESS = re.compile(r"(tcp|tls)://[^\s/]+:\d{1,5}")
+
+
+def check_dask() -> None:
+    """Check that Dask is installed.
+
+    Raises:
+        GradingError: Dask is not installed.
+    """
+    if importlib.util.find_spec("distributed") is None:
+        raise GradingError(
+            "Grading on a cluster needs Dask, which is not installed here. "
+            f"Type: {installing('cluster', clone='--with cluster')}"
+        )
+
+
+def check_address(address: str) -> None:
+    """Check that ``address`` has the form of a Dask scheduler's address, such as ``tcp://host:8786``.
+
+    Raises:
+        GradingError: The address has another form.
+    """
+    if not _ADDRESS.fullmatch(address):
+        raise GradingError(
+            f"{address!r:.200} is not an address of a Dask scheduler. An address looks like tcp://host:8786, "
+            "or tls://host:8786 if Dask is set up for TLS."
+        )
+
+
+@contextlib.contextmanager
+def connected(
+    address: str, *, judge: str, boxed: bool, tell: Callable[[str], None] = lambda _: None
+) -> Iterator[Dispatcher]:
+    """Connect to a Dask cluster, and yield a dispatcher that gives tasks to its workers.
+
+    At the end of the ``with`` block, the tasks that are not finished are canceled within seconds.
+
+    Args:
+        address: The scheduler's address, such as ``tcp://host:8786`` or ``tls://host:8786``.
+        judge: The Python class that makes a judge, as ``module:class``.
+        boxed: True to execute tasks in boxes. Workers that cannot make boxes are then rejected.
+        tell: Called with a sentence for the instructor.
+
+    Raises:
+        GradingError: Dask is not installed.
+        SchedulerGone: No scheduler answers at this address.
+        NoWorkers: The scheduler has no workers, or none of them can execute tasks.
+    """
+    with client_of(address) as link:
+        pool = Dispatcher(link, address, judge=judge, boxed=boxed, tell=tell)
+        pool.await_workers()
+        yield pool
+
+
+def remove_leftovers(directory: ClassDirectory) -> None:
+    """Remove temporary files that a killed batch left behind.
+
+    Call this only while holding the lock of the class, so that no other process uses the files.
+    """
+    sweep(directory.scratch_prefix)
+
+
+@contextlib.contextmanager
+def local(directory: ClassDirectory, jobs: int | None, judge: str) -> Iterator[Execute]:
+    """Yield a function that executes tasks on this machine.
+
+    Args:
+        directory: The class.
+        jobs: The number of notebooks to execute at the same time; None for as many as processors and memory allow.
+        judge: The Python class that makes a judge, as ``module:class``; empty for the real judge.
+
+    Raises:
+        SandboxMissing: Submissions cannot be boxed on this machine. The message says what to do.
+    """
+    pass  # MERGED
+
+    require(directory)
+    boxed = not switched_off(directory)
+
+    def execute(tasks: Iterable[Task], on_start: Callable[[Task], None]) -> Generator[Done, None, None]:
+        return execute_all(tasks, scratch.path, jobs, on_start=on_start, judge=judge or JUDGE, boxed=boxed)
+
+    with HeldFolder(directory.scratch_prefix) as scratch:
+        yield execute
+
+
+@contextlib.contextmanager
+def cluster(
+    directory: ClassDirectory, scheduler: str, judge: str, tell: Callable[[str], None]
+) -> Iterator[Execute]:
+    """Yield a function that executes tasks on the workers of a Dask cluster.
+
+    Args:
+        directory: The class.
+        scheduler: The scheduler's address.
+        judge: The Python class that makes a judge, as ``module:class``; empty for the real judge.
+        tell: Called with a sentence for the instructor.
+
+    Raises:
+        GradingError: The cluster cannot be used. The message says why.
+    """
+    pass  # MERGED
+    pass  # MERGED
+
+    boxed = not switched_off(directory)
+    with connected(scheduler, judge=judge or JUDGE, boxed=boxed, tell=tell) as pool:
+        yield functools.partial(dispatch, pool)

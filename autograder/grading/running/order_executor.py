@@ -1,0 +1,192 @@
+"""Executes orders on this machine, each in a thread. Both the executor process of a batch and a Dask worker use it.
+
+A thread starts the processes of a notebook, and reads and checks their messages, but runs no student's code itself. The
+kernel, the kernel's desk and the judge are forked from fork servers, which serve all orders. Run as a program, this
+module is the executor process, which exchanges lines of JSON with the dispatcher over the socket on its standard input.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import sys
+import threading
+import warnings
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import msgspec
+
+from autograder import course
+from autograder.boxes.fork_server import ForkServers
+from autograder.grading.grading_task import Task
+from autograder.grading.running.task_execution import execute
+from autograder.grading.running.worker_messages import (
+    ADDRESS,
+    LARGEST_ANSWER,
+    Answered,
+    Command,
+    Failed,
+    Give,
+    Joined,
+    News,
+    Offer,
+    Order,
+)
+from autograder.judge.ros_setup import boxed_ros_environment, ros_environment
+from autograder.messages.json_lines import Hangup, Lines
+from autograder.process_trees import adopt_orphans, end_descendants
+
+if TYPE_CHECKING:
+    from autograder.boxes.fork_server import Addresses
+    from autograder.execution.notebook_boxes import BoxedPlace, UnboxedPlace
+
+
+LAST_SECONDS = 10.0
+"""Time limit in seconds for the clean-up of the executor process. It matters only if the grader has ended, because a
+grader that still runs kills the process earlier.
+"""
+_JUDGE_MODULE = "autograder.judge.controlled_judge"
+
+
+class Executor:
+    """Executes orders. Several threads may use it at the same time, each for one order.
+
+    Args:
+        scratch: The folder in which each submission gets its own folder.
+    """
+
+    def __init__(self, scratch: Path) -> None:
+        self._scratch = scratch
+        self._changing = threading.Condition()
+        self._running: dict[str, _Running] = {}
+        self._fork_servers: dict[bool, ForkServers] = {}
+        self._stopped = False
+
+    def execute(self, key: str, data: bytes) -> bytes:
+        """Execute an order, and return the execution as JSON.
+
+        Args:
+            key: A unique name for the order, with which :meth:`cancel` finds it.
+            data: An :class:`autograder.grading.running.worker_messages.Order` as JSON.
+        """
+        order = msgspec.json.decode(data, type=Order)
+        task = msgspec.json.decode(bytes(order.task), type=Task)
+        running = _Running()
+        with self._changing:
+            self._running[key] = running
+            if self._stopped:
+                running.end()
+        try:
+            execution = execute(
+                task, self._scratch, order.judge, self.fork_servers(boxed=task.boxed), running.began
+            )
+            answer = msgspec.json.encode(execution)
+        except Exception as error:
+            answer = msgspec.json.encode(task.in_trouble(f"{type(error).__name__}: {error}"))
+        finally:
+            with self._changing:
+                self._running.pop(key, None)
+                self._changing.notify_all()
+        if len(answer) > LARGEST_ANSWER:
+            return msgspec.json.encode(task.in_trouble(f"its result has {len(answer)} bytes"))
+        return answer
+
+    def cancel(self, key: str) -> None:
+        """End the processes of an order whose answer is no longer needed."""
+        with self._changing:
+            running = self._running.get(key)
+        if running is not None:
+            running.end()
+
+    def stop(self) -> None:
+        """End the processes of all orders, and the fork servers. An order that comes later fails at once."""
+        with self._changing:
+            self._stopped = True
+            for running in self._running.values():
+                running.end()
+            self._changing.wait_for(lambda: not self._running, LAST_SECONDS)
+            for kept in self._fork_servers.values():
+                kept.stop()
+
+    def fork_servers(self, *, boxed: bool) -> Addresses:
+        """Start the fork servers if they do not run, and return their addresses. Do not wait for their imports.
+
+        Args:
+            boxed: True to include the fork server for the supervisors of boxes.
+        """
+        with self._changing:
+            kept = self._fork_servers.get(boxed)
+            if kept is None or not kept.alive:
+                if kept is not None:
+                    kept.stop()
+                kept = self._fork_servers[boxed] = ForkServers(
+                    _JUDGE_MODULE,
+                    boxed=boxed,
+                    environment=boxed_ros_environment() if boxed else ros_environment(),
+                    of_judges=course.variables(),
+                    interfaces=course.interface_modules(),
+                )
+            return kept.addresses
+
+
+class _Running:
+    """An order that is being executed. Any thread may end it."""
+
+    def __init__(self) -> None:
+        self._changing = threading.Lock()
+        self._place: BoxedPlace | UnboxedPlace | None = None
+        self._ended = False
+
+    def began(self, place: BoxedPlace | UnboxedPlace) -> None:
+        """Remember the boxes of the order, so that :meth:`end` can end them."""
+        with self._changing:
+            self._place = place
+            if self._ended:
+                place.abandon()
+
+    def end(self) -> None:
+        """End every process in the boxes, so that the execution of the order fails."""
+        with self._changing:
+            self._ended = True
+            if self._place is not None:
+                self._place.abandon()
+
+
+def main(arguments: list[str]) -> None:
+    """Execute orders until the grader closes the connection.
+
+    Args:
+        arguments: The scratch folder, the number of notebooks to execute at the same time, and "boxed" if they will
+            be executed in boxes.
+    """
+    adopt_orphans()
+    # A setup.py of a student may cause thousands of these warnings when it is parsed.
+    warnings.simplefilter("ignore", SyntaxWarning)
+    executor, grader = Executor(Path(arguments[0])), Lines.with_parent()
+    # Start the fork servers now: they import their modules while the grader prepares the first order.
+    executor.fork_servers(boxed="boxed" in arguments[2:])
+    offer = msgspec.json.encode(Offer("", int(arguments[1]), ""))
+    with contextlib.suppress(Hangup):
+        grader.say_json(msgspec.json.encode(Joined(ADDRESS, ADDRESS, offer)))
+        while True:
+            command = msgspec.json.decode(grader.hear_json(), type=Command)
+            if isinstance(command, Give):
+                threading.Thread(target=_answer, args=(executor, grader, command), daemon=True).start()
+            else:
+                executor.cancel(str(command.number))
+    executor.stop()
+    end_descendants()
+
+
+def _answer(executor: Executor, grader: Lines, give: Give) -> None:
+    news: News
+    try:
+        news = Answered(give.number, executor.execute(str(give.number), give.order))
+    except BaseException as error:  # answer with the error, because the dispatcher waits for an answer
+        news = Failed(give.number, f"{type(error).__name__}: {error}")
+    with contextlib.suppress(Hangup):
+        grader.say_json(msgspec.json.encode(news))
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

@@ -1,0 +1,432 @@
+"""Gives tasks to workers, on this machine or in a cluster, and decides which tasks run again and which run alone.
+
+A worker is a machine with a number of slots, each of which executes one task at a time. This machine counts as one
+worker. A task runs again if its worker ended. It also runs again, but alone on a worker, if the result is not reliable:
+the grader itself failed, or other tasks may have used up the memory or processor time that this task needed. Every
+answer is checked by :func:`autograder.grading.running.admission.admitted` before it is used.
+"""
+
+from __future__ import annotations
+
+import bisect
+import itertools
+import operator
+import time
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Protocol
+
+import msgspec
+
+from autograder.grading.grading_errors import GradingError
+from autograder.grading.rebuilding.course_version import course_version
+from autograder.grading.running.worker_messages import (
+    ADDRESS,
+    Answered,
+    Asked,
+    Broken,
+    Drop,
+    Failed,
+    Forged,
+    Give,
+    Joined,
+    Left,
+    News,
+    Order,
+    Unfit,
+    admitted,
+    admitted_offer,
+    printable,
+)
+from environment.installation import COMMAND
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Generator, Iterable, Iterator
+
+    from autograder.execution.executed_cells import Execution
+    from autograder.grading.grading_task import Task
+    from autograder.grading.running.worker_messages import Command
+
+
+ATTEMPTS = 3
+"""The maximum number of times that a task is given to a worker. If the worker ended each time, the task may be the
+cause.
+"""
+_RETURN_SECONDS = 60.0
+"""Seconds to wait for a worker if none is left, because a worker that ended is often started again."""
+_EXTRA_SECONDS = 90.0
+"""Seconds that a worker may take beyond the time limits of a task before its answer is no longer expected."""
+_MOST_IN_FLIGHT = 2_000
+_MOST_TROUBLES = 3
+
+
+class NoWorkers(GradingError):
+    """There is no worker that can execute tasks."""
+
+
+class SchedulerGone(GradingError):
+    """The scheduler of the cluster cannot be reached."""
+
+
+@dataclass
+class _Worker:
+    """A worker whose offer was accepted."""
+
+    name: str
+    slots: int
+    troubles: int = 0
+    """The number of consecutive notebooks that this worker could not execute because the grader itself failed."""
+    flights: set[int] = field(default_factory=set)
+
+
+@dataclass(eq=False)
+class _Job:
+    """A task to execute, with the number of attempts and the workers that have tried it."""
+
+    task: Task
+    attempts: int = 0
+    tried: set[str] = field(default_factory=set)
+    alone: bool = False
+    """True if the previous result was not reliable, so that no other task may run on the worker at the same time."""
+    cpu_seconds: float = 0.0
+    """The processor time of the execution whose result was not reliable, in seconds; 0 if there was none."""
+
+    @property
+    def is_new(self) -> bool:
+        """True if the task was never given to a worker."""
+        return not (self.tried or self.alone)
+
+    @property
+    def turn(self) -> tuple[int, float]:
+        """The place in the queue: tasks to repeat, then new tasks, then tasks to repeat alone, the shortest first."""
+        return (2, self.cpu_seconds) if self.alone else (int(self.is_new), 0.0)
+
+
+@dataclass(frozen=True)
+class _Flight:
+    job: _Job
+    worker: str
+    deadline: float
+
+
+@dataclass(frozen=True)
+class Done:
+    """A task with its execution; ``execution.trouble`` says why the task could not be executed, if it could not."""
+
+    task: Task
+    execution: Execution
+
+
+class Link(Protocol):
+    """The connection between the dispatcher and the workers."""
+
+    def say(self, command: Command) -> None:
+        """Send a command. This raises no error if the connection is broken: :meth:`hear` then returns ``Broken``."""
+
+    def hear(self, within: float | None) -> News | None:
+        """Wait at most ``within`` seconds (None: without limit) for the next message. Return None if none came."""
+
+    def stop(self) -> None:
+        """Make :meth:`hear` return ``Broken`` from now on. Any thread may call this."""
+
+
+class Dispatcher:
+    """Gives the tasks of one batch to workers.
+
+    Args:
+        link: The connection to the workers.
+        address: The address of the cluster's scheduler, for messages; empty for this machine.
+        judge: The Python class of the judge, as ``module:class``.
+        boxed: True if tasks run in sandboxes. Workers that cannot make sandboxes are then rejected.
+        tell: Called with sentences for the instructor, for example that a worker was rejected and why.
+        return_seconds: Seconds to wait for a worker if none is left.
+    """
+
+    def __init__(
+        self,
+        link: Link,
+        address: str,
+        *,
+        judge: str,
+        boxed: bool,
+        tell: Callable[[str], None],
+        return_seconds: float = _RETURN_SECONDS,
+    ) -> None:
+        self._link, self._address = link, address
+        self._judge, self._boxed, self._tell = judge, boxed, tell
+        self._return_seconds = return_seconds
+        self._workers: dict[str, _Worker] = {}
+        self._refused: dict[str, str] = {}
+        self._waiting: list[_Job] = []
+        self._flights: dict[int, _Flight] = {}
+        self._done: list[Done] = []
+        self._number = 0
+
+    def await_workers(self) -> None:
+        """Wait until one worker has been accepted.
+
+        Raises:
+            SchedulerGone: The scheduler cannot be reached.
+            NoWorkers: There are no workers, or all of them were asked for their offers and rejected.
+        """
+        while not self._workers:
+            news = self._link.hear(None)
+            if isinstance(news, Asked):
+                raise NoWorkers(self._nobody())
+            self._take_in(news)
+
+    def execute_all(
+        self, tasks: Iterable[Task], on_start: Callable[[Task], None] = lambda _: None
+    ) -> Generator[Done, None, None]:
+        """Execute tasks on the workers, and yield results as they are ready.
+
+        Args:
+            tasks: The tasks in the order in which they begin. The next task is taken when a worker has a free slot.
+            on_start: Called when a task is given to a worker for the first time.
+
+        Raises:
+            SchedulerGone: The scheduler can no longer be reached.
+            NoWorkers: All workers have ended or were rejected, and no new worker came in time.
+        """
+        jobs = (_Job(task) for task in tasks)
+        return_until: float | None = None
+        while True:
+            self._give_out(jobs, on_start)
+            if not (self._flights or self._waiting):
+                return
+            if self._workers:
+                return_until = None
+            elif return_until is None:
+                return_until = time.monotonic() + self._return_seconds
+            self._take_in(self._link.hear(self._seconds_to_wait(return_until)))
+            now = time.monotonic()
+            if return_until is not None and now >= return_until and not self._workers:
+                raise NoWorkers(f"{self._nobody()} What was graded so far is kept.")
+            self._give_up_on_silent(now)
+            while self._done:
+                yield self._done.pop()
+
+    def stop(self) -> None:
+        """End :meth:`execute_all`, which another thread runs. The dispatcher cannot be used afterwards."""
+        self._link.stop()
+
+    def _give_out(self, jobs: Iterator[_Job], on_start: Callable[[Task], None]) -> None:
+        """Give a task to every free slot. No tasks are queued at a worker: they would be lost if the worker ended."""
+        for address, worker in self._workers.items():
+            while len(worker.flights) < worker.slots and len(self._flights) < _MOST_IN_FLIGHT:
+                job = self._next_for(address, worker, jobs)
+                if job is None:
+                    break
+                if job.is_new:
+                    on_start(job.task)
+                self._send(job, address, worker)
+        self._look_ahead(jobs)
+
+    def _next_for(self, address: str, worker: _Worker, jobs: Iterator[_Job]) -> _Job | None:
+        """Return the next task for a worker; None if there is no task for it now.
+
+        If a worker ended while it ran a task, the task may be the cause. So a worker runs at most one such task at a
+        time, if possible one that this worker has not tried before. A task that must run alone waits until no other
+        tasks are left and the worker is idle.
+        """
+        held = [self._flights[number].job for number in worker.flights]
+        self._look_ahead(jobs)
+        job = next((job for job in self._waiting if self._may_run(job, address, held)), None)
+        if job is not None:
+            self._waiting.remove(job)
+        return job
+
+    def _may_run(self, job: _Job, address: str, held: list[_Job]) -> bool:
+        """Return True if a worker that runs the tasks ``held`` may run this task at the same time."""
+        if any(other.alone or job.alone or (job.tried and other.attempts > 1) for other in held):
+            return False
+        return address not in job.tried or job.tried >= self._workers.keys()
+
+    def _look_ahead(self, jobs: Iterator[_Job]) -> None:
+        """Put the next new task into the queue if it contains no new task, to know whether any are left."""
+        if not any(job.is_new for job in self._waiting):
+            for job in itertools.islice(jobs, 1):
+                self._wait(job)
+
+    def _wait(self, job: _Job) -> None:
+        bisect.insort(self._waiting, job, key=operator.attrgetter("turn"))
+
+    def _send(self, job: _Job, address: str, worker: _Worker) -> None:
+        job.attempts += 1
+        job.tried.add(address)
+        self._number += 1
+        self._flights[self._number] = _Flight(job, address, time.monotonic() + _most_seconds(job.task))
+        worker.flights.add(self._number)
+        order = self._order(job.task.beside_others(worker.slots > 1 and not job.alone))
+        self._link.say(Give(self._number, address, order))
+
+    def _seconds_to_wait(self, return_until: float | None) -> float | None:
+        deadlines = [flight.deadline for flight in self._flights.values()]
+        if return_until is not None:
+            deadlines.append(return_until)
+        return min(deadlines) - time.monotonic() if deadlines else None
+
+    def _order(self, task: Task) -> bytes:
+        # The student's name is removed, because a worker does not need it.
+        nameless = msgspec.json.encode(replace(task, student=""))
+        return msgspec.json.encode(Order(msgspec.Raw(nameless), self._judge))
+
+    def _take_in(self, news: News | None) -> None:
+        match news:
+            case Joined(address, name, data):
+                self._consider(address, name, data)
+            case Unfit(address, name, reason):
+                self._refuse(address, name, _could_not_be_asked(reason))
+            case Left(address, reason):
+                self._forget(address, reason or "the worker ended while it ran this submission")
+            case Answered(number, data) if number in self._flights:
+                self._answered(number, data)
+            case Failed(number, reason, forged) if number in self._flights:
+                if forged:
+                    self._forged(number, reason)
+                else:
+                    self._lost(number, f"the worker could not run this submission: {reason}")
+            case Broken(reason) if not self._address:
+                raise NoWorkers(
+                    f"This machine cannot execute notebooks: {reason}. What was graded so far is kept."
+                )
+            case Broken(reason):
+                raise SchedulerGone(
+                    f"The Dask scheduler at {self._address} cannot be reached ({reason}). Check that it "
+                    "runs, and that its address and its TLS settings are right. What was graded so far "
+                    "is kept."
+                )
+            case _:
+                pass  # no message came, or an answer that is no longer needed
+
+    def _consider(self, address: str, name: str, data: bytes) -> None:
+        try:
+            offer = admitted_offer(data)
+        except Forged as error:
+            self._refuse(address, name, f"{error}. Check that machine")
+            return
+        if address != ADDRESS and offer.version != course_version():
+            self._refuse(
+                address,
+                name,
+                f"the worker's version of the course is {offer.version:.16}, and here it is {course_version()}. "
+                "Bring both machines to the same commit and start the worker again",
+            )
+        elif self._boxed and offer.obstacle:
+            self._refuse(address, name, f"the worker has no sandbox: {offer.obstacle[:500]}")
+        else:
+            self._workers[address] = _Worker(name, offer.slots)
+
+    def _refuse(self, address: str, name: str, reason: str) -> None:
+        called = printable(address if name == address else f"{name[:100]} ({address})")
+        reason = printable(reason)
+        self._refused[address] = f"{called}: {reason}"
+        self._tell(f"The worker {called} gets no work: {reason}.")
+
+    def _forget(self, address: str, reason: str) -> None:
+        self._refused.pop(address, None)
+        worker = self._workers.pop(address, None)
+        for number in sorted(worker.flights) if worker else ():
+            self._lost(number, reason)
+
+    def _answered(self, number: int, data: bytes) -> None:
+        flight = self._flights[number]
+        try:
+            execution = admitted(data, flight.job.task)
+        except Forged as error:
+            self._forged(number, str(error))
+            return
+        worker = self._workers[flight.worker]
+        self._land(number)
+        # Do not count a failure of a task that ran alone: the notebook may be the cause. Several such notebooks run one
+        # after the other, so a worker without a fault would seem to fail again and again.
+        if not flight.job.alone:
+            worker.troubles = worker.troubles + 1 if execution.trouble else 0
+        if self._comes_again(flight.job, execution):
+            self._do_alone(flight, execution)
+        else:
+            self._done.append(Done(flight.job.task, execution))
+        if worker.troubles >= _MOST_TROUBLES and len(self._workers) > 1:
+            # For example, a worker with a full disk would fail on each notebook at once, and then get the next one.
+            self._turn_out(
+                flight.worker,
+                f"the worker failed on {worker.troubles} notebooks in a row: {execution.trouble}",
+            )
+
+    def _comes_again(self, job: _Job, execution: Execution) -> bool:
+        """Return True if the task must run again: the result is not reliable, or another worker may succeed."""
+        if not job.alone:
+            return execution.says_nothing
+        others_may_do = job.attempts < ATTEMPTS and not job.tried >= self._workers.keys()
+        return bool(execution.trouble) and others_may_do
+
+    def _do_alone(self, flight: _Flight, execution: Execution) -> None:
+        job = flight.job
+        if not execution.trouble:  # the worker did not fail, so this attempt does not count
+            job.attempts -= 1
+            job.tried.discard(flight.worker)
+        job.alone, job.cpu_seconds = True, execution.cpu_seconds
+        self._wait(job)
+
+    def _forged(self, number: int, reason: str) -> None:
+        address = self._flights[number].worker
+        if address == ADDRESS:
+            self._lost(number, f"the process that executes notebooks gave an impossible answer: {reason}")
+            return
+        for held in self._workers[address].flights:
+            self._flights[held].job.attempts -= 1  # does not count: the worker is at fault, not the notebook
+        self._turn_out(address, f"the worker sent an impossible answer: {reason}. Check that machine")
+
+    def _turn_out(self, address: str, reason: str) -> None:
+        """Give no more tasks to an accepted worker, and give the tasks that it was running to other workers."""
+        name = self._workers[address].name
+        self._forget(address, f"the worker was given no more work: {reason}")
+        self._refuse(address, name, reason)
+
+    def _give_up_on_silent(self, now: float) -> None:
+        for number, flight in list(self._flights.items()):
+            if number in self._flights and flight.deadline <= now:
+                if flight.worker == ADDRESS:
+                    self._lost(number, "the execution has not ended in time")
+                else:
+                    self._turn_out(flight.worker, "the worker has not answered in time. Start it again")
+
+    def _lost(self, number: int, reason: str) -> None:
+        job = self._land(number).job
+        self._link.say(Drop(number))
+        if job.attempts < ATTEMPTS:
+            self._wait(job)
+        else:
+            self._done.append(Done(job.task, job.task.in_trouble(reason)))
+
+    def _land(self, number: int) -> _Flight:
+        flight = self._flights.pop(number)
+        if flight.worker in self._workers:
+            self._workers[flight.worker].flights.discard(number)
+        return flight
+
+    def _nobody(self) -> str:
+        if not self._address:
+            return (
+                "This machine cannot execute notebooks: the process that executes them did not start in time."
+            )
+        if not self._refused:
+            return (
+                f"The Dask scheduler at {self._address} has no workers. "
+                f"Start some: {COMMAND} worker {self._address}"
+            )
+        reasons = "\n".join(f"  {reason}" for reason in self._refused.values())
+        return f"No worker of the Dask scheduler at {self._address} can be given work:\n{reasons}"
+
+
+def _most_seconds(task: Task) -> float:
+    # Wait for twice the limit, because the time limits of cells get longer while the machine is overloaded.
+    return 2 * task.limits.longest + _EXTRA_SECONDS
+
+
+def _could_not_be_asked(reason: str) -> str:
+    if "No module named" in reason:
+        return (
+            f"the worker does not have the autograder ({reason}). Start it with `{COMMAND} worker`, "
+            "or with the Python of the course's .venv"
+        )
+    return f"the worker could not be asked for its offer ({reason})"

@@ -1,0 +1,251 @@
+"""Commands and messages between the dispatcher and its workers, and the checks of untrusted answers.
+
+Commands and messages are sent as lines of JSON, to and from the executor process of this machine or the client process
+of a cluster. The client process only passes orders and answers on as bytes, without decoding them. An answer is
+untrusted, because the process that wrote it has read or executed a student's file; so is the answer of a desk.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import msgspec
+
+from autograder.execution.cell_outputs import IMAGES, NotebookOutputs
+from autograder.execution.executed_cells import Execution
+from autograder.grading.rebuilding.notebook_parsing import BASE64
+from autograder.grading.rebuilding.submitted_notebook import (
+    MAX_BYTES,
+    MAX_CHARACTERS,
+    ReadNotebook,
+    Unreadable,
+)
+from autograder.verdict import State
+
+if TYPE_CHECKING:
+    from autograder.boxes.run_limits import Limits
+    from autograder.execution.executed_cells import CellCheck, CellRun
+    from autograder.grading.grading_task import Task
+    from autograder.verdict import Verdict
+
+
+ADDRESS = "this machine"
+"""The address of the worker that is this machine. Its version of the course is not compared, because the grader uses
+the same course.
+"""
+JUDGE = "autograder.judge.controlled_judge:JudgeProcess"
+"""The name of the real judge's Python class, as ``module:class``; only workers import the class itself."""
+
+
+class Offer(msgspec.Struct, frozen=True):
+    """What a worker says about itself before it gets work.
+
+    Attributes:
+        version: The version of the worker's course
+            (:func:`autograder.grading.rebuilding.course_version.course_version`).
+        slots: The number of notebooks that the worker executes at the same time.
+        obstacle: Why the worker cannot make sandboxes, and what to do; empty if it can.
+    """
+
+    version: str
+    slots: int
+    obstacle: str
+
+
+class Order(msgspec.Struct, frozen=True):
+    """An order to a worker to execute a task.
+
+    Attributes:
+        task: The task, as JSON.
+        judge: The Python class of the judge, as ``module:class``.
+    """
+
+    task: msgspec.Raw
+    judge: str
+
+
+class Give(msgspec.Struct, frozen=True, tag=True):
+    """A command: pass this order to this worker.
+
+    Attributes:
+        number: A number that identifies the order in the answer.
+        worker: The address of the worker.
+        order: An :class:`Order` as JSON.
+    """
+
+    number: int
+    worker: str
+    order: bytes
+
+
+class Drop(msgspec.Struct, frozen=True, tag=True):
+    """A command: cancel this order, because its answer is no longer needed."""
+
+    number: int
+
+
+class Joined(msgspec.Struct, frozen=True, tag=True):
+    """A message: a worker has joined. ``offer`` should be an :class:`Offer` as JSON, but has not been checked yet."""
+
+    worker: str
+    name: str
+    offer: bytes
+
+
+class Unfit(msgspec.Struct, frozen=True, tag=True):
+    """A message: a worker has joined, but has sent no offer. ``reason`` says why."""
+
+    worker: str
+    name: str
+    reason: str
+
+
+class Asked(msgspec.Struct, frozen=True, tag=True):
+    """A message: all workers that existed at the beginning have been reported, with or without an offer."""
+
+
+class Left(msgspec.Struct, frozen=True, tag=True):
+    """A message: a worker has ended. ``reason`` is empty if it is not known."""
+
+    worker: str
+    reason: str = ""
+
+
+class Answered(msgspec.Struct, frozen=True, tag=True):
+    """A message: a worker's answer to an order. ``data`` should be an execution as JSON, but is not checked yet."""
+
+    number: int
+    data: bytes
+
+
+class Failed(msgspec.Struct, frozen=True, tag=True):
+    """A message: an order will get no answer.
+
+    Attributes:
+        number: The number of the order.
+        reason: Why no answer will come.
+        forged: True if the worker sent an answer that an unmodified worker would never send.
+    """
+
+    number: int
+    reason: str
+    forged: bool = False
+
+
+class Broken(msgspec.Struct, frozen=True, tag=True):
+    """A message, always the last: the connection to all workers is lost."""
+
+    reason: str
+
+
+Command = Give | Drop
+News = Joined | Unfit | Asked | Left | Answered | Failed | Broken
+
+LARGEST_ANSWER = 16_000_000
+"""The maximum size of an answer in bytes. An answer contains at most 2 MB of outputs and 4 MB of evidence; as JSON, the
+evidence takes a third more.
+"""
+
+
+LARGEST_OFFER = 4_000
+LARGEST_DOCUMENT = MAX_BYTES + 14_000_000
+"""The maximum size of a desk's document, in bytes. It is larger than the limit for a student's file, because the
+document is JSON, in which a character of text takes up to 6 bytes. A picture is equally long in both.
+"""
+_MOST_SLOTS = 1_000
+_LONGEST_WORDS = 1_000
+
+
+class Forged(ValueError):
+    """A worker or desk gave an answer that an unmodified one would never give, for the reason in the message."""
+
+
+def admitted_offer(data: bytes) -> Offer:
+    """Decode and check a worker's offer, and return it.
+
+    Raises:
+        Forged: The data is not a valid offer.
+    """
+    if len(data) > LARGEST_OFFER:
+        raise Forged(f"the worker's offer has {len(data)} bytes")
+    try:
+        offer = msgspec.json.decode(data, type=Offer)
+    except msgspec.MsgspecError as error:
+        raise Forged(f"the worker's offer is not valid: {error}") from error
+    if not 1 <= offer.slots <= _MOST_SLOTS:
+        raise Forged(f"the worker offers to execute {offer.slots} notebooks at the same time")
+    return offer
+
+
+def admitted_notebook(data: bytes) -> ReadNotebook | Unreadable:
+    """Decode and check a desk's document, and return it.
+
+    Raises:
+        Forged: The data is not a document that a desk could have made from a notebook.
+    """
+    if len(data) > LARGEST_DOCUMENT:
+        raise Forged(f"the desk's document has {len(data)} bytes")
+    try:
+        document = msgspec.json.decode(data, type=ReadNotebook | Unreadable)
+    except (msgspec.MsgspecError, RecursionError, UnicodeError) as error:
+        raise Forged(f"the desk's document is not valid: {error}") from error
+    if isinstance(document, Unreadable):
+        return Unreadable(printable(document.reason))
+    if sum(len(cell.source) for cell in document.cells) > MAX_CHARACTERS:
+        raise Forged("the desk's document has too many characters")
+    for _, kind, picture in (one for cell in document.cells for one in cell.pictures):
+        if kind not in IMAGES or not BASE64.fullmatch(picture):
+            raise Forged("the desk's document has a picture that is not a bitmap")
+    return document
+
+
+def admitted(data: bytes, task: Task) -> Execution:
+    """Decode and check a worker's answer to a task, and return the execution with cleaned outputs.
+
+    Raises:
+        Forged: The data is not an execution, or not an execution of this task.
+    """
+    if len(data) > LARGEST_ANSWER:
+        raise Forged(f"the answer has {len(data)} bytes")
+    try:
+        execution = msgspec.json.decode(data, type=Execution)
+    except (msgspec.MsgspecError, RecursionError) as error:
+        raise Forged(f"the answer is not an execution: {error}") from error
+    if len(execution.cells) not in ({len(task.cells), 0} if execution.trouble else {len(task.cells)}):
+        raise Forged(f"the answer has {len(execution.cells)} cells, and the notebook has {len(task.cells)}")
+    checks = {index: cell.check for index, cell in enumerate(task.cells) if cell.check is not None}
+    if execution.verdicts.keys() != checks.keys():
+        raise Forged("the answer has verdicts on other checks than the notebook has")
+    if any(place not in range(len(task.cells)) for place in execution.as_typed):
+        raise Forged("the answer names a cell that does not exist")
+    for index, check in checks.items():
+        _look_at(execution.verdicts[index], check)
+    cells = _harmless(execution.cells, task.limits)
+    return replace(execution, cells=cells, trouble=printable(execution.trouble))
+
+
+def printable(text: str) -> str:
+    """Return a worker's text as one line of limited length, without control characters."""
+    return "".join(letter if letter.isprintable() else " " for letter in text[:_LONGEST_WORDS])
+
+
+def _look_at(verdict: Verdict, check: CellCheck) -> None:
+    if verdict.exercise != check.exercise:
+        raise Forged(f"the answer has a verdict on {verdict.exercise!r:.60} instead of {check.exercise}")
+    if verdict.max_score != check.points or not 0 <= verdict.score <= check.points:
+        raise Forged(
+            f"the answer gives {verdict.score:g} of {verdict.max_score:g} points for {check.exercise}"
+        )
+    if verdict.state is State.NOT_CHECKED and verdict.score:
+        raise Forged("the answer gives points for an exercise that could not be checked")
+
+
+def _harmless(cells: tuple[CellRun, ...], limits: Limits) -> tuple[CellRun, ...]:
+    """Cut and clean the outputs of the cells again: the worker should have done so, but is not trusted."""
+    outputs = NotebookOutputs(len(cells), limits.cell_output_bytes, limits.notebook_output_bytes)
+    for index, cell in enumerate(cells):
+        outputs.put(index, cell.outputs)
+    return tuple(
+        replace(cell, outputs=outputs.of(index), error=cell.error[:500]) for index, cell in enumerate(cells)
+    )

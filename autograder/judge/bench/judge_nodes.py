@@ -1,0 +1,292 @@
+"""The judge's own nodes: the one that observes the subject, and decoys, which exist only for a subject to find.
+
+The observing node has its own ROS context and is spun by its own thread. The judge learns of a program's end through a
+pipe, but of the program's messages through threads of the middleware. So on a busy machine, the judge may learn of the
+end while such a thread, woken by a message, still waits for a processor. Therefore the judge waits until each thread
+that is awake has gone to sleep. A sleeping thread has no message left, because a message wakes its thread at once
+(futex(7), udp(7)).
+"""
+
+from __future__ import annotations
+
+import contextlib
+import secrets
+import threading
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from rclpy.context import Context
+from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
+from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
+from rclpy.impl.implementation_singleton import rclpy_implementation
+from rclpy.node import Node
+from rclpy.qos import QoSProfile
+
+from autograder.dds_discovery import receivers_wait
+from autograder.judge.bench.discovery import topic_endpoints
+from autograder.judge.bench.patience import Patience
+from autograder.judge.bench.ros_interfaces import interface
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Mapping
+
+    from autograder.judge.bench.discovery import Endpoint
+
+
+THREAD_POLL = 0.001
+"""Seconds between two checks of a thread."""
+SLEEP_ROUNDS = 2
+"""The number of rounds to wait. In the first round, a thread may finish its work and wake another thread. The second
+round waits for that thread.
+"""
+
+
+@dataclass(frozen=True)
+class _Thread:
+    """The state of a thread, as the kernel reports it (proc_pid_status(5)).
+
+    Attributes:
+        awake: True if the thread runs, or waits for a processor.
+        slept: The number of times that the thread has gone to sleep.
+    """
+
+    awake: bool
+    slept: int
+
+
+def await_turns(patience: Patience) -> bool:
+    """Wait until each thread of the middleware that is awake has slept once. Return False if the time is up first."""
+    return all(_await_turn(patience) for _ in range(SLEEP_ROUNDS))
+
+
+def _await_turn(patience: Patience) -> bool:
+    pause = threading.Event()
+    python = {thread.native_id for thread in threading.enumerate()}
+    tasks = (int(task.name) for task in Path("/proc/self/task").iterdir())
+    awake = {task: thread for task, thread in _thread_states(set(tasks) - python).items() if thread.awake}
+    while awake and patience.left > 0:
+        pause.wait(THREAD_POLL)
+        now = _thread_states(awake)
+        awake = {
+            task: thread
+            for task, thread in awake.items()
+            if task in now and now[task].awake and now[task].slept == thread.slept
+        }
+    return not awake
+
+
+def _thread_states(tasks: Iterable[int]) -> dict[int, _Thread]:
+    """Return the states of these threads, without those that have ended."""
+    found: dict[int, _Thread] = {}
+    for task in tasks:
+        try:
+            lines = Path(f"/proc/self/task/{task}/status").read_text().splitlines()
+        except OSError:  # the thread has ended meanwhile
+            continue
+        told = dict(line.split(":", 1) for line in lines)
+        found[task] = _Thread(told["State"].split()[0] in "RD", int(told.get("voluntary_ctxt_switches", 0)))
+    return found
+
+
+InvalidHandle = rclpy_implementation.InvalidHandle
+"""The errors that rclpy raises if an entity is destroyed while another thread uses it."""
+
+
+TAKEN_IN = 5.0
+"""Time limit in seconds for the judge to process what was sent to it."""
+SPIN_POLL = 0.05
+"""Seconds between two checks whether the spinning thread still runs."""
+
+
+class JudgeFailed(RuntimeError):
+    """A callback of the judge itself raised an exception, so the subject could not be checked."""
+
+
+class _QuietNode(Node):
+    """A node whose endpoints report only the QoS events that were requested.
+
+    By default, rclpy gives each endpoint two events that only log a warning. They would cost time, because the executor
+    checks all events in each round, and a check in simulated time has some hundred rounds.
+    """
+
+    def create_publisher(self, *arguments: Any, **options: Any) -> Any:
+        options.setdefault("event_callbacks", PublisherEventCallbacks(use_default_callbacks=False))
+        return super().create_publisher(*arguments, **options)
+
+    def create_subscription(self, *arguments: Any, **options: Any) -> Any:
+        options.setdefault("event_callbacks", SubscriptionEventCallbacks(use_default_callbacks=False))
+        return super().create_subscription(*arguments, **options)
+
+
+class Wire:
+    """The judge's DDS participant on one ROS domain, with one node, and with its own ROS context and thread.
+
+    Attributes:
+        node: The judge's node. It has no parameter services and no log topic, so that it adds almost nothing to the
+            graph.
+        executor: Spins the node in a thread of its own.
+        failure: The exception of a callback of the judge that ended this thread; None if there was none.
+    """
+
+    def __init__(self, domain_id: int) -> None:
+        self.context = Context()
+        self.context.init(args=["--ros-args", "--disable-external-lib-logs"], domain_id=domain_id)
+        with receivers_wait():
+            self.node: Node = _QuietNode(
+                f"judge_{secrets.token_hex(4)}",
+                context=self.context,
+                use_global_arguments=False,
+                enable_rosout=False,
+                start_parameter_services=False,
+            )
+        self.executor = SingleThreadedExecutor(context=self.context)
+        self.executor.add_node(self.node)
+        self.failure: BaseException | None = None
+        self._closing, self._closed = threading.Lock(), False
+        self._thread = threading.Thread(target=self._spin, name="judge wire", daemon=True)
+        self._thread.start()
+
+    def _spin(self) -> None:
+        while True:
+            try:
+                self.executor.spin()
+            except InvalidHandle:
+                continue  # a part has ended and destroyed an entity that was in use
+            except ExternalShutdownException:
+                return
+            except (
+                BaseException
+            ) as error:  # raised by the judge's own callback: no later result can be trusted
+                self.failure = error
+            return
+
+    def take_in(self, written_down: Callable[[], int]) -> bool:
+        """Wait until everything that had been sent to the judge is recorded. Return True if this succeeds in time.
+
+        This must not be called from a callback of the judge.
+
+        Args:
+            written_down: Returns the number of events recorded so far.
+        """
+        patience = Patience(TAKEN_IN)
+        if not await_turns(patience):
+            return False
+        before = -1
+        while before != written_down():
+            before = written_down()
+            # The time is limited, because a process that a subject left behind may go on sending forever.
+            if patience.left <= 0 or not self._take_one_of_each(patience):
+                return False
+        return True
+
+    def _take_one_of_each(self, patience: Patience) -> bool:
+        """Let the executor take at most one message from each endpoint. Return False if the time is up first.
+
+        For this, two tasks are given to the executor, one after the other. An executor begins each round with its tasks
+        and then takes what has arrived (rclpy/executors.py, _wait_for_ready_callbacks), so between two tasks there is
+        one whole round.
+        """
+        for _ in range(2):
+            done = threading.Event()
+            with self._closing:
+                if self._closed:
+                    return False
+                self.executor.create_task(done.set)
+            while not done.wait(SPIN_POLL):
+                if patience.left <= 0 or not self._thread.is_alive():
+                    return False
+        return True
+
+    def close(self) -> None:
+        """Stop spinning, join the thread and leave the domain. An unjoined thread would later abort the interpreter."""
+        with self._closing:  # Wait: another thread may be in take_in.
+            self._closed = True
+        self.executor.shutdown(timeout_sec=1.0)
+        self._thread.join(timeout=2.0)
+        self.node.destroy_node()
+        self.context.try_shutdown()
+        self.context.destroy()
+
+    def __enter__(self) -> Wire:
+        return self
+
+    def __exit__(self, *_: Any) -> None:
+        self.close()
+
+
+class DecoyNodes:
+    """The judge's decoy nodes, each with its own DDS participant.
+
+    Each node needs its own participant, because within one participant Fast DDS accepts only one type for each topic.
+    Participants are kept from part to part, because a subject that keeps running needs a fifth of a second or more to
+    discover a new participant. A participant exists only as long as it has a node (rmw_fastrtps), so an old node is
+    removed only when the next node exists.
+    """
+
+    def __init__(self, domain_id: int) -> None:
+        self._domain_id = domain_id
+        self._decoys: list[_Decoy] = []
+        self._planted = 0
+
+    def plant(
+        self, name: str, *, publishes: Mapping[str, str], subscribes: Mapping[str, str]
+    ) -> set[Endpoint]:
+        """Put a node on the graph, with publishers and subscriptions for these topics. The node is not spun.
+
+        Returns:
+            The identifiers of the node's endpoints on these topics.
+        """
+        if self._planted == len(self._decoys):
+            self._decoys.append(_Decoy(self._domain_id))
+        decoy = self._decoys[self._planted]
+        self._planted += 1
+        return decoy.plant(name, publishes, subscribes)
+
+    def clear(self) -> None:
+        """Remove the endpoints from the graph. The nodes stay until the next decoys replace them."""
+        for decoy in self._decoys[: self._planted]:
+            decoy.clear()
+        self._planted = 0
+
+    def close(self) -> None:
+        """Remove the decoy nodes and their participants."""
+        while self._decoys:
+            self._decoys.pop().close()
+
+
+class _Decoy:
+    """One DDS participant of the judge, with the decoy node that it currently shows on the graph."""
+
+    def __init__(self, domain_id: int) -> None:
+        self._context = Context()
+        self._context.init(args=["--ros-args", "--disable-external-lib-logs"], domain_id=domain_id)
+        self._node: Node | None = None
+        self._ends = contextlib.ExitStack()
+
+    def plant(self, name: str, publishes: Mapping[str, str], subscribes: Mapping[str, str]) -> set[Endpoint]:
+        with receivers_wait() if self._node is None else contextlib.nullcontext():
+            node = Node(name, context=self._context, use_global_arguments=False)
+        self._destroy()
+        self._node = node
+        qos = QoSProfile(depth=10)
+        for topic, type_name in publishes.items():
+            publisher = node.create_publisher(interface(type_name), topic, qos)
+            self._ends.callback(node.destroy_publisher, publisher)
+        for topic, type_name in subscribes.items():
+            subscription = node.create_subscription(interface(type_name), topic, lambda _: None, qos)
+            self._ends.callback(node.destroy_subscription, subscription)
+        return topic_endpoints(node, {*publishes, *subscribes})
+
+    def clear(self) -> None:
+        self._ends.close()
+
+    def _destroy(self) -> None:
+        self.clear()
+        if self._node is not None:
+            self._node.destroy_node()
+
+    def close(self) -> None:
+        self._destroy()
+        self._context.try_shutdown()
+        self._context.destroy()

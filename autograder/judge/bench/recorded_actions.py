@@ -1,0 +1,324 @@
+"""The judge's side of actions: a server that does only what the scenario tells it to, and a client that sends goals.
+
+Both record what they send and receive. They use the three services and two topics of an action directly
+(design.ros2.org, "Actions"), because rclpy's classes hide too much: its ActionServer decides by itself when to answer,
+and does not report a second request to cancel the same goal. The server of this module answers when the scenario says
+so, and records each request. The client records each answer, including the refusal to cancel a goal.
+"""
+
+from __future__ import annotations
+
+import threading
+import time
+import uuid
+from typing import TYPE_CHECKING, Any
+
+from action_msgs.msg import GoalInfo, GoalStatus, GoalStatusArray
+from action_msgs.srv import CancelGoal
+from rclpy.qos import QoSProfile, qos_profile_action_status_default
+from unique_identifier_msgs.msg import UUID
+
+from autograder.judge.bench.recorded_services import Client, LateAnswers, once_it_is_set, patiently
+from autograder.judge.bench.ros_interfaces import filled, interface, to_data
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from autograder.judge.bench.judge_nodes import Wire
+    from autograder.judge.bench.recorder import Recorder
+
+
+STATUS = {
+    "accepted": GoalStatus.STATUS_ACCEPTED,
+    "executing": GoalStatus.STATUS_EXECUTING,
+    "canceling": GoalStatus.STATUS_CANCELING,
+    "succeeded": GoalStatus.STATUS_SUCCEEDED,
+    "canceled": GoalStatus.STATUS_CANCELED,
+    "aborted": GoalStatus.STATUS_ABORTED,
+}
+
+_SERVICES = ("send_goal", "cancel_goal", "get_result")
+FEEDBACK_MATCH = 3.0
+"""Time limit in seconds for discovering the subscription to feedback, without which feedback would be lost."""
+
+
+class ScriptedActionServer:
+    """An action server that accepts all goals, or refuses all goals. Its methods use the goal that was accepted last.
+
+    Attributes:
+        services: The full names of the action's services.
+    """
+
+    def __init__(
+        self,
+        wire: Wire,
+        recorder: Recorder,
+        action: str,
+        type_name: str,
+        *,
+        at: str = "",
+        client_is_gone: Callable[[], bool],
+        accept_goal: bool = True,
+        accept_cancel: bool = True,
+        goal_answer_takes: float = 0.0,
+        cancel_answer_takes: float = 0.0,
+    ) -> None:
+        self._wire = wire
+        self._recorder = recorder
+        self._name = action
+        parts_of = f"{at or action}/_action"
+        self.services = tuple(f"{parts_of}/{name}" for name in _SERVICES)
+        self._type = interface(type_name)
+        self._accept_goal = accept_goal
+        self._accept_cancel = accept_cancel
+        self._client_is_gone = client_is_gone
+        self._goal_id: Any = None
+        self._status = GoalStatus.STATUS_UNKNOWN
+        self._lock = threading.Lock()
+        self._result: Any = None
+        node, parts = wire.node, self._type.Impl
+        self._feedback = node.create_publisher(
+            parts.FeedbackMessage, f"{parts_of}/feedback", QoSProfile(depth=10)
+        )
+        self._statuses = node.create_publisher(
+            GoalStatusArray, f"{parts_of}/status", qos_profile_action_status_default
+        )
+        self._waiting: list[Any] = []
+        made = threading.Event()
+        goals, cancels, results = self._services = [
+            node.create_service(kind, f"{parts_of}/{name}", once_it_is_set(made, take))
+            for name, kind, take in zip(
+                _SERVICES,
+                (parts.SendGoalService, CancelGoal, parts.GetResultService),
+                (self._take_goal, self._take_cancel, self._take_result_request),
+                strict=True,
+            )
+        ]
+        # By itself, rclpy answers a request as soon as its callback returns, so LateAnswers delays the answer.
+        self._late = [
+            LateAnswers(goals, goal_answer_takes, sending=self._note_goal_answer),
+            LateAnswers(cancels, cancel_answer_takes, sending=self._note_cancel_answer),
+        ]
+        self._answer = patiently(results)
+        results.send_response = self._answer_or_wait  # type: ignore[method-assign]
+        made.set()
+
+    def await_goal(self, within: float) -> bool:
+        """Wait until a goal has arrived and was answered. Return False if no goal came within ``within`` seconds.
+
+        This also waits until the client's subscription to feedback is discovered, because earlier feedback would be
+        lost.
+        """
+        if not self._await("goal", within):
+            return False
+        self._await("goal_answered", within)
+        self._recorder.wait(
+            lambda: self._feedback.get_subscription_count() > 0 or self._client_is_gone(),
+            FEEDBACK_MATCH,
+            poll=0.005,
+        )
+        return True
+
+    def await_cancel(self, within: float) -> bool:
+        """Wait for a request to cancel a goal. Return False if none came within ``within`` seconds of wall time."""
+        return self._await("cancel", within, wall=True)
+
+    def await_result_request(self, within: float) -> bool:
+        """Wait for a request for a goal's result. Return False if no request came within ``within`` seconds."""
+        return self._await("result_request", within)
+
+    def send_feedback(self, **fields: Any) -> None:
+        """Send one feedback message for the current goal."""
+        message = self._type.Impl.FeedbackMessage()
+        message.goal_id = self._goal_id
+        filled(message.feedback, fields)
+        self._recorder.record("feedback", self._name, fields=dict(fields))
+        self._feedback.publish(message)
+
+    def finish(self, status: str, **fields: Any) -> None:
+        """End the current goal with a status (a key of :data:`STATUS`) and a result that has these fields."""
+        response = self._type.Impl.GetResultService.Response()
+        response.status = STATUS[status]
+        filled(response.result, fields)
+        self._recorder.record("result", self._name, status=status, fields=dict(fields))
+        self._set_status(STATUS[status])
+        with self._lock:
+            self._result = response
+            waiting, self._waiting = self._waiting, []
+        for header in waiting:
+            self._answer(response, header)
+
+    def close(self) -> None:
+        """Remove the action's services and topics."""
+        for late in self._late:
+            late.close()
+        for service in self._services:
+            self._wire.node.destroy_service(service)
+        for publisher in (self._feedback, self._statuses):
+            self._wire.node.destroy_publisher(publisher)
+
+    def _await(self, kind: str, within: float, *, wall: bool = False) -> bool:
+        def came() -> bool:
+            return self._recorder.part().first(kind, self._name) is not None
+
+        self._recorder.wait(lambda: came() or self._client_is_gone(), within, wall=wall)
+        return came()
+
+    def _take_goal(self, request: Any, response: Any) -> Any:
+        response.accepted = self._accept_goal
+        response.stamp = self._wire.node.get_clock().now().to_msg()
+        if self._accept_goal:
+            self._goal_id = request.goal_id
+            self._result = None
+            self._status = GoalStatus.STATUS_EXECUTING
+        self._recorder.record("goal", self._name, fields=to_data(request.goal))
+        return response
+
+    def _note_goal_answer(self, response: Any) -> None:
+        self._recorder.record("goal_answered", self._name, accepted=bool(response.accepted))
+
+    def _note_cancel_answer(self, response: Any) -> None:
+        self._recorder.record("cancel_answered", self._name, accepted=bool(response.goals_canceling))
+
+    def _take_cancel(self, request: Any, response: Any) -> Any:
+        # An all-zero id and stamp mean "cancel every goal" (action_msgs/srv/CancelGoal).
+        asked = goal_text(request.goal_info.goal_id)
+        every = asked == str(uuid.UUID(int=0))
+        known = self._goal_id is not None and (every or asked == goal_text(self._goal_id))
+        accepted = self._accept_cancel and known and self._status in (
+            GoalStatus.STATUS_EXECUTING, GoalStatus.STATUS_CANCELING)  # fmt: skip
+        if accepted:
+            self._set_status(GoalStatus.STATUS_CANCELING)
+            response.goals_canceling = [GoalInfo(goal_id=self._goal_id)]
+            response.return_code = CancelGoal.Response.ERROR_NONE
+        else:
+            response.return_code = (
+                CancelGoal.Response.ERROR_REJECTED if known else CancelGoal.Response.ERROR_UNKNOWN_GOAL_ID
+            )
+        self._recorder.record("cancel", self._name, accepted=accepted, known=known, every=every)
+        return response
+
+    def _take_result_request(self, request: Any, response: Any) -> Any:
+        known = self._goal_id is not None and goal_text(request.goal_id) == goal_text(self._goal_id)
+        self._recorder.record("result_request", self._name, known=known)
+        if known:
+            self.say_status()
+        response.status = GoalStatus.STATUS_UNKNOWN
+        return None if known else response
+
+    def _answer_or_wait(self, response: Any, header: Any) -> None:
+        with self._lock:
+            if response is None and self._result is None:
+                self._waiting.append(header)
+                return
+        self._answer(response or self._result, header)
+
+    def _set_status(self, status: int) -> None:
+        self._status = status
+        self.say_status()
+
+    def say_status(self) -> None:
+        """Publish the current goal's status on the action's status topic.
+
+        The server calls this itself when the status changes or the client requests the result, but not when it accepts
+        a goal. A client has to learn from the server's answer whether its goal was accepted. A client that reads the
+        status instead finds UNKNOWN, the first status of rclpy's goal handles, and so cannot pass by chance.
+        """
+        line = GoalStatus(goal_info=GoalInfo(goal_id=self._goal_id), status=self._status)
+        self._statuses.publish(GoalStatusArray(status_list=[line]))
+
+
+def goal_text(goal_id: Any) -> str:
+    """Return a goal's id (``unique_identifier_msgs/msg/UUID``) as text."""
+    return str(uuid.UUID(bytes=bytes(bytearray(int(b) & 0xFF for b in goal_id.uuid))))
+
+
+class RecordedActionClient(Client):
+    """An action client that records events. It implements :class:`autograder.kit.counterparts.ActionCaller`."""
+
+    def __init__(
+        self,
+        wire: Wire,
+        recorder: Recorder,
+        action: str,
+        type_name: str,
+        *,
+        at: str = "",
+        server_is_gone: Callable[[], bool],
+    ) -> None:
+        self._parts_of = f"{at or action}/_action"
+        super().__init__(wire, recorder, action, f"{self._parts_of}/send_goal", server_is_gone)
+        self._goals: list[UUID] = []
+        node, self._parts = wire.node, interface(type_name).Impl
+        # The feedback subscription is made before the clients. Endpoints are announced in order, so a server that has
+        # discovered the clients has also discovered this subscription, and no feedback is lost.
+        self._feedback = node.create_subscription(
+            self._parts.FeedbackMessage,
+            f"{self._parts_of}/feedback",
+            self._hear,  # type: ignore[arg-type]  # a callback with two parameters also gets the message info
+            QoSProfile(depth=100),
+        )
+        self._send = node.create_client(self._parts.SendGoalService, f"{self._parts_of}/send_goal")
+        self._cancel = node.create_client(CancelGoal, f"{self._parts_of}/cancel_goal")
+        self._result = node.create_client(self._parts.GetResultService, f"{self._parts_of}/get_result")
+
+    def send_goal(self, **fields: Any) -> int:
+        """Send a goal with these fields. Return the goal's number, counted from 0."""
+        number = len(self._goals)
+        self._goals.append(UUID(uuid=list(uuid.uuid4().bytes)))
+        request = self._parts.SendGoalService.Request(goal_id=self._goals[number])
+        filled(request.goal, fields)
+        self._recorder.record("goal_sent", self._name, goal=number, fields=dict(fields))
+        future = self._send.call_async(request)
+        future.add_done_callback(lambda done: self._take_answer(number, done.result()))
+        return number
+
+    def cancel(self, goal: int) -> None:
+        """Request to cancel a goal."""
+        self._recorder.record("cancel_sent", self._name, goal=goal)
+        request = CancelGoal.Request(goal_info=GoalInfo(goal_id=self._goals[goal]))
+        future = self._cancel.call_async(request)
+        future.add_done_callback(lambda done: self._take_cancel_answer(goal, done.result()))
+
+    def close(self) -> None:
+        """Remove the client's endpoints."""
+        for client in (self._send, self._cancel, self._result):
+            self._wire.node.destroy_client(client)
+        self._wire.node.destroy_subscription(self._feedback)
+
+    def _ready(self) -> bool:
+        clients = (self._send, self._cancel, self._result)
+        talks = self._wire.node.count_publishers(f"{self._parts_of}/feedback") > 0
+        return talks and all(client.service_is_ready() for client in clients)
+
+    def _take_answer(self, number: int, response: Any) -> None:
+        self._note("goal_answer", number, accepted=bool(response.accepted))
+        if response.accepted:
+            request = self._parts.GetResultService.Request(goal_id=self._goals[number])
+            future = self._result.call_async(request)
+            future.add_done_callback(lambda done: self._take_result(number, done.result()))
+
+    def _take_result(self, number: int, response: Any) -> None:
+        self._note_servers()
+        fields = to_data(response.result)
+        self._note("result_heard", number, status=int(response.status), fields=fields)
+
+    def _take_cancel_answer(self, number: int, response: Any) -> None:
+        named = {goal_text(info.goal_id) for info in response.goals_canceling}
+        accepted = goal_text(self._goals[number]) in named
+        code = int(response.return_code)
+        self._note("cancel_answer", number, accepted=accepted, return_code=code)
+
+    def _note(self, kind: str, goal: int, **data: Any) -> None:
+        """Record an answer of the server, with the time of its arrival."""
+        self._recorder.record(kind, self._name, goal=goal, arrived=time.time(), **data)
+
+    def _hear(self, message: Any, info: Any) -> None:
+        known = [goal_text(goal) for goal in self._goals]
+        heard = goal_text(message.goal_id)
+        number = known.index(heard) if heard in known else -1
+        # Record the time of sending (rmw_message_info_t), which does not depend on how busy the judge is.
+        sent = info["source_timestamp"] / 1e9
+        self._recorder.record(
+            "feedback_heard", self._name, goal=number, fields=to_data(message.feedback), sent=sent
+        )

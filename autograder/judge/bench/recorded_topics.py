@@ -1,0 +1,144 @@
+"""The judge's subscriptions and publishers, which record messages, matches and QoS errors."""
+
+from __future__ import annotations
+
+import time
+from typing import TYPE_CHECKING, Any
+
+from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
+from rclpy.qos import (
+    DurabilityPolicy,
+    HistoryPolicy,
+    QoSProfile,
+    ReliabilityPolicy,
+    qos_policy_name_from_kind,
+)
+
+from autograder.judge.bench.ros_interfaces import filled, interface, to_data
+
+if TYPE_CHECKING:
+    from autograder.judge.bench.judge_nodes import Wire
+    from autograder.judge.bench.recorder import Recorder
+
+
+# This QoS is reliable like that of the course's listener, so the judge hears a publisher only if the listener can hear
+# the publisher. But the queue is longer, so that nothing is lost while the judge is slow.
+_AS_THE_LISTENER = QoSProfile(depth=1000)
+_AS_A_LATE_LISTENER = QoSProfile(depth=1000, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+_LOG_HISTORY = QoSProfile(
+    depth=1000, history=HistoryPolicy.KEEP_LAST, reliability=ReliabilityPolicy.RELIABLE,
+    durability=DurabilityPolicy.TRANSIENT_LOCAL,
+)  # fmt: skip
+
+
+class RecordedEndpoint:
+    """A publisher or subscription of the judge, which records matching endpoints and endpoints with incompatible QoS.
+
+    Attributes:
+        matched: The number of the subject's endpoints that are matched with this endpoint now.
+        topic: The topic's name as the evidence shows it.
+        type_name: The message type, such as ``"std_msgs/msg/String"``.
+    """
+
+    def __init__(self, recorder: Recorder, topic: str, type_name: str) -> None:
+        self.matched = 0
+        self.type_name = type_name
+        self._recorder = recorder
+        self.topic = topic
+
+    def _match(self, info: Any) -> None:
+        self.matched = info.current_count
+        # An endpoint that exists only for a moment is reported once, when it is already gone. Then only the total count
+        # shows that it existed.
+        self._recorder.record("matched", self.topic, count=info.total_count, now=info.current_count)
+
+    def _mismatch(self, info: Any) -> None:
+        policy = str(qos_policy_name_from_kind(info.last_policy_kind)).lower()
+        self._recorder.record("mismatch", self.topic, policy=policy)
+
+
+class RecordedSubscription(RecordedEndpoint):
+    """A subscription of the judge that records every message."""
+
+    def __init__(
+        self,
+        wire: Wire,
+        recorder: Recorder,
+        topic: str,
+        type_name: str,
+        *,
+        at: str = "",
+        latched: bool = False,
+    ) -> None:
+        """Create the subscription.
+
+        Args:
+            wire: The judge's participant.
+            recorder: Records messages and matches.
+            topic: The topic's name as the evidence shows it.
+            type_name: The message type, such as ``"std_msgs/msg/String"``.
+            at: The name that the subject uses for the topic, if this name is different.
+            latched: True to receive messages that were sent before the subscription existed.
+        """
+        super().__init__(recorder, topic, type_name)
+        self.subscription = wire.node.create_subscription(
+            interface(type_name),
+            at or topic,
+            self._hear,  # type: ignore[arg-type]  # a callback with two parameters also gets the message info
+            _AS_A_LATE_LISTENER if latched else _AS_THE_LISTENER,
+            event_callbacks=SubscriptionEventCallbacks(
+                matched=self._match, incompatible_qos=self._mismatch, use_default_callbacks=False
+            ),
+        )
+
+    def _hear(self, message: Any, info: Any) -> None:
+        # The publisher's sequence number shows how many messages were sent before this subscription could receive any.
+        # The publisher's time stamp shows when a message was sent, however long its transport took. (rmw_fastrtps
+        # provides both in rmw_message_info_t.)
+        self._recorder.record(
+            "message",
+            self.topic,
+            fields=to_data(message),
+            number=info["publication_sequence_number"],
+            sent=info["source_timestamp"] / 1e9,
+            arrived=time.time(),
+        )
+
+
+class RecordedPublisher(RecordedEndpoint):
+    """A publisher with the course's QoS (reliable, depth 10) that records what it sends."""
+
+    def __init__(self, wire: Wire, recorder: Recorder, topic: str, type_name: str, *, at: str = "") -> None:
+        """Create the publisher. For the arguments see :class:`RecordedSubscription`."""
+        super().__init__(recorder, topic, type_name)
+        self._type = interface(type_name)
+        self.publisher = wire.node.create_publisher(
+            self._type,
+            at or topic,
+            QoSProfile(depth=10),
+            event_callbacks=PublisherEventCallbacks(
+                matched=self._match, incompatible_qos=self._mismatch, use_default_callbacks=False
+            ),
+        )
+
+    def send(self, **fields: Any) -> None:
+        """Publish one message with these fields."""
+        self._recorder.record("sent", self.topic, fields=dict(fields))
+        self.publisher.publish(filled(self._type(), fields))
+
+
+class LogReader:
+    """Reads ``/rosout``, including lines from before the judge subscribed, because the topic is transient local."""
+
+    def __init__(self, wire: Wire, recorder: Recorder) -> None:
+        self._recorder = recorder
+        self.subscription = wire.node.create_subscription(
+            interface("rcl_interfaces/msg/Log"), "/rosout", self._hear, _LOG_HISTORY
+        )
+
+    def _hear(self, line: Any) -> None:
+        sent = line.stamp.sec + line.stamp.nanosec / 1e9
+        if sent < self._recorder.began_at:
+            return  # ignore a late line of an earlier part, which a node of the same participant logged
+        text, level = line.msg, int(line.level)
+        self._recorder.record("log", line.name, text=text, level=level, sent=sent, arrived=time.time())

@@ -1,0 +1,294 @@
+"""Watches the subject's nodes and endpoints on the ROS graph during one part, and records each change.
+
+The result of each query is recorded at once. A second query could find less, because the endpoints of a program
+disappear when it ends.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from autograder.judge.bench import discovery
+from autograder.judge.bench.patience import Patience
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from rclpy.node import Node
+
+    from autograder.judge.bench.recorded_topics import RecordedPublisher, RecordedSubscription
+    from autograder.judge.bench.recorder import Recorder
+    from autograder.judge.subject import Subject
+
+    Counterparts = Mapping[str, RecordedSubscription | RecordedPublisher]
+
+
+class Settling:
+    """Tells when a command's nodes and endpoints have not changed for a while.
+
+    Args:
+        seconds: How long the nodes and endpoints must stay the same, in seconds that get longer on a busy machine
+            (:mod:`autograder.judge.bench.patience`). They have to get longer, because a program that has made its node
+            may have to wait for a processor before it can make its endpoints.
+    """
+
+    def __init__(self, seconds: float) -> None:
+        self._last: Any = None
+        self._patience = Patience(seconds)
+
+    def unchanged(self, interface: discovery.Interface, nodes: int) -> bool:
+        """Return True if there are nodes, and the graph has been the same for ``seconds``."""
+        state = (nodes, interface)
+        if state != self._last:
+            self._last = state
+            self._patience.restart()
+        return nodes > 0 and self._patience.left <= 0
+
+
+APPEAR = 12.0
+"""Time limit for a running subject to appear on the graph, in seconds that get longer on a busy machine.
+
+A program usually appears within a quarter of a second. The limit is much longer, because a slow start is not a mistake.
+"""
+MAX_RESTARTS = 2
+"""The maximum number of times in a part that the time limit :data:`APPEAR` starts again.
+
+The limit starts again when the subject has started more processes, because a command may build a package before it runs
+the program. Without this maximum, a program that forks without end would restart the limit forever.
+"""
+MATCH = 5.0
+"""Time limit in seconds for two compatible endpoints to be matched."""
+GRAPH_POLL = 0.004
+"""Seconds between two queries of the graph; the graph has no event to wait for."""
+START_POLL = 0.02
+"""Seconds between two queries while a process starts or a build runs, as long as no node was announced."""
+
+
+class Presence:
+    """The subject's nodes and endpoints on the graph, as the judge's node sees them.
+
+    Attributes:
+        subscriptions: The judge's subscriptions, by the names that the subject uses for their topics.
+        publishers: The judge's publishers, by the names that the subject uses for their topics.
+
+    Args:
+        node: The judge's node.
+        recorder: The record of the part.
+        subject: The subject.
+        settled: A command is assumed to have made all its endpoints if the graph has not changed for this many seconds.
+        announced: Returns True if a process of the subject is known to have made a node.
+    """
+
+    def __init__(
+        self,
+        node: Node,
+        recorder: Recorder,
+        subject: Subject,
+        settled: float,
+        announced: Callable[[], bool],
+    ) -> None:
+        self.subscriptions: dict[str, RecordedSubscription] = {}
+        self.publishers: dict[str, RecordedPublisher] = {}
+        self._node = node
+        self._recorder = recorder
+        self._subject = subject
+        self._settled = settled
+        self._announced = announced
+        self._again = MAX_RESTARTS
+
+    def nodes(self) -> list[discovery.NodeName]:
+        """The subject's current nodes."""
+        return discovery.subject_nodes(self._node, self._subject.keeper)
+
+    def counterparts(self) -> list[discovery.NodeName]:
+        """Return the subject's nodes that use the judge's topics; all of the subject's nodes if the judge has no topic.
+
+        This waits up to a second until the names of these nodes are discovered.
+        """
+        found: list[discovery.NodeName] = []
+
+        def named() -> bool:
+            found[:] = discovery.counterparts(self._node, list(self.subscriptions), list(self.publishers))
+            return bool(found) or self._subject.ended
+
+        if not (self.subscriptions or self.publishers):
+            return self.nodes()
+        self._recorder.wait(named, 1.0, poll=GRAPH_POLL)
+        return found
+
+    # --- waiting -------------------------------------------------------------------------------------------
+
+    def await_endpoint(self, role: str, name: str) -> bool:
+        """Wait until the subject's endpoint is on the graph and, if an endpoint of the judge fits, matched with it."""
+        self.await_interface(
+            lambda interface: name in interface.get(role, {}) or name in self._met().get(role, {})
+        )
+        self.note_whom_it_met()
+        if name not in self._recorder.part().endpoints(role):
+            return False
+        counterparts: dict[str, Counterparts] = {
+            "publisher": self.subscriptions,
+            "subscription": self.publishers,
+        }
+        counterpart = counterparts.get(role, {}).get(name)
+        if counterpart is None or counterpart.type_name != self._recorder.part().endpoints(role)[name]:
+            return True  # the judge has no endpoint that could match the subject's
+        return self._recorder.wait(
+            lambda: counterpart.matched > 0 or self._subject.ended or self._mismatched(counterpart.topic),
+            MATCH,
+        )
+
+    def await_node(self) -> bool:
+        """Wait for a node of the subject on the graph. Also return True if the subject had a node but has ended."""
+        nodes: list[discovery.NodeName] = []
+
+        def there() -> bool:
+            nodes[:] = self.nodes()
+            return bool(nodes)
+
+        self._await_appearance(lambda: there() or self._subject.ended)
+        self.note_interface()
+        return bool(nodes) or self.note_short_life()
+
+    def await_sign_of_life(self, within: float) -> bool:
+        """Wait until the subject has printed something or has a node on the graph; give up if the subject has ended."""
+        alive = False
+
+        def there() -> bool:
+            nonlocal alive
+            seen = self._recorder.part()
+            alive = bool(seen.of("output") or seen.of("log") or self.nodes())
+            return alive
+
+        self._wait_on_graph(lambda: there() or self._subject.ended, within)
+        return alive
+
+    def await_interface(self, there: Callable[[discovery.Interface], bool]) -> discovery.Interface:
+        """Wait until a condition on the graph holds, the subject has ended, or all its endpoints are on the graph.
+
+        Returns:
+            The endpoints that the last query found. Exactly these are recorded, because a new query could find fewer:
+                the endpoints of a program disappear when it ends.
+        """
+        settled = Settling(self._settled)
+        interface: discovery.Interface = {}
+
+        def over() -> bool:
+            nonlocal interface
+            marker = self._subject.marker
+            # Look for the marker topic (see graph.shows) before the survey. The subject makes it last, so if it is on
+            # the graph, the survey finds all endpoints.
+            all_made = marker is not None and discovery.shows(self._node, marker)
+            interface = discovery.survey(self._node)
+            if there(interface) or self._subject.ended or all_made:
+                return True
+            return marker is None and settled.unchanged(interface, len(self.nodes()))
+
+        self._await_appearance(over)
+        self.note_interface(interface)
+        return interface
+
+    def _await_appearance(self, condition: Callable[[], bool]) -> None:
+        """Wait until a condition holds, at most :data:`APPEAR` seconds, longer if the subject starts more processes."""
+        patience = Patience(APPEAR)
+        # A command's runner normally starts the command at once. So if a process begins in the second half of the time
+        # limit, something else goes on, such as a build.
+        earlier: frozenset[int] | None = None
+
+        def overdue() -> bool:
+            nonlocal earlier
+            left = patience.left
+            if left <= APPEAR / 2 and earlier is None:
+                earlier = self._subject.processes()
+            if left > 0 or earlier is None:
+                return False
+            if not self._again or self._subject.processes() <= earlier:
+                return True
+            self._again -= 1
+            patience.restart()
+            earlier = None
+            return False
+
+        self._wait_on_graph(lambda: condition() or overdue(), (MAX_RESTARTS + 2) * APPEAR)
+
+    def _wait_on_graph(self, condition: Callable[[], bool], within: float) -> None:
+        """Poll the graph: often once a process of the subject is known to have made a node, and rarely before that."""
+        patience = Patience(within)
+        held = False
+
+        def over() -> bool:
+            nonlocal held
+            held = condition()
+            return held
+
+        heard = self._subject.shares_participant or self._recorder.wait(
+            lambda: over() or self._announced(), within, poll=START_POLL
+        )
+        if heard and not held:
+            self._recorder.wait(over, patience.left, poll=GRAPH_POLL)
+
+    # --- writing down --------------------------------------------------------------------------------------
+
+    def note_interface(self, interface: discovery.Interface | None = None) -> None:
+        """Record the subject's endpoints if they have changed.
+
+        Args:
+            interface: The endpoints as seen a moment ago. If not given, they are queried now.
+        """
+        nodes = [node.full for node in self.nodes()]
+        ends = [[e.role, e.topic, e.process] for e in discovery.topic_ends(self._node)]
+        seen = {"nodes": nodes, "ends": sorted(ends), **(interface or discovery.survey(self._node))}
+        surveys = self._recorder.part().of("interface", "graph")
+        if not surveys or surveys[-1].data != seen:
+            self._recorder.record("interface", "graph", **seen)
+
+    def note_how_it_leaves(self) -> None:
+        """If all endpoints of a program have disappeared, the program is ending: wait for its end.
+
+        Without this wait, chance would decide whether the exit code and the last lines of output are recorded.
+        """
+        surveys = self._recorder.part().of("interface", "graph")
+        had_endpoints = [any(survey.data[role] for role in discovery.ROLES) for survey in surveys]
+        if not self._subject.shares_participant and any(had_endpoints) and not had_endpoints[-1]:
+            self._recorder.wait(lambda: self._subject.ended, MATCH)
+
+    def note_short_life(self) -> bool:
+        """If a subject has ended and the graph never showed its node, record that the subject had announced a node.
+
+        Returns:
+            True if the subject has ended and had announced a node, no matter whether the judge discovered the node.
+        """
+        if not self._subject.ended or not self._announced():
+            return False
+        part = self._recorder.part()
+        if not part.had_node:
+            self._recorder.record("announced", "a node")
+        return True
+
+    def note_whom_it_met(self) -> None:
+        """Record the subject's endpoints that were matched with the judge's, even if the graph never showed them."""
+        known = self._recorder.part()
+        for role, ends in self._met().items():
+            for name, type_name in ends.items():
+                if name not in known.endpoints(role):
+                    self._recorder.record("interface", "topic", **{role: {name: type_name}})
+
+    def _met(self) -> discovery.Interface:
+        """Return the subject's endpoints that were matched with one of the judge's."""
+        part = self._recorder.part()
+        sides: tuple[tuple[str, Counterparts, Counterparts], ...] = (
+            ("publisher", self.subscriptions, self.publishers),
+            ("subscription", self.publishers, self.subscriptions),
+        )
+        return {
+            role: {
+                name: end.type_name
+                for name, end in ends.items()
+                # Skip topics on which the judge is at both ends, because its own endpoints match.
+                if name not in others and any(event.data["count"] for event in part.of("matched", end.topic))
+            }
+            for role, ends, others in sides
+        }
+
+    def _mismatched(self, name: str) -> bool:
+        return self._recorder.part().first("mismatch", name) is not None

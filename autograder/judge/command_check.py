@@ -1,0 +1,139 @@
+"""Judges a command: ``autograder check EXERCISE -- COMMAND``."""
+
+from __future__ import annotations
+
+import os
+import secrets
+import shutil
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import msgspec
+
+from autograder import exercises
+from autograder.judge import ros_setup
+from autograder.judge.check_process import Child
+from autograder.kit.runners import Launches
+from autograder.messages.judge_messages import Report
+from autograder.verdict import Verdict, not_checked
+from environment.installation import COMMAND
+from environment.python_child import python_child
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from autograder.judge.one_check import Checked
+    from autograder.judge.subject import CommandBox
+    from autograder.kit.model import Exercise
+
+
+class CommandNotFound(LookupError):
+    """The command does not exist or may not be executed."""
+
+
+LAUNCH_FILES = (".py", ".xml", ".yaml", ".yml")
+"""File name extensions of launch files."""
+FOR_BUILDS = 150.0
+"""Seconds that are added to an exercise's time limit because a command may build its package first. A failed command is
+judged twice. In the first part of each look, the judge waits up to twice as long as usual for the program. On an
+overloaded machine, this may take three times as long (`autograder/judge/bench/subject_presence.py`).
+"""
+SPARE = 10.0
+"""Seconds after an exercise's time limit at which its judge is assumed to have died."""
+
+
+def check_and_keep(
+    exercise_id: str,
+    command: Sequence[str],
+    *,
+    seed: str | None = None,
+    cwd: Path | None = None,
+    box: CommandBox | None = None,
+) -> tuple[Verdict, bytes]:
+    """Judge a command as the subject of an exercise.
+
+    Args:
+        exercise_id: The id of the exercise, such as ``"lab_1_2.talker"``.
+        command: The program and its arguments. If the exercise has inputs, they are appended as further arguments.
+        seed: The seed of the random inputs; the default is a new one.
+        cwd: The folder in which to run the command.
+        box: The sandbox in which to run the command; None to run it with all rights of the user.
+
+    Returns:
+        The verdict, and the evidence as :mod:`autograder.judge.evidence_files` packs it. If the judge itself
+        failed, the verdict's state is ``not_checked`` and the evidence is empty.
+
+    Raises:
+        UnknownExercise: No exercise has this id.
+        CommandNotFound: The program does not exist.
+    """
+    exercise = exercises.get(exercise_id)
+    if not is_path(exercise, command, cwd) and shutil.which(command[0], path=_search_path(cwd)) is None:
+        raise CommandNotFound(
+            f"the program {command[0]!r} does not exist here: check its spelling, and that it is executable"
+        )
+    chosen = seed or secrets.token_hex(8)
+
+    def report() -> bytes:
+        verdict, checked = checked_here(exercise, command, chosen, cwd, box)
+        return msgspec.json.encode(Report(verdict, evidence=_packed(checked)))
+
+    ros_setup.provide_log_folder()  # before the fork, because a child exits without removing its folders
+    outcome = Child(report, exercise.limit + FOR_BUILDS + SPARE).result()
+    if outcome.data is None:
+        advice = f"Run `{COMMAND} doctor`."
+        return not_checked(exercise.id, exercise.title, exercise.points, outcome.trouble, advice), b""
+    said = msgspec.json.decode(outcome.data, type=Report)
+    assert said.verdict is not None
+    return said.verdict, said.evidence
+
+
+def as_run(exercise: Exercise, command: Sequence[str], cwd: Path | None) -> Sequence[str]:
+    """Return the command that runs the subject.
+
+    If ``command`` is the path of a workspace or launch file, this is ``python -m autograder.workspaces`` with the path.
+    """
+    runner = python_child("-m", "autograder.workspaces", exercise.id).command
+    if is_path(exercise, command, cwd):
+        return [*runner, command[0]]
+    return [*runner, "--", *command] if exercise.wraps_commands else command
+
+
+def is_path(exercise: Exercise, command: Sequence[str], cwd: Path | None) -> bool:
+    """Return True if the command is the path of a workspace or launch file and the exercise accepts one."""
+    if not exercise.runner or len(command) != 1:
+        return False
+    path = Path(cwd or ".", command[0])
+    return path.is_dir() if not isinstance(exercise.runner, Launches) else path.suffix in LAUNCH_FILES
+
+
+def _search_path(cwd: Path | None) -> str | None:
+    # shutil.which looks up names without a slash in these folders, of which the command's working folder is one.
+    return os.environ.get("PATH") if cwd is None else f"{os.environ.get('PATH', '')}:{cwd}"
+
+
+def _packed(checked: Checked | None) -> bytes:
+    from autograder.judge import evidence_files
+
+    return evidence_files.packed(checked) if checked else b""
+
+
+def checked_here(
+    exercise: Exercise, command: Sequence[str], seed: str, cwd: Path | None, box: CommandBox | None = None
+) -> tuple[Verdict, Checked | None]:
+    """Judge a command in this process, which was forked for it. The evidence is None if the judge failed."""
+    ros_setup.prepare_judge(boxed=box is not None)
+    if box is not None:
+        box.enter()
+    from autograder.judge import evidence_files, one_check
+    from autograder.judge.bench.judge_nodes import JudgeFailed
+    from autograder.judge.subject import CommandSubject
+
+    try:
+        expected = evidence_files.load_reference(exercise.id)
+        with ros_setup.lease() as domain_id:
+            subject = CommandSubject(as_run(exercise, command, cwd), cwd, box)
+            checked = one_check.check(exercise, subject, expected, seed=seed, domain_id=domain_id)
+            return checked.verdict, checked
+    except (ros_setup.NoFreeDomainError, evidence_files.NoReference, JudgeFailed) as error:
+        return not_checked(exercise.id, exercise.title, exercise.points, str(error)), None

@@ -1,0 +1,340 @@
+"""Writes evidence and reads it back: reference outputs, and the packed evidence of checks.
+
+A reference output is what a reference solution does on the wire, as JSON that people can review. Its file contains only
+what the task determines, such as messages, requests and answers. Facts that differ from run to run are left out, such
+as wall times, random node names and the order of log lines from two channels.
+
+The evidence of a check is packed unchanged into bytes of limited size: JSON, compressed with gzip, with one line for
+each event. Evidence that is too long is cut and marked as cut, because no verdict may be derived from a part of it.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+import time
+import traceback
+import zlib
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import msgspec
+
+from autograder.exercises import reference_path
+from autograder.kit.evidence import Event, Evidence, Part, Reference
+from autograder.verdict import Verdict  # noqa: TC001  (msgspec reads the annotations)
+from environment.installation import COMMAND
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from autograder.judge.one_check import Checked
+
+
+_RECORDED_KINDS = (
+    "message", "sent", "request", "response", "goal", "feedback", "cancel", "result", "asked", "answered",
+    "goal_sent", "goal_answer", "feedback_heard", "cancel_sent", "cancel_answer", "result_heard",
+    "said", "type",
+)  # fmt: skip
+
+_UNTIL_CANCELED = ("feedback_heard", "result_heard")
+_VARYING_FIELDS = ("number", "sent", "arrived")
+"""The fields of an event that differ from run to run, and so are not recorded."""
+
+
+class NoReference(LookupError):
+    """The reference output of an exercise does not exist or cannot be read."""
+
+
+def load_reference(exercise_id: str) -> Reference:
+    """Read a reference output.
+
+    Raises:
+        NoReference: The file does not exist, or is not a reference output.
+    """
+    file = reference_path(exercise_id)
+    try:
+        return parse_reference(json.loads(file.read_text(encoding="utf-8")))
+    except FileNotFoundError as error:
+        raise NoReference(f"{file} does not exist: run `{COMMAND} record {exercise_id}`") from error
+    except (ValueError, KeyError, TypeError) as error:
+        raise NoReference(
+            f"{file} is not a reference output ({error}): run `{COMMAND} record {exercise_id}`"
+        ) from error
+
+
+def reference_digest(exercise_id: str) -> str:
+    """Return the SHA-256 of a reference output's file, in hexadecimal.
+
+    Raises:
+        NoReference: The file cannot be read.
+    """
+    file = reference_path(exercise_id)
+    try:
+        return hashlib.sha256(file.read_bytes()).hexdigest()
+    except OSError as error:
+        raise NoReference(f"{file} cannot be read: run `{COMMAND} record {exercise_id}`") from error
+
+
+def parse_reference(data: Mapping[str, Any]) -> Reference:
+    """Return a reference output from its JSON form."""
+    parts = [
+        Part(
+            part["name"],
+            part["inputs"],
+            [
+                Event(e.get("t", 0.0), e["kind"], e["name"], e.get("data", {}), e.get("sim"))
+                for e in part["events"]
+            ],
+        )
+        for part in data["parts"]
+    ]
+    return Reference(data["exercise"], data["interface"], parts)
+
+
+def dump_reference(reference: Reference, kinds: Sequence[str] | None = None) -> str:
+    """Return a recording as JSON, with one line for each event. Recordings of the same behavior give the same text.
+
+    Args:
+        reference: The recording.
+        kinds: The kinds of events to write; None for the usual kinds.
+    """
+    if kinds is not None:
+        parts = [replace(p, events=[e for e in p.events if e.kind in kinds]) for p in reference.parts]
+        reference = replace(reference, parts=parts)
+    head = {"exercise": reference.exercise, "interface": _sorted_interface(reference.interface)}
+    lines = json.dumps(head, indent=1, ensure_ascii=False).splitlines()[:-1]
+    return (
+        "\n".join(
+            [
+                *lines[:-1],
+                lines[-1] + ",",
+                ' "parts": [',
+                ",\n".join(map(_part_text, reference.parts)),
+                " ]",
+                "}",
+            ]
+        )
+        + "\n"
+    )
+
+
+def _part_text(part: Part) -> str:
+    events = ",\n".join(f"   {json.dumps(event, ensure_ascii=False)}" for event in _recorded_events(part))
+    name, inputs = (json.dumps(value, ensure_ascii=False) for value in (part.name, dict(part.inputs)))
+    return f'  {{"name": {name}, "inputs": {inputs}, "events": [\n{events}\n  ]}}'
+
+
+def _sorted_interface(interface: Mapping[str, Mapping[str, str]]) -> dict[str, dict[str, str]]:
+    return {role: dict(sorted(names.items())) for role, names in sorted(interface.items()) if names}
+
+
+def _recorded_events(part: Part) -> list[dict[str, Any]]:
+    kept = [event for event in part.events if event.kind in _RECORDED_KINDS]
+    # Leave out the feedback and the result of a canceled goal: how far the goal gets depends on the machine.
+    canceled = {event.data["goal"] for event in kept if event.kind == "cancel_sent"}
+    kept = [e for e in kept if not (e.kind in _UNTIL_CANCELED and e.data["goal"] in canceled)]
+    # If goals run at the same time in one part, the order of their events depends on the machine. So sort the events by
+    # goal, with the answer before the feedback.
+    kept.sort(key=lambda event: (event.data.get("goal", 0), event.kind not in ("goal_sent", "goal_answer")))
+    start = next((event.sim for event in kept if event.sim is not None), None)
+    return [_event_row(event, start) for event in kept]
+
+
+def _event_row(event: Event, start: float | None) -> dict[str, Any]:
+    row: dict[str, Any] = {"kind": event.kind, "name": event.name}
+    if event.sim is not None and start is not None:
+        row["sim"] = round(event.sim - start, 3)
+    return row | {"data": {name: value for name, value in event.data.items() if name not in _VARYING_FIELDS}}
+
+
+MAX_BYTES = 400_000
+"""The maximum size of the evidence of one check, in compressed bytes."""
+MAX_RAW_BYTES = 8_000_000
+"""The maximum size in bytes before compression. Without it, evidence full of repetitions could be huge, because it is
+small after compression.
+"""
+_GZIP = 31
+"""The value of zlib's ``wbits`` for a gzip header with the largest window."""
+_FLOAT = "$float"
+"""The key of a dictionary that stands for a number that JSON cannot express, such as infinity. No field of a ROS
+message can have this name.
+"""
+
+
+class NoEvidence(ValueError):
+    """The bytes are not evidence, for the reason in the exception's text."""
+
+
+class KeptLook(msgspec.Struct, frozen=True):
+    """The evidence of one look, that is, of one run of the scenario."""
+
+    real_time: bool
+    parts: list[Part]
+
+
+class Kept(msgspec.Struct, frozen=True):
+    """A verdict with the evidence from which it is derived.
+
+    Attributes:
+        at: Unix time of the verdict, in seconds.
+        reference: The SHA-256 of the reference output's file.
+        verdict: The verdict without its timeline, which is derived from the events.
+        looks: The fast look, and the look in real time if there was one.
+        cut: A text that says which lines are missing, and why; empty if the evidence is complete.
+    """
+
+    at: float
+    reference: str
+    verdict: Verdict
+    looks: list[KeptLook]
+    cut: str = ""
+
+
+def packed(checked: Checked) -> bytes:
+    """Pack the evidence of a check. If packing fails, return no bytes, so that the student still gets the verdict."""
+    try:
+        digest = reference_digest(checked.verdict.exercise)
+        return pack(checked.verdict, checked.evidence, digest, at=time.time())
+    except Exception:
+        traceback.print_exc()
+        return b""
+
+
+def pack(verdict: Verdict, evidence: Evidence, digest: str, *, at: float) -> bytes:
+    """Pack a verdict and its evidence into bytes that :func:`unpack` can read.
+
+    Args:
+        verdict: The verdict.
+        evidence: The evidence for it.
+        digest: The SHA-256 of the reference output.
+        at: Unix time of the verdict, in seconds.
+    """
+    looks = [look for look in (evidence.before, evidence) if look is not None]
+    sheet = _Sheet()
+    told = msgspec.to_builtins(replace(verdict, timeline=()))
+    sheet.write({"at": at, "reference": digest, "verdict": told})
+    for look in looks:
+        sheet.write({"real_time": look.real_time})
+        for part in look:
+            sheet.write({"name": part.name, "inputs": part.inputs})
+            for event in part.events:
+                sheet.write([event.t, event.kind, event.name, event.data, event.sim])
+    cut = ""
+    if sheet.left_out:
+        cut = (
+            f"the last {sheet.left_out} of {sheet.lines} lines are missing: the evidence of one check is limited to "
+            f"{MAX_RAW_BYTES} bytes, and to {MAX_BYTES} bytes after compression"
+        )
+    return sheet.end({"cut": cut})
+
+
+class _Sheet:
+    """Collects lines of JSON, compressed with gzip, up to the size limits."""
+
+    def __init__(self) -> None:
+        self._zip = zlib.compressobj(1, zlib.DEFLATED, _GZIP)
+        self._written = bytearray()
+        self._pending = self._raw = 0
+        self.lines = self.left_out = 0
+
+    def write(self, row: Any) -> None:
+        """Add a line. Leave it out if this line or an earlier line exceeds the limits."""
+        self.lines += 1
+        if self.left_out or not self._add(_line(row)):
+            self.left_out += 1
+
+    def end(self, row: Any) -> bytes:
+        """Add a last line, even beyond the limits, and return all compressed bytes."""
+        return bytes(self._written) + self._zip.compress(_line(row)) + self._zip.flush()
+
+    def _add(self, line: bytes) -> bool:
+        # Lines inside the compressor count with their uncompressed size until a flush shows the compressed size.
+        if len(self._written) + self._pending + len(line) > MAX_BYTES:
+            self._written += self._zip.flush(zlib.Z_SYNC_FLUSH)
+            self._pending = 0
+        self._raw += len(line)
+        if self._raw > MAX_RAW_BYTES or len(self._written) + self._pending + len(line) > MAX_BYTES:
+            return False
+        self._written += self._zip.compress(line)
+        self._pending += len(line)
+        return True
+
+
+def unpack(data: bytes) -> Kept:
+    """Unpack what :func:`pack` has packed.
+
+    Raises:
+        NoEvidence: The bytes are not evidence, or are damaged.
+    """
+    try:
+        unzip = zlib.decompressobj(_GZIP)
+        text = unzip.decompress(data, 2 * MAX_RAW_BYTES)
+        if not unzip.eof:
+            raise NoEvidence("the end of the evidence is missing, or the evidence is larger than allowed")
+        first, *rows, last = [restored(json.loads(line)) for line in text.splitlines()]
+        return msgspec.convert({**first, **last, "looks": _looks(rows)}, type=Kept)
+    except (zlib.error, ValueError, TypeError, LookupError, RecursionError) as error:
+        raise error if isinstance(error, NoEvidence) else NoEvidence(str(error)) from error
+
+
+def _looks(rows: Sequence[Any]) -> list[dict[str, Any]]:
+    looks: list[dict[str, Any]] = []
+    for row in rows:
+        if isinstance(row, list):
+            looks[-1]["parts"][-1]["events"].append(
+                dict(zip(("t", "kind", "name", "data", "sim"), row, strict=True))
+            )
+        elif "real_time" in row:
+            looks.append({**row, "parts": []})
+        else:
+            looks[-1]["parts"].append({**row, "events": []})
+    return looks
+
+
+def evidence_of(kept: Kept, expected: Reference) -> Evidence:
+    """Return unpacked evidence in the form from which the judge derives verdicts.
+
+    Args:
+        kept: The unpacked verdict and evidence.
+        expected: The reference output.
+
+    Raises:
+        NoEvidence: The evidence contains no look.
+    """
+    evidence: Evidence | None = None
+    for look in kept.looks:
+        evidence = Evidence(look.parts, expected, look.real_time, evidence)
+    if evidence is None:
+        raise NoEvidence("the judge saw nothing")
+    return evidence
+
+
+def _line(row: Any) -> bytes:
+    try:
+        text = json.dumps(row, allow_nan=False)
+    except (ValueError, TypeError):
+        text = json.dumps(plain(row))
+    return text.encode() + b"\n"
+
+
+def plain(value: Any) -> Any:
+    """Return a value that JSON can express: infinity becomes ``{"$float": "inf"}``, and other objects become text."""
+    if isinstance(value, float) and not math.isfinite(value):
+        return {_FLOAT: str(value)}
+    if isinstance(value, Mapping):
+        return {str(key): plain(inner) for key, inner in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [plain(inner) for inner in value]
+    return value if isinstance(value, (str, int, float)) or value is None else repr(value)
+
+
+def restored(value: Any) -> Any:
+    """Undo :func:`plain` for numbers such as infinity."""
+    if isinstance(value, dict):
+        if value.keys() == {_FLOAT}:
+            return float(value[_FLOAT])
+        return {key: restored(inner) for key, inner in value.items()}
+    return [restored(inner) for inner in value] if isinstance(value, list) else value

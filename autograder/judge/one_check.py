@@ -1,0 +1,377 @@
+"""Runs one check: one or two looks, the verdict on their evidence, and the diagnosis of a known mistake."""
+
+from __future__ import annotations
+
+import contextlib
+import time
+import traceback
+from dataclasses import dataclass, replace
+from functools import partial
+from pathlib import Path
+from random import Random
+from typing import TYPE_CHECKING
+
+from autograder import exercises, kit
+from autograder.judge import verdict_timeline
+from autograder.judge.bench.bench import TestBench
+from autograder.judge.bench.judge_nodes import JudgeFailed
+from autograder.judge.check_process import Undecided, limited, undecidable
+from autograder.judge.machine_fitness import (
+    NOT_DELIVERED,
+    SEEN_SO_FAR,
+    TOO_BUSY,
+    Crowding,
+    Hurry,
+    NotDelivered,
+    OutOfTime,
+    TooBusy,
+    delivers,
+)
+from autograder.kit.evidence import Evidence, Reference
+from autograder.kit.in_words import of_its_kind, shortened, visible
+from autograder.kit.mistakes.workspace_mistakes import changed_since_build
+from autograder.kit.model import Advice, Exercise, Finding, Mistake, Pace
+from autograder.verdict import CriterionResult, Diagnosis, State, Verdict
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Mapping
+
+    from autograder.judge.subject import Subject
+    from autograder.kit.evidence import Event
+
+
+WHAT_TO_DO = "Show this card to your instructor: the exercise has to be corrected first."
+_KIT = Path(kit.__file__).parent
+MAX_QUOTED_ERROR = 300
+"""The maximum length of the quoted error, in characters. It is limited because the error may contain output of the
+subject.
+"""
+
+
+class ExerciseFailed(JudgeFailed):
+    """The exercise's own code raised an exception."""
+
+
+@contextlib.contextmanager
+def of_exercise(exercise: Exercise) -> Iterator[None]:
+    """Turn an exception in an exercise's own code into an :class:`ExerciseFailed`, which says what to do about it.
+
+    Raises:
+        ExerciseFailed: The code in the block raised an exception, and code of the exercise or of the kit called it.
+    """
+    try:
+        yield
+    except (JudgeFailed, OSError):
+        raise
+    except Exception as error:
+        where = _line_of_exercise(error, exercise)
+        if not where:
+            raise
+        words = " ".join(f"{type(error).__name__}: {error}".split())[:MAX_QUOTED_ERROR]
+        raise ExerciseFailed(f"The exercise has a fault: {words} ({where}).\n{WHAT_TO_DO}") from error
+
+
+def _line_of_exercise(error: Exception, exercise: Exercise) -> str:
+    """Return the file and line of the exercise's code, or else of the kit's, that raised the error; empty if none."""
+    frames = traceback.extract_tb(error.__traceback__)
+    for folder in (exercises.path(exercise.id).parent, _KIT):
+        for frame in reversed(frames):
+            if folder in Path(frame.filename).parents:
+                return f"{Path(frame.filename).name}, line {frame.lineno}"
+    return ""
+
+
+def misnamed(evidence: Evidence, verdict: Verdict) -> dict[str, dict[str, str]]:
+    """Return the endpoints to which the subject gives a wrong name; the keys are the right names, as in the task.
+
+    An endpoint counts as misnamed if, in all parts, the subject has no endpoint with the right name, role and type, but
+    exactly one other endpoint with this role and type. If there are two others, neither is returned, because it is
+    unclear which one was meant.
+
+    Args:
+        evidence: The evidence of a look in which the judge used the names in the task.
+        verdict: The verdict on this evidence, which is not a pass.
+
+    Returns:
+        For each name: ``real``, the name that the subject uses, and ``costs``, the name of the first criterion that
+        fails because of the wrong name.
+    """
+    costs = next(criterion.name for criterion in verdict.criteria if not criterion.passed)
+    found: dict[str, dict[str, str]] = {}
+    for role, asked in evidence.reference.interface.items():
+        made = {name: kind for part in evidence for name, kind in part.endpoints(role).items()}
+        for kind in set(asked.values()):
+            missing = [name for name, type_name in asked.items() if type_name == kind and name not in made]
+            others = [name for name, type_name in made.items() if type_name == kind and name not in asked]
+            if len(missing) == len(others) == 1:
+                found[missing[0]] = {"real": others[0], "costs": costs}
+    return found
+
+
+UNKNOWN = "unknown"
+"""The key of the diagnosis if the mistake is unknown."""
+MAX_DETAIL = 6_000
+"""The maximum length of a traceback on a card, in characters."""
+MAX_WORDS = 500
+"""The maximum length of one sentence of a verdict, in characters; it may quote the subject's output."""
+
+
+@dataclass(frozen=True)
+class Seen:
+    """The result of one look.
+
+    Attributes:
+        evidence: The recorded events.
+        doubtful: True if even a pass must be confirmed in real time.
+        unmet: True if a run began before the subject's participant had discovered the judge's endpoints.
+    """
+
+    evidence: Evidence
+    doubtful: bool
+    unmet: bool = False
+
+
+@dataclass(frozen=True)
+class Checked:
+    """The result of a check.
+
+    Attributes:
+        verdict: The verdict.
+        evidence: The evidence from which the verdict was derived.
+        crowded: True if the verdict is not a pass and may be unfair: nothing proves a mistake, and either the machine
+            was too busy in the look in real time, or the subject had not discovered the judge's endpoints.
+    """
+
+    verdict: Verdict
+    evidence: Evidence
+    crowded: bool = False
+
+
+def check(
+    exercise: Exercise,
+    subject: Subject,
+    reference: Reference,
+    *,
+    seed: str,
+    domain_id: int,
+    marks_crowded: bool = False,
+) -> Checked:
+    """Judge a subject in one look, or in two looks if the first does not decide.
+
+    A subject that passes the first look, in simulated time, has passed. If it fails, a second look in real time
+    decides, unless the evidence proves the mistake whatever the load is. A check whose verdict takes longer than
+    :data:`.deciding.LIMIT` has failed.
+
+    Args:
+        exercise: The exercise that the subject has to fulfill.
+        subject: The subject to judge.
+        reference: The recorded behavior of the reference solution.
+        seed: The seed of all random inputs.
+        domain_id: The ROS domain.
+        marks_crowded: True to return a verdict with ``crowded`` set instead of raising TooBusy, as the grader does.
+
+    Raises:
+        ExerciseFailed: The exercise's own code raised an exception.
+        TooBusy: The machine was too busy to decide, or a student has waited for a long time on a busy machine.
+        NotDelivered: The subject did not pass, nothing proves a mistake, and this machine may have lost messages.
+    """
+    with of_exercise(exercise):
+        return _check(exercise, subject, reference, seed, domain_id, marks_crowded)
+
+
+def _check(
+    exercise: Exercise, subject: Subject, reference: Reference, seed: str, domain_id: int, marks_crowded: bool
+) -> Checked:
+    began = time.monotonic()
+    crowded, delivered = False, delivers()
+    # Hurry only if a student may be waiting, that is, in a check cell that no grader runs.
+    waited_for = subject.in_a_notebook and not marks_crowded
+    hurry = Hurry(is_building=lambda: subject.is_building) if waited_for else _no_hurry
+    subject.begin(domain_id)
+    look_at = partial(look, exercise, subject, reference, seed=seed, domain_id=domain_id, hurry=hurry)
+    try:
+        seen = look_at(Pace.FAST)
+    except OutOfTime:
+        raise TooBusy(TOO_BUSY) from None
+    evidence = seen.evidence
+    try:
+        with limited():
+            verdict = judge(exercise, evidence, seed)
+        names = {} if verdict.passed or exercise.runner else misnamed(evidence, verdict)
+        # A wrong name should fail only one criterion. So the judge looks again and uses the subject's names, with which
+        # it can decide the other criteria.
+        if names:
+            look_at = partial(look_at, names=names)
+            try:
+                seen = look_at(Pace.FAST)
+            except OutOfTime:
+                raise TooBusy(f"{TOO_BUSY} {_so_far(verdict)}".strip()) from None
+            evidence = seen.evidence
+            with limited():
+                verdict = judge(exercise, evidence, seed)
+        with limited():
+            again = exercise.second_look and (seen.doubtful or not verdict.passed)
+            again = again and not _is_explained(exercise, evidence, verdict, names)
+        if again:
+            if not marks_crowded:  # code of a submission must not learn the verdict
+                subject.tell_so_far(_so_far(verdict))
+            try:
+                with Crowding() as crowding:
+                    seen = look_at(Pace.REAL_TIME, before=evidence)
+            except OutOfTime:
+                raise TooBusy(f"{TOO_BUSY} {_so_far(verdict)}".strip()) from None
+            evidence = replace(seen.evidence, before=evidence)
+            with limited():
+                verdict = judge(exercise, evidence, seed)
+        if (seen.unmet or (again and crowding.too_busy)) and not verdict.passed:
+            with limited():
+                crowded = not is_certain(exercise, evidence)
+        if not verdict.passed and not (delivered and delivers()):
+            with limited():
+                certain = is_certain(exercise, evidence)
+            if not certain:
+                raise NotDelivered(NOT_DELIVERED)
+    except Undecided:
+        verdict = undecidable(exercise, seed)
+    if crowded and not marks_crowded:
+        raise TooBusy(f"{TOO_BUSY} {_so_far(verdict)}".strip())
+    return Checked(replace(verdict, seconds=round(time.monotonic() - began, 3)), evidence, crowded)
+
+
+def _is_explained(
+    exercise: Exercise, evidence: Evidence, verdict: Verdict, names: Mapping[str, object]
+) -> bool:
+    """Return True if no second look is needed, because the evidence proves a mistake that explains all failures."""
+    failed = sum(not criterion.passed for criterion in verdict.criteria)
+    return is_certain(exercise, evidence) and not (names and failed > len(names))
+
+
+def _no_hurry() -> None:
+    """Do nothing, because no student waits for this check."""
+
+
+def _so_far(verdict: Verdict) -> str:
+    """Return a sentence that quotes the diagnosis and says that it may be wrong; empty if the mistake is unknown."""
+    known = verdict.diagnosis
+    return SEEN_SO_FAR.format(known.text) if known and known.key != UNKNOWN else ""
+
+
+def decide(exercise: Exercise, evidence: Evidence, seed: str) -> Verdict:
+    """Return the verdict that follows from evidence; a fail if it takes too long to compute."""
+    try:
+        with limited():
+            return judge(exercise, evidence, seed)
+    except Undecided:
+        return undecidable(exercise, seed)
+
+
+def look(
+    exercise: Exercise,
+    subject: Subject,
+    reference: Reference,
+    pace: Pace,
+    *,
+    seed: str,
+    domain_id: int,
+    before: Evidence | None = None,
+    hurry: Callable[[], None] = _no_hurry,
+    names: Mapping[str, Mapping[str, str]] | None = None,
+) -> Seen:
+    """Run the scenario once and return the evidence.
+
+    Args:
+        exercise: The exercise that the subject has to fulfill.
+        subject: The subject to judge.
+        reference: The recorded behavior of the reference solution.
+        pace: The pace of this look.
+        seed: The seed of all random inputs.
+        domain_id: The ROS domain.
+        before: The evidence of the first look; None if this is the first look.
+        hurry: Called repeatedly while the judge waits. It may raise an exception to end the look.
+        names: The wrong names that :func:`autograder.judge.one_check.misnamed` found in an earlier look.
+    """
+    bench = TestBench(subject, domain_id, reference, pace, Random(seed), before, hurry, names)
+    try:
+        exercise.scenario(bench)
+    finally:
+        bench.close()
+    # Sort the parts: a scenario may shuffle them, but the verdict's text must not depend on the order.
+    places = {part.name: place for place, part in enumerate(reference.parts)}
+    parts = sorted(bench.parts, key=lambda part: places.get(part.name, len(places)))
+    return Seen(Evidence(parts, reference, pace is Pace.REAL_TIME), bench.doubtful, bench.unmet)
+
+
+def judge(exercise: Exercise, evidence: Evidence, seed: str) -> Verdict:
+    """Return the verdict that follows from the evidence. Call this within :func:`.deciding.limited`."""
+    lost = {event.data["costs"]: event for part in evidence for event in part.of("misnamed")}
+    criteria = tuple(
+        CriterionResult(c.name, c.title, c.points, finding.passed, _cut(finding.expected), _cut(finding.seen))
+        for c in exercise.criteria
+        for finding in [_with_name(c.judge(evidence), lost.get(c.name))]
+    )
+    passed = all(criterion.passed for criterion in criteria)
+    diagnosis, traceback = (None, "") if passed else diagnose(exercise, evidence)
+    told = (diagnosis.text if diagnosis else "", *(one.seen for one in criteria if not one.passed))
+    remarks = (*exercise.remarks, *([changed_since_build] if exercise.runner else []))
+    return Verdict(
+        exercise=exercise.id,
+        title=exercise.title,
+        state=State.PASSED if passed else State.FAILED,
+        score=float(sum(c.points for c in criteria if c.passed)),
+        max_score=float(exercise.points),
+        criteria=criteria,
+        diagnosis=diagnosis,
+        remarks=tuple(_cut(text) for remark in remarks if (text := remark(evidence))),
+        timeline=verdict_timeline.moments(evidence, " ".join(told), missed=not passed),
+        seed=seed,
+        detail=traceback[-MAX_DETAIL:],
+    )
+
+
+def _with_name(finding: Finding, wrong: Event | None) -> Finding:
+    """Return a criterion's finding. If this is the criterion that a wrong name should fail, change it to failed."""
+    if wrong is None or not finding.passed:
+        return finding
+    return Finding(False, f"the name {wrong.name}", f"the name {wrong.data['real']}")
+
+
+def diagnose(exercise: Exercise, evidence: Evidence) -> tuple[Diagnosis, str]:
+    """Return the diagnosis of the first known mistake in the evidence, and the traceback that shows it, if any.
+
+    Other tracebacks are not returned. They may come from another run and a correct line, but a student would take them
+    for the mistake.
+    """
+    found = _recognised(exercise, evidence)
+    if found is not None:
+        mistake, advice = found
+        in_a_notebook = evidence.in_a_notebook
+        text, next_step = (
+            _cut(of_its_kind(shortened(visible(words)), in_a_notebook), 2 * MAX_WORDS)
+            for words in (advice.text, advice.next_step)
+        )
+        return Diagnosis(mistake.key, text, next_step), advice.traceback
+    unknown = Diagnosis(
+        UNKNOWN,
+        "The judge does not recognize this mistake.",
+        "Compare what was expected with what was seen, criterion by criterion.",
+    )
+    return unknown, ""
+
+
+def _recognised(exercise: Exercise, evidence: Evidence) -> tuple[Mistake, Advice] | None:
+    for mistake in exercise.mistakes:
+        advice = mistake.recognise(evidence)
+        if advice is not None:
+            return mistake, advice
+    return None
+
+
+def is_certain(exercise: Exercise, evidence: Evidence) -> bool:
+    """Return True if the evidence proves a mistake, no matter how busy the machine was."""
+    found = _recognised(exercise, evidence)
+    return found is not None and found[0].certain
+
+
+def _cut(text: str, limit: int = MAX_WORDS) -> str:
+    """Return a sentence, cut to the length that fits on a card."""
+    return text if len(text) <= limit else f"{text[: limit - 1]}…"

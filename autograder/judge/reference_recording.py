@@ -1,0 +1,109 @@
+"""Records a reference output: runs the reference solution through the same scenario as a student's answer."""
+
+from __future__ import annotations
+
+import time
+from random import Random
+from typing import TYPE_CHECKING
+
+from autograder.judge.bench.bench import TestBench
+from autograder.judge.one_check import is_certain, judge, look
+from autograder.kit.evidence import Evidence, Reference
+from autograder.kit.launch_report import processes
+from autograder.kit.model import Exercise, Pace
+from autograder.kit.runners import RunsPrograms
+from autograder.kit.workspace_report import report_of
+
+if TYPE_CHECKING:
+    from autograder.judge.subject import Subject
+
+
+SEED = "reference"
+"""The fixed seed of a recording, so that each recording has the same random inputs."""
+LOOKS = 10
+"""The maximum number of looks for a recording. On a busy machine the evidence of a look may be doubtful, so another
+look is needed. With at most three looks, 1 of 36 recordings failed when eighteen ran at once on two processors.
+"""
+
+
+class NotRecordable(RuntimeError):
+    """The reference solution did not show the behavior that the exercise is about."""
+
+
+def record(exercise: Exercise, subject: Subject, *, domain_id: int) -> Reference:
+    """Record the reference solution's endpoints, then run the scenario on it.
+
+    If the solution fails in a look, the cause may be a busy machine: a goal may have ended before it was canceled, or
+    the first message may have been lost. So the scenario is run again, unless the mistake is certain or the time limit
+    of a check is over.
+
+    Returns:
+        The recording of the first look in which the solution was right; if there is none, of the last look.
+
+    Raises:
+        NotRecordable: The solution had no endpoint of the exercise's roles, or every look was doubtful.
+    """
+    deadline = time.monotonic() + exercise.limit
+    subject.begin(domain_id)
+    interface = _endpoints_of_solution(exercise, subject, domain_id)
+    if exercise.roles and not any(interface.get(role) for role in exercise.roles):
+        raise NotRecordable(f"{exercise.id}: the reference solution had no {' or '.join(exercise.roles)}")
+    bare = Reference(exercise.id, interface)
+    wrong: Reference | None = None
+    for number in range(LOOKS):
+        if number and time.monotonic() > deadline:
+            break
+        seen = look(exercise, subject, bare, Pace.FAST, seed=SEED, domain_id=domain_id)
+        if seen.doubtful:
+            continue
+        recorded = Reference(exercise.id, interface, seen.evidence.parts)
+        evidence = as_evidence(recorded)
+        if judge(exercise, evidence, SEED).passed:
+            return recorded
+        wrong = recorded
+        if is_certain(exercise, evidence):
+            break
+    if wrong is not None:
+        return wrong
+    raise NotRecordable(
+        f"{exercise.id}: the reference solution did not follow the simulated clock, or canceled at a different time in "
+        "each run. Wait until the machine is less busy, and record again."
+    )
+
+
+def as_evidence(recorded: Reference) -> Evidence:
+    """Return a recording as evidence, in which the solution is both the subject and the reference."""
+    return Evidence(recorded.parts, recorded)
+
+
+def _endpoints_of_solution(exercise: Exercise, subject: Subject, domain_id: int) -> dict[str, dict[str, str]]:
+    bench = TestBench(subject, domain_id, Reference(exercise.id, {}), Pace.FAST, Random(SEED))
+    try:
+        found: dict[str, dict[str, str]] = {}
+        for program in _programs(exercise):
+            bench.part("interface")
+            bench.start(*program, *exercise.sample_arguments)
+            if exercise.runner:
+                # The endpoints of a workspace appear only after its build, so wait until the build has ended.
+                bench.wait_until(_is_at_work, exercise.limit)
+            shown = bench.await_any_endpoint(exercise.roles)
+            found |= {role: shown[role] for role in shown if shown[role] or role not in found}
+            if not exercise.runner and bench.seen().ending is None:
+                # The solution may make more endpoints after the first one, so wait until it has made all.
+                shown = bench.await_any_endpoint(())
+                found |= {role: found.get(role, {}) | shown[role] for role in shown}
+        # The programs of a workspace or launch file may run one after the other. In that case only the endpoints of the
+        # exercise's roles are the same in each recording, so only they are recorded.
+        return {role: found[role] for role in exercise.roles} if exercise.runner else found
+    finally:
+        bench.close()
+
+
+def _programs(exercise: Exercise) -> list[tuple[str, ...]]:
+    """Return the arguments of each of the exercise's programs; a single empty tuple if it has only one subject."""
+    runner = exercise.runner
+    return [(name,) for name in runner.programs] if isinstance(runner, RunsPrograms) else [()]
+
+
+def _is_at_work(evidence: Evidence) -> bool:
+    return report_of(evidence.main) is not None or bool(processes(evidence.main))

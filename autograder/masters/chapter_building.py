@@ -1,0 +1,289 @@
+"""Builds chapter notebooks, solution files and the README's badges, or reports which of them are out of date.
+
+A source notebook becomes a chapter notebook with the steps of ``nbgrader generate_assignment``. The steps run in this
+process and without a gradebook, which takes milliseconds per notebook instead of seconds. A test proves that nbgrader's
+own command gives the same bytes.
+
+In README.md, the parts that contain the address of the course's public repository are filled in: badges, `git clone`.
+If the repository is not public yet, a sentence replaces the badges, and `git clone` is followed by a placeholder.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+from urllib.parse import quote
+
+import nbformat
+import re2
+from nbconvert.exporters import NotebookExporter
+from nbformat import NotebookNode
+from nbgrader.converters import GenerateAssignment
+from nbgrader.preprocessors import ClearSolutions, NbGraderPreprocessor
+from nbgrader.utils import compute_checksum, is_solution
+from rich.console import Console
+from traitlets.config import Config
+
+from autograder import course
+from autograder.course import SOLUTION
+from autograder.masters.code_cells import exercise_points, find_region
+from autograder.masters.master_files import CellError, MasterError, chapter_notebooks, chapter_path, masters
+from autograder.masters.reference_solutions import solution_files
+from autograder.masters.source_notebooks import Points, named_cells, notebook_of, service_links
+from autograder.safe_files import write_whole
+from environment.installation import COMMAND
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+
+NOTEBOOK = ".ipynb"
+
+
+@dataclass(frozen=True)
+class BuildReport:
+    """What a build did with each chapter notebook, solution file and README, or what it would do in check mode.
+
+    Attributes:
+        written: The files that were written.
+        unchanged: The files that were already up to date.
+        stale: In check mode, the files that are missing or out of date.
+        edited: The files that were not overwritten, because a person has changed them.
+        orphans: Chapter notebooks whose master no longer exists, and solution files whose ``.why.md`` file no longer
+            exists. They are never deleted.
+    """
+
+    written: tuple[Path, ...] = ()
+    unchanged: tuple[Path, ...] = ()
+    stale: tuple[Path, ...] = ()
+    edited: tuple[Path, ...] = ()
+    orphans: tuple[Path, ...] = ()
+
+    @property
+    def in_step(self) -> bool:
+        """True if all files are up to date after the build."""
+        return not (self.stale or self.edited or self.orphans)
+
+
+def build(root: Path, *, check: bool = False, points: Points = exercise_points) -> BuildReport:
+    """Build the chapters of the course in ``root`` from its masters.
+
+    All masters are read before the first notebook is written, so that a bad master changes nothing.
+
+    Args:
+        root: The top folder of the course, which contains ``solutions`` and ``chapters``.
+        check: True to write nothing, and report what is out of date.
+        points: A function that returns the points of an exercise; by default, it reads them from the exercise.
+
+    Raises:
+        MasterError: A master cannot be used, or there is none.
+        OSError: A chapter notebook cannot be read or written.
+    """
+    cells = {master: named_cells(master, points=points) for master in masters(root)}
+    texts = {chapter_path(root, master): release_text(notebook_of(named)) for master, named in cells.items()}
+    for master, named in cells.items():
+        texts |= solution_files(master, named)
+    front = readme(root, chapter_path(root, next(iter(cells))))
+    if front is not None:
+        texts[root / README] = front
+    found: dict[str, list[Path]] = {"written": [], "unchanged": [], "stale": [], "edited": []}
+    for path, text in texts.items():
+        found[_settle(path, text, check=check)].append(path)
+    solutions = [path for master in cells for path in sorted(master.parent.glob(f"*{SOLUTION}"))]
+    orphans = [path for path in (*chapter_notebooks(root), *solutions) if path not in texts]
+    return BuildReport(**{state: tuple(paths) for state, paths in found.items()}, orphans=tuple(orphans))
+
+
+def _settle(path: Path, text: str, *, check: bool) -> str:
+    """Write one file if necessary and allowed. Return the name of the field of :class:`BuildReport` for this file."""
+    if path.exists() and path.read_bytes() == text.encode():
+        return "unchanged"
+    if path.suffix == NOTEBOOK and holds_work(path):
+        return "edited"
+    if check:
+        return "stale"
+    write_whole(path, text.encode())
+    return "written"
+
+
+def build_command(
+    root: Path, *, check: bool = False, console: Console | None = None, points: Points = exercise_points
+) -> int:
+    """Build the chapters, or check that they are up to date, and print the result.
+
+    Returns:
+        The exit code: 0 if the chapters are up to date, 1 if they are not, 2 if a master cannot be used.
+    """
+    console = console or Console()
+    try:
+        report = build(root, check=check, points=points)
+    except MasterError as error:
+        console.print(f"[bold red]cannot build[/]  {error}", highlight=False, soft_wrap=True)
+        return 2
+    for word, paths, meaning in _lines(report):
+        for path in paths:
+            console.print(f"{word:<10} {path.relative_to(root)}  {meaning}", highlight=False, soft_wrap=True)
+    in_step = sum(path.suffix == NOTEBOOK for path in (*report.unchanged, *report.written))
+    notebooks = "chapter notebook" if in_step == 1 else "chapter notebooks"
+    console.print(f"{in_step} {notebooks} up to date with the masters.", highlight=False)
+    return 0 if report.in_step else 1
+
+
+def _lines(report: BuildReport) -> list[tuple[str, tuple[Path, ...], str]]:
+    return [
+        ("written", report.written, ""),
+        ("stale", report.stale, f"— run: {COMMAND} build"),
+        ("edited", report.edited, "— a person has changed it: move it away, then build again"),
+        ("orphan", report.orphans, "— it has no master: write a master for it, or delete the file"),
+    ]
+
+
+def holds_work(path: Path) -> bool:
+    """Return True if a person has changed the notebook since a build wrote it.
+
+    The metadata of a release contains the checksum of each code cell and of each question. A cell that no longer
+    matches was edited, and code without a checksum was added. Outputs do not count. A file that cannot be read as a
+    notebook counts as changed, so that it is not overwritten.
+    """
+    if not path.exists():
+        return False
+    try:
+        notebook = nbformat.read(path, as_version=4)
+    except Exception:
+        # Catch every exception, because nbformat also raises those of its JSON and schema libraries.
+        return True
+    return any(
+        _edited(cell) for cell in notebook.cells if cell.cell_type == "code" or "nbgrader" in cell.metadata
+    )
+
+
+def _edited(cell: Any) -> bool:
+    tracked = cell.metadata.get("nbgrader", {})
+    if "checksum" in tracked:
+        return bool(tracked["checksum"] != compute_checksum(cell))
+    return bool(cell.source.strip())
+
+
+class LeaveStubs(ClearSolutions):
+    """nbgrader's ClearSolutions, changed so that each removed solution leaves its own stub.
+
+    Stock nbgrader replaces every solution by the same text. Here each region begins with the comment that
+    students get instead (``code_cells.py``), so the cell can run and says what to do. A solution of any other form is
+    cleared as nbgrader does it.
+    """
+
+    def preprocess_cell(
+        self, cell: NotebookNode, resources: dict[str, Any], cell_index: int
+    ) -> tuple[NotebookNode, dict[str, Any]]:
+        """Clear one cell."""
+        if is_solution(cell) and cell.cell_type == "code":
+            try:
+                cell.source = find_region(cell.source).unsolved
+            except CellError:
+                # Clear the solution as nbgrader does: this is an instructor's own notebook, written for stock nbgrader.
+                pass
+            else:
+                return cell, resources
+        return super().preprocess_cell(cell, resources, cell_index)
+
+
+class KeepShownPictures(NbGraderPreprocessor):
+    """Removes attached pictures that the released text does not show, because they belong to a solution."""
+
+    def preprocess_cell(
+        self,
+        cell: NotebookNode,
+        resources: dict[str, Any],
+        cell_index: int,  # noqa: ARG002  (nbconvert's signature)
+    ) -> tuple[NotebookNode, dict[str, Any]]:
+        """Keep the pictures that one cell shows."""
+        if "attachments" in cell:
+            cell.attachments = shown_attachments(cell.source, cell.attachments)
+            if not cell.attachments:
+                del cell["attachments"]
+        return cell, resources
+
+
+def shown_attachments(source: str, attachments: NotebookNode) -> NotebookNode:
+    """Return those attachments that a text shows."""
+    return NotebookNode(
+        {
+            name: picture
+            for name, picture in attachments.items()
+            if f"attachment:{name}" in source or f"attachment:{quote(name)}" in source
+        }
+    )
+
+
+def release_preprocessors() -> list[type[NbGraderPreprocessor]]:
+    """Return the steps of nbgrader's ``generate_assignment``, adapted to this course.
+
+    :class:`LeaveStubs` replaces ClearSolutions, and :class:`KeepShownPictures` is added. A class's
+    ``nbgrader_config.py`` gets the steps through :class:`autograder.masters.release_steps.ReleaseSteps`.
+    """
+    steps = [LeaveStubs if step is ClearSolutions else step for step in GenerateAssignment().preprocessors]
+    return [*steps, KeepShownPictures]
+
+
+def release_text(source: NotebookNode) -> str:
+    """Return the text of the chapter notebook's file, made from ``source``."""
+    config = Config()
+    config.Exporter.default_preprocessors = []
+    # Leave out the step SaveCells, which only writes to the gradebook. `nbgrader generate_assignment --no-db` does so,
+    # too.
+    config.SaveCells.enabled = False
+    exporter = NotebookExporter(config=config)
+    for step in release_preprocessors():
+        exporter.register_preprocessor(step)
+    text, _ = exporter.from_notebook_node(source)
+    return text
+
+
+README = "README.md"
+TO_FILL_IN = "ADDRESS_OF_THIS_REPOSITORY"
+"""The placeholder in README.md for the address of a repository that is not public yet."""
+WITHOUT_ADDRESS = (
+    "This course has no public address yet. If you have its folder, leave the line with `git clone` out, and type the "
+    "others in that folder.\n"
+)
+"""The sentence that README.md contains instead of badges while the repository is not public."""
+_TESTS_WORKFLOW = ".github/workflows/ci.yml"
+_BADGE_PICTURES = {
+    "Colab": "https://colab.research.google.com/assets/colab-badge.svg",
+    "Codespaces": "https://github.com/codespaces/badge.svg",
+    "Binder": "https://mybinder.org/badge_logo.svg",
+}
+"""For each service, the address of the picture on its badge."""
+_BADGES_BLOCK = re2.compile(r"(?s)(<!-- badges -->\n).*?(<!-- end of badges -->)")
+_CLONE_LINE = re2.compile(r"(git clone )\S+( )")
+
+
+def _badges(address: str, notebook: str) -> str:
+    """Return the Markdown of a repository's badges: for its tests, and for services that open a notebook.
+
+    Args:
+        address: The address of the repository, as :func:`autograder.course.repository` returns it.
+        notebook: The path of the notebook in the repository.
+    """
+    tests = f"{address}/actions/workflows/{_TESTS_WORKFLOW.rpartition('/')[2]}"
+    shown = [f"[![Tests]({tests}/badge.svg)]({tests})"]
+    for name, link in service_links(address, notebook).items():
+        shown.append(f"[![Open in {name}]({_BADGE_PICTURES[name]})]({link})")
+    return "\n".join(shown)
+
+
+def readme(root: Path, notebook: Path) -> str | None:
+    """Return README.md with its badges and address filled in; None if it has no marks for the badges.
+
+    Args:
+        root: The folder of the course.
+        notebook: The notebook that the badges open.
+    """
+    file = root / README
+    text = file.read_text(encoding="utf-8") if file.is_file() else ""
+    if not _BADGES_BLOCK.search(text):
+        return None
+    address = course.repository(root)
+    shown = f"{_badges(address, notebook.relative_to(root).as_posix())}\n" if address else WITHOUT_ADDRESS
+    text = _BADGES_BLOCK.sub(lambda found: f"{found[1]}{shown}{found[2]}", text)
+    return str(_CLONE_LINE.sub(lambda found: f"{found[1]}{address or TO_FILL_IN}{found[2]}", text))

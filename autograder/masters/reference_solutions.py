@@ -1,0 +1,178 @@
+"""Extracts the reference solution of each exercise from its master: as a program, and for students to read.
+
+After full marks, students may read the code and the reasons for it. The reasons are in a file next to the exercise,
+such as ``talker.why.md``: one paragraph and, if another way is worth showing, the heading ``## Another way``, a
+paragraph and a block of code.
+"""
+
+from __future__ import annotations
+
+import ast
+import json
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from autograder.course import SOLUTION, WHY
+from autograder.masters.code_cells import exercise_points, find_region, has_magic, shell_script, written_file
+from autograder.masters.master_cells import CellRole, MasterCell
+from autograder.masters.master_files import MasterError
+from autograder.masters.source_notebooks import Points, named_cells
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+    from pathlib import Path
+
+    from autograder.masters.source_notebooks import NamedCell
+
+
+_KEPT = (ast.Import, ast.ImportFrom, ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)
+"""The kinds of statements that a program takes from a given cell. It also takes constants."""
+OTHER_WAY = "## Another way"
+LINES = 2
+"""The maximum number of lines that explain a solution. They are few, because a student who has solved a task wants to
+go on.
+"""
+WIDTH = 140
+"""The maximum length of such a line, in characters."""
+
+
+@dataclass(frozen=True)
+class ReferenceSolution:
+    """The reference solution of an exercise.
+
+    Attributes:
+        source: Python code that makes ``subject``: it defines the class or function, or writes the files into the
+            current folder.
+        subject: The subject as Python text: the name of the class or function that the check cell judges, or the path
+            of the files.
+    """
+
+    source: str
+    subject: str
+
+
+def reference_source(
+    master: Path, exercise: str, *, points: Points = exercise_points, solved: bool = True
+) -> ReferenceSolution:
+    """Return a program that defines everything that a notebook defines before the check of ``exercise``.
+
+    If ``solved`` is false, the solution cells are as students get them.
+
+    Solution cells are kept whole. Of given cells, only imports, functions, classes and constants are kept, because
+    other code only shows something. The program writes the files of ``%%writefile`` cells. If the subject is a path,
+    shell cells are run as well, because commands such as ``ros2 pkg create`` make the files that are judged.
+
+    Raises:
+        MasterError: The master cannot be used, or does not check ``exercise``.
+    """
+    cells: list[MasterCell] = []
+    for named in named_cells(master, points=points):
+        if named.check is not None and named.check.exercise == exercise:
+            shell = named.check.is_path
+            parts = [part for cell in cells for part in _kept(cell, shell=shell, solved=solved)]
+            return ReferenceSolution("\n\n".join(parts) + "\n", named.check.subject)
+        cells.append(named.cell)
+    raise MasterError(master, None, f"No cell checks '{exercise}'.", f'Write one: check("{exercise}", …).')
+
+
+def _kept(cell: MasterCell, *, shell: bool, solved: bool) -> Iterator[str]:
+    """Yield the part of one cell that the program needs.
+
+    Args:
+        cell: Any cell above the check.
+        shell: True to run shell cells.
+        solved: False to leave out the solution.
+    """
+    if cell.kind not in (CellRole.SOLUTION, CellRole.GIVEN):
+        return
+    is_stub = cell.kind is CellRole.SOLUTION and not solved
+    source = find_region(cell.source).unsolved if is_stub else cell.source
+    if has_magic(source):
+        yield from _on_disk(source, shell=shell)
+    elif cell.kind is CellRole.SOLUTION:
+        yield source
+    else:
+        yield from _definitions(cell)
+
+
+def _on_disk(source: str, *, shell: bool) -> Iterator[str]:
+    file, script = written_file(source), shell_script(source)
+    if file is not None:
+        yield (
+            f"import pathlib\nfile = pathlib.Path({str(file.path)!r})\n"
+            f"file.parent.mkdir(parents=True, exist_ok=True)\nfile.write_text({file.text!r})"
+        )
+    elif script is not None and shell:
+        yield f"import subprocess\nsubprocess.run(['bash', '-c', {script!r}], check=False)"
+
+
+def _definitions(cell: MasterCell) -> Iterator[str]:
+    lines = cell.source.split("\n")
+    for node in ast.parse(cell.source).body:
+        if isinstance(node, _KEPT) or _is_constant(node):
+            decorators = getattr(node, "decorator_list", [])
+            first = min([node.lineno, *(decorator.lineno for decorator in decorators)])
+            yield "\n".join(lines[first - 1 : node.end_lineno])
+
+
+def _is_constant(node: ast.stmt) -> bool:
+    """Return True if a statement assigns a value and calls nothing. A later definition may need such a constant."""
+    if not isinstance(node, (ast.Assign, ast.AnnAssign)):
+        return False
+    targets = node.targets if isinstance(node, ast.Assign) else [node.target]
+    if not all(isinstance(target, ast.Name) for target in targets):
+        return False
+    return not any(isinstance(inner, (ast.Call, ast.Await)) for inner in ast.walk(node))
+
+
+def solution_files(master: Path, cells: Sequence[NamedCell]) -> dict[Path, str]:
+    """Return the texts of a master's solution files, by path: one for each exercise that has a file with reasons.
+
+    Args:
+        master: The master.
+        cells: The cells of the master.
+
+    Raises:
+        MasterError: A file with reasons does not have the right form.
+    """
+    return dict(_solution_files(master, cells))
+
+
+def _solution_files(master: Path, cells: Sequence[NamedCell]) -> Iterator[tuple[Path, str]]:
+    code: list[str] = []
+    for named in cells:
+        # Leave out shell cells: commands that a student types in a terminal are not part of the checked code.
+        if named.cell.kind is CellRole.SOLUTION and shell_script(named.cell.source) is None:
+            code.append(find_region(named.cell.source).solved.strip())
+        elif named.check is not None:
+            exercise = named.check.exercise
+            why = master.with_name(f"{exercise.partition('.')[2]}{WHY}")
+            if why.is_file():
+                yield why.with_name(why.name.removesuffix(WHY) + SOLUTION), _text(exercise, code, why)
+            code = []
+
+
+def _text(exercise: str, code: list[str], why: Path) -> str:
+    reason, _, other = (part.strip() for part in why.read_text(encoding="utf-8").partition(OTHER_WAY))
+    if (
+        not reason
+        or len(reason.splitlines()) > LINES
+        or any(len(line) > WIDTH for line in reason.splitlines())
+    ):
+        raise MasterError(
+            why, 1, f"A reason has one or {LINES} lines.", "Give only the most important reason."
+        )
+    words, _, rest = other.partition("```python\n")
+    example, fence, after = rest.partition("\n```")
+    if other and (not words.strip() or not fence or after.strip()):
+        raise MasterError(
+            why, None, f"'{OTHER_WAY}' has another form.", "Write a paragraph, then one block ```python."
+        )
+    said = {
+        "exercise": exercise,
+        "code": code,
+        "why": " ".join(reason.split()),
+        "other_way": " ".join(words.split()),
+        "other_code": example.strip("\n"),
+    }
+    return json.dumps(said, indent=1, ensure_ascii=False) + "\n"

@@ -1,0 +1,292 @@
+"""The messages to and from the judge: a notebook requests checks, and the grader gives orders.
+
+The judge does not trust the notebook. Each check has its own connection to the judge's Unix socket. The notebook's
+messages only report the subject's output and how each run ends. The judge itself observes the traffic on the wire. The
+grader's orders and the judge's reports use another socket, which no notebook has.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import msgspec
+
+from autograder.messages.json_lines import Message
+from autograder.messages.workspace_messages import Source
+from autograder.verdict import Verdict  # noqa: TC001  (msgspec reads the annotations)
+
+SOCKET_VARIABLE = "AUTOGRADER_JUDGE_SOCKET"
+"""The environment variable for the path of the judge's socket. A kernel without this variable starts its own judge."""
+
+# --- From the notebook: about its check
+
+
+class Check(Message, frozen=True):
+    """The notebook's first message, which requests a check.
+
+    Attributes:
+        kind: ``"class"`` for a Node class, ``"path"`` for a workspace or a launch file, ``"function"`` for everything
+            else.
+    """
+
+    exercise: str
+    kind: str = "function"
+
+
+class Ready(Message, frozen=True):
+    """The notebook has received :class:`Begin`, and is ready to start runs."""
+
+
+class EndpointsMet(Message, frozen=True, tag="met"):
+    """The answer to :class:`Meet`: True if the participant sees the new endpoints, and none of the removed ones."""
+
+    seen: bool
+
+
+class Sources(Message, frozen=True):
+    """The last message of the reply to :class:`Collect`. Before it, the notebook sends a :class:`Source` for each file.
+
+    Attributes:
+        path: The relative path of the workspace or launch file to check.
+        trouble: Why no sources could be sent, in words for the student; empty if they were sent.
+    """
+
+    path: str
+    trouble: str = ""
+
+
+# --- From the notebook: about a run of its subject
+
+
+class _RunMessage(Message, frozen=True):
+    """The common part of messages about something that happened in a run.
+
+    Attributes:
+        run: The number of the run, as in :class:`Start`.
+    """
+
+    run: int
+
+
+class Started(_RunMessage, frozen=True):
+    """The function was called. ``accepted`` lists the options of :class:`Start` for which it has a parameter."""
+
+    accepted: list[str]
+
+
+class Constructed(_RunMessage, frozen=True):
+    """The node's constructor has returned. ``marker`` is a topic that was created after all of the node's endpoints.
+
+    ``goes_on`` is true if the node has a timer or a thread, which may make more endpoints once the node spins.
+    ``twin`` is the node's name if the constructor has made a second node with this name.
+    """
+
+    marker: str
+    goes_on: bool = False
+    twin: str = ""
+
+
+class Called(_RunMessage, frozen=True):
+    """The subject has called a service, or has sent a goal."""
+
+
+class Looked(_RunMessage, frozen=True):
+    """The subject has read the ROS graph."""
+
+
+class Output(_RunMessage, frozen=True):
+    """A line that the subject has printed or logged."""
+
+    text: str
+    logged: bool = False
+
+
+class Returned(_RunMessage, frozen=True):
+    """The function has returned; ``value`` is the ``repr`` of its result, or None if the result is None."""
+
+    value: str | None = None
+
+
+class Raised(_RunMessage, frozen=True):
+    """The subject has raised an exception, and has ended."""
+
+    traceback: str
+
+
+class Exited(_RunMessage, frozen=True):
+    """The process that runs a workspace or launch file has ended."""
+
+    code: int | None = None
+
+
+class Stacks(_RunMessage, frozen=True, tag="stack"):
+    """The stacks of the subject's threads."""
+
+    text: str
+
+
+class Stopped(_RunMessage, frozen=True):
+    """The run is over, and its nodes are destroyed."""
+
+
+RunMessage = (
+    Started | Constructed | Called | Looked | Output | Returned | Raised | Exited
+    | Stacks | Stopped
+)  # fmt: skip
+FromNotebook = Check | Ready | EndpointsMet | Source | Sources | RunMessage
+
+
+# --- From the judge
+
+
+class Begin(Message, frozen=True):
+    """The judge's request to use this ROS domain.
+
+    Attributes:
+        domain: The ROS domain of this check.
+        keeper: The name for the node that keeps the notebook's participant alive between the runs of a class or
+            function.
+    """
+
+    domain: int
+    keeper: str
+
+
+class Collect(Message, frozen=True):
+    """A request to send the source files of the workspace or launch file, which the grader builds and runs itself."""
+
+
+class Meet(Message, frozen=True):
+    """A request to wait until the participant sees the judge's new endpoints and no longer sees the removed ones.
+
+    Attributes:
+        fresh: True to make a new context first.
+        there: The endpoints that the participant must see.
+        gone: The endpoints of earlier runs that the participant must no longer see.
+        within: The limit in seconds.
+    """
+
+    fresh: bool
+    there: list[Any]
+    gone: list[Any]
+    within: float
+
+
+class Start(Message, frozen=True):
+    """A request to make the node, call the function, or start the process.
+
+    Attributes:
+        run: The number of this run.
+        fresh: True to make a new context first.
+        arguments: The arguments of the class or function.
+        options: Keyword arguments, which are passed if the subject has parameters with these names.
+    """
+
+    run: int
+    fresh: bool
+    arguments: list[Any]
+    options: dict[str, Any]
+
+
+class Release(Message, frozen=True):
+    """A request to spin the node."""
+
+    run: int
+
+
+class Interrupt(Message, frozen=True):
+    """A request to send Ctrl-C to the process that runs a workspace or launch file."""
+
+    run: int
+
+
+class Stack(Message, frozen=True):
+    """A request for the stacks of the subject's threads."""
+
+    run: int
+
+
+class Stop(Message, frozen=True):
+    """A request to end the run."""
+
+    run: int
+
+
+class SoFar(Message, frozen=True, tag="so_far"):
+    """A sentence about what the judge knows so far. The check goes on, and may show that the sentence is wrong.
+
+    Attributes:
+        words: A sentence for the student; empty if nothing is known.
+    """
+
+    words: str
+
+
+class Judged(Message, frozen=True, tag="verdict"):
+    """The last message: the check is over.
+
+    Attributes:
+        verdict: The verdict; None if a submission in a sandbox asked for the check. The grader may run a notebook
+            twice, and a submission that knew a bad verdict could spoil the first run, so that only the second counts.
+    """
+
+    verdict: Verdict | None
+
+
+class Refused(Message, frozen=True):
+    """The last message if the judge refuses the check. It contains the reason."""
+
+    why: str
+
+
+FromJudge = Begin | Collect | Meet | Start | Release | Interrupt | Stack | Stop | SoFar | Judged | Refused
+
+
+class Open(msgspec.Struct, tag="open", frozen=True):
+    """An order to allow the notebook one check of this exercise.
+
+    Attributes:
+        exercise: The exercise's id.
+        seed: The seed of the random inputs.
+        record: True to record a reference output instead of judging.
+        workspaces: The path at which the judge reaches the socket of the grader's workspace service; empty if there
+            is none.
+        evidence: True to add the evidence to the report.
+        boxed: True if judge and notebook are in sandboxes, as for a submission. No other program is on the network of
+            the sandboxes, so a ROS domain is free even if its ports seem to be in use. The judge reports the verdict
+            only to the grader (:class:`autograder.messages.judge_messages.Judged` says why).
+    """
+
+    exercise: str
+    seed: str
+    record: bool = False
+    workspaces: str = ""
+    evidence: bool = False
+    boxed: bool = False
+
+
+class Close(msgspec.Struct, tag="close", frozen=True):
+    """An order to end the opened check and to report its result."""
+
+
+class Report(msgspec.Struct, frozen=True):
+    """The result of a check.
+
+    Attributes:
+        verdict: The judge's verdict; None if no check was requested or the judge failed.
+        reference: The reference output as text, after a recording.
+        trouble: Why there is no verdict, as a text for people; empty if there is one, or if no check was requested.
+        evidence: The evidence, as :mod:`autograder.judge.evidence_files` packs it; empty if it was not requested.
+        crowded: True if the subject did not pass, perhaps because the machine was overloaded.
+        unfinished: True if there is no verdict because the judge's time was over.
+    """
+
+    verdict: Verdict | None = None
+    reference: str | None = None
+    trouble: str = ""
+    evidence: bytes = b""
+    crowded: bool = False
+    unfinished: bool = False
+
+
+Order = Open | Close

@@ -1,0 +1,224 @@
+"""Reports to the judge what a subject logs and prints during a check, and when it looks for a server or calls one.
+
+Output is reported instead of printed below the cell. Only the output of threads that started during the check is
+captured, so a demonstration node that still runs in the background is not taken for the subject. Text that the subject
+writes to the kernel's original streams is captured, too. A subject may have kept such a stream from before the check,
+for example with ``from sys import stdout`` or in a handler of Python's ``logging``.
+
+If the subject calls ``input()``, it gets an EOFError, like a program without a terminal. Otherwise JupyterLab would
+show an input box, and no other cell could run until the student had answered.
+
+Calls are reported because the judge cannot see from outside the kernel that a subject queries the graph. Nor can it see
+a request that was sent before the judge's server existed, because such a request is lost.
+"""
+
+from __future__ import annotations
+
+import functools
+import os
+import sys
+import threading
+import traceback
+from contextlib import suppress
+from typing import TYPE_CHECKING, Any, Self
+
+from rclpy.action import ActionClient
+from rclpy.client import Client
+from rclpy.impl.rcutils_logger import RcutilsLogger
+from rclpy.node import Node
+
+from autograder.messages.judge_messages import Called, Looked
+from autograder.notebook.cell_output import notebook_shell
+from autograder.notebook.checking.judge_link import MAX_TEXT
+from autograder.standard_output import split_lines
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+
+class CapturedOutput:
+    """Forwards the subject's output to the judge inside a ``with`` block, and restores the streams at the end."""
+
+    def __init__(self, tell: Callable[[str, bool], None]) -> None:
+        """Set up capturing. Entering the ``with`` block starts it.
+
+        Args:
+            tell: Called with each line, and with True if the line was logged, False if it was printed.
+        """
+        self._tell = tell
+        self._others = {thread.ident for thread in threading.enumerate()}
+        self._descriptors: list[tuple[int, int]] = []
+
+    def __enter__(self) -> Self:
+        self._usual_log = RcutilsLogger.log
+        self._usual_streams = (sys.stdout, sys.stderr)
+        usual_log: Any = self._usual_log
+        captured = self.is_captured
+
+        def log(logger: RcutilsLogger, message: Any, severity: Any, **options: Any) -> bool:
+            if captured():
+                self._tell(str(message)[:MAX_TEXT], True)
+            return bool(usual_log(logger, message, severity, **options))
+
+        setattr(RcutilsLogger, "log", log)  # noqa: B010  (mypy forbids to assign to a method)
+        self._streams = [_CapturedStream(stream, self._tell, captured) for stream in self._usual_streams]
+        sys.stdout, sys.stderr = self._streams
+        self._silence_compiled_code()
+        self._kernel = getattr(notebook_shell(), "kernel", None)
+        if self._kernel is not None:
+            self._kernel._input_request = _no_input_for(captured, self._kernel._input_request)
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if self._kernel is not None:
+            del self._kernel._input_request
+        setattr(RcutilsLogger, "log", self._usual_log)  # noqa: B010
+        # sys.stdout and sys.stderr may be the same object: restore the last replacement first.
+        for stream in reversed(self._streams):
+            stream.finish()
+        sys.stdout, sys.stderr = self._usual_streams
+        while self._descriptors:
+            descriptor, saved = self._descriptors.pop()
+            os.dup2(saved, descriptor)
+            os.close(saved)
+
+    def stacks(self) -> str:
+        """Return the stacks of the subject's threads, innermost call first, in the form of Python's faulthandler."""
+        frames = sys._current_frames()
+        lines = []
+        for thread in threading.enumerate():
+            if thread.ident in self._others or thread.ident not in frames:
+                continue
+            lines.append(f"Thread {thread.name} (most recent call first):")
+            calls = traceback.extract_stack(frames[thread.ident])
+            lines += [
+                f'  File "{call.filename}", line {call.lineno} in {call.name}' for call in reversed(calls)
+            ]
+        return "\n".join(lines)
+
+    def is_captured(self) -> bool:
+        """Return True if the calling thread belongs to the subject, that is, if it started during the check."""
+        return threading.get_ident() not in self._others
+
+    def _silence_compiled_code(self) -> None:
+        # Discard the log lines that rcutils writes directly to file descriptors 1 and 2. The card shows the important
+        # lines.
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        for descriptor in (1, 2):
+            self._descriptors.append((descriptor, os.dup(descriptor)))
+            os.dup2(nowhere, descriptor)
+        os.close(nowhere)
+
+
+def _no_input_for(captured: Callable[[], bool], usual: Callable[..., str]) -> Callable[..., str]:
+    """Return the function behind ``input()`` and ``getpass()``, changed to raise EOFError in the subject's threads."""
+
+    def ask(*arguments: Any, **options: Any) -> str:
+        if captured():
+            raise EOFError("EOF when reading a line")  # the text of Python's own EOFError
+        return usual(*arguments, **options)
+
+    return ask
+
+
+class _CapturedStream:
+    """Replaces sys.stdout or sys.stderr, and also receives text that is written to the original stream object.
+
+    Lines of the subject's threads go to the judge. Lines of all other threads are written as usual.
+    """
+
+    def __init__(self, stream: Any, tell: Callable[[str, bool], None], captured: Callable[[], bool]) -> None:
+        self._stream = stream
+        self._usual_write = stream.write
+        self._own_write = getattr(stream, "__dict__", {}).get("write")
+        self._tell = tell
+        self._captured = captured
+        self._rest = ""
+        self._lock = threading.Lock()
+        with suppress(AttributeError):  # a student's own stream class may forbid this assignment
+            stream.write = self.write
+
+    def write(self, text: str) -> int:
+        """Forward each line to the judge once it is complete."""
+        if not self._captured():
+            written: int = self._usual_write(text)
+            return written
+        with self._lock:
+            *lines, rest = split_lines(self._rest + text)
+            self._rest = rest[:MAX_TEXT]
+        for line in lines:
+            self._tell(line[:MAX_TEXT], False)
+        return len(text)
+
+    def finish(self) -> None:
+        """Restore the original stream. Forward the last line, even if its line end is missing."""
+        with suppress(AttributeError):
+            if self._own_write is None:
+                del self._stream.write
+            else:
+                self._stream.write = self._own_write
+        with self._lock:
+            rest, self._rest = self._rest, ""
+        if rest:
+            self._tell(rest.rstrip("\r"), False)
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._stream, name)
+
+
+TOLD: tuple[tuple[Any, str, type[Looked | Called]], ...] = (
+    (Node, "get_service_names_and_types", Looked),
+    (Node, "get_service_names_and_types_by_node", Looked),
+    (Client, "service_is_ready", Looked),
+    (ActionClient, "server_is_ready", Looked),
+    (Client, "call_async", Called),
+    (ActionClient, "send_goal_async", Called),
+)
+"""The methods whose calls are reported, each with the message that reports a call. rclpy's blocking methods, such as
+``wait_for_service`` and ``call``, use these methods, too.
+"""
+LOOKS_TOLD = 10
+"""How often per run the judge is told, at most, that the subject looks for a server. A loop without a pause looks
+thousands of times a second.
+"""
+
+
+class ToldCalls:
+    """Reports the subject's calls of the methods in :data:`TOLD` to the judge, within a ``with`` block."""
+
+    def __init__(self, is_subject: Callable[[], bool], tell: Callable[..., None]) -> None:
+        """Set up reporting. Entering the ``with`` block starts it.
+
+        Args:
+            is_subject: Returns True if the calling thread belongs to the subject.
+            tell: Sends the judge a message about this run, given the message's class and fields.
+        """
+        self._is_subject = is_subject
+        self._tell = tell
+        self._looks = 0
+
+    def begin_run(self) -> None:
+        """Reset the counter that :data:`LOOKS_TOLD` limits. Call this before each run."""
+        self._looks = 0
+
+    def __enter__(self) -> Self:
+        self._usual = [(owner, name, getattr(owner, name)) for owner, name, _ in TOLD]
+        for owner, name, kind in TOLD:
+            setattr(owner, name, self._told(getattr(owner, name), kind))
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        for owner, name, method in self._usual:
+            setattr(owner, name, method)
+
+    def _told(self, method: Callable[..., Any], kind: type[Looked | Called]) -> Callable[..., Any]:
+        @functools.wraps(method)
+        def told(*arguments: Any, **options: Any) -> Any:
+            answer = method(*arguments, **options)
+            if self._is_subject():
+                self._looks += kind is Looked
+                if kind is Called or self._looks <= LOOKS_TOLD:
+                    self._tell(kind)
+            return answer
+
+        return told

@@ -1,0 +1,155 @@
+"""The robot's node. It obeys ``/cmd_vel``, and publishes the position on ``/odom`` and the laser scan on ``/scan``."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from geometry_msgs.msg import Twist
+from nav_msgs.msg import Odometry
+from rclpy.node import Node
+from sensor_msgs.msg import LaserScan
+from std_srvs.srv import SetBool, Trigger
+
+from autograder.notebook.robot.robot_drivers import Walking
+from autograder.notebook.robot.robot_motion import ROOM, START, STILL, TICK, Pose, Velocity, move
+
+if TYPE_CHECKING:
+    from rclpy.time import Time
+
+    from autograder.notebook.robot.robot_drivers import Scene
+
+
+SCAN_EVERY = 5
+"""The number of steps between two messages on ``/scan``."""
+OBEYS_FOR = 1.0
+"""Seconds for which the robot obeys a command. If no other command arrives by then, it stops."""
+RAYS = 36
+"""The number of distances in a laser scan, all around the robot."""
+FARTHEST = 10.0
+"""The range of the laser, in meters."""
+
+
+@dataclass(frozen=True)
+class RobotState:
+    """The robot's visible state at one moment.
+
+    Attributes:
+        pose: The pose of the robot.
+        velocity: The current velocity of the robot.
+        bumped: True if a wall is in the robot's way.
+        lamp: True if the robot's lamp is on.
+        ranges: The distances to the walls in meters, at equal angles all around, beginning straight ahead and going
+            left.
+        says: The text of the speech bubble; empty if it has none.
+    """
+
+    pose: Pose = START
+    velocity: Velocity = STILL
+    bumped: bool = False
+    lamp: bool = False
+    ranges: tuple[float, ...] = ()
+    says: str = ""
+
+
+class RobotNode(Node):
+    """Simulates the robot. Any program on the same ROS domain may drive it: a node, a terminal, another notebook.
+
+    The callbacks run one at a time, so they need no lock.
+    """
+
+    def __init__(self) -> None:
+        super().__init__("robot")
+        self._state = RobotState(ranges=_look_around(START))
+        self._told, self._told_at = STILL, -math.inf
+        self._ticks = 0
+        self._odometry = self.create_publisher(Odometry, "/odom", 10)
+        self._scan = self.create_publisher(LaserScan, "/scan", 10)
+        self.create_subscription(Twist, "/cmd_vel", self._obey, 10)
+        self.create_service(Trigger, "/reset", self._reset)
+        self.create_service(SetBool, "/lamp", self._switch_lamp)
+        self._walking = Walking(self)
+        self._scene: Scene | None = None
+        self.create_timer(TICK, self._tick)
+
+    @property
+    def state(self) -> RobotState:
+        """The current state of the robot. Any thread may read it."""
+        return self._state
+
+    def play(self, scene: Scene) -> None:
+        """Let a scene drive the robot, instead of an earlier scene. Commands and goals take precedence over it."""
+        self._scene = scene
+
+    @property
+    def rests(self) -> bool:
+        """True if no scene is running and the robot stands still."""
+        return (self._scene is None or self._scene.is_over) and self._state.velocity == STILL
+
+    def _obey(self, command: Twist) -> None:
+        self._told, self._told_at = Velocity(command.linear.x, command.angular.z), self._seconds()
+        self._walking.give_up()
+
+    def _tick(self) -> None:
+        before = self._state
+        fresh = self._seconds() - self._told_at < OBEYS_FOR
+        scene = self._scene.next(before.pose, before.bumped) if self._scene is not None else None
+        velocity = self._walking.next(before.pose, before.bumped) or (self._told if fresh else scene or STILL)
+        moved = move(before.pose, velocity, TICK, ROOM)
+        ranges = before.ranges if moved.pose == before.pose else _look_around(moved.pose)
+        says = self._scene.says if self._scene is not None else ""
+        self._state = RobotState(moved.pose, moved.velocity, moved.bumped, before.lamp, ranges, says)
+        self._tell(self._state)
+
+    def _tell(self, state: RobotState) -> None:
+        now = self.get_clock().now()
+        self._odometry.publish(odometry(state, now))
+        if self._ticks % SCAN_EVERY == 0:
+            self._scan.publish(laser_scan(state, now))
+        self._ticks += 1
+
+    def _reset(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+        self._walking.give_up()
+        self._told_at = -math.inf
+        self._state = RobotState(lamp=self._state.lamp, ranges=_look_around(START))
+        response.success, response.message = True, "back at the start"
+        return response
+
+    def _switch_lamp(self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
+        self._state = replace(self._state, lamp=request.data)
+        response.success, response.message = True, f"the lamp is {'on' if request.data else 'off'}"
+        return response
+
+    def _seconds(self) -> float:
+        return float(self.get_clock().now().nanoseconds) / 1e9
+
+
+def odometry(state: RobotState, now: Time) -> Odometry:
+    """Return the robot's odometry as a message."""
+    message = Odometry()
+    message.header.stamp, message.header.frame_id = now.to_msg(), "odom"
+    message.child_frame_id = "base_link"
+    message.pose.pose.position.x, message.pose.pose.position.y = state.pose.point
+    message.pose.pose.orientation.z = math.sin(state.pose.heading / 2)
+    message.pose.pose.orientation.w = math.cos(state.pose.heading / 2)
+    message.twist.twist.linear.x = state.velocity.forward
+    message.twist.twist.angular.z = state.velocity.turn
+    return message
+
+
+def laser_scan(state: RobotState, now: Time) -> LaserScan:
+    """Return the robot's laser scan as a message."""
+    message = LaserScan()
+    message.header.stamp, message.header.frame_id = now.to_msg(), "base_link"
+    message.angle_min, message.angle_increment = 0.0, math.tau / RAYS
+    message.angle_max = math.tau * (RAYS - 1) / RAYS
+    message.scan_time = TICK * SCAN_EVERY
+    message.range_min, message.range_max = 0.05, FARTHEST
+    message.ranges = list(state.ranges)
+    return message
+
+
+def _look_around(pose: Pose) -> tuple[float, ...]:
+    angles = tuple(pose.heading + math.tau * ray / RAYS for ray in range(RAYS))
+    return tuple(ROOM.ranges(pose.point, angles))

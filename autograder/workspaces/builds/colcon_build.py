@@ -1,0 +1,276 @@
+"""Describes a workspace before and after its build, makes colcon's command line, and finds why a build failed.
+
+If a build failed, the report quotes the line of colcon's output that explains the reason best.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
+
+import re2
+
+from autograder.workspaces.builds.install_folder import entry_points, package_prefixes, programs
+from autograder.workspaces.packages import find_packages, launch_files, needed
+from environment.python_child import INTERPRETER, python_child
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from autograder.workspaces.packages import Package
+    from autograder.workspaces.sources import ByteBudget
+
+
+_COMPILER = re2.compile(
+    r"(?m)^(?P<file>[^\s:][^:\n]*):(?P<line>\d+):(?:\d+:)? (?:fatal )?error: (?P<what>.*)$"
+)
+_CMAKE = re2.compile(
+    r"(?m)^CMake Error at (?P<file>[^:\n]+):(?P<line>\d+)[^\n]*:\n+(?P<what>[ \t]+\S.*(?:\n[ \t]+\S.*|\n\n  \S.*)*)"
+)
+_CMAKE_STATUS = re2.compile(r"(?m)^-- .*\n?")
+_CALL_STACK = re2.compile(r"\n+Call Stack \(most recent call first\):(?P<calls>(?:\n[ \t]+\S.*)+)")
+_CALL = re2.compile(r"^(?P<file>[^:\n]+):(?P<line>\d+)")
+_CMAKE_PLAIN = re2.compile(r"(?m)^CMake Error: (?P<what>.*)$")
+_PYTHON = re2.compile(r"(?m)^(?P<what>(?:[\w.]*(?:Error|Exception|Invalid\w+)|[\w.]+\.[A-Z]\w+)(?::.*)?)$")
+_PLACE = re2.compile(r'(?m)^\s*File "(?P<file>[^"]+)", line (?P<line>\d+)')
+_SETUPTOOLS = re2.compile(r"(?m)^error: (?P<what>.*)$")
+_NINJA_MAKE = re2.compile(r"^(?:make|gmake|ninja|---|<<<|>>>)")
+
+
+def telling_line(log: str) -> str:
+    """Return the line of a log that explains best why a build failed, with file and line number if the log has them.
+
+    Args:
+        log: The output of colcon's commands, in order.
+
+    Returns:
+        One line; empty only if the log is empty.
+    """
+    if found := _COMPILER.search(log):
+        return f"{_short(found['file'])}:{found['line']}: {found['what']}"
+    python = _python(log)
+    # Remove CMake's status lines, because they come from another stream and may appear between the lines of an error.
+    log = _CMAKE_STATUS.sub("", log) or log
+    if found := _CMAKE.search(log):
+        # If CMake reports that a Python program that it called has failed, the cause is the error in that program.
+        if python and "execute_process" in found["what"]:
+            return python
+        what = " ".join(found["what"].split())
+        return f"{_place(found, log)}: {_first_sentences(what)}"
+    if found := _CMAKE_PLAIN.search(log):
+        return found["what"].strip()
+    if python:
+        return python
+    if found := _SETUPTOOLS.search(log):
+        return found["what"].strip()
+    lines = [line.strip() for line in log.splitlines() if line.strip() and not _NINJA_MAKE.match(line)]
+    return lines[-1] if lines else ""
+
+
+def _python(log: str) -> str:
+    # CalledProcessError only means that a program that colcon or CMake called has failed, so look for that program's
+    # error.
+    found = list(_PYTHON.finditer(log))
+    errors = [error for error in found if "CalledProcessError" not in error["what"]] or found
+    if not errors:
+        return ""
+    error = errors[-1]
+    places = [place for place in _PLACE.finditer(log, 0, error.start()) if not _is_a_library(place["file"])]
+    if not places:
+        return error["what"].strip()
+    file, line = places[-1]["file"], places[-1]["line"]
+    # setuptools executes setup.py as a text, so tracebacks call the file "<string>".
+    file = "setup.py" if file == "<string>" and "run_setup" in log else file
+    return f"{_short(file)}:{line}: {error['what'].strip()}"
+
+
+def _is_a_library(file: str) -> bool:
+    return "site-packages" in file or "/lib/python3" in file or file.startswith("<frozen")
+
+
+def _place(error: re2.Match[str], log: str) -> str:
+    """Return the package's file and line that caused a CMake error, even if CMake names a library's file."""
+    stack = _CALL_STACK.match(log, error.end())
+    own = _CALL.search(stack["calls"].strip().splitlines()[-1].strip()) if stack else None
+    place = own or error
+    return f"{_short(place['file'])}:{place['line']}"
+
+
+def _short(file: str) -> str:
+    """Return the last two parts of a path: the package and the file."""
+    return "/".join(file.split("/")[-2:])
+
+
+def _first_sentences(text: str, limit: int = 240) -> str:
+    return text if len(text) <= limit else text[: text.rfind(" ", 0, limit)] + " …"
+
+
+MAX_LOG = 40_000
+"""The maximum number of characters to keep from the end of a failed build's log."""
+_REFUSED = "setup()' was never called"
+"""The last line of a build's output contains this text if setuptools rejects an argument in setup.py, without giving
+the reason.
+"""
+_WHAT_REFUSED = (
+    "setuptools refuses setup.py; `python3 setup.py --version`, in the folder of the package, says why"
+)
+_FAILED = re2.compile(r"(?m)^Failed\s+<<< (?P<name>\S+)")
+
+
+@dataclass(frozen=True)
+class Build:
+    """A workspace: the packages in it, and the result of building them.
+
+    Attributes:
+        workspace: The folder of the workspace.
+        ok: True if every package was built.
+        install: The folder of the installed packages; None if the build failed.
+        chosen: The packages of ``install`` that belong to this build; empty if all of them do.
+        packages: The packages of the workspace, as their files describe them.
+        unusable: For each package that cannot be used, a sentence with the reason.
+        seconds: The duration of the build in seconds of wall time.
+        reused: True if the build was already in the cache.
+        trouble: The kind of failure: ``"no_workspace"``, ``"no_package"``, ``"bad_package"``, ``"entry_point"`` or
+            ``"build"``; empty if there is none.
+        package: The name of the package that failed; empty if none did.
+        line: The line of the log that explains the failure best.
+        log: The log of the failed build.
+        changed: The sources that the student has changed since the last `colcon build`, in words.
+    """
+
+    workspace: Path
+    ok: bool
+    install: Path | None = None
+    chosen: tuple[str, ...] = ()
+    packages: tuple[Package, ...] = ()
+    unusable: tuple[str, ...] = ()
+    seconds: float = 0.0
+    reused: bool = False
+    trouble: str = ""
+    package: str = ""
+    line: str = ""
+    log: str = field(default="", repr=False)
+    changed: str = ""
+
+    @property
+    def prefixes(self) -> list[Path]:
+        """The install folder (prefix) of each package of this build."""
+        found = package_prefixes(self.install) if self.install else []
+        return [prefix for prefix in found if not self.chosen or prefix.name in self.chosen]
+
+    def programs(self, package: str) -> tuple[str, ...]:
+        """Return the names of the programs that ``ros2 run`` finds in an installed package; empty if there are none."""
+        return tuple(p for prefix in self.prefixes if prefix.name == package for p in programs(prefix))
+
+    def launch_files(self, package: str) -> tuple[Path, ...]:
+        """Return the launch files that a package has installed, as paths below the package's prefix."""
+        return tuple(f for prefix in self.prefixes if prefix.name == package for f in launch_files(prefix))
+
+    def entry_points(self, package: str, budget: ByteBudget) -> tuple[str, ...]:
+        """Return the entry points of an installed Python package, as ``name = module:function``."""
+        return tuple(
+            e for prefix in self.prefixes if prefix.name == package for e in entry_points(prefix, budget)
+        )
+
+
+Targets = Callable[[Build], Iterable[str]]
+"""A function that returns the names of the needed packages of a workspace. An empty result means all packages."""
+
+
+def failed(found: Build, log: str) -> Build:
+    """Return the description of a failed build, with the reason taken from colcon's output."""
+    search = _FAILED.search(log)
+    name = search["name"] if search else ""
+    own = _log_of(log, name)
+    # Use the whole log if setup.py fails when colcon asks for its metadata, because the error is then not in the
+    # package's part of the log.
+    own = log if "CalledProcessError" in telling_line(own) else own
+    made = replace(found, trouble="build", package=name, line=telling_line(own), log=own[-MAX_LOG:])
+    if _REFUSED not in made.line:
+        return made
+    bad = next((package.bad_entry_point for package in found.packages if package.name == name), "")
+    return replace(made, trouble="entry_point", line=bad) if bad else replace(made, line=_WHAT_REFUSED)
+
+
+def look(workspace: Path) -> Build:
+    """Return the description of a workspace that is not built: its packages, or why it has no usable package.
+
+    Args:
+        workspace: The workspace folder, which contains ``src``.
+    """
+    workspace = workspace.resolve()
+    src = workspace / "src"
+    if not src.is_dir():
+        return Build(workspace, ok=False, trouble="no_workspace", line=_no_workspace(workspace))
+    packages, unusable = find_packages(src)
+    found = Build(workspace, ok=False, packages=tuple(packages), unusable=tuple(unusable))
+    if packages:
+        return found
+    if unusable:
+        return replace(found, trouble="bad_package", line=unusable[0])
+    return replace(found, trouble="no_package", line=f"there is no package.xml below {src}")
+
+
+def choose(found: Build, targets: Targets | None) -> tuple[list[Package], Build]:
+    """Return the packages to build, and the description of the workspace.
+
+    The packages to build are the targets that the workspace contains, and the packages on which these depend. If the
+    workspace contains no target, all its packages have to be built. In that case, one unusable package is enough for
+    the build to fail: no packages are returned, and the description contains the ``trouble``.
+    """
+    chosen = needed(found.packages, targets(found)) if targets is not None else []
+    if chosen or not found.unusable:
+        return chosen or list(found.packages), found
+    return [], replace(found, trouble="bad_package", line=found.unusable[0])
+
+
+def moved(packages: Iterable[Package], src: Path, there: Path) -> list[Package]:
+    """Return copies of the packages, with the paths that they have when their sources are in another folder.
+
+    Args:
+        packages: The packages.
+        src: The folder that contains the packages now.
+        there: The folder in which the sources will be.
+    """
+    return [replace(package, folder=there / package.folder.relative_to(src)) for package in packages]
+
+
+def command(packages: Iterable[Package], folder: Path, cmake: Sequence[str] = ()) -> list[str]:
+    """Return the command with which colcon builds only these packages.
+
+    Args:
+        packages: The packages.
+        folder: The folder in which colcon makes ``build``, ``install`` and ``log``.
+        cmake: More arguments for CMake.
+
+    The build type is Release because it defines NDEBUG. Without NDEBUG, a value of the wrong type in a field of a
+    generated message would end the process with SIGABRT instead of raising an exception.
+    """
+    words = [
+        "-m", "colcon", "--log-base", str(folder / "log"),
+        "build", "--paths", *(str(package.folder) for package in packages),
+        "--build-base", str(folder / "build"), "--install-base", str(folder / "install"),
+        "--event-handlers", "console_cohesion+", "console_start_end+", "desktop_notification-", "status-",
+        "--cmake-args", f"-DPython3_EXECUTABLE={INTERPRETER}", "-DCMAKE_BUILD_TYPE=Release",
+        "-DBUILD_TESTING=OFF", "--no-warn-unused-cli", "-Wno-dev", *cmake,
+    ]  # fmt: skip
+    return python_child(*words).command
+
+
+def _log_of(log: str, package: str) -> str:
+    """Return the part of colcon's output that is about one package; the whole output if it has no such part."""
+    if package:
+        found = re2.search(rf"(?ms)^--- output: {re2.escape(package)}\n(.*?)^---$", log)
+        if found:
+            return found[1]
+    return log
+
+
+def _no_workspace(workspace: Path) -> str:
+    if not workspace.exists():
+        return f"there is no folder {workspace}"
+    if (workspace / "package.xml").is_file():
+        return f"{workspace} is a package: name the workspace, the folder that holds src"
+    return f"{workspace} has no folder src"
