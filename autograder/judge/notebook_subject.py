@@ -14,7 +14,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from autograder.judge.subject import InOwnProcesses
-from autograder.kit.workspace_report import tells_of_a_build
+from autograder.kit.runners import tells_of_a_build
 from autograder.messages import judge_messages
 from autograder.messages.json_lines import Hangup, Lines, NotUnderstood
 from autograder.messages.workspace_messages import Source

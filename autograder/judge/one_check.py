@@ -29,7 +29,7 @@ from autograder.judge.machine_fitness import (
 )
 from autograder.kit.evidence import Evidence, Reference
 from autograder.kit.in_words import of_its_kind, shortened, visible
-from autograder.kit.mistakes.workspace_mistakes import changed_since_build
+from autograder.kit.mistakes.package_mistakes import changed_since_build
 from autograder.kit.model import Advice, Exercise, Finding, Mistake, Pace
 from autograder.verdict import CriterionResult, Diagnosis, State, Verdict
 

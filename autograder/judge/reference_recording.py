@@ -9,10 +9,8 @@ from typing import TYPE_CHECKING
 from autograder.judge.bench.bench import TestBench
 from autograder.judge.one_check import is_certain, judge, look
 from autograder.kit.evidence import Evidence, Reference
-from autograder.kit.launch_report import processes
 from autograder.kit.model import Exercise, Pace
-from autograder.kit.runners import RunsPrograms
-from autograder.kit.workspace_report import report_of
+from autograder.kit.runners import RunsPrograms, processes, report_of
 
 if TYPE_CHECKING:
     from autograder.judge.subject import Subject

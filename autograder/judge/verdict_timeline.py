@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import re2
 
 from autograder.kit.evidence import spoken_by
-from autograder.kit.reading.goals_seen import STATUS
-from autograder.kit.workspace_report import build_ended
+from autograder.kit.outcomes import STATUS
+from autograder.kit.runners import build_ended
 from autograder.verdict import Moment
 
 if TYPE_CHECKING:

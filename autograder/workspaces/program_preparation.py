@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import re2
 
-from autograder.kit.workspace_report import Interface, PackageReport, WorkspaceReport, as_line
+from autograder.kit.runners import Interface, PackageReport, WorkspaceReport, workspace_report_line
 from autograder.workspaces.builds.colcon_build import look
 from autograder.workspaces.builds.install_folder import relocated, with_prefixes
 from autograder.workspaces.packages import MAX_LOOK, WORKSPACE, launch_files
@@ -47,7 +47,7 @@ def report_line(phase: str, made: Build, plan: Plan | None = None, missing: str 
     packages = [_described(p, definition, made, budget) for p in made.packages if p.name in needed]
     complete = budget.sufficed
     others = [_described(p, definition, made, budget) for p in made.packages if p.name not in needed]
-    return as_line(
+    return workspace_report_line(
         WorkspaceReport(
             phase=phase,
             built=made.ok,
@@ -70,7 +70,7 @@ def no_sources_line(trouble: str) -> str:
     Args:
         trouble: The reason, in words for the student.
     """
-    return as_line(WorkspaceReport("built", built=False, trouble="no_workspace", line=trouble))
+    return workspace_report_line(WorkspaceReport("built", built=False, trouble="no_workspace", line=trouble))
 
 
 def _described(package: Package, definition: str, made: Build, budget: ByteBudget) -> PackageReport:

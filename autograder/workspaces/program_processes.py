@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Self
 
 from autograder import process_trees
-from autograder.kit.launch_report import Process, process_line
+from autograder.kit.runners import Process, process_line
 from autograder.process_trees import descendants
 from environment.python_child import python_child
 

@@ -22,7 +22,7 @@ from attack_bank import HERE, USUAL, Attack
 
 from autograder import course
 from autograder.grading.classes.new_class import new_class
-from autograder.kit.recipes import sent_texts
+from autograder.kit.reading import reported_texts
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -146,8 +146,8 @@ class Graded:
 def _listeners_texts() -> str:
     """Python that draws the texts which the judge sends to a listener: the course is public, its boxes are not."""
     known = ("SINGLY", "AT_PACE", "TRIES", "KINDS", "GREETING", "_WORDS", "_ELSEWHERE")
-    lines = [f"{name} = {getattr(sent_texts, name)!r}" for name in known]
-    return "\n".join(["from random import Random", *lines, inspect.getsource(sent_texts.random_texts)])
+    lines = [f"{name} = {getattr(reported_texts, name)!r}" for name in known]
+    return "\n".join(["from random import Random", *lines, inspect.getsource(reported_texts.random_texts)])
 
 
 class AttackClass:

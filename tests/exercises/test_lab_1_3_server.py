@@ -7,10 +7,10 @@ from random import Random
 from lab_1_3.server import EXERCISE, ordinary, single_calls
 
 from autograder.kit.evidence import Event, Evidence, Part, Reference
-from autograder.kit.recipes.service_server import AT_ONCE, CALLS
+from autograder.kit.recipes.servers import CALLS, CALLS_AT_ONCE
 
 SERVICE, TYPE = "/add_two_ints", "my_robot_interfaces/srv/AddTwoInts"
-ASKED = [*single_calls(Random("a")), *(ordinary(Random(n)) for n in range(AT_ONCE + 1))]
+ASKED = [*single_calls(Random("a")), *(ordinary(Random(n)) for n in range(CALLS_AT_ONCE + 1))]
 LAST = len(ASKED) - 1
 
 

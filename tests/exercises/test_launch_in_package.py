@@ -6,7 +6,7 @@ import pytest
 
 from autograder import exercises
 from autograder.kit.evidence import Event, Evidence, Part, Reference
-from autograder.kit.workspace_report import PackageReport, WorkspaceReport, as_line
+from autograder.kit.runners import PackageReport, WorkspaceReport, workspace_report_line
 
 PACKAGE = "my_robot_pkg"
 RIGHT = f"share/{PACKAGE}/launch/remap.launch.py"
@@ -18,7 +18,7 @@ def _evidence(found: list[str], built: list[str], *, missing: str = "", complete
     """A package with these launch files, before and after its build; where it is incomplete they were left out."""
     packages = {"found": found, "built": built}
     lines = [
-        as_line(
+        workspace_report_line(
             WorkspaceReport(
                 phase=phase,
                 built=phase == "built",

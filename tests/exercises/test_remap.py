@@ -6,9 +6,14 @@ import pytest
 
 from autograder import exercises
 from autograder.kit.evidence import Event, Evidence, Part, Reference
-from autograder.kit.launch_report import Process, process_line
 from autograder.kit.recipes.launch_file import Launched
-from autograder.kit.workspace_report import PackageReport, WorkspaceReport, as_line
+from autograder.kit.runners import (
+    PackageReport,
+    Process,
+    WorkspaceReport,
+    process_line,
+    workspace_report_line,
+)
 
 STRING = "std_msgs/msg/String"
 NEW, OLD = "/robot/status_updates", "/chatter"
@@ -201,7 +206,7 @@ def test_who_is_there_without_a_rule_was_not_moved(names: tuple[str, str], not_m
 def _launched(argv: tuple[str, ...], programs: tuple[str, ...] = ()) -> Launched:
     """The one program of a launch, which publishes under the new name, and the programs that setup.py names."""
     report = WorkspaceReport("built", built=True, packages=[PackageReport("my_robot_pkg", "", programs)])
-    built = Event(0.0, "output", "report", {"text": as_line(report)})
+    built = Event(0.0, "output", "report", {"text": workspace_report_line(report)})
     started = Event(0.0, "output", "report", {"text": process_line(Process(11, 1, argv))})
     ends = {"publisher": {NEW: STRING}, "subscription": {}, "ends": [["publisher", NEW, 11]]}
     seen = Evidence([Part("launching", {}, [built, started, Event(1.0, "interface", "", ends)])], REFERENCE)

@@ -14,8 +14,8 @@ from lab_1_3 import client as lab_1_3_client
 from autograder.judge import evidence_files, one_check
 from autograder.kit.evidence import Event, Evidence, Part, Reference
 from autograder.kit.lateness import ANSWERS_SOON
-from autograder.kit.mistakes.service_client_mistakes import NOT_RETURNED
 from autograder.kit.model import Pace
+from autograder.kit.reading.reported_texts import mentions
 from autograder.kit.reading.service_calls import (
     ABSENT,
     BIASED,
@@ -28,8 +28,8 @@ from autograder.kit.reading.service_calls import (
     gives_up_in_time,
     reports,
 )
-from autograder.kit.reading.texts_said import mentions
 from autograder.kit.recipes import service_runs
+from autograder.kit.recipes.service_client import NOT_RETURNED
 from autograder.kit.recipes.service_runs import Run, answering, has_spoken, is_done
 
 SEEDS = range(60)

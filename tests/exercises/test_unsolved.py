@@ -8,7 +8,7 @@ from autograder import exercises
 from autograder.judge import evidence_files, one_check
 from autograder.kit.evidence import Event, Evidence, Part
 from autograder.kit.mistakes.unfinished import NOTHING_THERE
-from autograder.kit.workspace_report import WorkspaceReport, as_line
+from autograder.kit.runners import WorkspaceReport, workspace_report_line
 
 
 @pytest.mark.parametrize("exercise_id", exercises.all_ids())
@@ -90,7 +90,9 @@ def test_a_program_that_ends_at_once_is_told_what_belongs_into_its_main(
 
 def test_of_a_built_program_nothing_is_said_of_the_last_lines_of_its_file() -> None:
     stored = evidence_files.load_reference("lab_1_2.talker")
-    built = Event(0.1, "output", "stdout", {"text": as_line(WorkspaceReport("built", built=True))})
+    built = Event(
+        0.1, "output", "stdout", {"text": workspace_report_line(WorkspaceReport("built", built=True))}
+    )
     exited = Event(0.4, "subject", "exited", {"code": 0})
     advice = next(
         filter(

@@ -8,12 +8,12 @@ from unittest.mock import MagicMock
 import pytest
 
 from autograder.judge import one_check
-from autograder.kit import package_programs
 from autograder.kit.evidence import INTERRUPTED, Event, Evidence, Part, Reference
+from autograder.kit.mistakes import package_mistakes
+from autograder.kit.mistakes.package_mistakes import EntryPoint
 from autograder.kit.model import Advice, Bench, Criterion, Exercise, Finding, Mistake
-from autograder.kit.package_programs import EntryPoint
 from autograder.kit.recipes.programs import LabProgram, Programs
-from autograder.kit.workspace_report import PackageReport, WorkspaceReport, as_line
+from autograder.kit.runners import PackageReport, WorkspaceReport, workspace_report_line
 
 PACKAGE = "my_robot_pkg"
 TRACEBACK = ("Traceback (most recent call last):", '  File "a.py", line 1, in main', "KeyboardInterrupt")
@@ -116,8 +116,15 @@ def test_a_client_comes_to_its_own_end_or_ends_on_ctrl_c(runs: list[list[Event]]
 
 
 def test_a_client_that_was_never_there_has_not_ended() -> None:
-    lines = [said(as_line(report("my_robot_pkg/asking.py", missing="asker"))), subject("exited")]
-    ended = [said(as_line(report("my_robot_pkg/talker.py"))), subject(INTERRUPTED), subject("exited")]
+    lines = [
+        said(workspace_report_line(report("my_robot_pkg/asking.py", missing="asker"))),
+        subject("exited"),
+    ]
+    ended = [
+        said(workspace_report_line(report("my_robot_pkg/talker.py"))),
+        subject(INTERRUPTED),
+        subject("exited"),
+    ]
     seen = Evidence(
         [Part("talker: talking", {}, ended), Part("asker: asking", {}, lines)],
         Reference("lab_9_1.programs", {}),
@@ -128,7 +135,10 @@ def test_a_client_that_was_never_there_has_not_ended() -> None:
 
 
 def test_a_program_without_an_entry_point_did_not_start() -> None:
-    lines = [said(as_line(report("my_robot_pkg/asking.py", missing="talker"))), subject("exited")]
+    lines = [
+        said(workspace_report_line(report("my_robot_pkg/asking.py", missing="talker"))),
+        subject("exited"),
+    ]
     finding = BOTH.criteria[-1].judge(evidence(lines))
     assert (finding.passed, finding.seen) == (False, "talker did not start; asker did not start")
 
@@ -187,7 +197,7 @@ def test_an_entry_point_is_lost_where_its_module_is_there_and_nothing_starts_it(
 ) -> None:
     made = report(f"my_robot_pkg/{module}.py", programs=programs)
     made = replace(made, packages=[replace(made.packages[0], installed=installed)])
-    assert package_programs.lost_entry_point(made, PACKAGE, "simple_node") is lost
+    assert package_mistakes.lost_entry_point(made, PACKAGE, "simple_node") is lost
 
 
 @pytest.mark.parametrize(
@@ -202,8 +212,8 @@ def test_an_entry_point_is_lost_where_its_module_is_there_and_nothing_starts_it(
 def test_a_file_in_another_folder_is_found(
     modules: tuple[str, ...], programs: tuple[str, ...], wrong: str
 ) -> None:
-    seen = evidence([said(as_line(report(*modules, programs=programs)))])
-    advice = package_programs.wrong_folder(seen, EntryPoint(PACKAGE, "talker"))
+    seen = evidence([said(workspace_report_line(report(*modules, programs=programs)))])
+    advice = package_mistakes.wrong_folder(seen, EntryPoint(PACKAGE, "talker"))
     assert (advice is not None) == bool(wrong)
     assert advice is None or wrong in advice.text
 
@@ -239,7 +249,7 @@ def test_an_entry_point_that_leads_nowhere_is_told_from_an_import(
     lines: tuple[str, ...], missing: str, named: str
 ) -> None:
     seen = evidence([*map(said, lines), said(f"ModuleNotFoundError: No module named '{missing}'")])
-    advice = package_programs.entry_point(seen, EntryPoint(PACKAGE, "talker"))
+    advice = package_mistakes.entry_point(seen, EntryPoint(PACKAGE, "talker"))
     assert (advice is not None) == bool(named)
     assert advice is None or named in advice.text
 
@@ -247,14 +257,14 @@ def test_an_entry_point_that_leads_nowhere_is_told_from_an_import(
 @pytest.mark.parametrize("built", [True, False])
 def test_the_card_names_what_was_changed_since_the_last_build(built: bool) -> None:
     report = WorkspaceReport("built", built=built, trouble="" if built else "build", changed="`a/setup.py`")
-    (remark,) = one_check.judge(PROGRAMS, evidence([said(as_line(report))]), "").remarks
+    (remark,) = one_check.judge(PROGRAMS, evidence([said(workspace_report_line(report))]), "").remarks
     assert remark.startswith("Changed since the last `colcon build`: `a/setup.py`.")
 
 
 def test_nothing_is_said_of_a_build_that_is_not_the_students(subtests: pytest.Subtests) -> None:
     for exercise, changed in ((PROGRAMS, ""), (NODE, "`a/setup.py`")):
         with subtests.test(exercise.id):
-            report = as_line(WorkspaceReport("built", built=True, changed=changed))
+            report = workspace_report_line(WorkspaceReport("built", built=True, changed=changed))
             assert one_check.judge(exercise, evidence([said(report)]), "").remarks == ()
 
 

@@ -9,13 +9,12 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from autograder.kit.recipes.action_client import ActionClient
-from autograder.kit.recipes.action_server import SendsGoals
 from autograder.kit.recipes.launch_file import LaunchFile
 from autograder.kit.recipes.own_scenario import OwnScenario
 from autograder.kit.recipes.program import Program
 from autograder.kit.recipes.publisher import Hears
+from autograder.kit.recipes.servers import Asks, SendsGoals
 from autograder.kit.recipes.service_client import Calls
-from autograder.kit.recipes.service_server import Asks
 from autograder.kit.recipes.service_type import ServiceType
 from autograder.kit.recipes.subscriber import Speaks
 

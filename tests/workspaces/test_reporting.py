@@ -11,14 +11,17 @@ import pytest
 from autograder import exercises
 from autograder.judge import evidence_files
 from autograder.kit.evidence import Event, Evidence, Part
-from autograder.kit.launch_report import Process, process_line, processes, remappings
-from autograder.kit.workspace_report import (
+from autograder.kit.runners import (
     MAX_LINE,
     Interface,
     PackageReport,
+    Process,
     WorkspaceReport,
-    as_line,
+    process_line,
+    processes,
+    remappings,
     report_of,
+    workspace_report_line,
 )
 from autograder.workspaces.builds.colcon_build import Build
 from autograder.workspaces.builds.install_folder import LIBRARY
@@ -55,21 +58,23 @@ REPORT = WorkspaceReport(
 
 
 def test_a_report_comes_back_as_it_went() -> None:
-    assert report_of(part("chatter", as_line(REPORT))) == REPORT
+    assert report_of(part("chatter", workspace_report_line(REPORT))) == REPORT
 
 
 def test_the_first_report_counts() -> None:
-    forged = as_line(WorkspaceReport(phase="built", built=True))
-    assert report_of(part(as_line(REPORT), forged)) == REPORT
+    forged = workspace_report_line(WorkspaceReport(phase="built", built=True))
+    assert report_of(part(workspace_report_line(REPORT), forged)) == REPORT
 
 
 def test_a_report_is_none_of_the_subject_s_words() -> None:
-    assert part(as_line(REPORT), process_line(Process(7, 5, ("talker",))), "hello").said() == ["hello"]
+    assert part(workspace_report_line(REPORT), process_line(Process(7, 5, ("talker",))), "hello").said() == [
+        "hello"
+    ]
 
 
 def test_a_long_log_is_cut() -> None:
     long = WorkspaceReport(phase="built", built=False, log="é" * 100_000, line="x" * 10_000)
-    line = as_line(long)
+    line = workspace_report_line(long)
     assert len(line.encode()) <= MAX_LINE
     assert report_of(part(line)) is not None
 
@@ -83,7 +88,7 @@ def other(number: int) -> PackageReport:
 @pytest.mark.parametrize("number", [0, 3, 12, 200])
 def test_packages_beside_the_needed_ones_take_nothing_from_them(number: int) -> None:
     others = [other(n) for n in range(number)]
-    line = as_line(REPORT, others)
+    line = workspace_report_line(REPORT, others)
     assert len(line.encode()) <= MAX_LINE
     seen = report_of(part(line))
     assert seen is not None
@@ -96,11 +101,11 @@ def test_what_was_left_out_is_not_taken_for_missing() -> None:
     whole = Interface("srv/A.srv", "int64 a\n---\n", True)
     long = Interface("srv/B.srv", "int64 a\n" * 1_000, True)
     package = replace(REPORT.packages[0], interfaces=[whole, long])
-    seen = report_of(part(as_line(replace(REPORT, packages=[package]))))
+    seen = report_of(part(workspace_report_line(replace(REPORT, packages=[package]))))
     assert seen is not None
     assert not seen.complete
     assert list(seen.packages[0].interfaces) == [whole, replace(long, text=None)]
-    many = report_of(part(as_line(replace(REPORT, packages=[package] * 200))))
+    many = report_of(part(workspace_report_line(replace(REPORT, packages=[package] * 200))))
     assert many is not None
     assert not many.complete
 
@@ -265,7 +270,7 @@ def test_what_a_package_needs_for_interfaces_is_what_is_left_out_last() -> None:
             Interface(f"a_message_with_a_long_name_{n}.msg", "string text", listed=True) for n in range(40)
         ],
     )
-    report = report_of(part(as_line(replace(REPORT, packages=[package]))))
+    report = report_of(part(workspace_report_line(replace(REPORT, packages=[package]))))
     assert report is not None
     assert not report.complete
     assert {"rosidl_default_generators", "rosidl_default_runtime"} < set(report.packages[0].dependencies)

@@ -11,8 +11,7 @@ import re2
 from autograder import foreign_code
 from autograder.kit.evidence import is_cut_off
 from autograder.kit.mistakes.known_crashes import KNOWN, NOT_SPUN_WHILE_CALLING
-from autograder.kit.mistakes.names_in_tracebacks import MARKS, Name, is_a_library, names, own_line
-from autograder.kit.mistakes.python_errors import meaning
+from autograder.kit.mistakes.python_errors import MARKS, Name, is_a_library, meaning, names, own_line
 from autograder.kit.model import Advice, Mistake
 
 if TYPE_CHECKING:

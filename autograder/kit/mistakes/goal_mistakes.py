@@ -27,7 +27,7 @@ from autograder.kit.reading.goal_reports import (
     said_of_result,
     unshown_feedback,
 )
-from autograder.kit.reading.texts_said import mentions, not_filled_in
+from autograder.kit.reading.reported_texts import mentions, not_filled_in
 
 if TYPE_CHECKING:
     from autograder.kit.evidence import Evidence

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from autograder.kit.mistakes.names_in_tracebacks import MARKS
+from autograder.kit.mistakes.python_errors import MARKS
 from autograder.verdict import ASKS_FOR_INPUT
 
 

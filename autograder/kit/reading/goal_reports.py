@@ -12,7 +12,7 @@ from autograder.kit.giving_up import remark
 from autograder.kit.mistakes.client_waits import Wait
 from autograder.kit.model import Finding
 from autograder.kit.outcomes import Outcome
-from autograder.kit.reading.texts_said import mentions, said_first_after
+from autograder.kit.reading.reported_texts import mentions, said_first_after
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

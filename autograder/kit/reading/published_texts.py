@@ -1,4 +1,8 @@
-"""Reads from the evidence which texts a publisher published, and how it counted in them."""
+"""Reads which texts a publisher published and how it counted in them, with the criteria and mistakes about both.
+
+The messages of the reference solution define the right text around the number, the right first number, and the right
+step from one number to the next.
+"""
 
 from __future__ import annotations
 
@@ -10,12 +14,15 @@ from typing import TYPE_CHECKING
 
 import re2
 
+from autograder.kit.in_words import counted, first_difference
+from autograder.kit.model import Advice, Finding
 from autograder.kit.rate import sent_times, simulated
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from autograder.kit.evidence import Event, Part
+
 
 SURE = 2
 """The minimum number of messages that the judge surely notices. It is not one, because a single message may come before
@@ -181,3 +188,182 @@ def counters(texts: Sequence[str]) -> list[int]:
 def last_numbers(texts: Sequence[str]) -> list[str]:
     """Return the last number of each text, as it is written; texts without a number are left out."""
     return [numbers[-1] for text in texts if (numbers := _NUMBER.findall(text))]
+
+
+_UNFILLED = re2.compile(r"\{[^{}]*\}|%[ds]|\(?\bself\.\w+\)?")
+
+
+def says_text(seen: Publisher, expected: Publisher) -> Finding:
+    """Decide whether every text equals the reference's, apart from the number."""
+    odd = [
+        text for text, form in zip(seen.texts, seen.templates, strict=True) if form not in expected.templates
+    ]
+    found = f"“{(odd or seen.texts)[0]}”" if seen.texts else "no message arrived"
+    if seen.texts and not odd and not seen.went_on:
+        found += ", and no more"
+    passed = seen.went_on and not odd
+    return Finding(passed, f"“{expected.texts[0]}”, “{expected.texts[1]}”, …", found)
+
+
+def counts(seen: Publisher, expected: Publisher) -> Finding:
+    """Decide whether the numbers in the messages are those of the reference, from the first message on.
+
+    Raises:
+        ValueError: The reference solution does not count.
+    """
+    numbers, step = seen.counters, expected.step
+    if not step:
+        raise ValueError("the reference solution does not count, so leave out heard.counts(...)")
+    # A slow publisher sent fewer numbers; the rate criterion judges that.
+    enough = seen.enough - seen.greetings
+    all_of_them = len(numbers) >= enough or (bool(numbers) and seen.goes_on_slowly(expected))
+    steady = all_of_them and not _slip(numbers, step)
+    found = ", ".join(map(str, numbers)) if len(numbers) < enough else _around(numbers, _slip(numbers, step))
+    if steady and (more := _uncounted(seen, expected)):
+        found = f"{counted(more, 'message')} more before {found}"
+    passed = steady and seen.went_on and _starts_right(seen, expected)
+    if passed and (lost := seen.number_of_first - 1):
+        found += f" after {counted(lost, 'message')} before anybody could hear"
+    return Finding(passed, _row(expected.counters[:5]), found or "no whole number arrived")
+
+
+def field_typo(seen: Publisher, _: Publisher) -> Advice | None:
+    """Return advice if all texts are empty."""
+    if not seen.texts or any(seen.texts):
+        return None
+    return Advice(
+        "Your messages arrive, but their string is empty, because your code never sets the field `data`.",
+        "Set the only field of a String, as in `message.data = your_text`. Check the spelling: String(...) ignores a "
+        "misspelled keyword silently.",
+    )
+
+
+@dataclass(frozen=True)
+class Counting:
+    """The known mistakes of a publisher that counts.
+
+    Attributes:
+        variable: The name that the advice uses for the counter, such as ``"self.count"``.
+    """
+
+    variable: str
+
+    def wrong_text(self, seen: Publisher, expected: Publisher) -> Advice | None:
+        """Return advice if the text of a message differs from the reference's."""
+        texts = seen.texts[seen.greetings :]
+        odd = next((said for said in texts if template(said) not in expected.templates), None)
+        if odd is None:
+            return None
+        asked, form = says_text(seen, expected).expected, expected.templates[0]
+        if blank := _UNFILLED.search(odd):
+            return Advice(
+                f"Your talker says “{odd}”: Python did not replace {blank[0]} by a number.",
+                "Write an f directly before the opening quotation mark, and braces around the name of your counter, "
+                f"as in f'{form.replace('#', f'{{{self.variable}}}')}'.",
+            )
+        return Advice(
+            f"Your talker says “{odd}”; the task asks for {asked}",
+            f"{first_difference(template(odd), form)} (N stands for the number.) Every letter counts, because other "
+            "nodes read this string.".replace("#", "N"),
+        )
+
+    def stuck(self, seen: Publisher, expected: Publisher) -> Advice | None:
+        """Return advice if every message has the same number."""
+        if len(seen.counters) < 3 or len(set(seen.counters)) > 1:
+            return None
+        made = (
+            "make a new message with the counter"
+            if expected.has_numbers_alone
+            else "make a new string from the counter, with an f-string"
+        )
+        return Advice(
+            f"Every message contains the number {seen.counters[0]}.",
+            f"In the method that the timer calls, {made}, and below that {self._changes(expected, 'the counter')}, "
+            f"as in {self._statement(expected)}. Do not return before you change the counter. Set the counter to "
+            f"{expected.counters[0]} only in __init__. Write self. before its name: without self., your code changes "
+            "another variable.",
+        )
+
+    def start(self, seen: Publisher, expected: Publisher) -> Advice | None:
+        """Return advice if the step is right, but the first number is wrong, or other messages come before it."""
+        steady = len(seen.counters) > 1 and not _slip(seen.counters, expected.step)
+        unheard, right = _uncounted(seen, expected), _starts_right(seen, expected)
+        if not steady or (right and not seen.greetings):
+            return None
+        if unheard or right:
+            what = f": “{seen.texts[0]}”" if seen.greetings else ", before any subscriber was connected"
+            return Advice(
+                f"“{seen.texts[seen.greetings]}” was message {seen.greetings + seen.number_of_first} of your node. "
+                f"Before it, your node published {counted(seen.greetings + unheard, 'message')} that did not "
+                f"count{what}.",
+                "Set the content of each message before you publish it. The first message that you publish must "
+                "contain the first number. Write a text such as “Talker started” to the log instead of publishing it.",
+            )
+        first, begins = _first_number(seen, expected), expected.counters[0]
+        return Advice(
+            f"The first message contains the number {seen.counters[0] if first is None else first}, but the counter "
+            f"must begin at {begins}.",
+            f"Set your counter in __init__, as in {self.variable} = {begins}, and {self._changes(expected)} only "
+            "after you have published the message.",
+        )
+
+    def step(self, seen: Publisher, expected: Publisher) -> Advice | None:
+        """Return advice if the numbers do not change by the right step."""
+        numbers = seen.counters
+        place = _slip(numbers, expected.step)
+        if len(numbers) < 3 or not place:
+            return None
+        came = f"After {numbers[place - 1]} comes {numbers[place]} ({_around(numbers, place)})."
+        way, by = ("up", expected.step) if expected.step > 0 else ("down", -expected.step)
+        return Advice(
+            f"{came} The numbers must go {way} by {'one' if by == 1 else by} with each message.",
+            f"Change the counter once for each message that you publish: with {self._statement(expected)} at the end "
+            "of the method, without a loop, and with only one timer.",
+        )
+
+    def _statement(self, expected: Publisher) -> str:
+        return f"{self.variable} {'+' if expected.step > 0 else '-'}= {abs(expected.step)}"
+
+    @staticmethod
+    def _changes(expected: Publisher, counter: str = "") -> str:
+        by = abs(expected.step)
+        if expected.step > 0:
+            return f"add {by} to {counter}" if counter else f"add {by}"
+        return f"take {by} from {counter}" if counter else f"take {by} away"
+
+
+def _first_number(seen: Publisher, expected: Publisher) -> int | None:
+    """Return the number in the publisher's first message, even if the judge could not receive it; None if unknown.
+
+    A loop may publish before any subscriber can receive the message, so the first received number may be a later one.
+    The judge knows how many messages it missed, because DDS numbers them, and counts back from the received number. The
+    result may lie before the reference's first number, if some of the missed messages contained no number.
+    """
+    first = counters(seen.texts[seen.greetings :][:1])
+    return first[0] - expected.step * (seen.number_of_first - 1) if first else None
+
+
+def _starts_right(seen: Publisher, expected: Publisher) -> bool:
+    return _first_number(seen, expected) == expected.counters[0]
+
+
+def _uncounted(seen: Publisher, expected: Publisher) -> int:
+    """Return how many of the messages that the judge missed at the start cannot have been part of the count."""
+    if _first_number(seen, expected) is None or (place := expected.place(seen.counters[0])) < 0:
+        return 0
+    return max(0, seen.number_of_first - 1 - place)
+
+
+def _slip(numbers: list[int], step: int) -> int:
+    """Return the index of the first number that does not follow from the one before; 0 if all numbers do."""
+    return next((place for place, (a, b) in enumerate(pairwise(numbers), 1) if b - a != step), 0)
+
+
+def _row(numbers: list[int]) -> str:
+    return ", ".join(map(str, numbers)) + ", …"
+
+
+def _around(numbers: list[int], place: int) -> str:
+    """Return the numbers around an index as text; the first numbers if the index is near the beginning."""
+    first = max(0, place - 3)
+    return "…, " * bool(first) + _row(numbers[first : first + 6])

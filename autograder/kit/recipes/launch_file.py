@@ -16,12 +16,10 @@ import re2
 
 from autograder.kit.draft import OWN, OWN_LATE
 from autograder.kit.evidence import Evidence
-from autograder.kit.launch_report import Process, as_run, processes, remappings
-from autograder.kit.mistakes import workspace_mistakes as workspace
+from autograder.kit.mistakes import package_mistakes as workspace
 from autograder.kit.mistakes.crashes import CRASHES, OTHER_CRASHES
 from autograder.kit.model import Advice, Bench, Mistake, Pace
-from autograder.kit.runners import ALONE
-from autograder.kit.workspace_report import BUILDING, report_of
+from autograder.kit.runners import ALONE, BUILDING, Process, as_run, processes, remappings, report_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

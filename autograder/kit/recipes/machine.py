@@ -8,7 +8,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from autograder.kit.model import Finding, Pace
-from autograder.kit.recipes.declared import Declared, fields, pick, variant
+from autograder.kit.recipes.own_scenario import Declared, fields, pick, variant
 from autograder.kit.rules import SOME_TEXT, same, value
 
 if TYPE_CHECKING:

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 
 import re2
 
-from autograder.kit import package_programs as programs
 from autograder.kit.draft import OWN, OWN_LATE
 from autograder.kit.in_words import first_difference
+from autograder.kit.mistakes import package_mistakes as programs
+from autograder.kit.mistakes import package_mistakes as workspace
 from autograder.kit.mistakes import unfinished
-from autograder.kit.mistakes import workspace_mistakes as workspace
 from autograder.kit.mistakes.crashes import CRASHES, OTHER_CRASHES
 from autograder.kit.model import Bench, Finding, Mistake, Pace
 from autograder.kit.runners import RunsProgram

@@ -11,14 +11,13 @@ from typing import TYPE_CHECKING, Any, cast
 
 import re2
 
-from autograder.kit import package_programs as package
 from autograder.kit.evidence import INTERRUPTED, Evidence, Part
+from autograder.kit.mistakes import package_mistakes as package
+from autograder.kit.mistakes import package_mistakes as workspace
 from autograder.kit.mistakes import unfinished
-from autograder.kit.mistakes import workspace_mistakes as workspace
 from autograder.kit.mistakes.crashes import traceback_of
 from autograder.kit.model import Advice, Bench, Criterion, Exercise, Finding, Mistake, Pace
-from autograder.kit.runners import RunsPrograms
-from autograder.kit.workspace_report import report_of
+from autograder.kit.runners import RunsPrograms, report_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence

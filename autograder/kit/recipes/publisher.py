@@ -12,8 +12,8 @@ from autograder.kit.mistakes import common_mistakes as common
 from autograder.kit.mistakes import unfinished
 from autograder.kit.model import STEP, Advice, Bench, Finding, Mistake, Pace
 from autograder.kit.rate import ROW, Rate, burst_at_the_start, confirmed, rate_of, simulated
+from autograder.kit.reading import published_texts
 from autograder.kit.reading.published_texts import Publisher
-from autograder.kit.recipes import counting
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -164,8 +164,8 @@ class Hears:
 
     def says_text(self) -> Callable[[Evidence], Finding]:
         """Return the criterion that each text, apart from the number, is the reference's. Also add its mistakes."""
-        self._text = counting.says_text
-        return self._criterion(counting.says_text)
+        self._text = published_texts.says_text
+        return self._criterion(published_texts.says_text)
 
     def counts(self, variable: str = "self.count") -> Callable[[Evidence], Finding]:
         """Return the criterion that the numbers are those of the reference. Also add mistakes about numbers.
@@ -176,8 +176,8 @@ class Hears:
         Args:
             variable: The name that the advice uses for the counter.
         """
-        self._course, self._variable = counting.counts, variable
-        return self._criterion(counting.counts)
+        self._course, self._variable = published_texts.counts, variable
+        return self._criterion(published_texts.counts)
 
     def _criterion(self, judge: Judge[Publisher]) -> Callable[[Evidence], Finding]:
         return lambda evidence: judge(self.seen(evidence), self.expected(evidence))
@@ -233,8 +233,8 @@ class Hears:
         if not seen.counters or not expected.counters:
             return ""
         unheard = min(seen.number_of_first - 1, expected.place(seen.counters[0]))
-        counting = seen.messages[seen.greetings :]
-        return burst_at_the_start(counting, unheard, reference_period(evidence.reference))
+        published_texts = seen.messages[seen.greetings :]
+        return burst_at_the_start(published_texts, unheard, reference_period(evidence.reference))
 
     def _simulated_rate(self, evidence: Evidence | None) -> Rate | None:
         """Return the rate in simulated time; None if too few messages follow the simulated clock."""
@@ -248,9 +248,9 @@ class Hears:
     @property
     def ladder(self) -> tuple[Mistake, ...]:
         """The common mistakes, most specific first."""
-        of = counting.Counting(self._variable)
-        texts, numbers = self._text is counting.says_text, self._course is counting.counts
-        early = [("field_typo", counting.field_typo)] * texts + [("counter_stuck", of.stuck)] * numbers
+        of = published_texts.Counting(self._variable)
+        texts, numbers = self._text is published_texts.says_text, self._course is published_texts.counts
+        early = [("field_typo", published_texts.field_typo)] * texts + [("counter_stuck", of.stuck)] * numbers
         early += [("wrong_text", of.wrong_text)] * texts
         late = [("counter_start", of.start), ("counter_step", of.step)] * numbers
         return (

@@ -11,8 +11,16 @@ from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from autograder.kit.model import Pace
-from autograder.kit.recipes.declared import SILENCE, Declared, fields, pick, picked, put, variant
-from autograder.kit.recipes.own_scenario import once_met
+from autograder.kit.recipes.own_scenario import (
+    SILENCE,
+    Declared,
+    fields,
+    once_met,
+    pick,
+    picked,
+    put,
+    variant,
+)
 from autograder.kit.rules import got_through, same, value
 
 if TYPE_CHECKING:

@@ -7,11 +7,17 @@ from typing import TYPE_CHECKING
 import re2
 
 from autograder.kit.draft import OWN, SeenAsItIs
-from autograder.kit.mistakes import workspace_mistakes as workspace
+from autograder.kit.mistakes import package_mistakes as workspace
 from autograder.kit.mistakes.crashes import CRASHES, OTHER_CRASHES
 from autograder.kit.model import Advice, Bench, Finding, Mistake
-from autograder.kit.runners import ServesInterface
-from autograder.kit.workspace_report import AMENT_PACKAGE, BUILDING, Interface, PackageReport, report_of
+from autograder.kit.runners import (
+    AMENT_PACKAGE,
+    BUILDING,
+    Interface,
+    PackageReport,
+    ServesInterface,
+    report_of,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

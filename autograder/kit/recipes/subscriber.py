@@ -9,8 +9,17 @@ from autograder.kit.draft import OWN, OWN_LATE
 from autograder.kit.mistakes import common_mistakes as common
 from autograder.kit.mistakes import unfinished
 from autograder.kit.model import Advice, Bench, Finding, Mistake, Pace
-from autograder.kit.reading.texts_said import changed, invented, is_said, repeated, retold
-from autograder.kit.recipes.sent_texts import AT_PACE, SINGLY, TRIES, random_texts
+from autograder.kit.reading.reported_texts import (
+    AT_PACE,
+    SINGLY,
+    TRIES,
+    changed,
+    invented,
+    is_said,
+    random_texts,
+    repeated,
+    retold,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

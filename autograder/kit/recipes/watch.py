@@ -14,8 +14,7 @@ from typing import TYPE_CHECKING, Any
 from autograder.kit.evidence import Event, Part
 from autograder.kit.in_words import counted
 from autograder.kit.model import STEP, Finding
-from autograder.kit.recipes.declared import SILENCE, Declared, pick, variant
-from autograder.kit.recipes.own_scenario import once_met
+from autograder.kit.recipes.own_scenario import SILENCE, Declared, once_met, pick, variant
 from autograder.kit.rules import Given, in_words, reported_at, same, value
 
 if TYPE_CHECKING:

@@ -8,11 +8,10 @@ from typing import TYPE_CHECKING
 
 from exercise_1_1 import remap
 
-from autograder.kit.mistakes import workspace_mistakes as workspace
+from autograder.kit.mistakes import package_mistakes as workspace
+from autograder.kit.mistakes.package_mistakes import package_name, package_of
 from autograder.kit.model import Advice, Criterion, Finding, Mistake
-from autograder.kit.package_programs import package_name, package_of
-from autograder.kit.runners import LaunchesFromPackage
-from autograder.kit.workspace_report import report_of
+from autograder.kit.runners import LaunchesFromPackage, report_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

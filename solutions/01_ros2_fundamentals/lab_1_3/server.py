@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING
 
 from autograder.kit.draft import Draft
 from autograder.kit.model import Advice, Finding
-from autograder.kit.recipes.service_server import AT_ONCE, Asks, ServerSeen
+from autograder.kit.recipes.servers import CALLS_AT_ONCE, Asks, ServerSeen
 
 if TYPE_CHECKING:
     from random import Random
 
-    from autograder.kit.recipes.service_server import Fields
+    from autograder.kit.recipes.servers import Fields
 
 ORDINARY = 6
 """Calls with numbers of everyday size."""
@@ -89,7 +89,9 @@ def sums(seen: ServerSeen, _: ServerSeen) -> Finding:
 @server.criterion("together", 2, "Answers several calls at once")
 def together(seen: ServerSeen, _: ServerSeen) -> Finding:
     """Each of the calls at once is answered with its own sum."""
-    return seen.all_right(seen.together, objection, f"the right sum for each of {AT_ONCE} calls at once")
+    return seen.all_right(
+        seen.together, objection, f"the right sum for each of {CALLS_AT_ONCE} calls at once"
+    )
 
 
 @server.criterion("alive", 2, "Stays alive")

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from autograder.kit.reading import goals_seen
-from autograder.kit.reading.goals_seen import ABORTED, CANCELED, SUCCEEDED, Goal, status_text
+from autograder.kit import outcomes
+from autograder.kit.outcomes import ABORTED, CANCELED, SUCCEEDED, Goal, status_text
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -97,12 +97,12 @@ class FibonacciGoal(Goal):
 
 def goal(part: Part, number: int) -> FibonacciGoal:
     """The goal of that number."""
-    return FibonacciGoal(**vars(goals_seen.goal(part, number)))
+    return FibonacciGoal(**vars(outcomes.goal(part, number)))
 
 
 def all_goals(part: Part) -> list[FibonacciGoal]:
     """All goals that were sent."""
-    return [FibonacciGoal(**vars(one)) for one in goals_seen.all_goals(part)]
+    return [FibonacciGoal(**vars(one)) for one in outcomes.all_goals(part)]
 
 
 def ended_by_a_younger(part: Part) -> FibonacciGoal | None:

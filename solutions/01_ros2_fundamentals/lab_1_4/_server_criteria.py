@@ -41,7 +41,7 @@ from lab_1_4._goals import (
 
 from autograder.kit.mistakes.common_mistakes import misfit, servers
 from autograder.kit.model import Finding
-from autograder.kit.reading.goals_seen import CANCELED, status_text
+from autograder.kit.outcomes import CANCELED, status_text
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

@@ -31,7 +31,7 @@ from lab_1_4._goals import (
 )
 
 from autograder.kit.model import Bench, Pace
-from autograder.kit.reading.goals_seen import ABORTED, CANCELED
+from autograder.kit.outcomes import ABORTED, CANCELED
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -45,8 +45,8 @@ from lab_1_4._server_run import scenario
 from autograder.kit.draft import Draft
 from autograder.kit.mistakes.crashes import traceback_of
 from autograder.kit.model import Advice
-from autograder.kit.reading.goals_seen import CANCELED, SUCCEEDED, status_text
-from autograder.kit.recipes.action_server import SendsGoals, is_quick
+from autograder.kit.outcomes import CANCELED, SUCCEEDED, status_text
+from autograder.kit.recipes.servers import SendsGoals, is_quick
 
 if TYPE_CHECKING:
     from autograder.kit.evidence import Evidence

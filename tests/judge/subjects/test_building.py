@@ -8,17 +8,17 @@ import pytest
 
 from autograder.judge.bench.recorder import Recorder
 from autograder.judge.notebook_subject import RemotePath
-from autograder.kit.workspace_report import WorkspaceReport, as_line
+from autograder.kit.runners import WorkspaceReport, workspace_report_line
 from autograder.messages.judge_messages import Output
 
 
 @pytest.mark.parametrize(
     ("line", "building"),
     [
-        (as_line(WorkspaceReport("found", built=False)), True),
+        (workspace_report_line(WorkspaceReport("found", built=False)), True),
         ("built", True),
-        (as_line(WorkspaceReport("built", built=True)), False),
-        (as_line(WorkspaceReport("built", built=False, trouble="build")), False),
+        (workspace_report_line(WorkspaceReport("built", built=True)), False),
+        (workspace_report_line(WorkspaceReport("built", built=False, trouble="build")), False),
     ],
     ids=["the sources are found", "a word of a program", "built", "failed to build"],
 )

@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from autograder.judge.verdict_timeline import MAX_MOMENTS, moments
-from autograder.kit import launch_report, workspace_report
+from autograder.kit import runners
 from autograder.kit.evidence import Event, Evidence, Part, Reference
-from autograder.kit.workspace_report import WorkspaceReport, as_line
+from autograder.kit.runners import WorkspaceReport, workspace_report_line
 
 if TYPE_CHECKING:
     from autograder.verdict import Moment
@@ -23,7 +23,7 @@ def told(
 
 
 def test_brackets_without_an_end_are_no_report() -> None:
-    for mark in (workspace_report.MARK, launch_report.MARK):
+    for mark in (runners.WORKSPACE_MARK, runners.PROCESS_MARK):
         assert told(Event(0.1, "output", "stdout", {"text": f"{mark}{'[' * 3900}"})) is not None
 
 
@@ -63,7 +63,7 @@ def test_a_time_of_sending_that_cannot_be_is_not_believed() -> None:
 
 
 def test_a_program_that_was_built_first_begins_after_its_build() -> None:
-    built = as_line(WorkspaceReport("built", built=True))
+    built = workspace_report_line(WorkspaceReport("built", built=True))
     shown = told(
         Event(20.5, "output", "stdout", {"text": built}),
         Event(21.7, "log", "simple_node", {"text": "Hello", "sent": 1000.0, "arrived": 1000.1}),

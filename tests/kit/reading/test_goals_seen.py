@@ -7,8 +7,8 @@ from typing import Any
 import pytest
 
 from autograder.kit.evidence import Event, Evidence, Part, Reference
-from autograder.kit.reading.goals_seen import SUCCEEDED, all_goals, goal
-from autograder.kit.recipes.action_server import SendsGoals
+from autograder.kit.outcomes import SUCCEEDED, all_goals, goal
+from autograder.kit.recipes.servers import SendsGoals
 
 ACTION, TYPE = "/drive", "a_package/action/DriveTo"
 

@@ -10,7 +10,7 @@ import time
 
 import pytest
 
-from autograder.kit.launch_report import MARK
+from autograder.kit.runners import PROCESS_MARK
 from autograder.process_trees import descendants, kill, known
 from autograder.workspaces import program_processes
 from autograder.workspaces.__main__ import _run
@@ -62,4 +62,4 @@ def test_a_report_begins_a_line_where_the_launch_is_in_the_middle_of_one(
         for number, handler in before.items():
             signal.signal(number, handler)
     lines = capfd.readouterr().out.splitlines()
-    assert any("sleep" in line for line in lines if line.startswith(MARK))
+    assert any("sleep" in line for line in lines if line.startswith(PROCESS_MARK))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from autograder.kit.draft import Draft
 from autograder.kit.model import Finding
-from autograder.kit.recipes.service_server import AT_ONCE, Asks, ServerSeen
+from autograder.kit.recipes.servers import CALLS_AT_ONCE, Asks, ServerSeen
 
 SINGLE = 3
 """Calls one by one; after them come several at once, and one more."""
@@ -39,7 +39,7 @@ def counts(seen: ServerSeen, _: ServerSeen) -> Finding:
 @door.criterion("together", 2, "Answers several calls at once, each with a number of its own")
 def together(seen: ServerSeen, _: ServerSeen) -> Finding:
     """All calls together have all numbers, the simultaneous ones in any order."""
-    wanted, rest = due(SINGLE + AT_ONCE + 1), told(seen)[SINGLE:]
+    wanted, rest = due(SINGLE + CALLS_AT_ONCE + 1), told(seen)[SINGLE:]
     return Finding(
         sorted(told(seen)) == sorted(wanted), f"{wanted[-1]} is the last", ", ".join(rest) or "none"
     )

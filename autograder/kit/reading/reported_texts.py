@@ -1,6 +1,7 @@
-"""Finds numbers and received texts in the lines that a subject printed, logged or returned.
+"""Draws the texts that the judge sends to a listener, and finds texts and numbers in the lines that a subject reports.
 
-For a listener, each line is compared with the texts that the judge sent: the line may report such a text, change it,
+No program can guess the texts, and careless programs change some of them. Each line that a listener printed, logged or
+returned is compared with the texts: the line may report such a text, change it,
 repeat it, or invent a text that was never sent.
 """
 
@@ -19,8 +20,57 @@ from autograder.kit.model import Advice
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
+    from random import Random
 
     from autograder.kit.evidence import Event, Part
+
+
+SINGLY = 12
+"""The number of texts that are sent one by one, each after the subject has reported the text before."""
+AT_PACE = 8
+"""The number of texts in a series that is sent in real time at the given pace, without waiting for the subject."""
+TRIES = 3
+"""The maximum number of series at the given pace. Several are needed, because a busy machine may be too slow for a
+moment.
+"""
+GREETING = "Hello, world!"
+"""The text with which many talkers begin their messages, and which some of the judge's texts contain."""
+KINDS = 6
+"""The number of unusual texts in each series, not counting the text that comes twice."""
+
+_WORDS = (
+    "amber", "birch", "cedar", "delta", "ember", "fjord", "grove", "harbour", "islet", "juniper", "kelp", "lagoon",
+    "meadow", "north", "orchard", "pebble", "quarry", "river", "summit", "tundra",
+)  # fmt: skip
+_ELSEWHERE = ("mgła", "łąka", "řeka", "erdő", "tűz")
+"""Words of other languages with letters that JSON, YAML and Python all escape in the same way."""
+
+
+def random_texts(random: Random) -> list[str]:
+    """Return random texts, each with two words and a number. No text is contained in another text.
+
+    In each series, one text comes twice in a row. Some texts are unusual: they have the greeting of many talkers before
+    or after the words, are long and in capitals, contain braces and a percent sign, contain letters beyond ASCII and
+    two spaces, or contain no space.
+    """
+    count = 1 + TRIES * AT_PACE + SINGLY
+    words = [f"{random.choice(_WORDS)} {random.choice(_WORDS)}" for _ in range(count)]
+    texts = [
+        f"{two} {number}" for two, number in zip(words, random.sample(range(1000, 10000), count), strict=True)
+    ]
+    at_pace = [range(1 + AT_PACE * i, 1 + AT_PACE * (i + 1)) for i in range(TRIES)]
+    for row in (*at_pace, range(count - SINGLY, count)):
+        twice = random.choice(row[:-1])
+        rest = [place for place in row if place not in (twice, twice + 1)]
+        greets, greeted, long, marks, far, single = random.sample(rest, KINDS)
+        texts[twice + 1] = texts[twice]
+        texts[greets] = f"{GREETING} {texts[greets].rpartition(' ')[2]}"
+        texts[greeted] = f"{texts[greeted]} {GREETING}"
+        texts[long] = f"{random.choice(_WORDS).upper()} {' '.join(random.sample(_WORDS, 4))} {texts[long]}"
+        texts[marks] = f"{{{random.choice(_WORDS)}}} {random.randrange(10, 100)}% {texts[marks]}"
+        texts[far] = f"{random.choice(_ELSEWHERE)}  {texts[far]}"
+        texts[single] = texts[single].replace(" ", "_")
+    return texts
 
 
 _QUOTED = re2.compile(r"[\"“«].*[\pL\pN_].*[\"”»]")
@@ -29,7 +79,7 @@ _A_TALKERS = re2.compile(r"\W*[Hh]ello,? [Ww]orld!?\W*\d+\W*")
 """Matches texts of talkers in this course and in the official tutorials."""
 _TWO_WORDS = re2.compile(r"\b([a-z]+) ([a-z]+) \d{4}\b")
 """Matches the two random words and the number in the judge's texts; see
-:func:`autograder.kit.recipes.sent_texts.random_texts`.
+:func:`autograder.kit.reading.reported_texts.random_texts`.
 """
 _BRACES = re2.compile(r"\{[\pL_][^{}]*\}")
 """Matches a variable's name in braces, which an f-string would have replaced by the value."""
