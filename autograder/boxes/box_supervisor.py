@@ -24,8 +24,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from autograder.boxes import syscalls
+from autograder.boxes.box_connection import Channel, ChannelClosed, close_all
 from autograder.boxes.enter_box import take_limits
-from autograder.boxes.process_channel import Channel, ChannelClosed, close_all
 from autograder.boxes.seccomp_filter import filter_for_boxes
 from autograder.boxes.visible_host import ETC, ETC_FOLDERS, TERMINALS, etc_files
 from autograder.process_trees import die_with_parent
@@ -120,7 +120,6 @@ class _Supervisor:
     def _open(self, scratch: str, size: int, inodes: int, files: str) -> None:
         syscalls.leave_the_host()
         die_with_parent()  # again, because entering the user namespace has cleared this setting
-        syscalls.bring_loopback_up()
         place = Path(scratch)
         furnish(place, size, inodes)
         if files:

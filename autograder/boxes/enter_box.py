@@ -14,8 +14,8 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from autograder.boxes import syscalls
+from autograder.boxes.box_connection import Channel, ChannelClosed, close_all
 from autograder.boxes.cgroups import join, memberships
-from autograder.boxes.process_channel import Channel, ChannelClosed, close_all
 from autograder.boxes.seccomp_filter import filter_for_boxes, filter_for_readers
 from autograder.process_trees import adopt_orphans, die_with_parent, end_descendants
 

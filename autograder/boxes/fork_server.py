@@ -28,8 +28,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
+from autograder.boxes.box_connection import Channel
 from autograder.boxes.enter_box import enter
-from autograder.boxes.process_channel import Channel
 from autograder.boxes.run_limits import raise_own
 from autograder.boxes.visible_host import base_environment
 from autograder.process_trees import end_soon

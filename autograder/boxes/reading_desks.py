@@ -22,11 +22,11 @@ import signal
 import threading
 from typing import TYPE_CHECKING, Any
 
+from autograder.boxes.box_connection import ChannelClosed, NoSandbox
+from autograder.boxes.boxed_processes import ForkedProcess
 from autograder.boxes.enter_box import Entrance
 from autograder.boxes.fork_server import BESIDE, FOLDER_PREFIX, INSIDE, SUPERVISOR_MODULE, ForkServer
-from autograder.boxes.process_channel import ChannelClosed
-from autograder.boxes.running_boxes import ForkedProcess
-from autograder.boxes.sandbox import Enclosure, NoSandbox
+from autograder.boxes.sandbox import Enclosure
 from autograder.boxes.visible_host import base_environment
 from autograder.safe_files import HeldFolder
 
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
     from pathlib import Path
 
-    from autograder.boxes.running_boxes import Box
+    from autograder.boxes.box_connection import Box
 
 
 MEMORY_BYTES = 700_000_000

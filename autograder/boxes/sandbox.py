@@ -22,21 +22,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
 from autograder.boxes import syscalls
+from autograder.boxes.box_connection import Box, NoSandbox, Supervision, close_all
 from autograder.boxes.box_supervisor import bubblewrap, furnish
+from autograder.boxes.boxed_processes import Finished, ForkedProcess, Running, WarmCommand
 from autograder.boxes.enter_box import Entrance, take_limits
 from autograder.boxes.fork_server import BESIDE, SUPERVISOR_MODULE, ForkServer, library_folders
-from autograder.boxes.limit_guards import BoxGuard
-from autograder.boxes.process_channel import close_all
+from autograder.boxes.limit_guards import BoxGuard, guards
 from autograder.boxes.run_limits import Limits
-from autograder.boxes.running_boxes import (
-    Box,
-    Finished,
-    ForkedProcess,
-    NoSandbox,
-    Running,
-    Supervision,
-    WarmCommand,
-)
 from autograder.boxes.visible_host import (
     HOME,
     SYSTEM,
@@ -53,83 +45,9 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
 
-_OF_PYTHON = ("PYTHONUNBUFFERED", "PYTHONFAULTHANDLER")
-
-
-class OneCommandBox:
-    """Gives this process a new network, and each start of a command a separate box in that network.
-
-    Args:
-        scratch: An empty folder. Only this process and the boxes see the files that are made in it.
-        folder: The folder of the user that a command sees, read-only and at the same path. It is also the working
-            folder.
-        command: The command, which is checked for names of files that would not be visible.
-
-    Raises:
-        ValueError: The folder contains files that no box may see, or the command needs files outside the folder. The
-            exception's text says what to do.
-    """
-
-    def __init__(self, scratch: Path, folder: Path, command: Sequence[str]) -> None:
-        self._scratch, self._folder = scratch, folder.resolve()
-        for word in command:
-            file = self._folder / word
-            if os.sep in word and file.exists() and not self._sees(file):
-                raise ValueError(
-                    f"a command in a box sees only the folder in which it starts, and {word} is not in "
-                    f"{self._folder}: change to the folder of the submission, and use a path relative to it"
-                )
-        for kept in (Path.home(), Path(__file__).resolve().parents[2]):
-            if kept.resolve().is_relative_to(self._folder):
-                raise ValueError(
-                    f"a command in a box sees the folder in which it starts, and {self._folder} contains files that it "
-                    "must not see: change to the folder of the submission"
-                )
-        self._guard = BoxGuard(Limits())
-
-    def _sees(self, file: Path) -> bool:
-        places = (self._folder, *map(Path, SYSTEM), *installation())
-        return any(Path(os.path.normpath(file)).is_relative_to(place) for place in places)
-
-    def enter(self) -> None:
-        """Leave the host's network for one that has only a loopback interface. The process must have no other threads.
-
-        Raises:
-            OSError: The system does not allow such namespaces.
-        """
-        syscalls.leave_the_host()
-        syscalls.bring_loopback_up()
-        furnish(self._scratch, SCRATCH_BYTES, SCRATCH_INODES)
-
-    def start_of(self, command: Sequence[str], environment: Mapping[str, str]) -> tuple[list[str], list[int]]:
-        """Return the command line that starts a command in a box, and its descriptors, which the caller has to close.
-
-        Args:
-            command: The command.
-            environment: The command's environment outside a box. Variables that Python and ROS need are kept.
-        """
-        words = box_arguments(self._scratch, [Bind(self._folder)])
-        python = {name: value for name, value in environment.items() if name in _OF_PYTHON}
-        for name, value in box_environment(python, environment).items():
-            words += ["--setenv", name, value]
-        words += ["--chdir", str(self._folder)]
-        begin, descriptors = bubblewrap(words, hidden_memory=self._guard.hidden_memory)
-        return [*begin, *command], descriptors
-
-    def limit(self) -> None:
-        """Apply the limits of the box. Call this in the child, before the command is executed."""
-        take_limits(self._guard.cgroups, self._guard.rlimits)
-
-    def close(self) -> None:
-        """Remove the cgroups. Call this after every command has ended."""
-        self._guard.close()
-
-
-__all__ = ["Bind", "Box", "Enclosure", "Finished", "NoSandbox", "why_impossible"]
-
-SCRATCH_BYTES = 1_000_000_000
-SCRATCH_INODES = 200_000
-OUTPUT_BYTES = 1_000_000
+_SCRATCH_BYTES = 1_000_000_000
+_SCRATCH_INODES = 200_000
+_OUTPUT_BYTES = 1_000_000
 
 
 class Enclosure:
@@ -155,8 +73,8 @@ class Enclosure:
         folder: Path,
         *,
         files: Mapping[str, bytes] | None = None,
-        scratch_bytes: int = SCRATCH_BYTES,
-        scratch_inodes: int = SCRATCH_INODES,
+        scratch_bytes: int = _SCRATCH_BYTES,
+        scratch_inodes: int = _SCRATCH_INODES,
         guard: BoxGuard | None = None,
     ) -> None:
         self._scratch = folder / "scratch"
@@ -183,7 +101,7 @@ class Enclosure:
 
         Args:
             name: A name that no other box of this enclosure has.
-            binds: What the box sees in addition to the system, Python and this package.
+            binds: The files that the box sees in addition to the system, Python and this package.
             scratch: True if the box gets the enclosure's scratch; False if it gets a small scratch of its own.
             guarded: True if the guard's limits apply to every process that enters the box, and to the box's own first
                 processes, which a program inside could control.
@@ -240,18 +158,11 @@ class Enclosure:
         limit: float,
         binds: Sequence[Bind] = (),
         cwd: Path = WORK,
-        output_bytes: int = OUTPUT_BYTES,
+        output_bytes: int = _OUTPUT_BYTES,
     ) -> Finished:
-        """Run a command in a new box that has the scratch, and wait for its end. Otherwise like :meth:`start`.
+        """Run a command in a new box, and wait for the command to end. When this returns, the whole box has ended.
 
-        When this returns, no process of the box is alive, not even a daemon.
-
-        Args:
-            command: The program and its arguments; see :meth:`start`.
-            limit: Time limit in seconds of wall time, at which the whole box is killed.
-            binds: What the box sees in addition; see :meth:`start`.
-            cwd: The working folder.
-            output_bytes: The maximum number of bytes of output to keep.
+        The box is killed after ``limit`` seconds of wall time. The other arguments are those of :meth:`start`.
 
         Raises:
             NoSandbox: The box could not be made.
@@ -266,7 +177,7 @@ class Enclosure:
         binds: Sequence[Bind] = (),
         environment: Mapping[str, str] | None = None,
         cwd: Path = WORK,
-        output_bytes: int = OUTPUT_BYTES,
+        output_bytes: int = _OUTPUT_BYTES,
         scratch: bool = True,
     ) -> Running:
         """Start a command in a new box, in the submission's network namespace.
@@ -276,13 +187,12 @@ class Enclosure:
 
         Args:
             command: The program and its arguments, with paths as seen in the box.
-            binds: What the box sees in addition to the system, Python and this package.
+            binds: As for :meth:`box`.
             environment: All environment variables; None for those of
                 :func:`autograder.boxes.visible_host.box_environment`.
             cwd: The working folder.
             output_bytes: The maximum number of bytes of output to keep.
-            scratch: True if the box gets the enclosure's scratch, in which commands see each other's files; see
-                :meth:`box`.
+            scratch: As for :meth:`box`. In the enclosure's scratch, commands see each other's files.
 
         Raises:
             NoSandbox: The box could not be made.
@@ -323,12 +233,14 @@ class Enclosure:
         Args:
             programs: The socket address of the fork server for programs.
             words: The arguments of `ros2`, such as ``["run", "my_package", "talker"]``.
-            binds: What the box sees in addition; see :meth:`start`.
+            binds: As for :meth:`box`.
             environment: All environment variables.
             cwd: The working folder.
         """
-        libraries = _own_libraries(environment)
-        links = [SymbolicLink(*pair) for pair in zip(library_folders(programs), libraries, strict=False)]
+        of_every_box = box_environment().get("LD_LIBRARY_PATH", "").split(os.pathsep)
+        libraries = environment.get("LD_LIBRARY_PATH", "").split(os.pathsep)
+        own_libraries = [Path(folder) for folder in libraries if folder not in of_every_box]
+        links = [SymbolicLink(*pair) for pair in zip(library_folders(programs), own_libraries, strict=False)]
         box = self.box(self._next_name(), [*binds, *links], scratch=False, guarded=True)
         reading, writing = os.pipe()
         try:
@@ -375,11 +287,71 @@ class Enclosure:
         }
 
 
-def _own_libraries(environment: Mapping[str, str]) -> list[Path]:
-    """Return the library folders that an environment has in addition to those of every box."""
-    of_every_box = box_environment().get("LD_LIBRARY_PATH", "").split(os.pathsep)
-    folders = environment.get("LD_LIBRARY_PATH", "").split(os.pathsep)
-    return [Path(folder) for folder in folders if folder not in of_every_box]
+class OneCommandBox:
+    """Gives this process a new network, and each start of a command a separate box in that network.
+
+    Args:
+        scratch: An empty folder. Only this process and the boxes see the files that are made in it.
+        folder: The folder of the user that a command sees, read-only and at the same path. It is also the working
+            folder.
+        command: The command, which is checked for names of files that would not be visible.
+
+    Raises:
+        ValueError: The folder contains files that no box may see, or the command needs files outside the folder. The
+            exception's text says what to do.
+    """
+
+    def __init__(self, scratch: Path, folder: Path, command: Sequence[str]) -> None:
+        self._scratch, self._folder = scratch, folder.resolve()
+        visible = (self._folder, *map(Path, SYSTEM), *installation())
+        for word in command:
+            file = self._folder / word
+            is_visible = any(map(Path(os.path.normpath(file)).is_relative_to, visible))
+            if os.sep in word and file.exists() and not is_visible:
+                raise ValueError(
+                    f"a command in a box sees only the folder in which it starts, and {word} is not in "
+                    f"{self._folder}: change to the folder of the submission, and use a path relative to it"
+                )
+        for kept in (Path.home(), Path(__file__).resolve().parents[2]):
+            if kept.resolve().is_relative_to(self._folder):
+                raise ValueError(
+                    f"a command in a box sees the folder in which it starts, and {self._folder} contains files that it "
+                    "must not see: change to the folder of the submission"
+                )
+        self._guard = BoxGuard(Limits())
+
+    def enter(self) -> None:
+        """Leave the host's network for one that has only a loopback interface. The process must have no other threads.
+
+        Raises:
+            OSError: The system does not allow such namespaces.
+        """
+        syscalls.leave_the_host()
+        furnish(self._scratch, _SCRATCH_BYTES, _SCRATCH_INODES)
+
+    def start_of(self, command: Sequence[str], environment: Mapping[str, str]) -> tuple[list[str], list[int]]:
+        """Return the command line that starts a command in a box, and its descriptors, which the caller has to close.
+
+        Args:
+            command: The command.
+            environment: The command's environment outside a box. Variables that Python and ROS need are kept.
+        """
+        words = box_arguments(self._scratch, [Bind(self._folder)])
+        settings = ("PYTHONUNBUFFERED", "PYTHONFAULTHANDLER")
+        extra = {name: environment[name] for name in settings if name in environment}
+        for name, value in box_environment(extra, environment).items():
+            words += ["--setenv", name, value]
+        words += ["--chdir", str(self._folder)]
+        begin, descriptors = bubblewrap(words, hidden_memory=self._guard.hidden_memory)
+        return [*begin, *command], descriptors
+
+    def limit(self) -> None:
+        """Apply the limits of the box. Call this in the child, before the command is executed."""
+        take_limits(self._guard.cgroups, self._guard.rlimits)
+
+    def close(self) -> None:
+        """Remove the cgroups. Call this after every command has ended."""
+        self._guard.close()
 
 
 @functools.cache
@@ -396,11 +368,9 @@ def why_impossible() -> str:
         try:
             with Enclosure(supervisors.address, folder / "try") as enclosure:
                 done = enclosure.run(["/bin/sh", "-c", f"test -d {HOME}"], limit=20.0)
-            return (
-                ""
-                if done.returncode == 0
-                else f"a program in a box ended with {done.output.decode()[-300:]!r}"
-            )
+            if done.returncode == 0:
+                return ""
+            return f"a program in a box ended with {done.output.decode()[-300:]!r}"
         except (NoSandbox, OSError) as error:
             return f"{_reason(str(error))} ({error})"
         finally:
@@ -424,9 +394,6 @@ def _reason(error: str) -> str:
     return "no box could be made here"
 
 
-if (
-    __name__ == "__main__"
-):  # doctor runs this file as a program, because doctor may run outside the course's Python
-    from autograder.boxes.limit_guards import guards
-
+if __name__ == "__main__":
+    # doctor runs this file as a program, because doctor may run outside the course's Python
     print(json.dumps({"why_impossible": why_impossible(), "guards": dict(guards())}))

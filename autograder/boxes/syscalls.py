@@ -98,17 +98,17 @@ def filter_system_calls(program: bytes, *, every_thread: bool = False) -> None:
 
 
 def leave_the_host() -> None:
-    """Enter an empty network and a private mount namespace, with full rights over these and nothing else."""
+    """Enter a network with only a loopback interface, and a private mount namespace.
+
+    This process then has full rights over these two namespaces, and over nothing else.
+    """
     user, group = os.geteuid(), os.getegid()
     unshare(CLONE_NEWUSER | CLONE_NEWNET | CLONE_NEWNS)
-    map_only_user(0, user, group)
-
-
-def map_only_user(inside: int, user: int, group: int) -> None:
-    """Map the only user and group of this process to the id ``inside`` in a new user namespace."""
+    # In the new user namespace, the only user and the only group of this process get the number 0.
     Path("/proc/self/setgroups").write_text("deny")
-    Path("/proc/self/uid_map").write_text(f"{inside} {user} 1")
-    Path("/proc/self/gid_map").write_text(f"{inside} {group} 1")
+    Path("/proc/self/uid_map").write_text(f"0 {user} 1")
+    Path("/proc/self/gid_map").write_text(f"0 {group} 1")
+    _bring_loopback_up()
 
 
 def mount_tmpfs(place: Path, size: int, inodes: int) -> None:
@@ -138,7 +138,7 @@ def mount_terminals(place: Path, most: int) -> None:
     _check(_libc.mount(b"devpts", os.fsencode(place), b"devpts", flags, options), f"mount {place}")
 
 
-def bring_loopback_up() -> None:
+def _bring_loopback_up() -> None:
     """Bring up ``lo``, the only interface of a new network namespace, which is down at first."""
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as any_socket:
         request = struct.pack("16sH14x", b"lo", 0)

@@ -17,9 +17,9 @@ from typing import TYPE_CHECKING, Protocol
 
 import msgspec
 
+from autograder.boxes.box_connection import NoSandbox
 from autograder.boxes.limit_guards import INTERVAL, NoGuard
 from autograder.boxes.run_limits import Ended, wall_time
-from autograder.boxes.running_boxes import NoSandbox
 from autograder.execution.kernel_desk_messages import (
     FURTHER_BYTES,
     MOST_ESCAPED,
@@ -33,9 +33,9 @@ from autograder.messages.json_lines import Hangup, Lines, Silent, TooLong
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from autograder.boxes.boxed_processes import ForkedProcess
     from autograder.boxes.limit_guards import Guard
     from autograder.boxes.run_limits import Left, Limits
-    from autograder.boxes.running_boxes import ForkedProcess
     from autograder.execution.cell_outputs import NotebookOutputs
     from autograder.execution.kernel_desk_messages import DeskAnswer
 

@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING
 
 from autograder.boxes.limit_guards import BoxGuard
 from autograder.boxes.run_limits import BUILD_LIMITS, Ended, Limits
-from autograder.boxes.sandbox import Bind, Enclosure
-from autograder.boxes.visible_host import HOME, WORK, box_environment
+from autograder.boxes.sandbox import Enclosure
+from autograder.boxes.visible_host import HOME, WORK, Bind, box_environment
 from autograder.safe_files import fresh_folder
 from autograder.workspaces.builds import build_artefacts, build_cache
 from autograder.workspaces.jobs import BUILD_SECONDS, MAX_ARCHIVE_BYTES, MAX_LOG_BYTES, Built
@@ -23,7 +23,7 @@ from environment.python_child import python_child
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
 
-    from autograder.boxes.running_boxes import Running, WarmCommand
+    from autograder.boxes.boxed_processes import Running, WarmCommand
     from autograder.workspaces.builds.build_cache import CachedBuild
     from autograder.workspaces.jobs import BuildOrder, ProgramJob
 

@@ -17,8 +17,8 @@ import pytest
 from autograder import course
 from autograder.boxes import visible_host
 from autograder.boxes.run_limits import Limits
-from autograder.boxes.sandbox import Bind, Enclosure
-from autograder.boxes.visible_host import installation
+from autograder.boxes.sandbox import Enclosure
+from autograder.boxes.visible_host import Bind, installation
 from autograder.execution.executed_cells import Cell
 from autograder.execution.notebook_boxes import BoxedPlace, JudgeSetting
 from autograder.execution.notebook_runner import run_notebook

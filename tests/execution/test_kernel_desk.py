@@ -27,8 +27,8 @@ from tests.execution.hostile_kernel_desk import CRAFTED, SCRIPT
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from autograder.boxes.boxed_processes import ForkedProcess
     from autograder.boxes.fork_server import Addresses
-    from autograder.boxes.running_boxes import ForkedProcess
     from autograder.execution.jupyter_kernel import Channels
 
 ROOT = Path(__file__).resolve().parents[2]

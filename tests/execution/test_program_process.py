@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from autograder.boxes import running_boxes
+from autograder.boxes import boxed_processes
 from autograder.boxes.sandbox import Enclosure
 from autograder.boxes.visible_host import HOME, Bind, box_environment
 from autograder.judge.ros_setup import boxed_ros_environment
@@ -24,8 +24,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
     from pathlib import Path
 
+    from autograder.boxes.boxed_processes import Running, WarmCommand
     from autograder.boxes.fork_server import Addresses
-    from autograder.boxes.running_boxes import Running, WarmCommand
 
 PACKAGE = "some_pkg"
 READY = "ready"
@@ -245,7 +245,7 @@ def test_it_cannot_close_its_output_and_stay(
     start: Callable[..., Running | WarmCommand], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A `ros2` on the path is a real one, and so is a student's: then the first process is theirs as well."""
-    monkeypatch.setattr(running_boxes, "_CLOSING_SECONDS", 0.5)
+    monkeypatch.setattr(boxed_processes, "_CLOSING_SECONDS", 0.5)
     theirs = tmp_path / "install" / "bin" / "ros2"
     theirs.parent.mkdir()
     theirs.write_text(f"#!{sys.executable}\nimport os, time\nos.closerange(0, 9)\ntime.sleep(600)\n")

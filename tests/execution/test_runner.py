@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING, NoReturn
 import psutil
 import pytest
 
+from autograder.boxes.box_connection import NoSandbox
 from autograder.boxes.fork_server import Addresses
 from autograder.boxes.run_limits import Ended, Left, Limits, Patient, wall_time
-from autograder.boxes.running_boxes import NoSandbox
 from autograder.execution.executed_cells import Cell, CellCheck, CellType, Execution
 from autograder.execution.notebook_boxes import BoxedPlace, JudgeSetting, UnboxedPlace
 from autograder.execution.notebook_runner import Unfinished, run_notebook

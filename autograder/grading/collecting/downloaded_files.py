@@ -21,7 +21,7 @@ from typing import IO, TYPE_CHECKING, NamedTuple, Self
 
 import msgspec
 
-from autograder.boxes.process_channel import ChannelClosed
+from autograder.boxes.box_connection import ChannelClosed
 from autograder.boxes.reading_desks import KeptDesk, answer_in, in_memory
 from autograder.boxes.sandbox import why_impossible
 from autograder.grading.collecting.collected_files import Arrival

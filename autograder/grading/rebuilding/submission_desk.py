@@ -14,7 +14,7 @@ from __future__ import annotations
 import signal
 from typing import TYPE_CHECKING
 
-from autograder.boxes.process_channel import ChannelClosed
+from autograder.boxes.box_connection import ChannelClosed
 from autograder.boxes.reading_desks import KeptDesk, answer_in, in_memory
 from autograder.grading.grading_errors import GradingError
 from autograder.grading.rebuilding.submitted_notebook import Unreadable, UnreadableSubmission

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import msgspec
 
-from autograder.boxes.process_channel import ChannelClosed
+from autograder.boxes.box_connection import ChannelClosed
 from autograder.boxes.reading_desks import KeptDesk, in_memory
 from autograder.grading.rebuilding.submitted_notebook import HARMLESS_LENGTH
 

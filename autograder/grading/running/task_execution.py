@@ -14,8 +14,8 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Self
 
 from autograder import exercises
+from autograder.boxes.box_connection import NoSandbox
 from autograder.boxes.run_limits import Ended
-from autograder.boxes.sandbox import NoSandbox
 from autograder.boxes.visible_host import kernel_environment
 from autograder.execution.notebook_boxes import SHARED_FOLDER, BoxedPlace, JudgeSetting, UnboxedPlace
 from autograder.execution.notebook_runner import Unfinished, run_notebook

@@ -14,7 +14,7 @@ import pytest
 from tiny_class import LISTENER, TALKER, FakeEngine, TinyClass
 
 from autograder.boxes import reading_desks as desk_of_boxes
-from autograder.boxes.process_channel import ChannelClosed
+from autograder.boxes.box_connection import ChannelClosed
 from autograder.boxes.reading_desks import Desk
 from autograder.boxes.sandbox import why_impossible
 from autograder.grading.rebuilding import submission_desk

@@ -1,8 +1,4 @@
-"""Running boxes, the connection to the supervisor that makes and ends them, and the processes inside.
-
-Everything here belongs to the process that started the boxes. A process inside is either the child of a fork server
-(:class:`ForkedProcess`) or a command (:class:`Running`, :class:`WarmCommand`).
-"""
+"""The processes in a box, as seen by the process that started them: a child of a fork server, or a command."""
 
 from __future__ import annotations
 
@@ -10,174 +6,18 @@ import contextlib
 import os
 import select
 import signal
-import threading
 import time
 from dataclasses import asdict, dataclass
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Self
 
-from autograder.boxes.process_channel import Channel, ChannelClosed, close_all
+from autograder.boxes.box_connection import ANSWER_SECONDS, Channel, ChannelClosed
 from autograder.process_trees import signal_group
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from autograder.boxes.box_connection import Box
     from autograder.boxes.enter_box import Entrance
-
-
-ANSWER_SECONDS = 30.0
-"""Time limit in seconds of wall time for an answer from a supervisor."""
-
-
-class NoSandbox(RuntimeError):
-    """No box can be made on this machine. The exception's text gives the reason, and says what to do about it."""
-
-
-@dataclass(frozen=True)
-class Box:
-    """A running box.
-
-    Attributes:
-        name: The name of this box, unique among the boxes of its supervisor.
-        pid: The PID of the box's first process, as seen from the host.
-        pidfd: A pidfd of the box's first process, which a fork server needs to enter the box; -1 for a command that
-            ended at once. ``supervision`` closes it.
-        guarded: True if the guard's limits apply to every process that enters the box.
-        supervision: The connection to the supervisor, through which this box is ended.
-    """
-
-    name: str
-    pid: int
-    pidfd: int
-    guarded: bool
-    supervision: Supervision
-
-    @property
-    def lost(self) -> bool:
-        """True if the supervisor has ended, and with it this box. An exit code then says nothing about student code."""
-        return self.supervision.lost
-
-    def end(self) -> int:
-        """Kill the box, and wait until none of its processes is alive. This may be called twice.
-
-        Returns:
-            The exit code of the box's command; if a signal ended it, 128 plus the number of the signal.
-
-        Raises:
-            ChannelClosed: The supervisor has ended.
-        """
-        return self.supervision.end(self.name)
-
-    def wait_end(self) -> int:
-        """Wait until the box ends by itself. Return the exit code, as :meth:`end` does.
-
-        Raises:
-            ChannelClosed: The box did not end in time, or the supervisor has ended.
-        """
-        return self.supervision.wait_end(self.name)
-
-
-class Supervision:
-    """A connection to one supervisor process, which several threads may use.
-
-    Args:
-        supervisors: The socket address of the fork server that starts supervisors.
-        words: The arguments of the supervisor's method `_open`, such as the path and size of the scratch.
-
-    Raises:
-        NoSandbox: The supervisor could not make the namespaces.
-    """
-
-    def __init__(self, supervisors: str, **words: Any) -> None:
-        self._boxes: dict[str, Box] = {}
-        self._ended: dict[str, int] = {}
-        self._turn = threading.RLock()
-        self._channel = Channel.to(supervisors)
-        try:
-            self._ask("opened", say="open", **words)
-        except BaseException:
-            self._channel.close()
-            raise
-
-    def start(
-        self, name: str, descriptors: Sequence[int] = (), *, guarded: bool = False, **words: Any
-    ) -> Box:
-        """Start a box.
-
-        Args:
-            name: A name that no other box of this supervisor has.
-            descriptors: Standard input, output and error for the box's command, if it has one. The caller keeps its
-                own copies.
-            guarded: True if the guard's limits apply to every process that enters; see :class:`Box`.
-            words: The remaining arguments of the supervisor's method `_start`.
-
-        Raises:
-            NoSandbox: The supervisor could not make the box.
-        """
-        with self._turn:
-            message, received = self._ask("started", descriptors, say="start", name=name, **words)
-            pidfd = received[0] if received else -1
-            box = self._boxes[name] = Box(name, message["pid"], pidfd, guarded, self)
-        return box
-
-    @property
-    def lost(self) -> bool:
-        """True if the supervisor has ended, and with it all its boxes."""
-        return self._channel.hung_up
-
-    def end(self, name: str) -> int:
-        """Kill the box with this name; see :meth:`Box.end`."""
-        with self._turn:
-            if name not in self._ended:
-                self._channel.send({"say": "kill", "name": name})
-            return self.wait_end(name)
-
-    def wait_end(self, name: str) -> int:
-        """Wait for the box with this name to end by itself; see :meth:`Box.wait_end`."""
-        with self._turn:
-            while name not in self._ended:
-                self._take(*self._channel.receive(ANSWER_SECONDS))
-            box = self._boxes.pop(name, None)
-            if box is not None:
-                close_all([box.pidfd])
-            return self._ended[name]
-
-    def abandon(self) -> None:
-        """Make the supervisor end all boxes, but do not wait. Any thread may call this, even if another one waits."""
-        self._channel.hang_up()
-
-    def close(self) -> None:
-        """End all boxes, and wait until none of their processes is alive. This may be called twice."""
-        try:
-            for name in list(self._boxes):
-                self.end(name)
-        except ChannelClosed:
-            pass  # the supervisor has ended, and its boxes with it
-        finally:
-            self._channel.close()
-            close_all([box.pidfd for box in self._boxes.values()])
-            self._boxes.clear()
-
-    def _ask(
-        self, expected: str, descriptors: Sequence[int] = (), **message: Any
-    ) -> tuple[dict[str, Any], list[int]]:
-        try:
-            with self._turn:
-                self._channel.send(message, descriptors)
-                while True:
-                    answer, received = self._channel.receive(ANSWER_SECONDS)
-                    if answer["say"] == expected:
-                        return answer, received
-                    self._take(answer, received)
-        except ChannelClosed as error:
-            raise NoSandbox(f"the supervisor of the boxes has ended: {error}") from error
-
-    def _take(self, message: dict[str, Any], descriptors: Sequence[int]) -> None:
-        close_all(descriptors)
-        if message["say"] == "ended":
-            self._ended[message["name"]] = message["status"]
-        elif message["say"] == "failed":
-            raise NoSandbox(message["why"])
-
 
 _START_SECONDS = 60.0
 _CLOSING_SECONDS = 10.0
