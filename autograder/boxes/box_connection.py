@@ -163,16 +163,12 @@ class Box:
             The exit code of the box's command; if a signal ended it, 128 plus the number of the signal.
 
         Raises:
-            ChannelClosed: The supervisor has ended.
+            ChannelClosed: The box did not end in time, or the supervisor has ended.
         """
         return self.supervision.end(self.name)
 
     def wait_end(self) -> int:
-        """Wait until the box ends by itself. Return the exit code, as :meth:`end` does.
-
-        Raises:
-            ChannelClosed: The box did not end in time, or the supervisor has ended.
-        """
+        """Wait until the box ends by itself; otherwise like :meth:`end`."""
         return self.supervision.wait_end(self.name)
 
 
@@ -181,7 +177,7 @@ class Supervision:
 
     Args:
         supervisors: The socket address of the fork server that starts supervisors.
-        words: The arguments of the supervisor's method `_open`, such as the path and size of the scratch.
+        words: The fields of the message ``open``, such as the path and size of the scratch.
 
     Raises:
         NoSandbox: The supervisor could not make the namespaces.
@@ -207,8 +203,8 @@ class Supervision:
             name: A name that no other box of this supervisor has.
             descriptors: Standard input, output and error for the box's command, if it has one. The caller keeps its
                 own copies.
-            guarded: True if the guard's limits apply to every process that enters; see :class:`Box`.
-            words: The remaining arguments of the supervisor's method `_start`.
+            guarded: As in :class:`Box`.
+            words: The other fields of the message ``start``.
 
         Raises:
             NoSandbox: The supervisor could not make the box.
@@ -221,18 +217,15 @@ class Supervision:
 
     @property
     def lost(self) -> bool:
-        """True if the supervisor has ended, and with it all its boxes."""
         return self._channel.hung_up
 
     def end(self, name: str) -> int:
-        """Kill the box with this name; see :meth:`Box.end`."""
         with self._turn:
             if name not in self._ended:
                 self._channel.send({"say": "kill", "name": name})
             return self.wait_end(name)
 
     def wait_end(self, name: str) -> int:
-        """Wait for the box with this name to end by itself; see :meth:`Box.wait_end`."""
         with self._turn:
             while name not in self._ended:
                 self._take(*self._channel.receive(ANSWER_SECONDS))

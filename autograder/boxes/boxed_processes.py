@@ -20,10 +20,6 @@ if TYPE_CHECKING:
     from autograder.boxes.enter_box import Entrance
 
 _START_SECONDS = 60.0
-_CLOSING_SECONDS = 10.0
-"""Seconds for which a command may still run after it closed its output."""
-_ITS_TIME = 1e6
-"""Time limit in seconds for a program of a check. The judge ends the program earlier, so the limit is never reached."""
 
 
 class ForkedProcess:
@@ -97,7 +93,7 @@ class ForkedProcess:
         """Kill the process, which then counts as lost, but do not wait for its end. Any thread may call this."""
         self._channel.hang_up()
 
-    def end_box(self) -> None:
+    def _end_box(self) -> None:
         """Kill every process in the box. The exit status of this process can still be read."""
         if self._box is not None:
             with contextlib.suppress(OSError):
@@ -105,7 +101,7 @@ class ForkedProcess:
 
     def end(self) -> None:
         """Kill the process and everything that it started in its box. This may be called twice."""
-        self.end_box()
+        self._end_box()
         if self._channel.fileno() < 0:
             return
         if self.alive:
@@ -198,7 +194,7 @@ class Running:
 
     def exit_code(self) -> int | None:
         """After the end of the output, wait until the box ends. Return the exit code as in ``Finished.returncode``."""
-        return self.wait(_ITS_TIME).returncode
+        return _returncode(self._box.wait_end())
 
     def interrupt(self) -> None:
         """Send Ctrl-C as a terminal does: to the whole process group at once.
@@ -223,6 +219,10 @@ class Running:
         self.end()
 
 
+_CLOSING_SECONDS = 10.0
+"""Seconds for which a command may still run after it closed its output."""
+
+
 class WarmCommand:
     """A command that a fork server has forked into a separate box.
 
@@ -240,7 +240,7 @@ class WarmCommand:
         process = self._process.fileno()
         ready = select.select([self._output, process], [], [], within)[0]
         if process in ready:
-            self._process.end_box()  # processes left behind may hold the output open, or write forever
+            self._process._end_box()  # processes left behind may hold the output open, or write forever
         return os.read(self._output, 1 << 16) if ready else None
 
     def exit_code(self) -> int | None:
@@ -249,7 +249,7 @@ class WarmCommand:
         Call this only after the end of the output. The result is None if the exit code is unknown.
         """
         if not self._process.wait(_CLOSING_SECONDS):
-            self._process.end_box()  # the command closed its output but goes on; this is the last chance to stop it
+            self._process._end_box()  # the command closed its output but goes on; this is the last chance to stop it
             self._process.wait(ANSWER_SECONDS)
         status = self._process.status
         if status is None:

@@ -86,15 +86,6 @@ def enter(channel: Channel, run: Run) -> None:
     close_all([*descriptors, *groups])
     with contextlib.suppress(ChannelClosed):
         channel.send({"pid": pid})
-    status = _end_of(pid, channel)
-    if not entrance.boxed:
-        end_descendants()
-    with contextlib.suppress(ChannelClosed):
-        channel.send({"status": status})
-
-
-def _end_of(pid: int, channel: Channel) -> int:
-    """Wait for the process to end, or kill it when the other end of the connection closes. Return the wait status."""
     end = os.pidfd_open(pid)
     watched: list[Any] = [end, channel]
     ready, _, _ = select.select(watched, [], [])
@@ -102,7 +93,10 @@ def _end_of(pid: int, channel: Channel) -> int:
         # No further message is expected, so if the connection is readable, the other end has closed.
         os.kill(pid, signal.SIGKILL)
     _, status = os.waitpid(pid, 0)
-    return status
+    if not entrance.boxed:
+        end_descendants()
+    with contextlib.suppress(ChannelClosed):
+        channel.send({"status": status})
 
 
 def _begin(entrance: Entrance, descriptors: Sequence[int], run: Run) -> None:
@@ -110,7 +104,7 @@ def _begin(entrance: Entrance, descriptors: Sequence[int], run: Run) -> None:
     code = 1
     try:
         os.setsid()
-        apply_rlimits(entrance.rlimits)
+        _apply_rlimits(entrance.rlimits)
         os.environ.clear()
         os.environ.update(entrance.environment)
         os.chdir(entrance.cwd)
@@ -118,13 +112,16 @@ def _begin(entrance: Entrance, descriptors: Sequence[int], run: Run) -> None:
             close_all(descriptors[:1])
             descriptors = descriptors[1:]
             filters = filter_for_boxes(hidden_memory=entrance.hidden_memory)
-            give_up_rights(b"" if entrance.reader_seconds else filters)
+            _give_up_rights(b"" if entrance.reader_seconds else filters)
         # Call this only now, because giving up rights clears the setting to die with the parent (PR_SET_PDEATHSIG,
         # prctl(2)). The parent's id is not passed, because the parent is in another PID namespace.
         die_with_parent()
         signal.signal(signal.SIGINT, signal.default_int_handler)
         if entrance.reader_seconds:
-            _limit_processor_time(entrance.reader_seconds)
+            # At this limit, SIGXCPU ends the process, which cannot catch or block the signal, because the filters of
+            # readers and desks refuse the calls for it. Linux sends SIGKILL a second later. SIGKILL must not come
+            # first, because the grader takes SIGKILL to mean that the machine is out of memory.
+            resource.setrlimit(resource.RLIMIT_CPU, (entrance.reader_seconds, entrance.reader_seconds + 1))
             if not entrance.filters_itself:
                 syscalls.filter_system_calls(filter_for_readers())
         run(entrance.call, descriptors)
@@ -140,7 +137,7 @@ def _begin(entrance: Entrance, descriptors: Sequence[int], run: Run) -> None:
         os._exit(code)
 
 
-def give_up_rights(filters: bytes) -> None:
+def _give_up_rights(filters: bytes) -> None:
     """Drop all capabilities, keep executed programs from gaining any, and install a filter of system calls."""
     syscalls.drop_capabilities()
     syscalls.filter_system_calls(filters)
@@ -148,23 +145,13 @@ def give_up_rights(filters: bytes) -> None:
     syscalls.prctl(syscalls.PR_SET_DUMPABLE, 1)
 
 
-def _limit_processor_time(seconds: int) -> None:
-    """Set the limit on processor time, at which SIGXCPU ends this process.
-
-    The process cannot catch or block SIGXCPU, because the filters of readers and desks refuse the calls for it. Linux
-    sends SIGKILL only a second later. It must not come first, because the grader takes SIGKILL to mean that the machine
-    is out of memory.
-    """
-    resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds + 1))
-
-
 def take_limits(cgroups: Sequence[str], rlimits: Mapping[str, int]) -> None:
     """Apply the limits of a box to this process, which is about to become bubblewrap."""
     join(memberships(cgroups))
-    apply_rlimits(rlimits)
+    _apply_rlimits(rlimits)
 
 
-def apply_rlimits(limits: Mapping[str, int]) -> None:
+def _apply_rlimits(limits: Mapping[str, int]) -> None:
     """Set the limits of this process and its children, as far as the system allows."""
     for name, value in limits.items():
         kind = getattr(resource, name)

@@ -18,35 +18,24 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
-
+    from collections.abc import Mapping, Sequence
 
 _PACKAGE = Path(__file__).resolve().parents[1]
 SYSTEM = ("/usr", "/bin", "/sbin", "/lib", "/lib32", "/lib64", "/libx32")
-_ETC_OF_THE_HOST = ("ld.so.cache", "ld.so.conf", "localtime", "timezone", "protocols", "services")
-ETC_FOLDERS = ("alternatives", "ld.so.conf.d")
-_SEARCH_PATHS = ("AMENT_PREFIX_PATH", "CMAKE_PREFIX_PATH", "LD_LIBRARY_PATH", "PYTHONPATH", "PATH")
 
 USER = "student"
 """The name of the user in a box. The user's id is 1000, as for the first user on many systems."""
 USER_ID = 1000
 HOME = Path("/home") / USER
 WORK = HOME / "notebook"
-"""The folder that contains the notebook's files: those next to the notebook, and those that it writes."""
-
-_PROC_HIDDEN = {"kcore", "kmsg", "keys", "key-users"}
-"""Files in ``/proc`` that say more about the machine and its users than a program needs."""
+"""The folder that contains the notebook's files: those next to the notebook, and those that the notebook writes."""
 
 ETC = "etc"
 """The folder of the scratch that becomes the ``/etc`` of a box, to which no box can write."""
+ETC_FOLDERS = ("alternatives", "ld.so.conf.d")
+"""The folders of the host's ``/etc`` that every box sees."""
 TERMINALS = "pts"
 """The folder of the scratch that contains the pseudo-terminals of all boxes of a supervisor."""
-_ETC_FILES = {
-    "passwd": f"{USER}:x:{USER_ID}:{USER_ID}::{HOME}:/bin/sh\n",
-    "group": f"{USER}:x:{USER_ID}:\n",
-    "hosts": "127.0.0.1 localhost box\n",
-    "nsswitch.conf": "passwd: files\ngroup: files\nhosts: files\n",
-}
 
 
 @dataclass(frozen=True)
@@ -100,17 +89,11 @@ def box_arguments(
         "--cap-drop", "ALL", "--die-with-parent", "--clearenv",
     ]  # fmt: skip
     words += system()
-    words += _etc(scratch)
-    words += [
-        "--proc",
-        "/proc",
-        *_proc_covers(),
-        "--dev",
-        "/dev",
-        "--dev-bind",
-        str(scratch / TERMINALS),
-        "/dev/pts",
-    ]
+    words += ["--ro-bind", str(scratch / ETC), "/etc"]
+    for name in ETC_FOLDERS:
+        words += ["--ro-bind-try", f"/etc/{name}", f"/etc/{name}"]
+    words += ["--proc", "/proc", *_proc_covers()]
+    words += ["--dev", "/dev", "--dev-bind", str(scratch / TERMINALS), "/dev/pts"]
     if scratch_visible:
         for name, place in (("home", HOME), ("work", WORK), ("tmp", Path("/tmp")), ("shm", Path("/dev/shm"))):
             words += ["--bind", str(scratch / name), str(place)]
@@ -139,29 +122,33 @@ def _course_below_the_scratch() -> tuple[str, ...]:
     return (str(folder),)
 
 
-def _etc(scratch: Path) -> list[str]:
-    """Return the mounts for the ``/etc`` of a box: the files that the supervisor wrote, and two folders of the host."""
-    words = ["--ro-bind", str(scratch / ETC), "/etc"]
-    for name in ETC_FOLDERS:
-        words += ["--ro-bind-try", f"/etc/{name}", f"/etc/{name}"]
-    return words
+_ETC_FILES = {
+    "passwd": f"{USER}:x:{USER_ID}:{USER_ID}::{HOME}:/bin/sh\n",
+    "group": f"{USER}:x:{USER_ID}:\n",
+    "hosts": "127.0.0.1 localhost box\n",
+    "nsswitch.conf": "passwd: files\ngroup: files\nhosts: files\n",
+}
 
 
 @functools.cache
 def etc_files() -> Mapping[str, bytes]:
     """Return the files for a box's ``/etc``, by name, such as those with the user, the host and the time zone."""
     files = {name: text.encode() for name, text in _ETC_FILES.items()}
-    for name in _ETC_OF_THE_HOST:
+    for name in ("ld.so.cache", "ld.so.conf", "localtime", "timezone", "protocols", "services"):
         with contextlib.suppress(OSError):
             files[name] = Path("/etc", name).read_bytes()
     return files
+
+
+_PROC_HIDDEN = {"kcore", "kmsg", "keys", "key-users"}
+"""Files in ``/proc`` that say more about the machine and its users than a program needs."""
 
 
 @functools.cache
 def _proc_covers() -> tuple[str, ...]:
     """Return bubblewrap's arguments that protect the writable files in ``/proc``, which affect the whole machine.
 
-    These arguments are needed if the grader is root: then the kernel treats the user of a box as root, too, and root
+    These arguments are needed if the grader is root. The kernel then treats the user of a box as root, too, and root
     may write to the settings in ``/proc/sys`` even without any capability.
     """
     words: list[str] = []
@@ -202,8 +189,8 @@ def installation() -> tuple[Path, ...]:
     """Return the folders of Python, ROS and this package that lie outside the system's folders.
 
     For a virtual environment, these are its own prefix and that of the Python that made it. For a sourced ROS, they are
-    the folders in its search paths. But a folder from a search path is used only if it is an installation, that is,
-    below the prefix of ROS (``share/ament_index``) or of conda.
+    the installations that contain the folders in its search paths: the prefix of ROS (``share/ament_index``) or of
+    conda.
     """
     return _installation(os.environ)
 
@@ -213,12 +200,18 @@ def _installation(variables: Mapping[str, str]) -> tuple[Path, ...]:
     helper = _PACKAGE.parent / "environment"
     if (helper / "ros2_command").is_dir():
         wanted.add(helper)
-    for name in _SEARCH_PATHS:
+    for name in ("AMENT_PREFIX_PATH", "CMAKE_PREFIX_PATH", "LD_LIBRARY_PATH", "PYTHONPATH", "PATH"):
         for entry in variables.get(name, "").split(os.pathsep):
             prefix = _ros_prefix(Path(entry)) if entry.startswith("/") else None
             if prefix is not None:
                 wanted.add(prefix)
-    return tuple(_outermost(path for path in wanted if path.is_dir() and not _in_system(path)))
+    folders = sorted(path for path in wanted if path.is_dir() and not any(map(path.is_relative_to, SYSTEM)))
+    # A folder inside another one of them is visible already.
+    return tuple(
+        folder
+        for folder in folders
+        if not any(folder != other and folder.is_relative_to(other) for other in folders)
+    )
 
 
 def _ros_prefix(path: Path) -> Path | None:
@@ -227,18 +220,6 @@ def _ros_prefix(path: Path) -> Path | None:
         if (folder / "share" / "ament_index").is_dir() or (folder / "conda-meta").is_dir():
             return folder
     return None
-
-
-def _in_system(path: Path) -> bool:
-    return any(path.is_relative_to(folder) for folder in SYSTEM)
-
-
-def _outermost(paths: Iterable[Path]) -> list[Path]:
-    """Return those folders that are not inside another one of them."""
-    every = sorted(set(paths))
-    return [
-        path for path in every if not any(path != other and path.is_relative_to(other) for other in every)
-    ]
 
 
 _KEPT = {
@@ -277,10 +258,8 @@ def base_environment(given: Mapping[str, str] | None = None) -> dict[str, str]:
     Args:
         given: The environment to take values from; None for the environment of this process.
     """
-    found = (os.environ if given is None else given).items()
-    kept = {name: value for name, value in found if name in _KEPT or name.startswith(_KEPT_PREFIXES)}
     own = {"HOME": "/nonexistent", "PYTHONNOUSERSITE": "1", "PYTHONDONTWRITEBYTECODE": "1"}
-    return {**kept, **_NO_THREADS, **own}
+    return {**_kept(os.environ if given is None else given), **_NO_THREADS, **own}
 
 
 def box_environment(
@@ -311,9 +290,6 @@ def kernel_environment(scratch: Path, extra: Mapping[str, str]) -> dict[str, str
         scratch: An existing folder. The folders inside it are created here.
         extra: Variables to set, whatever their values on the host.
     """
-    kept = {
-        name: value for name, value in os.environ.items() if name in _KEPT or name.startswith(_KEPT_PREFIXES)
-    }
     folders = {
         "HOME": scratch / "home",
         "TMPDIR": scratch / "tmp",
@@ -324,9 +300,14 @@ def kernel_environment(scratch: Path, extra: Mapping[str, str]) -> dict[str, str
     for folder in folders.values():
         folder.mkdir(parents=True, exist_ok=True)
     return {
-        **kept,
+        **_kept(os.environ),
         **{name: str(folder) for name, folder in folders.items()},
         "PYTHONNOUSERSITE": "1",
         "PYTHONDONTWRITEBYTECODE": "1",
         **extra,
     }
+
+
+def _kept(given: Mapping[str, str]) -> dict[str, str]:
+    """Return the variables of an environment that Python and ROS need."""
+    return {name: value for name, value in given.items() if name in _KEPT or name.startswith(_KEPT_PREFIXES)}
