@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any, Self
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-LARGEST = 200_000
+_LARGEST = 200_000
 """The maximum size of a message in bytes. Linux by default allows slightly more in a packet."""
 _MOST_DESCRIPTORS = 32
 
@@ -81,7 +81,7 @@ class Channel:
         if within is not None and not select.select([self._socket], [], [], within)[0]:
             raise ChannelClosed(f"no answer within {within:g} s")
         try:
-            data, descriptors, _, _ = socket.recv_fds(self._socket, LARGEST, _MOST_DESCRIPTORS)
+            data, descriptors, _, _ = socket.recv_fds(self._socket, _LARGEST, _MOST_DESCRIPTORS)
         except OSError as error:
             raise ChannelClosed(str(error)) from error
         if not data:

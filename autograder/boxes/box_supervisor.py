@@ -34,10 +34,10 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
 
-SCRATCH_FOLDERS = ("home", "tmp", "shm", "work")
+_SCRATCH_FOLDERS = ("home", "tmp", "shm", "work")
 """The folders in the scratch, each of which a box sees at another path, such as ``shm`` at ``/dev/shm``."""
 
-MOST_TERMINALS = 32
+_MOST_TERMINALS = 32
 """The maximum number of terminals. For example, a line of a notebook that begins with ``!`` uses one while it runs."""
 
 
@@ -61,9 +61,8 @@ def run(channel: Channel) -> None:
 @dataclass
 class _Started:
     process: subprocess.Popen[bytes]
-    """The bubblewrap process outside the box.
-
-    It ends when the first process of the box has ended, and with that process all other processes of the box.
+    """The bubblewrap process outside the box. It ends after the first process of the box, which ends after all others
+    of the box.
     """
     end: int
     """The pidfd of bubblewrap."""
@@ -216,9 +215,9 @@ def furnish(place: Path, size: int, inodes: int) -> None:
         inodes: The maximum number of files, folders and links in the scratch.
     """
     syscalls.mount_tmpfs(place, size, inodes)
-    for name in (*SCRATCH_FOLDERS, TERMINALS):
+    for name in (*_SCRATCH_FOLDERS, TERMINALS):
         (place / name).mkdir()
-    syscalls.mount_terminals(place / TERMINALS, MOST_TERMINALS)
+    syscalls.mount_terminals(place / TERMINALS, _MOST_TERMINALS)
     for name in ETC_FOLDERS:
         (place / ETC / name).mkdir(parents=True)
     for name, data in etc_files().items():

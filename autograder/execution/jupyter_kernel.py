@@ -215,7 +215,7 @@ class Kernel:
     def _ask(
         self, do: Do, left: Left, cell: int = 0, source: str = "", *, of_living: bool = True
     ) -> Said | None:
-        """Send an order to the desk, and return its answer; None if there is no answer (:meth:`_await_answer`)."""
+        """Send an order to the desk, and return the answer; None without an answer (:meth:`_await_answer`)."""
         self._sent += 1
         try:
             self._lines.say_json(msgspec.json.encode(DeskOrder(self._sent, do, cell, source)))

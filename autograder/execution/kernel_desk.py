@@ -120,7 +120,8 @@ class _Desk:
         }
         self._current = self._send("execute_request", content)
         self._cells[self._current] = order.cell
-        if not self._wait(lambda: self._reply is not None or self._floods):
+        most = self._setting.flood_bytes
+        if not self._wait(lambda: self._reply is not None or self._read > most):
             return Said.OPEN
         if self._reply is None:
             return Said.FLOODS
@@ -149,10 +150,6 @@ class _Desk:
         while any(True for _ in self._arrived()):
             pass
         return Said.DONE
-
-    @property
-    def _floods(self) -> bool:
-        return self._read > self._setting.flood_bytes
 
     def _wait(self, is_enough: Callable[[], bool], silence: float | None = None) -> bool:
         """Read messages until ``is_enough`` holds. Return False at a new order, or after ``silence`` idle seconds."""

@@ -28,10 +28,7 @@ class Setting:
     Attributes:
         address: The first part of the paths of the kernel's sockets; a number follows.
         key: The key that signs the messages.
-        message_bytes: See :class:`autograder.boxes.run_limits.Limits`.
-        flood_bytes: See the same class.
-        cell_output_bytes: See the same class.
-        notebook_output_bytes: See the same class.
+        message_bytes: This and the following fields are those of :class:`autograder.boxes.run_limits.Limits`.
     """
 
     address: str
@@ -110,7 +107,7 @@ class Result(Display, frozen=True, tag="execute_result"):
     execution_count: None
 
 
-class ErrorOutput(_Output, frozen=True, tag="error"):
+class _Error(_Output, frozen=True, tag="error"):
     """The error that ended a cell."""
 
     ename: str
@@ -129,7 +126,7 @@ class DeskAnswer(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
     number: int
     said: Said
-    outputs: Mapping[int, Sequence[Stream | Display | Result | ErrorOutput]]
+    outputs: Mapping[int, Sequence[Stream | Display | Result | _Error]]
 
 
 def admitted_answer(line: bytes, orders: range, cells: Collection[int]) -> DeskAnswer:

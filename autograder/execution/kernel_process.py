@@ -112,7 +112,10 @@ def run(call: Mapping[str, Any], descriptors: Sequence[int]) -> None:
     for standard in (1, 2):
         os.dup2(log, standard)
     os.close(log)
-    _forget_the_fork()
+    # Give this child its own random numbers. Otherwise numpy would draw the same numbers in all forks.
+    random.seed()
+    if (numpy_random := sys.modules.get("numpy.random")) is not None:
+        numpy_random.seed()
     sys.argv = _arguments()
     app = _kernel_app(call["key"].encode(), call["address"], {SHELL: shell, IOPUB: iopub})
     app.initialize([])
@@ -129,16 +132,8 @@ def _arguments() -> list[str]:
     return [name, "-f", "kernel.json"]
 
 
-def _forget_the_fork() -> None:
-    """Give this child its own random numbers. Otherwise numpy would draw the same numbers in all forks."""
-    random.seed()
-    numpy_random = sys.modules.get("numpy.random")
-    if numpy_random is not None:
-        numpy_random.seed()
-
-
 class _GivenSockets(IPKernelApp):
-    """A kernel application that uses the sockets it is given instead of binding its own."""
+    """A kernel application that uses the given sockets instead of binding its own."""
 
     given: Mapping[int, int]
     address: str

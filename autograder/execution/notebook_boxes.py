@@ -92,8 +92,11 @@ class BoxedPlace:
         self._addresses, self._judge, self._limits = addresses, judge, limits
         self._open = contextlib.ExitStack()
         self._judges = itertools.count(1)
-        self._shared = folder / "run"
-        self._shared.mkdir()
+        self.shared = folder / "run"
+        """The folder that the student's box sees, read-only, at the path ``SHARED_FOLDER``."""
+        self.shared.mkdir()
+        self.judge_socket = self.shared / _JUDGE
+        """The path of the judge's socket, as the grader sees it."""
         self._variables = {**variables, socket_variable: str(SHARED_FOLDER / _JUDGE)}
         self.guard = BoxGuard(limits)
         self._open.callback(self.guard.close)
@@ -114,16 +117,6 @@ class BoxedPlace:
             self._open.close()
             raise
 
-    @property
-    def judge_socket(self) -> Path:
-        """The path of the judge's socket. The student's box sees the folder that contains this socket."""
-        return self._shared / _JUDGE
-
-    @property
-    def shared(self) -> Path:
-        """The folder that the student's box sees, read-only, at the path ``SHARED_FOLDER``."""
-        return self._shared
-
     def abandon(self) -> None:
         """End all boxes, and do not wait. Any thread may call this. Threads that wait for a box see that it is lost."""
         for enclosure in {self.enclosure, self.programs}:
@@ -131,7 +124,7 @@ class BoxedPlace:
 
     def start_kernel(self, channels: Channels) -> ForkedProcess:
         """Start the kernel: a child of the fork server enters the student's box."""
-        box = self.enclosure.box(_STUDENT, [Bind(self._shared, SHARED_FOLDER)], guarded=True)
+        box = self.enclosure.box(_STUDENT, [Bind(self.shared, SHARED_FOLDER)], guarded=True)
         self.guard.watch(box.pid)
         return self.enclosure.enter(
             box,
@@ -178,8 +171,7 @@ class BoxedPlace:
 class UnboxedPlace:
     """A replacement for the boxes: the processes run with the rights of the user who grades.
 
-    It is used for the course's own notebooks, and for ``--unsafe-no-sandbox``. For the arguments see
-    :class:`BoxedPlace`.
+    The course's own notebooks and ``--unsafe-no-sandbox`` use it. The arguments are those of :class:`BoxedPlace`.
     """
 
     def __init__(
@@ -197,14 +189,11 @@ class UnboxedPlace:
         del programs  # without boxes, all processes are on the host's network
         self._addresses, self._folder, self._judge, self._limits = addresses, folder, judge, limits
         self.guard = NoGuard()
+        self.judge_socket = folder / _JUDGE
+        """The path of the socket on which the judge listens."""
         self._started: list[ForkedProcess] = []
         self._cwd = write_files(files, folder / "work")
         self._variables = {**variables, socket_variable: str(self.judge_socket)}
-
-    @property
-    def judge_socket(self) -> Path:
-        """The path of the socket on which the judge listens."""
-        return self._folder / _JUDGE
 
     def abandon(self) -> None:
         """Kill the processes, and do not wait for their end; see :meth:`BoxedPlace.abandon`."""
@@ -248,14 +237,7 @@ class UnboxedPlace:
 
 
 def _desk_entrance(channels: Channels, folder: Path, limits: Limits, *, boxed: bool) -> Entrance:
-    """Return the settings with which a kernel's desk starts.
-
-    Args:
-        channels: The channels of the kernel.
-        folder: The folder of the kernel's sockets, as the desk sees it.
-        limits: All limits.
-        boxed: See :class:`Entrance`.
-    """
+    """Return the settings with which a kernel's desk starts. ``folder`` is that of the sockets, as the desk sees it."""
     setting = Setting(
         str(folder / "k"),
         channels.key,

@@ -37,12 +37,6 @@ if TYPE_CHECKING:
     from autograder.boxes.run_limits import Limits
 
 
-_KERNEL_GONE = (Ended.KERNEL_DIED, *LIMITS)
-"""The ways in which a cell may end that usually end the kernel, too."""
-_TERMINAL = ("%%bash", "%%sh", "%%script")
-"""The magics with which a cell that stands for a terminal begins."""
-
-
 class Unfinished(RuntimeError):
     """The judge did not finish the check within its time limit."""
 
@@ -119,7 +113,7 @@ class _Run:
         self._seconds = [0.0 for _ in cells]
         self._verdicts: dict[int, Verdict] = {}
         self._trouble = ""
-        self._hangs = Hangs.of(cells)
+        self._hangs = _Hangs.of(cells)
         self._allowed = [self._limit(cell) for cell in cells]
         self._hung_before: dict[int, tuple[str, str]] = {}
 
@@ -134,18 +128,14 @@ class _Run:
                 continue
             with self._watched(index, cell, judge):
                 began = time.monotonic()
-                self._allow(index, cell)
+                if (before := self._hangs.before(cell)) is not None:
+                    self._hung_before[index] = before
+                    self._allowed[index] = _seconds_again(cell, self._allowed[index], self._limits)
                 of_cell = self._patient(self._allowed[index])
                 self._ended[index] = kernel.execute(index, cell.source, first_of(of_cell, of_notebook))
                 self._seconds[index] = time.monotonic() - began
                 if self._ended[index] is Ended.TIMED_OUT:
                     self._hangs.note(cell, _title(cell))
-
-    def _allow(self, index: int, cell: Cell) -> None:
-        """Set the time limit of a cell. It is shorter if the cell uses a function or class that hung before."""
-        if (before := self._hangs.before(cell)) is not None:
-            self._hung_before[index] = before
-            self._allowed[index] = seconds_again(cell, self._allowed[index], self._limits)
 
     def result(self, seconds: float, start_seconds: float) -> Execution:
         """Return the execution, with a verdict for every check cell."""
@@ -169,11 +159,14 @@ class _Run:
         These are the cells since the previous check. If none of them failed, return all earlier cells, but of the
         checks only those in which the kernel ended.
         """
+        usually_end_the_kernel = (Ended.KERNEL_DIED, *LIMITS)
         code = [index for index in range(check) if self._cells[index].kind is CellType.CODE]
         checks = [index for index in code if self._cells[index].check is not None]
         recent = [index for index in code if index > (checks[-1] if checks else -1)]
         if all(runs[index].ended is Ended.DONE or runs[index].ended is Ended.NOT_RUN for index in recent):
-            recent = [index for index in code if index not in checks or runs[index].ended in _KERNEL_GONE]
+            recent = [
+                index for index in code if index not in checks or runs[index].ended in usually_end_the_kernel
+            ]
         return [(_title(self._cells[index]), runs[index]) for index in recent]
 
     def failed(self, reason: str, seconds: float) -> Execution:
@@ -227,7 +220,7 @@ class _Run:
     def _limit(self, cell: Cell) -> float:
         if cell.check is not None and not cell.check.asserts:
             return cell.check.limit + self._limits.check_margin
-        is_terminal = cell.source.lstrip().startswith(_TERMINAL)
+        is_terminal = cell.source.lstrip().startswith(("%%bash", "%%sh", "%%script"))
         return self._limits.cell_seconds * (self._limits.terminal_factor if is_terminal else 1.0)
 
     def _cell_run(self, index: int) -> CellRun:
@@ -245,7 +238,7 @@ def _title(cell: Cell) -> str:
     return (telling or lines or [""])[0][:60]
 
 
-AGAIN_SECONDS = 10.0
+_AGAIN_SECONDS = 10.0
 """Time limit in seconds for a cell without points that uses a function or class that hung before."""
 _SHARE_OF_A_CHECK = 0.25
 """The fraction of the judge's time limit that a check gets if an earlier check of the same class or function hung. This
@@ -254,7 +247,7 @@ is enough, because a check normally takes a twentieth of the limit.
 
 
 @dataclass
-class Hangs:
+class _Hangs:
     """The functions and classes of a student that have hung so far in a notebook.
 
     Args:
@@ -265,18 +258,13 @@ class Hangs:
     _hung: dict[str, str] = field(default_factory=dict)
 
     @classmethod
-    def of(cls, cells: Iterable[Cell]) -> Hangs:
+    def of(cls, cells: Iterable[Cell]) -> _Hangs:
         """Return a record for the notebook with these cells, in which nothing has hung yet."""
         own = (cell.source for cell in cells if cell.kind is CellType.CODE and cell.own)
         return cls(frozenset(name for source in own for name in _defined(source)))
 
     def note(self, cell: Cell, title: str) -> None:
-        """Record that a cell was stopped at its time limit.
-
-        Args:
-            cell: The cell.
-            title: The title of the cell in messages.
-        """
+        """Record that the cell with this title in messages was stopped at its time limit."""
         used = [] if cell.own else self._used(cell)
         if len(used) == 1:
             self._hung.setdefault(used[0], title)
@@ -296,16 +284,13 @@ class Hangs:
         return sorted(names & self.written)
 
 
-def seconds_again(cell: Cell, usual: float, limits: Limits) -> float:
+def _seconds_again(cell: Cell, usual: float, limits: Limits) -> float:
     """Return the time limit, in seconds of wall time, for a cell that uses a function or class that hung before.
 
-    Args:
-        cell: The cell.
-        usual: The limit for any other cell.
-        limits: All limits.
+    ``usual`` is the cell's limit if nothing has hung.
     """
     if cell.check is None or cell.check.asserts:
-        return min(usual, AGAIN_SECONDS)
+        return min(usual, _AGAIN_SECONDS)
     return min(usual, cell.check.limit * _SHARE_OF_A_CHECK + limits.check_margin)
 
 
