@@ -27,13 +27,12 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
-
 DOMAIN_VARIABLE = "ROS_DOMAIN_ID"
 FREE_TO_PICK = range(1, 102)
 """The domains to pick from. Domain 0 is every program's default; from 102 on, the ports overlap with Linux's range for
 outgoing connections.
 """
-HIGHEST_DOMAIN = 232
+_HIGHEST_DOMAIN = 232
 """The last domain whose ports are valid UDP port numbers."""
 
 _PORT_BASE = 7400
@@ -106,9 +105,9 @@ def domain_from_environment() -> int | None:
     text = os.environ.get(DOMAIN_VARIABLE, "").strip()
     if not text:
         return None
-    if not text.isdecimal() or int(text) > HIGHEST_DOMAIN:
+    if not text.isdecimal() or int(text) > _HIGHEST_DOMAIN:
         raise ValueError(
-            f"{DOMAIN_VARIABLE} is {text!r}, but a ROS domain is a whole number from 0 to {HIGHEST_DOMAIN} "
+            f"{DOMAIN_VARIABLE} is {text!r}, but a ROS domain is a whole number from 0 to {_HIGHEST_DOMAIN} "
             f"(0 to {FREE_TO_PICK[-1]} to be safe): correct it or unset it"
         )
     return int(text)

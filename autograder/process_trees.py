@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
     Known = tuple[int, str]
-    """A process id and the start time of the process (:func:`started_at`). If the system reuses the id for another
+    """A process id and the start time of the process (:func:`_started_at`). If the system reuses the id for another
     process, the start time differs.
     """
 
@@ -73,13 +73,7 @@ def descendants(pid: int) -> list[int]:
 
 def known(processes: Iterable[int]) -> set[Known]:
     """Return processes with their start times; :func:`send` then never reaches a later process with the same id."""
-    return {(pid, started_at(pid)) for pid in processes}
-
-
-def started_at(pid: int) -> str:
-    """Return the start time of a process, in clock ticks since the system started; empty if the process has ended."""
-    fields = _fields(pid)
-    return fields[19] if fields else ""
+    return {(pid, _started_at(pid)) for pid in processes}
 
 
 def send(processes: Iterable[Known], number: int) -> None:
@@ -108,7 +102,7 @@ def end_each(processes: Iterable[int], number: int, within: float) -> None:
             without a wait.
     """
     deadline = time.monotonic() + within
-    for process in [(pid, started_at(pid)) for pid in processes]:
+    for process in [(pid, _started_at(pid)) for pid in processes]:
         _signal(process, number, max(0.0, deadline - time.monotonic()))
 
 
@@ -198,14 +192,13 @@ def keep(parent: int, command: list[str]) -> int:
     parent_ends = os.pidfd_open(parent)
     if (
         os.getppid() != parent
-    ):  # The parent has ended, and another process may now have the parent's process id.
+    ):  # the parent has ended, and another process may now have the parent's process id
         return 1
     signalled, on_signal = os.pipe2(os.O_NONBLOCK | os.O_CLOEXEC)
     signal.set_wakeup_fd(on_signal, warn_on_full_buffer=False)
     for number in (signal.SIGCHLD, signal.SIGTERM, signal.SIGINT):
-        signal.signal(
-            number, lambda *_: None
-        )  # Use a handler that does nothing. The command would inherit SIG_IGN, but inherits no handler.
+        # Use a handler that does nothing, because the command would inherit SIG_IGN, but inherits no handler.
+        signal.signal(number, lambda *_: None)
     child = _start(command)
     code: int | None = None
     try:
@@ -276,7 +269,7 @@ def _signal(process: Known, number: int, within: float = 0.0) -> bool:
     with contextlib.suppress(ProcessLookupError):
         handle = os.pidfd_open(pid)
         try:
-            if began and started_at(pid) == began:
+            if began and _started_at(pid) == began:
                 signal.pidfd_send_signal(handle, number)
                 # poll(2) is used because select(2) does not support the high descriptors of a grader with many open
                 # files.
@@ -315,6 +308,12 @@ def _fields(pid: int) -> list[str]:
         return Path(f"/proc/{pid}/stat").read_text(errors="replace").rpartition(")")[2].split()
     except OSError:
         return []
+
+
+def _started_at(pid: int) -> str:
+    """Return the start time of a process, in clock ticks since the system started; empty if the process has ended."""
+    fields = _fields(pid)
+    return fields[19] if fields else ""
 
 
 def _mentions(pid: int, place: bytes) -> bool:

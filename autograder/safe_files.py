@@ -27,9 +27,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
 
 
-_UNFINISHED = re2.compile(r"\..+\.\d+\.new")
-
-
 def opened(path: str | Path, folder: int | None = None) -> IO[bytes]:
     """Open a regular file for reading. If the path is a link, a pipe or a device, raise an error at once.
 
@@ -105,8 +102,9 @@ def files_below(folder: Path) -> Iterator[Path]:
 
 def remove_unfinished(folder: Path) -> None:
     """Remove files below a folder that killed processes left unfinished. No other process may be using the folder."""
+    unfinished = re2.compile(r"\..+\.\d+\.new")
     for file in files_below(folder):
-        if _UNFINISHED.fullmatch(name_as_text(file.name)):
+        if unfinished.fullmatch(name_as_text(file.name)):
             with contextlib.suppress(OSError):
                 file.unlink()
 
@@ -119,10 +117,6 @@ def _keep_names(folder: Path) -> None:
             os.fsync(descriptor)
     finally:
         os.close(descriptor)
-
-
-_NAME = "ros2-course"
-_OF_OTHERS = stat.S_IRWXG | stat.S_IRWXO
 
 
 class UnsafeTemporaryFolder(PermissionError):
@@ -139,11 +133,11 @@ def fresh_folder(prefix: str, parent: Path | None = None) -> Path:
     Raises:
         UnsafeTemporaryFolder: No safe folder for temporary files exists, or another user can change the new folder.
     """
-    folder = Path(tempfile.mkdtemp(prefix=prefix, dir=parent or _base()))
+    folder = Path(tempfile.mkdtemp(prefix=prefix, dir=parent or _temporary_files()))
     if parent is not None:
         return folder
-    found = folder.lstat()
-    if not stat.S_ISDIR(found.st_mode) or found.st_uid != os.getuid() or found.st_mode & _OF_OTHERS:
+    found, of_others = folder.lstat(), stat.S_IRWXG | stat.S_IRWXO
+    if not stat.S_ISDIR(found.st_mode) or found.st_uid != os.getuid() or found.st_mode & of_others:
         raise UnsafeTemporaryFolder(
             f"other users can change {folder}, which was just created: set TMPDIR to a folder of your own"
         )
@@ -156,7 +150,7 @@ def unnamed_file(parent: Path | None = None) -> IO[bytes]:
     Args:
         parent: A folder of this user; None for the folder for temporary files.
     """
-    return tempfile.TemporaryFile(dir=parent or _base())
+    return tempfile.TemporaryFile(dir=parent or _temporary_files())
 
 
 @contextlib.contextmanager
@@ -223,7 +217,7 @@ class HeldFolder:
                 self.path = fresh_folder(prefix)
                 self._lock = os.open(self.path, os.O_RDONLY | os.O_DIRECTORY)
             except FileNotFoundError:
-                _base()  # raises an error if the folder for temporary files itself does not exist
+                _temporary_files()  # raises an error if the folder for temporary files itself does not exist
                 continue
             fcntl.flock(self._lock, fcntl.LOCK_EX)
             if self.path.exists():
@@ -246,12 +240,12 @@ class HeldFolder:
 
 def sweep(prefix: str) -> None:
     """Remove the folders with this prefix whose creators were killed."""
-    for folder in _base().glob(f"{prefix}*"):
+    for folder in _temporary_files().glob(f"{prefix}*"):
         with contextlib.suppress(OSError), _locked(folder):
             remove_tree(folder)
 
 
-def _base() -> Path:
+def _temporary_files() -> Path:
     """Return the folder for temporary files; if other users could replace files in it, a folder of this user alone.
 
     Raises:
@@ -261,7 +255,7 @@ def _base() -> Path:
     if _is_safe(usual):
         return usual
     session = os.environ.get("XDG_RUNTIME_DIR")
-    own = Path(session) if session else platformdirs.user_cache_path(_NAME)
+    own = Path(session) if session else platformdirs.user_cache_path("ros2-course")
     with contextlib.suppress(OSError):
         own.mkdir(mode=0o700, parents=True, exist_ok=True)
         if _is_safe(own):

@@ -14,15 +14,14 @@ from typing import TYPE_CHECKING, Any, AnyStr, BinaryIO, Protocol
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-STDOUT = 1
-STDERR = 2
+_STDOUT, _STDERR = 1, 2
 
 
 def private_stdout() -> BinaryIO:
     """Return standard output as a stream for results. From now on, all other output goes to standard error."""
     sys.stdout.flush()
-    results = os.fdopen(os.dup(STDOUT), "wb")
-    os.dup2(STDERR, STDOUT)
+    results = os.fdopen(os.dup(_STDOUT), "wb")
+    os.dup2(_STDERR, _STDOUT)
     return results
 
 
@@ -30,23 +29,20 @@ def private_stdout() -> BinaryIO:
 def stray_lines_on_stderr() -> Iterator[None]:
     """During a ``with`` block, redirect the standard output of libraries and child processes to standard error."""
     sys.stdout.flush()
-    kept = os.dup(STDOUT)
-    os.dup2(STDERR, STDOUT)
+    kept = os.dup(_STDOUT)
+    os.dup2(_STDERR, _STDOUT)
     try:
         yield
     finally:
-        os.dup2(kept, STDOUT)
+        os.dup2(kept, _STDOUT)
         os.close(kept)
 
 
-class Chunks(Protocol):
+class _Chunks(Protocol):
     """A stream that returns available data without waiting for more."""
 
     def read1(self, size: int, /) -> bytes:
         """Return at most ``size`` bytes; b"" at the end of the stream."""
-
-
-_CHUNK = 65_536
 
 
 def split_lines(text: AnyStr) -> list[AnyStr]:
@@ -64,7 +60,7 @@ def split_lines(text: AnyStr) -> list[AnyStr]:
     return [*(piece for line in lines for piece in line.split(back)), *pieces, last + rest[len(begun) :]]
 
 
-def short_lines(stream: Chunks, limit: int) -> Iterator[bytes]:
+def short_lines(stream: _Chunks, limit: int) -> Iterator[bytes]:
     """Yield the lines of a stream as they arrive, each with its line end. A longer line is cut to the limit.
 
     A carriage return ends a line, as in :func:`split_lines`.
@@ -74,7 +70,7 @@ def short_lines(stream: Chunks, limit: int) -> Iterator[bytes]:
         limit: The maximum length of a line in bytes.
     """
     rest, begins = b"", True
-    while chunk := stream.read1(_CHUNK):
+    while chunk := stream.read1(65_536):
         lines = (rest + chunk).splitlines(keepends=True)
         # A carriage return at the end of the data may be the first half of a line end.
         rest = b"" if lines[-1].endswith(b"\n") else lines.pop()

@@ -1,7 +1,8 @@
-"""A temporary folder whose maker may be killed at any moment."""
+"""Temporary folders whose maker may be killed at any moment, and files that are written in one step."""
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
 import tempfile
@@ -10,7 +11,7 @@ from typing import Any
 
 import pytest
 
-from autograder.safe_files import HeldFolder, UnsafeTemporaryFolder, fresh_folder
+from autograder.safe_files import HeldFolder, UnsafeTemporaryFolder, fresh_folder, write_whole
 
 MAKER = """
 import sys, tempfile
@@ -101,3 +102,19 @@ def test_one_that_another_process_removes_before_it_is_locked_is_made_again(
     temporary.rmdir()
     with pytest.raises(FileNotFoundError):
         HeldFolder("held-")
+
+
+def test_a_link_that_another_user_has_put_there_is_not_written_through(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    victim, shared = tmp_path / "gradebook", tmp_path / "shared"
+    shared.mkdir()
+    victim.write_text("points")
+    (shared / f".report.html.{os.getpid()}.new").symlink_to(victim)
+    write_whole(shared / "report.html", b"a page")
+    monkeypatch.setattr("secrets.randbelow", lambda _: 7)
+    (shared / ".report.html.7.new").symlink_to(victim)
+    with pytest.raises(FileExistsError):
+        write_whole(shared / "report.html", b"another page")
+    assert victim.read_text() == "points"
+    assert (shared / "report.html").read_text() == "a page"
