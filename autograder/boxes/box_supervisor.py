@@ -23,9 +23,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from autograder.boxes import syscalls
 from autograder.boxes.box_connection import Channel, ChannelClosed, close_all
-from autograder.boxes.enter_box import take_limits
+from autograder.boxes.process_isolation import leave_the_host, mount_terminals, mount_tmpfs, take_limits
 from autograder.boxes.seccomp_filter import filter_for_boxes
 from autograder.boxes.visible_host import ETC, ETC_FOLDERS, TERMINALS, etc_files
 from autograder.process_trees import die_with_parent
@@ -117,7 +116,7 @@ class _Supervisor:
                     self._started[message["name"]].kill()
 
     def _open(self, scratch: str, size: int, inodes: int, files: str) -> None:
-        syscalls.leave_the_host()
+        leave_the_host()
         die_with_parent()  # again, because entering the user namespace has cleared this setting
         place = Path(scratch)
         furnish(place, size, inodes)
@@ -214,10 +213,10 @@ def furnish(place: Path, size: int, inodes: int) -> None:
         size: The maximum number of bytes in the scratch.
         inodes: The maximum number of files, folders and links in the scratch.
     """
-    syscalls.mount_tmpfs(place, size, inodes)
+    mount_tmpfs(place, size, inodes)
     for name in (*_SCRATCH_FOLDERS, TERMINALS):
         (place / name).mkdir()
-    syscalls.mount_terminals(place / TERMINALS, _MOST_TERMINALS)
+    mount_terminals(place / TERMINALS, _MOST_TERMINALS)
     for name in ETC_FOLDERS:
         (place / ETC / name).mkdir(parents=True)
     for name, data in etc_files().items():

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from autograder.boxes.box_connection import Box
-    from autograder.boxes.enter_box import Entrance
+    from autograder.boxes.process_isolation import Entrance
 
 _START_SECONDS = 60.0
 

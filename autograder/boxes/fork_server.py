@@ -2,8 +2,8 @@
 
 ``python -P -m autograder.boxes.fork_server MODE MODULE DESCRIPTOR [WORD...]``: ``MODULE`` has two functions:
 ``prepare``, called once with the words, and ``run``, called in each child. In the mode ``inside``, the child first
-enters the box named in the request (:mod:`autograder.boxes.enter_box`). In the mode ``beside``, ``run`` gets the
-connection itself.
+enters the box named in the request (:mod:`autograder.boxes.process_isolation`). In the mode ``beside``, ``run`` gets
+the connection itself.
 
 Forking is safe because this process starts with a clean environment, and makes no thread and no ROS context. (LTTng,
 which rclpy loads, has two threads, but they sleep until a tracing daemon runs.) Not this process but each child reads a
@@ -29,7 +29,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
 from autograder.boxes.box_connection import Channel
-from autograder.boxes.enter_box import enter
+from autograder.boxes.process_isolation import enter
 from autograder.boxes.run_limits import raise_own
 from autograder.boxes.visible_host import base_environment
 from autograder.process_trees import end_soon

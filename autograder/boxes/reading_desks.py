@@ -24,8 +24,8 @@ from typing import TYPE_CHECKING, Any
 
 from autograder.boxes.box_connection import ChannelClosed, NoSandbox
 from autograder.boxes.boxed_processes import ForkedProcess
-from autograder.boxes.enter_box import Entrance
 from autograder.boxes.fork_server import BESIDE, FOLDER_PREFIX, INSIDE, SUPERVISOR_MODULE, ForkServer
+from autograder.boxes.process_isolation import Entrance
 from autograder.boxes.sandbox import Enclosure
 from autograder.boxes.visible_host import base_environment
 from autograder.safe_files import HeldFolder

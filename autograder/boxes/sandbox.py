@@ -21,13 +21,12 @@ import shutil
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
-from autograder.boxes import syscalls
 from autograder.boxes.box_connection import Box, NoSandbox, Supervision, close_all
 from autograder.boxes.box_supervisor import bubblewrap, furnish
 from autograder.boxes.boxed_processes import Finished, ForkedProcess, Running, WarmCommand
-from autograder.boxes.enter_box import Entrance, take_limits
 from autograder.boxes.fork_server import BESIDE, SUPERVISOR_MODULE, ForkServer, library_folders
 from autograder.boxes.limit_guards import BoxGuard, guards
+from autograder.boxes.process_isolation import Entrance, leave_the_host, take_limits
 from autograder.boxes.run_limits import Limits
 from autograder.boxes.visible_host import (
     HOME,
@@ -326,7 +325,7 @@ class OneCommandBox:
         Raises:
             OSError: The system does not allow such namespaces.
         """
-        syscalls.leave_the_host()
+        leave_the_host()
         furnish(self._scratch, _SCRATCH_BYTES, _SCRATCH_INODES)
 
     def start_of(self, command: Sequence[str], environment: Mapping[str, str]) -> tuple[list[str], list[int]]:

@@ -33,10 +33,21 @@ import struct
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from autograder.boxes import syscalls
-
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
+
+CLONE_FILES = 0x00000400
+CLONE_THREAD = 0x00010000
+CLONE_NEWNS = 0x00020000
+CLONE_NEWCGROUP = 0x02000000
+CLONE_NEWUTS = 0x04000000
+CLONE_NEWIPC = 0x08000000
+CLONE_NEWUSER = 0x10000000
+CLONE_NEWPID = 0x20000000
+CLONE_NEWNET = 0x40000000
+"""The last of the flags of ``clone`` and ``unshare`` (linux/sched.h). The flags CLONE_NEW… are for namespaces."""
+PR_SET_SECCOMP = 22
+"""The option of ``prctl`` that installs a filter of system calls (linux/prctl.h)."""
 
 _X86_64: Mapping[str, int] = {
     "ioctl": 16, "shmget": 29, "socket": 41, "socketpair": 53, "setsockopt": 54, "clone": 56, "semget": 64,
@@ -149,8 +160,8 @@ _LOCKS_OF_NOBODY = (37, 38)
 _NAMES_OF_MEMORY = 0x53564D41
 """PR_SET_VMA, with which a process may give each of its 65,530 pieces of memory a name (linux/prctl.h)."""
 _NAMESPACES = (
-    syscalls.CLONE_NEWNS | syscalls.CLONE_NEWCGROUP | syscalls.CLONE_NEWUTS | syscalls.CLONE_NEWIPC
-    | syscalls.CLONE_NEWUSER | syscalls.CLONE_NEWPID | syscalls.CLONE_NEWNET
+    CLONE_NEWNS | CLONE_NEWCGROUP | CLONE_NEWUTS | CLONE_NEWIPC
+    | CLONE_NEWUSER | CLONE_NEWPID | CLONE_NEWNET
 )  # fmt: skip
 
 
@@ -208,7 +219,7 @@ def filter_for_boxes(*, hidden_memory: bool = True, machine: str = "") -> bytes:
     program += _where(calls["clone"], _decide_on_clone())
     program += _where(calls["ioctl"], _refuse_any(1, _TERMINAL_TRICKS))
     program += _where(calls["fcntl"], _refuse_any(1, (*_OTHERS_WAIT, *_LOCKS_OF_NOBODY)))
-    program += _where(calls["prctl"], _refuse_any(0, (syscalls.PR_SET_SECCOMP, _NAMES_OF_MEMORY)))
+    program += _where(calls["prctl"], _refuse_any(0, (PR_SET_SECCOMP, _NAMES_OF_MEMORY)))
     program += _where(calls["setsockopt"], [*_only_if(1, _SOL_SOCKET), *_refuse_any(2, _SOCKET_FILTERS)])
     program += _where(calls["socket"], _decide_on_socket())
     program += _where(calls["socketpair"], _refuse_others(0, (socket.AF_UNIX,), errno.EAFNOSUPPORT))
@@ -315,8 +326,8 @@ def _decide_on_clone() -> list[_Instruction]:
         _load(0),
         (_JUMP_BITS, 0, 1, _NAMESPACES),
         _fail(errno.EPERM),
-        (_JUMP_BITS, 0, 2, syscalls.CLONE_FILES),
-        (_JUMP_BITS, 1, 0, syscalls.CLONE_THREAD),
+        (_JUMP_BITS, 0, 2, CLONE_FILES),
+        (_JUMP_BITS, 1, 0, CLONE_THREAD),
         _fail(errno.EPERM),
     ]
 

@@ -19,7 +19,7 @@ import zmq
 from jupyter_client.session import Session
 from zmq.utils.monitor import recv_monitor_message
 
-from autograder.boxes import syscalls
+from autograder.boxes.process_isolation import filter_system_calls
 from autograder.boxes.seccomp_filter import filter_for_desks
 from autograder.execution.cell_outputs import Budget, OutputCollector
 from autograder.execution.jupyter_kernel import IOPUB, SHELL
@@ -63,7 +63,7 @@ def run(call: Mapping[str, Any], descriptors: Sequence[int]) -> None:
     setting = Setting(**call)
     with contextlib.suppress(Hangup):
         desk = _Desk(setting, socket.socket(fileno=descriptors[0]))
-        syscalls.filter_system_calls(filter_for_desks(), every_thread=True)
+        filter_system_calls(filter_for_desks(), every_thread=True)
         desk.serve()
 
 

@@ -12,8 +12,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Self
 
 from autograder.boxes.boxed_processes import ForkedProcess
-from autograder.boxes.enter_box import Entrance
 from autograder.boxes.limit_guards import BoxGuard, NoGuard
+from autograder.boxes.process_isolation import Entrance
 from autograder.boxes.sandbox import Enclosure
 from autograder.boxes.visible_host import (
     HOME,

@@ -17,8 +17,8 @@ import pytest
 
 from autograder.boxes import fork_server
 from autograder.boxes.boxed_processes import ForkedProcess
-from autograder.boxes.enter_box import Entrance
 from autograder.boxes.fork_server import BESIDE, INSIDE, SUPERVISOR_MODULE, ForkServer, ForkServers
+from autograder.boxes.process_isolation import Entrance
 from autograder.boxes.run_limits import open_files_of_a_box
 from autograder.boxes.sandbox import Enclosure
 from autograder.boxes.visible_host import WORK, box_environment

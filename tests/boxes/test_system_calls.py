@@ -11,21 +11,19 @@ from pathlib import Path
 
 import pytest
 
+from autograder.boxes.process_isolation import PR_SET_DUMPABLE
 from autograder.boxes.seccomp_filter import (
     _DESKS,
     _FUTEX,
     _READERS,
     ARCHITECTURES,
-    filter_for_boxes,
-    filter_for_desks,
-    filter_for_readers,
-)
-from autograder.boxes.syscalls import (
     CLONE_FILES,
     CLONE_NEWNET,
     CLONE_NEWUSER,
-    PR_SET_DUMPABLE,
     PR_SET_SECCOMP,
+    filter_for_boxes,
+    filter_for_desks,
+    filter_for_readers,
 )
 
 ALLOW, KILL, ERRNO = 0x7FFF0000, 0x80000000, 0x00050000

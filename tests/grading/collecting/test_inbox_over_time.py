@@ -20,7 +20,7 @@ from test_collected_table import edit, read, save
 from test_where_it_goes import other_lab, outcome
 from tiny_class import LISTENER, TALKER
 
-from autograder.boxes import syscalls
+from autograder.boxes.process_isolation import leave_the_host, mount_tmpfs
 from autograder.boxes.sandbox import why_impossible
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.collecting import collected_csv, collected_files, submitted_folder
@@ -227,8 +227,8 @@ def test_a_disk_that_really_fills_up_loses_nothing(klass: TinyClass, tmp_path: P
     if (child := os.fork()) == 0:
         code = 1
         try:
-            syscalls.leave_the_host()
-            syscalls.mount_tmpfs(disk, 6_000_000, 10_000)
+            leave_the_host()
+            mount_tmpfs(disk, 6_000_000, 10_000)
             copy = type(klass)(Path(shutil.copytree(klass.path, disk / "class")))
             collect(copy.path, [small])
             before = outcome(copy)
