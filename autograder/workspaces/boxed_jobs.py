@@ -156,7 +156,7 @@ class BoxedJobs:
 
 
 class BoxedProgram:
-    """A program in a box; implements :class:`autograder.workspaces.jobs.Program`."""
+    """A program in a box; implements :class:`autograder.workspaces.jobs.RunningProgram`."""
 
     def __init__(self, running: Running | WarmCommand) -> None:
         self._running = running

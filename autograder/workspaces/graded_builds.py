@@ -8,6 +8,10 @@ The only builds that submissions share are those of packages that the course its
 ahead, before any notebook needs them: the course's own programs (``solutions/ros2_ws``), and the packages that the
 labs' texts and solutions make (``solutions/*/built_ahead.json``, written by ``python -m tests.measure built_ahead``).
 If a package is missing there, or has changed since, each submission builds it for itself, which only costs time.
+
+Students write the same three lines of an interface with different comments and spaces. So that they can all use the
+build that was made ahead, the sources of packages that only define interfaces are simplified. A text is simplified only
+if its meaning certainly stays the same; otherwise the package is built separately.
 """
 
 from __future__ import annotations
@@ -16,17 +20,21 @@ import contextlib
 import functools
 import threading
 from dataclasses import replace
+from itertools import pairwise
+from pathlib import PurePosixPath
 from typing import TYPE_CHECKING
+from xml.etree import ElementTree
 
 import msgspec
+import re2
 
 from autograder import course
 from autograder.messages.workspace_messages import Source
 from autograder.safe_files import HeldFolder
 from autograder.workspaces.builds import build_artefacts, build_cache
-from autograder.workspaces.builds.cached_builds import Builds, BuildTookTooLong, state
+from autograder.workspaces.builds.cached_builds import Builds, BuildTookTooLong, file_state
 from autograder.workspaces.builds.colcon_build import failed, look
-from autograder.workspaces.builds.interface_packages import holds_only_interfaces, simplified
+from autograder.workspaces.packages import DEFINITIONS, FOR_READERS, UNREADABLE
 from autograder.workspaces.program_plans import course_interfaces, reference_workspace
 from autograder.workspaces.program_preparation import COURSE
 from autograder.workspaces.sources import Tree
@@ -49,9 +57,6 @@ ROOM = 32_000_000
 class GradedBuilds(Builds):
     """The builds for one execution of a submission.
 
-    For a package that only defines interfaces, a build made in advance is used even if the student's sources differ in
-    comments and spaces.
-
     Args:
         folder: The folder for the builds of this execution. Only the grader can write to it.
         jobs: Runs colcon and the built programs.
@@ -65,11 +70,12 @@ class GradedBuilds(Builds):
         self._paid: set[str] = set()
 
     def _find_or_make(self, found: Build, chosen: Sequence[Package], order: BuildOrder) -> Build:
-        hidden = _hidden_from(chosen)
-        others = [f"{path} {state(str(path))}" for path in course_interfaces() if path not in hidden]
+        # If the packages define interfaces, hide the course's interfaces from the build.
+        hidden = course_interfaces() if any(package.interface_files for package in chosen) else ()
+        others = [f"{path} {file_state(str(path))}" for path in course_interfaces() if path not in hidden]
         order = self._keyed(replace(order, hidden=hidden), *others)
         wanted = [order]
-        if all(map(holds_only_interfaces, chosen)):
+        if all(package.holds_only_interfaces for package in chosen):
             wanted.append(self._keyed(replace(order, tree=simplified(order.tree)), *others))
         for one in wanted:
             if self._ahead and build_cache.is_complete(one.key, self._ahead):
@@ -90,23 +96,19 @@ class GradedBuilds(Builds):
         return made
 
 
-def _hidden_from(packages: Sequence[Package]) -> Sequence[Path]:
-    """Return the files to hide from a build: the course's own interfaces, if the packages define interfaces."""
-    return course_interfaces() if any(package.interface_files for package in packages) else ()
-
-
-FILE = "built_ahead.json"
-Files = dict[str, str | None]
+BUILT_AHEAD = "built_ahead.json"
+"""The name of a chapter's file with the packages to build ahead."""
+PackageFiles = dict[str, str | None]
 """Packages that are built together: the text of each file by its path relative to ``src``; None for a folder."""
-_ROOM = 1_000_000_000
+_ROOM_AHEAD = 1_000_000_000
 _done: set[Path] = set()
 
 
-def recorded(root: Path) -> list[Files]:
+def packages_to_build_ahead(root: Path) -> list[PackageFiles]:
     """Return the packages in the files ``built_ahead.json`` of all chapters."""
-    found: list[Files] = []
-    for file in sorted((root / "solutions").glob(f"*/{FILE}")):
-        found += msgspec.json.decode(file.read_bytes(), type=list[Files])
+    found: list[PackageFiles] = []
+    for file in sorted((root / "solutions").glob(f"*/{BUILT_AHEAD}")):
+        found += msgspec.json.decode(file.read_bytes(), type=list[PackageFiles])
     return found
 
 
@@ -119,9 +121,9 @@ def build_ahead(folder: Path, jobs: Jobs) -> None:
     """
     if folder in _done:
         return
-    builds = GradedBuilds(folder, jobs, room=_ROOM)
+    builds = GradedBuilds(folder, jobs, room=_ROOM_AHEAD)
     every: list[Callable[[], object]] = [
-        functools.partial(_build, builds, files) for files in recorded(course.root())
+        functools.partial(_build, builds, files) for files in packages_to_build_ahead(course.root())
     ]
     if (own := reference_workspace()).is_dir():
         every.append(lambda: builds.build(look(own), None, name=COURSE))
@@ -134,11 +136,11 @@ def build_ahead(folder: Path, jobs: Jobs) -> None:
     _done.add(folder)
 
 
-def _build(builds: GradedBuilds, files: Files) -> object:
+def _build(builds: GradedBuilds, files: PackageFiles) -> object:
     tree = Tree(tuple(Source(path, None if text is None else text.encode()) for path, text in files.items()))
     with HeldFolder("autograder-ahead-") as folder:
         found = _written(tree, folder.path / "as-recorded")
-        if all(map(holds_only_interfaces, found.packages)):
+        if all(package.holds_only_interfaces for package in found.packages):
             found = _written(simplified(tree), folder.path / "simplified")
         return builds.build(found, None)
 
@@ -146,3 +148,107 @@ def _build(builds: GradedBuilds, files: Files) -> object:
 def _written(tree: Tree, workspace: Path) -> Build:
     tree.write(workspace / "src")
     return look(workspace)
+
+
+MAX_SIMPLIFIED = 50_000
+"""The maximum size in bytes of sources to be simplified; a student's sources have about a thousand bytes.
+
+Larger sources are built as they are, because simplifying takes quadratic time.
+"""
+_FOR_PEOPLE = {"description", "maintainer", "author", "license", "url"}
+"""Elements of package.xml that only people read. They are removed, or replaced by a fixed text if they are required."""
+
+
+def simplified(tree: Tree) -> Tree:
+    """Return the sources of interface packages, simplified so that sources with the same meaning are equal."""
+    if sum(len(source.data or b"") for source in tree.sources) > MAX_SIMPLIFIED:
+        return tree
+    return Tree(tuple(msgspec.structs.replace(source, data=_simple(source)) for source in tree.sources))
+
+
+def _simple(source: Source) -> bytes | None:
+    path = PurePosixPath(source.path)
+    if source.data is None or path.name in FOR_READERS:
+        return None if source.data is None else b""
+    rewrite = simple_definition if path.suffix in DEFINITIONS else _SIMPLE_FORMS.get(path.name)
+    try:
+        return rewrite(source.data.decode()).encode() if rewrite else source.data
+    except UnicodeDecodeError:
+        return source.data
+
+
+def simple_definition(text: str) -> str:
+    """Return an interface definition without comments and needless spaces. Unusual lines stay unchanged.
+
+    Unusual lines have, for example, a space after ``---`` or before a type, or spaces that are not ASCII. They are kept
+    because rosidl rejects them, and a simplified line would be accepted.
+    """
+    lines = []
+    for line in text.splitlines():
+        code = line.partition("#")[0]
+        if re2.fullmatch(r"[!-~]+([ \t]+[!-~]+)+[ \t]*", code) and not re2.search("[\"']", line):
+            lines.append(" ".join(code.split()))
+        elif code.strip(" \t"):
+            lines.append(line)
+    return "\n".join(lines) + "\n"
+
+
+def simple_cmake(text: str) -> str:
+    """Return a CMakeLists.txt without comments and needless spaces; unchanged if it has more than plain commands.
+
+    For example, it is unchanged if it has bracket arguments or bracket comments, escapes, or quoted texts of several
+    lines (cmake-language(7)).
+    """
+    if re2.search(r"\\|\[=*\[", text) or any(line.count('"') % 2 for line in text.splitlines()):
+        return text
+    found = list(re2.finditer(r'"[^"\n]*"|#[^\n]*|[()]|\n|[^\s()"#]+', text))
+    for one, other in pairwise(found):
+        if one.end() == other.start() and not any(re2.match(r"[()#\n]", word[0]) for word in (one, other)):
+            return text  # a quoted text inside a word
+    words = [word[0] for word in found if not word[0].startswith("#")]
+    out, depth = "", 0
+    for word in words:
+        if word == "\n" and depth > 0:
+            continue
+        if word == ")":
+            depth -= 1
+            out = out.rstrip(" ") + ")"
+        elif word == "(":
+            depth += 1
+            out = out.rstrip(" ") + "("
+        elif word == "\n":
+            out = out.rstrip(" \n") + "\n"
+        else:
+            out += ("" if out.endswith(("(", "\n", " ")) or not out else " ") + word
+    return out.strip() + "\n"
+
+
+def simple_package_xml(text: str) -> str:
+    """Return a package.xml with only the elements that a build reads, in a fixed order."""
+    try:
+        root = ElementTree.fromstring(text)
+        return _simple_elements(root) or text
+    except UNREADABLE:
+        return text
+
+
+def _simple_elements(root: ElementTree.Element) -> str:
+    """Return the simplified text of a package.xml; empty if an element other than ``export`` contains elements."""
+    kept = [element for element in root if element.tag not in _FOR_PEOPLE]
+    if any(len(element) for element in kept if element.tag != "export"):
+        return ""
+    lines = sorted(_element(element) for element in kept)
+    for_people = '<description>-</description><maintainer email="nobody@example.com">-</maintainer><license>-</license>'
+    attributes = "".join(f' {name}="{value}"' for name, value in sorted(root.attrib.items()))
+    return "\n".join([f"<package{attributes}>", for_people, *lines, "</package>"]) + "\n"
+
+
+def _element(element: ElementTree.Element) -> str:
+    element.tail = None
+    for part in element.iter():
+        part.text = part.text.strip() if part.text else None
+        part.tail = None
+    return ElementTree.tostring(element, encoding="unicode")
+
+
+_SIMPLE_FORMS = {"CMakeLists.txt": simple_cmake, "package.xml": simple_package_xml}

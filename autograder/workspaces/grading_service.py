@@ -36,222 +36,13 @@ from autograder.workspaces.program_processes import watched
 from autograder.workspaces.sources import BadSources, receive_sources
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Callable, Mapping
     from pathlib import Path
 
     from autograder.kit.runners import Runner
     from autograder.workspaces.builds.colcon_build import Build
     from autograder.workspaces.jobs import Jobs, RunningProgram
     from autograder.workspaces.program_preparation import Prepared
-
-
-MAX_OUTPUT = 2_000_000
-"""The maximum number of characters of a run's output to pass on."""
-
-
-@dataclass(frozen=True)
-class SubmittedSources:
-    """The sources of a check.
-
-    Attributes:
-        runner: How the exercise runs the sources.
-        tree: The folder that contains the sources.
-        path: The path of the workspace or launch file in that folder.
-        trouble: Why no sources were written, in words for the student; empty if they were.
-        variables: More environment variables for the submitted programs.
-    """
-
-    runner: Runner | None
-    tree: Path
-    path: str
-    trouble: str
-    variables: Mapping[str, str]
-
-
-class Session:
-    """One check of a workspace or launch file, whose programs are built once but may be started several times.
-
-    Args:
-        lines: The connection to the judge.
-        builds: Finds or makes the builds. Its ``jobs`` also run the programs.
-        variables: Environment variables for the programs.
-        folder: An empty folder that nothing else uses.
-    """
-
-    def __init__(
-        self, lines: Lines, builds: GradedBuilds, variables: Mapping[str, str], folder: Path
-    ) -> None:
-        self._lines = lines
-        self._builds = builds
-        self._variables = variables
-        self._tree = folder / "submitted"
-        self._run: _ProgramRun | None = None
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self._stop()
-
-    def serve(self) -> None:
-        """Carry out the judge's requests until it closes the connection.
-
-        Raises:
-            Hangup: The judge closed the connection.
-        """
-        first = self._lines.hear(messages.CheckRequest)
-        wrong = self._take_sources(first)
-        submitted = SubmittedSources(
-            exercises.get(first.exercise).runner,
-            self._tree,
-            first.path,
-            first.trouble or wrong,
-            {**self._variables, "ROS_DOMAIN_ID": str(first.domain)},
-        )
-        self._lines.say(messages.ServiceReady())
-        while True:
-            order: messages.ToService = self._lines.hear(messages.ToService)
-            if isinstance(order, messages.InterruptProgram):
-                self._interrupt(order.run)
-                continue
-            self._stop()
-            if isinstance(order, messages.StartProgram):
-                self._run = _ProgramRun(self._lines, self._builds, submitted, order)
-            else:
-                self._lines.say(messages.ProgramStopped(order.run))
-
-    def _take_sources(self, check: messages.CheckRequest) -> str:
-        """Receive the sources, and write them into a folder. Return what is wrong with them; empty if nothing is."""
-        self._tree.mkdir()
-        try:
-            receive_sources(self._lines, check.count, check.path, self._tree)
-        except BadSources as error:
-            return str(error)
-        except NotUnderstood:
-            return "a message that was sent as a file is not a file"
-        return ""
-
-    def _interrupt(self, number: int) -> None:
-        if self._run is not None and self._run.number == number:
-            self._run.interrupt()
-
-    def _stop(self) -> None:
-        run, self._run = self._run, None
-        if run is not None:
-            run.end()
-
-
-class _ProgramRun:
-    """One run of the submitted program, in a thread."""
-
-    def __init__(
-        self, lines: Lines, builds: GradedBuilds, submitted: SubmittedSources, order: messages.StartProgram
-    ) -> None:
-        self._lines = lines
-        self._submitted = submitted
-        self.number, self._arguments = order.run, order.arguments
-        self._cancelled = threading.Event()
-        self._jobs = builds.jobs
-        self._prepare = Preparation(builds, self._report, self._build_ended, self._cancelled.is_set)
-        self._program: RunningProgram | None = None
-        self._changing = threading.Lock()
-        self._thread = threading.Thread(target=self._run, daemon=True)
-        self._thread.start()
-
-    def end(self) -> None:
-        """Kill the program, and wait until none of its processes is alive."""
-        self._cancelled.set()
-        self._thread.join()
-
-    def interrupt(self) -> None:
-        """Send Ctrl-C to the program."""
-        with self._changing:
-            if self._program is not None:
-                self._program.interrupt()
-
-    def _run(self) -> None:
-        """Check the workspace, build it, report, run the program, and pass on its output."""
-        try:
-            self._work()
-        except Hangup:
-            pass
-        except Exception as error:
-            with contextlib.suppress(Hangup):
-                self._lines.say(messages.Trouble(f"{type(error).__name__}: {error}"[:500]))
-
-    def _work(self) -> None:
-        what = self._submitted
-        if what.trouble:
-            self._report(no_sources_line(what.trouble))
-            self._exited(1)
-        elif what.runner is None:
-            raise LookupError("this exercise takes no path")
-        elif isinstance(what.runner, Launches):
-            self._launch(what.tree / what.path)
-        else:
-            plan = plan_for(what.runner, self._arguments)
-            launches = isinstance(what.runner, LaunchesFromPackage)
-            self._follow(self._prepare.workspace(plan, what.tree / what.path), watch=launches)
-
-    def _launch(self, file: Path) -> None:
-        tree = self._submitted.tree
-        if not file.is_file():
-            self._lines.say(
-                messages.ProgramOutput(self.number, f"there is no launch file {self._submitted.path}")
-            )
-            self._exited(1)
-            return
-        workspace = workspace_of(file, (file.parent, tree))
-        if workspace is not None and not workspace.is_relative_to(tree):
-            workspace = None
-        seen = self._jobs.tree(tree) / file.relative_to(tree)
-        command = alone(self._arguments) or [ros2(), "launch", str(seen)]
-        self._follow(self._prepare.launch(command, file, workspace), watch=True)
-
-    def _hidden(self) -> Sequence[Path]:
-        """Return the files to hide from the program: the course's interfaces that students have to write themselves."""
-        return course_interfaces() if isinstance(self._submitted.runner, ServesInterface) else ()
-
-    def _follow(self, prepared: Prepared | None, *, watch: bool = False) -> None:
-        """Run a program until it ends or is no longer needed."""
-        if prepared is None:
-            self._exited(1)
-            return
-        folders = {name: one.install.parent for name, one in prepared.builds.items() if one.install}
-        variables = {**prepared.environment, **self._submitted.variables}
-        program = self._jobs.start(
-            ProgramJob(prepared.command, variables, self._submitted.tree, folders, self._hidden())
-        )
-        with self._changing:
-            self._program = program
-        try:
-            with watched(program.pid, self._report) if watch else contextlib.nullcontext():
-                self._pass_on(program)
-        finally:
-            with self._changing:
-                self._program = None
-            program.end()
-        if not self._cancelled.is_set():
-            self._exited(program.exit_code())
-
-    def _pass_on(self, program: RunningProgram) -> None:
-        left = MAX_OUTPUT
-        for text in output_lines(program, lambda: not self._cancelled.is_set()):
-            left -= len(text) + 1  # count the line's end, so that empty lines use up the limit, too
-            if left > 0:
-                self._lines.say(messages.ProgramOutput(self.number, text))
-
-    def _report(self, line: str) -> None:
-        """Send the judge a line of the report, with paths changed to those in the notebook's folder."""
-        tree = self._submitted.tree
-        text = line.replace(f"{tree}/", "").replace(str(tree), ".")
-        self._lines.say(messages.ReportLine(self.number, text))
-
-    def _build_ended(self) -> None:
-        self._lines.say(messages.BuildEnded(self.number))
-
-    def _exited(self, code: int | None) -> None:
-        self._lines.say(messages.ProgramExited(self.number, code))
 
 
 MAX_BUILDS = 20
@@ -396,3 +187,210 @@ class WorkspaceService:
         lines.say(messages.BuildDone(len(pieces), str(place), made.seconds))
         for piece in pieces:
             lines.say(messages.Piece(piece))
+
+
+class Session:
+    """One check of a workspace or launch file, whose programs are built once but may be started several times.
+
+    Args:
+        lines: The connection to the judge.
+        builds: Finds or makes the builds. Its ``jobs`` also run the programs.
+        variables: Environment variables for the programs.
+        folder: An empty folder that nothing else uses.
+    """
+
+    def __init__(
+        self, lines: Lines, builds: GradedBuilds, variables: Mapping[str, str], folder: Path
+    ) -> None:
+        self._lines = lines
+        self._builds = builds
+        self._variables = variables
+        self._tree = folder / "submitted"
+        self._run: _ProgramRun | None = None
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._stop()
+
+    def serve(self) -> None:
+        """Carry out the judge's requests until it closes the connection.
+
+        Raises:
+            Hangup: The judge closed the connection.
+        """
+        first = self._lines.hear(messages.CheckRequest)
+        wrong = self._take_sources(first)
+        submitted = _SubmittedSources(
+            exercises.get(first.exercise).runner,
+            self._tree,
+            first.path,
+            first.trouble or wrong,
+            {**self._variables, "ROS_DOMAIN_ID": str(first.domain)},
+        )
+        self._lines.say(messages.ServiceReady())
+        while True:
+            order: messages.ToService = self._lines.hear(messages.ToService)
+            if isinstance(order, messages.InterruptProgram):
+                self._interrupt(order.run)
+                continue
+            self._stop()
+            if isinstance(order, messages.StartProgram):
+                self._run = _ProgramRun(self._lines, self._builds, submitted, order)
+            else:
+                self._lines.say(messages.ProgramStopped(order.run))
+
+    def _take_sources(self, check: messages.CheckRequest) -> str:
+        """Receive the sources, and write them into a folder. Return what is wrong with them; empty if nothing is."""
+        self._tree.mkdir()
+        try:
+            receive_sources(self._lines, check.count, check.path, self._tree)
+        except BadSources as error:
+            return str(error)
+        except NotUnderstood:
+            return "a message that was sent as a file is not a file"
+        return ""
+
+    def _interrupt(self, number: int) -> None:
+        if self._run is not None and self._run.number == number:
+            self._run.interrupt()
+
+    def _stop(self) -> None:
+        run, self._run = self._run, None
+        if run is not None:
+            run.end()
+
+
+MAX_OUTPUT = 2_000_000
+"""The maximum number of characters of a run's output to pass on."""
+
+
+@dataclass(frozen=True)
+class _SubmittedSources:
+    """The sources of a check.
+
+    Attributes:
+        runner: How the exercise runs the sources.
+        tree: The folder that contains the sources.
+        path: The path of the workspace or launch file in that folder.
+        trouble: Why no sources were written, in words for the student; empty if they were.
+        variables: More environment variables for the submitted programs.
+    """
+
+    runner: Runner | None
+    tree: Path
+    path: str
+    trouble: str
+    variables: Mapping[str, str]
+
+
+class _ProgramRun:
+    """One run of the submitted program, in a thread."""
+
+    def __init__(
+        self, lines: Lines, builds: GradedBuilds, submitted: _SubmittedSources, order: messages.StartProgram
+    ) -> None:
+        self._lines = lines
+        self._submitted = submitted
+        self.number, self._arguments = order.run, order.arguments
+        self._cancelled = threading.Event()
+        self._jobs = builds.jobs
+        self._prepare = Preparation(builds, self._report, self._build_ended, self._cancelled.is_set)
+        self._program: RunningProgram | None = None
+        self._changing = threading.Lock()
+        self._thread = threading.Thread(target=self._run, daemon=True)
+        self._thread.start()
+
+    def end(self) -> None:
+        """Kill the program, and wait until none of its processes is alive."""
+        self._cancelled.set()
+        self._thread.join()
+
+    def interrupt(self) -> None:
+        """Send Ctrl-C to the program."""
+        with self._changing:
+            if self._program is not None:
+                self._program.interrupt()
+
+    def _run(self) -> None:
+        """Check the workspace, build it, report, run the program, and pass on its output."""
+        try:
+            self._work()
+        except Hangup:
+            pass
+        except Exception as error:
+            with contextlib.suppress(Hangup):
+                self._lines.say(messages.Trouble(f"{type(error).__name__}: {error}"[:500]))
+
+    def _work(self) -> None:
+        what = self._submitted
+        if what.trouble:
+            self._report(no_sources_line(what.trouble))
+            self._exited(1)
+        elif what.runner is None:
+            raise LookupError("this exercise takes no path")
+        elif isinstance(what.runner, Launches):
+            self._launch(what.tree / what.path)
+        else:
+            plan = plan_for(what.runner, self._arguments)
+            launches = isinstance(what.runner, LaunchesFromPackage)
+            self._follow(self._prepare.workspace(plan, what.tree / what.path), watch=launches)
+
+    def _launch(self, file: Path) -> None:
+        tree = self._submitted.tree
+        if not file.is_file():
+            self._lines.say(
+                messages.ProgramOutput(self.number, f"there is no launch file {self._submitted.path}")
+            )
+            self._exited(1)
+            return
+        workspace = workspace_of(file, (file.parent, tree))
+        if workspace is not None and not workspace.is_relative_to(tree):
+            workspace = None
+        seen = self._jobs.tree(tree) / file.relative_to(tree)
+        command = alone(self._arguments) or [ros2(), "launch", str(seen)]
+        self._follow(self._prepare.launch(command, file, workspace), watch=True)
+
+    def _follow(self, prepared: Prepared | None, *, watch: bool = False) -> None:
+        """Run a program until it ends or is no longer needed."""
+        if prepared is None:
+            self._exited(1)
+            return
+        folders = {name: one.install.parent for name, one in prepared.builds.items() if one.install}
+        variables = {**prepared.environment, **self._submitted.variables}
+        # If students have to write the interface themselves, hide the course's own interfaces from the program.
+        hidden = course_interfaces() if isinstance(self._submitted.runner, ServesInterface) else ()
+        program = self._jobs.start(
+            ProgramJob(prepared.command, variables, self._submitted.tree, folders, hidden)
+        )
+        with self._changing:
+            self._program = program
+        try:
+            with watched(program.pid, self._report) if watch else contextlib.nullcontext():
+                self._pass_on(program)
+        finally:
+            with self._changing:
+                self._program = None
+            program.end()
+        if not self._cancelled.is_set():
+            self._exited(program.exit_code())
+
+    def _pass_on(self, program: RunningProgram) -> None:
+        left = MAX_OUTPUT
+        for text in output_lines(program, lambda: not self._cancelled.is_set()):
+            left -= len(text) + 1  # count the line's end, so that empty lines use up the limit, too
+            if left > 0:
+                self._lines.say(messages.ProgramOutput(self.number, text))
+
+    def _report(self, line: str) -> None:
+        """Send the judge a line of the report, with paths changed to those in the notebook's folder."""
+        tree = self._submitted.tree
+        text = line.replace(f"{tree}/", "").replace(str(tree), ".")
+        self._lines.say(messages.ReportLine(self.number, text))
+
+    def _build_ended(self) -> None:
+        self._lines.say(messages.BuildEnded(self.number))
+
+    def _exited(self, code: int | None) -> None:
+        self._lines.say(messages.ProgramExited(self.number, code))

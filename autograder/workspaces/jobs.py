@@ -36,8 +36,6 @@ An exercise waits longer than this, so that a build on a busy machine is never m
 """
 MAX_LOG_BYTES = 1_000_000
 """The maximum number of bytes that are kept of a build's output."""
-MAX_LINE = 4_000
-"""The maximum length of a line of a program's output, in bytes."""
 MAX_ARCHIVE_BYTES = 64_000_000
 """The maximum size in bytes of the archive of everything that a build makes; an interface package has 1.3 million
 bytes.
@@ -78,10 +76,9 @@ class Built:
     Attributes:
         returncode: colcon's exit code; None if the build was stopped, at a limit or because it was no longer needed.
         output: The output of the build.
-        archive: The install folder, packed (:func:`autograder.workspaces.builds.build_artefacts.pack`) when no process
-        of
-            the build was alive any more. It is empty if it could not be packed, and None if the build failed or was
-            made in the cache entry itself.
+        archive: The install folder as :func:`autograder.workspaces.builds.build_artefacts.pack` packed it, after all
+            processes of the build had ended. It is empty if it could not be packed, and None if the build failed or
+            was made in the cache entry itself.
         late: The number of seconds after which the build was stopped as too long, perhaps because the machine was
             busy; else 0.
     """
@@ -112,60 +109,8 @@ class ProgramJob:
     hidden: Sequence[Path]
 
 
-class RunningProgram(Protocol):
-    """A running program."""
-
-    pid: int
-    """The process id, as seen outside the sandbox, of the program's first process, from which its other processes
-    descend.
-    """
-
-    def read(self, within: float) -> bytes | None:
-        """Return the output since the last call; None if nothing has come yet, b"" at the end.
-
-        Args:
-            within: The maximum number of seconds to wait for output.
-        """
-        ...
-
-    def exit_code(self) -> int | None:
-        """Return the exit code once the program has ended; negative if a signal ended it."""
-        ...
-
-    def interrupt(self) -> None:
-        """Send Ctrl-C as a terminal does: to the program and to the processes that it has started."""
-        ...
-
-    def end(self) -> None:
-        """Kill the program and everything that it has started. This may be called twice."""
-        ...
-
-
-def output_lines(
-    program: RunningProgram, wanted: Callable[[], bool] = lambda: True, within: float = 0.1
-) -> Iterator[str]:
-    """Yield the lines of a program's output until the output ends or is no longer needed. Long lines are cut.
-
-    Args:
-        program: The program.
-        wanted: Called from time to time. If it returns False, no more lines are yielded.
-        within: Seconds between these calls while there is no output.
-    """
-    line = b""
-    while wanted() and (data := program.read(within)) != b"":
-        *complete, line = split_lines(line + (data or b""))
-        yield from map(_as_text, complete)
-        line = line[:MAX_LINE]
-    if line:
-        yield _as_text(line)
-
-
-def _as_text(line: bytes) -> str:
-    return line[:MAX_LINE].decode("utf-8", "replace").rstrip("\r")
-
-
 class Jobs(Protocol):
-    """Runs builds and programs, as processes (``plain_jobs.py``) or in boxes (``boxed_jobs.py``)."""
+    """Runs builds and programs, as processes (:class:`PlainJobs`) or in boxes (``boxed_jobs.py``)."""
 
     @property
     def environment(self) -> Mapping[str, str]:
@@ -201,12 +146,41 @@ class Jobs(Protocol):
         ...
 
 
+class RunningProgram(Protocol):
+    """A program that :meth:`Jobs.start` has started."""
+
+    pid: int
+    """The process id, as seen outside the sandbox, of the program's first process, from which its other processes
+    descend.
+    """
+
+    def read(self, within: float) -> bytes | None:
+        """Return the output since the last call; None if nothing has come yet, b"" at the end.
+
+        Args:
+            within: The maximum number of seconds to wait for output.
+        """
+        ...
+
+    def exit_code(self) -> int | None:
+        """Return the exit code once the program has ended; negative if a signal ended it."""
+        ...
+
+    def interrupt(self) -> None:
+        """Send Ctrl-C as a terminal does: to the program and to the processes that it has started."""
+        ...
+
+    def end(self) -> None:
+        """Kill the program and everything that it has started. This may be called twice."""
+        ...
+
+
 OWN_BUILD_SECONDS = 300.0
 """The time limit of a build of the student's own workspace, in seconds of wall time."""
 
 
 class PlainJobs:
-    """Runs jobs as this user's processes; implements :class:`autograder.workspaces.jobs.Jobs`.
+    """Runs jobs as this user's processes; implements :class:`Jobs`.
 
     Args:
         environment: The environment of the jobs.
@@ -251,7 +225,7 @@ class PlainJobs:
 
 
 class PlainProgram(OwnSession):
-    """A program with its own home and temporary folders (:class:`autograder.workspaces.jobs.Program`)."""
+    """A program with its own home and temporary folders; implements :class:`RunningProgram`."""
 
     def __init__(
         self, command: Sequence[str], environment: Mapping[str, str], cwd: Path, holds: Sequence[int] = ()
@@ -265,3 +239,30 @@ class PlainProgram(OwnSession):
         super().end(polite)
         self._output.close()
         self._home.remove()
+
+
+MAX_LINE = 4_000
+"""The maximum length of a line of a program's output, in bytes."""
+
+
+def output_lines(
+    program: RunningProgram, wanted: Callable[[], bool] = lambda: True, within: float = 0.1
+) -> Iterator[str]:
+    """Yield the lines of a program's output until the output ends or is no longer needed. Long lines are cut.
+
+    Args:
+        program: The program.
+        wanted: Called from time to time. If it returns False, no more lines are yielded.
+        within: Seconds between these calls while there is no output.
+    """
+    line = b""
+    while wanted() and (data := program.read(within)) != b"":
+        *complete, line = split_lines(line + (data or b""))
+        yield from map(_as_text, complete)
+        line = line[:MAX_LINE]
+    if line:
+        yield _as_text(line)
+
+
+def _as_text(line: bytes) -> str:
+    return line[:MAX_LINE].decode("utf-8", "replace").rstrip("\r")

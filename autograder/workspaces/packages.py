@@ -26,68 +26,12 @@ if TYPE_CHECKING:
     from autograder.messages.workspace_messages import Source
 
 
-FORM = re2.compile(r"\s*([\w.-]+)\s*=\s*([\w.]+)\s*:\s*([\w.]+)\s*")
-"""Matches an entry point: executable, module and function. Use it only for ASCII: re2 rejects lone surrogates."""
-
-
-def console_scripts(tree: ast.AST) -> ast.List | None:
-    """Return the list of ``console_scripts`` in the syntax tree of a setup.py; None if there is none."""
-    for node in ast.walk(tree):
-        if isinstance(node, ast.Dict):
-            for key, value in zip(node.keys, node.values, strict=True):
-                named = isinstance(key, ast.Constant) and key.value == "console_scripts"
-                if named and isinstance(value, ast.List):
-                    return value
-    return None
-
-
-def first_objection(tree: ast.AST) -> str:
-    """Return what is wrong with the first invalid entry point in a setup.py; empty if all are valid."""
-    listed = console_scripts(tree)
-    return next((objection(text) for text in _texts(listed) if not is_entry_point(text)), "")
-
-
-def _texts(listed: ast.List | None) -> Iterator[str]:
-    for element in listed.elts if listed else ():
-        if isinstance(element, ast.Constant) and isinstance(element.value, str):
-            yield element.value
-
-
-def is_entry_point(text: str) -> bool:
-    """Return True if a text has the format of an entry point."""
-    return text.isascii() and FORM.fullmatch(text) is not None
-
-
-def objection(entry: object) -> str:
-    """Return a sentence that says what is wrong with an invalid entry point, and what to write."""
-    if isinstance(entry, str) and entry.count("=") > 1 and entry.count(":") > 1:
-        return (
-            f"Two entry points have run together: {entry!r}. A comma is missing between them: Python joins two strings "
-            "with nothing between. Write a comma after each entry point, behind its closing quotation mark."
-        )
-    what = _what_is_wrong(entry) if isinstance(entry, str) else ""
-    return f"{entry!r} is not an entry point. {what}Write: executable = package.module:function"
-
-
-def _what_is_wrong(entry: str) -> str:
-    """Return the mistake in an entry point, as a sentence with a space after it; empty if the mistake is unknown."""
-    if len(entry.strip()) <= 1:
-        return "It is a single letter: put the string into a list, in square brackets. "
-    if "(" in entry:
-        return "Leave out the parentheses: the function is named here and not called. "
-    if "/" in entry:
-        return "Write dots in the module in place of slashes, as in an import. "
-    if "=" not in entry:
-        return "The equals sign between the executable and the module is missing. "
-    if ":" not in entry:
-        return "The colon between the module and the function is missing. "
-    return ""
-
-
 WORKSPACE = "ros2_ws"
 """The name of the workspace folder in all labs."""
 DEFINITIONS = (".msg", ".srv", ".action")
 """The file name extensions of interface files."""
+FOR_READERS = ("LICENSE", "README.md", "README.rst", "CHANGELOG.rst")
+"""Files of a package that people read and builds do not."""
 UNREADABLE = (SyntaxError, ValueError, LookupError, RecursionError, MemoryError)
 """The errors that Python's parsers for Python and XML raise if a text is malformed, has an unknown encoding, or is too
 deeply nested.
@@ -115,12 +59,6 @@ MAX_LOOK = 100_000
 """The maximum number of bytes, of all packages together, that slow parsers read. Python's parser and catkin_pkg need
 half a second for the largest allowed file. A file beyond this limit is skipped; it is not reported as missing or wrong.
 """
-
-_HIDING = ("COLCON_IGNORE", "AMENT_IGNORE", "CATKIN_IGNORE")
-
-
-class BadPackage(ValueError):
-    """A package.xml cannot be used. The exception's text says why, in words for a student."""
 
 
 @dataclass(frozen=True)
@@ -173,12 +111,40 @@ class Package:
         The file is not run, only read: every text in it of the form ``name = module:function`` counts. So names that
         setup.py computes, and names in setup.cfg, are known only after the build.
         """
-        return tuple(_entry_points(_text(self.folder / "setup.py")))
+        strings = _strings(ast.walk(self._setup))
+        return tuple(line.strip() for text in strings for line in text.splitlines() if is_entry_point(line))
 
     @property
     def bad_entry_point(self) -> str:
-        """What is wrong with an entry point in setup.py that setuptools refuses; empty if all are valid."""
-        return first_objection(_parsed(_text(self.folder / "setup.py")))
+        """What is wrong with the first entry point in setup.py that setuptools refuses; empty if all are valid."""
+        listed = console_scripts(self._setup)
+        strings = _strings(listed.elts if listed else ())
+        return next((objection(text) for text in strings if not is_entry_point(text)), "")
+
+    @property
+    def _setup(self) -> ast.Module:
+        """The syntax tree of setup.py; an empty tree if the file does not exist, is too long or is not valid Python."""
+        text = _text(self.folder / "setup.py")
+        try:
+            return ast.parse(text if len(text) <= MAX_SETUP else "")
+        except UNREADABLE:
+            return ast.parse("")
+
+    @property
+    def holds_only_interfaces(self) -> bool:
+        """True if the package contains nothing but interfaces, the files with which they are built, and texts."""
+        files = [path for path in self.folder.rglob("*") if path.is_file()]
+        known = {"package.xml", "CMakeLists.txt", *FOR_READERS}
+        return (
+            self.build_type == "ament_cmake"
+            and any(path.suffix in DEFINITIONS for path in files)
+            and all(
+                path.suffix in DEFINITIONS or path.relative_to(self.folder).as_posix() in known
+                for path in files
+            )
+            and self.cmake_lists is not None
+            and "_cpp" not in self.cmake_lists
+        )
 
 
 def find_packages(src: Path) -> tuple[list[Package], list[str]]:
@@ -193,9 +159,79 @@ def find_packages(src: Path) -> tuple[list[Package], list[str]]:
     for file in files:
         try:
             packages.append(_package(file, budget))
-        except BadPackage as error:
+        except _BadPackage as error:
             unusable.append(str(error))
     return sorted(packages, key=lambda package: package.name), unusable
+
+
+_HIDING = ("COLCON_IGNORE", "AMENT_IGNORE", "CATKIN_IGNORE")
+
+
+def _package_files(src: Path) -> Iterator[Path]:
+    for root, folders, names in os.walk(src):
+        folders[:] = filter(is_source, folders)
+        if any(name in names for name in _HIDING):
+            folders[:] = []
+        elif "package.xml" in names:
+            folders[:] = []  # colcon does not look for packages inside other packages
+            yield Path(root, "package.xml")
+
+
+class _BadPackage(ValueError):
+    """A package.xml cannot be used. The exception's text says why, in words for a student."""
+
+
+def _package(file: Path, budget: ByteBudget) -> Package:
+    shown = f"{file.parent.name}/package.xml"
+    try:
+        with file.open("rb") as opened:
+            text = opened.read(MAX_PACKAGE_XML + 1)
+    except OSError as error:
+        raise _BadPackage(f"{shown} cannot be read: {error.strerror}") from error
+    if len(text) > MAX_PACKAGE_XML:
+        raise _BadPackage(f"{shown} is larger than {MAX_PACKAGE_XML // 1000} kB")
+    if b"\0" in text:
+        # Refuse UTF-16, which contains zero bytes: the tools of ROS read only UTF-8, and "<!ENTITY" could not be found.
+        raise _BadPackage(f"{shown} is not valid: save it in UTF-8")
+    if b"<!ENTITY" in text:
+        raise _BadPackage(f"{shown} declares an entity with <!ENTITY: replace the entity by its text")
+    try:
+        root = ElementTree.fromstring(text)
+    except UNREADABLE as error:
+        raise _BadPackage(f"{shown} is not valid XML: {_told(error)}") from error
+    name = (root.findtext("name") or "").strip()
+    if not name:
+        raise _BadPackage(f"{shown} has no <name>")
+    if budget.has(file):
+        _validate(file, shown)
+    depends = [
+        child.text.strip() for child in root if child.text and re2.search("depend|member_of", child.tag)
+    ]
+    build_type = (root.findtext("export/build_type") or "").strip()
+    return Package(name, file.parent, build_type, tuple(depends))
+
+
+def _validate(file: Path, shown: str) -> None:
+    # Check package.xml here: if it is invalid, colcon silently treats the package as a plain Python package.
+    try:
+        from catkin_pkg.package import InvalidPackage, parse_package
+    except ImportError:
+        return
+    try:
+        parse_package(file)
+    except InvalidPackage as error:
+        what = re2.sub(r"^Error\(s\) in package '[^']*':\s*", "", str(error)).strip()
+        raise _BadPackage(f"{shown} is not valid: {what}") from error
+    except AssertionError as error:
+        # An AssertionError means an unknown format. It is replaced, because catkin_pkg's own message, to update
+        # catkin_pkg, would not help.
+        raise _BadPackage(f'{shown} is not valid: <package format="…"> has to be 1, 2 or 3') from error
+    except (*UNREADABLE, ExpatError) as error:
+        raise _BadPackage(f"{shown} is not valid: {_told(error)}") from error
+
+
+def _told(error: Exception) -> str:
+    return "it is nested too deeply" if isinstance(error, RecursionError | MemoryError) else str(error)
 
 
 def launch_files(folder: Path) -> list[Path]:
@@ -259,83 +295,57 @@ def sources_of(src: Path, packages: Iterable[Package]) -> Tree:
     return Tree(tuple(sources))
 
 
-def _package_files(src: Path) -> Iterator[Path]:
-    for root, folders, names in os.walk(src):
-        folders[:] = filter(is_source, folders)
-        if any(name in names for name in _HIDING):
-            folders[:] = []
-        elif "package.xml" in names:
-            folders[:] = []  # colcon does not look for packages inside other packages
-            yield Path(root, "package.xml")
+FORM = re2.compile(r"\s*([\w.-]+)\s*=\s*([\w.]+)\s*:\s*([\w.]+)\s*")
+"""Matches an entry point: executable, module and function. Use it only for ASCII: re2 rejects lone surrogates."""
 
 
-def _package(file: Path, budget: ByteBudget) -> Package:
-    shown = f"{file.parent.name}/package.xml"
-    try:
-        with file.open("rb") as opened:
-            text = opened.read(MAX_PACKAGE_XML + 1)
-    except OSError as error:
-        raise BadPackage(f"{shown} cannot be read: {error.strerror}") from error
-    if len(text) > MAX_PACKAGE_XML:
-        raise BadPackage(f"{shown} is larger than {MAX_PACKAGE_XML // 1000} kB")
-    if b"\0" in text:
-        # Refuse UTF-16, which contains zero bytes: the tools of ROS read only UTF-8, and "<!ENTITY" could not be found.
-        raise BadPackage(f"{shown} is not valid: save it in UTF-8")
-    if b"<!ENTITY" in text:
-        raise BadPackage(f"{shown} declares an entity with <!ENTITY: replace the entity by its text")
-    try:
-        root = ElementTree.fromstring(text)
-    except UNREADABLE as error:
-        raise BadPackage(f"{shown} is not valid XML: {_told(error)}") from error
-    name = (root.findtext("name") or "").strip()
-    if not name:
-        raise BadPackage(f"{shown} has no <name>")
-    if budget.has(file):
-        _validate(file, shown)
-    depends = [
-        child.text.strip() for child in root if child.text and re2.search("depend|member_of", child.tag)
-    ]
-    build_type = (root.findtext("export/build_type") or "").strip()
-    return Package(name, file.parent, build_type, tuple(depends))
+def console_scripts(tree: ast.AST) -> ast.List | None:
+    """Return the list of ``console_scripts`` in the syntax tree of a setup.py; None if there is none."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Dict):
+            for key, value in zip(node.keys, node.values, strict=True):
+                named = isinstance(key, ast.Constant) and key.value == "console_scripts"
+                if named and isinstance(value, ast.List):
+                    return value
+    return None
 
 
-def _validate(file: Path, shown: str) -> None:
-    # Check package.xml here: if it is invalid, colcon silently treats the package as a plain Python package.
-    try:
-        from catkin_pkg.package import InvalidPackage, parse_package
-    except ImportError:
-        return
-    try:
-        parse_package(file)
-    except InvalidPackage as error:
-        what = re2.sub(r"^Error\(s\) in package '[^']*':\s*", "", str(error)).strip()
-        raise BadPackage(f"{shown} is not valid: {what}") from error
-    except AssertionError as error:
-        # An AssertionError means an unknown format. It is replaced, because catkin_pkg's own message, to update
-        # catkin_pkg, would not help.
-        raise BadPackage(f'{shown} is not valid: <package format="…"> has to be 1, 2 or 3') from error
-    except (*UNREADABLE, ExpatError) as error:
-        raise BadPackage(f"{shown} is not valid: {_told(error)}") from error
+def is_entry_point(text: str) -> bool:
+    """Return True if a text has the format of an entry point."""
+    return text.isascii() and FORM.fullmatch(text) is not None
 
 
-def _told(error: Exception) -> str:
-    return "it is nested too deeply" if isinstance(error, RecursionError | MemoryError) else str(error)
+def objection(entry: object) -> str:
+    """Return a sentence that says what is wrong with an invalid entry point, and what to write."""
+    if isinstance(entry, str) and entry.count("=") > 1 and entry.count(":") > 1:
+        return (
+            f"Two entry points have run together: {entry!r}. A comma is missing between them: Python joins two strings "
+            "with nothing between. Write a comma after each entry point, behind its closing quotation mark."
+        )
+    what = _what_is_wrong(entry) if isinstance(entry, str) else ""
+    return f"{entry!r} is not an entry point. {what}Write: executable = package.module:function"
 
 
-def _parsed(setup: str) -> ast.Module:
-    """Return the syntax tree of a setup.py; an empty tree if it is too long or not valid Python."""
-    try:
-        return ast.parse(setup if len(setup) <= MAX_SETUP else "")
-    except UNREADABLE:
-        return ast.parse("")
+def _what_is_wrong(entry: str) -> str:
+    """Return the mistake in an entry point, as a sentence with a space after it; empty if the mistake is unknown."""
+    if len(entry.strip()) <= 1:
+        return "It is a single letter: put the string into a list, in square brackets. "
+    if "(" in entry:
+        return "Leave out the parentheses: the function is named here and not called. "
+    if "/" in entry:
+        return "Write dots in the module in place of slashes, as in an import. "
+    if "=" not in entry:
+        return "The equals sign between the executable and the module is missing. "
+    if ":" not in entry:
+        return "The colon between the module and the function is missing. "
+    return ""
 
 
-def _entry_points(setup: str) -> Iterator[str]:
-    for node in ast.walk(_parsed(setup)):
+def _strings(nodes: Iterable[ast.AST]) -> Iterator[str]:
+    """Yield the values of those nodes of a syntax tree that are strings."""
+    for node in nodes:
         if isinstance(node, ast.Constant) and isinstance(node.value, str):
-            for line in node.value.splitlines():
-                if is_entry_point(line):
-                    yield line.strip()
+            yield node.value
 
 
 def _text(file: Path) -> str:

@@ -29,15 +29,8 @@ from environment.python_child import installed_program, python_child
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
 
-    from autograder.workspaces.builds.colcon_build import Build
+    from autograder.workspaces.builds.colcon_build import Build, Targets
     from autograder.workspaces.packages import Package
-
-_LAUNCH_FILES = ("launch.py", ".xml", ".yaml", ".yml")
-"""The name endings of launch files."""
-_LARGEST = 500_000
-"""The maximum size in bytes of a launch file and all files that it includes, because a student's folder may contain
-files of any size.
-"""
 
 
 @dataclass(frozen=True)
@@ -53,7 +46,7 @@ class Plan:
         launches: Returns the path of the installed launch file; None if the exercise launches none.
     """
 
-    targets: Callable[[Build], Iterable[str]]
+    targets: Targets
     missing: Callable[[Build], str]
     command: Callable[[Build], Sequence[str]]
     definition: str = ""
@@ -155,12 +148,8 @@ def _interface_plan(runner: ServesInterface) -> Plan:
     )
 
 
-def launch_targets(file: Path) -> Callable[[Build], Iterable[str]]:
-    """Return a function that finds the packages named in a launch file, or in a file that it includes.
-
-    Args:
-        file: The launch file, in any language.
-    """
+def launch_targets(file: Path) -> Targets:
+    """Return a function that finds the packages named in a launch file, or in a file that the launch file includes."""
 
     def targets(found: Build) -> list[str]:
         words = _launch_words(file, found)
@@ -212,6 +201,14 @@ def ros2() -> str:
     return str(beside) if beside.exists() else shutil.which("ros2") or "ros2"
 
 
+_LAUNCH_FILES = ("launch.py", ".xml", ".yaml", ".yml")
+"""The name endings of launch files."""
+_LARGEST = 500_000
+"""The maximum size in bytes of a launch file and all files that it includes, because a student's folder may contain
+files of any size.
+"""
+
+
 def _launch_words(file: Path, build: Build) -> set[str] | None:
     """Return the words in a launch file and in the files whose names it contains; None if there is too much to parse.
 
@@ -221,7 +218,11 @@ def _launch_words(file: Path, build: Build) -> set[str] | None:
         *file.parent.iterdir(),
         *(path for package in build.packages for path in package.folder.rglob("*")),
     ]
-    others = {path for path in near if path.name.endswith(_LAUNCH_FILES) and _is_small(path)}
+    others = {
+        path
+        for path in near
+        if path.name.endswith(_LAUNCH_FILES) and path.is_file() and path.stat().st_size <= _LARGEST
+    }
     budget, words = ByteBudget(_LARGEST), set[str]()
     unread = {file}
     while unread:
@@ -232,10 +233,6 @@ def _launch_words(file: Path, build: Build) -> set[str] | None:
         words.update(re2.findall(r"</?\w+|\w+:?", text))
         unread = {path for path in others if path.name in text}
     return words
-
-
-def _is_small(path: Path) -> bool:
-    return path.is_file() and path.stat().st_size <= _LARGEST
 
 
 def _programs(made: Build) -> set[str]:

@@ -27,91 +27,8 @@ if TYPE_CHECKING:
     from autograder.workspaces.program_plans import Plan
 
 
-MAX_LOG = 3_000
-"""The maximum number of characters to report from the end of a build's log."""
-
-
-def report_line(phase: str, made: Build, plan: Plan | None = None, missing: str = "") -> str:
-    """Return the line of the report about a workspace.
-
-    Args:
-        phase: ``"found"`` for a report on the sources, before the build; ``"built"`` for one on the result of the
-            build.
-        made: The description of the workspace, or of its build.
-        plan: The exercise's plan for it; None if all packages are equally important.
-        missing: The name of a package, program or file that the exercise needs and the workspace lacks.
-    """
-    needed = set(plan.targets(made)) if plan else set[str]()
-    definition = plan.definition if plan else ""
-    budget = ByteBudget(MAX_LOOK)
-    packages = [_described(p, definition, made, budget) for p in made.packages if p.name in needed]
-    complete = budget.sufficed
-    others = [_described(p, definition, made, budget) for p in made.packages if p.name not in needed]
-    return workspace_report_line(
-        WorkspaceReport(
-            phase=phase,
-            built=made.ok,
-            trouble=made.trouble,
-            package=made.package,
-            line=made.line,
-            log=made.log[-MAX_LOG:],
-            packages=packages,
-            missing=missing,
-            complete=complete,
-            changed=made.changed,
-        ),
-        others,
-    )
-
-
-def no_sources_line(trouble: str) -> str:
-    """Return the line of the report about a check without usable sources.
-
-    Args:
-        trouble: The reason, in words for the student.
-    """
-    return workspace_report_line(WorkspaceReport("built", built=False, trouble="no_workspace", line=trouble))
-
-
-def _described(package: Package, definition: str, made: Build, budget: ByteBudget) -> PackageReport:
-    files = sorted(package.interface_files, key=lambda file: file.name != definition)
-    programs = made.entry_points(package.name, budget)
-    if not programs and budget.has(package.folder / "setup.py"):
-        programs = package.programs
-    launches = made.launch_files(package.name) if made.install else launch_files(package.folder)
-    return PackageReport(
-        package.name,
-        package.build_type,
-        programs,
-        [_interface(package, file, definition, budget) for file in files],
-        package.dependencies,
-        tuple(file.as_posix() for file in package.modules),
-        package.commented,
-        made.programs(package.name),
-        tuple(file.as_posix() for file in launches),
-    )
-
-
-def _interface(package: Package, file: Path, definition: str, budget: ByteBudget) -> Interface:
-    listed = package.cmake_lists is None or file.name in package.cmake_lists
-    if file.name != definition or not budget.has(package.folder / file):
-        return Interface(file.as_posix(), None, listed)
-    text = (package.folder / file).read_text(encoding="utf-8", errors="replace")
-    return Interface(file.as_posix(), _without_comments(text), listed)
-
-
-def _without_comments(text: str) -> str:
-    """Return an interface definition without comments and empty lines. A # inside quotes does not begin a comment."""
-    lines = (
-        line if re2.search(r"^[^#]*['\"]", line) else line.partition("#")[0] for line in text.splitlines()
-    )
-    return "\n".join(line.strip() for line in lines if line.strip())
-
-
 COURSE = "course_ws"
 """The name under which jobs see the course's own packages. The student's packages take precedence over them."""
-
-
 _ALL_OUTPUT = {"OVERRIDE_LAUNCH_PROCESS_OUTPUT": "both"}
 """An environment variable that makes a launch show a node's output, whatever its launch file says
 (launch/actions/execute_local.py, ``output``).
@@ -233,3 +150,81 @@ class Preparation:
             return found
         entry = made.install.parent
         return relocated(found, entry, self.builds.jobs.place(name, entry))
+
+
+MAX_LOG = 3_000
+"""The maximum number of characters to report from the end of a build's log."""
+
+
+def report_line(phase: str, made: Build, plan: Plan | None = None, missing: str = "") -> str:
+    """Return the line of the report about a workspace.
+
+    Args:
+        phase: ``"found"`` for a report on the sources, before the build; ``"built"`` for one on the result of the
+            build.
+        made: The description of the workspace, or of its build.
+        plan: The exercise's plan for it; None if all packages are equally important.
+        missing: The name of a package, program or file that the exercise needs and the workspace lacks.
+    """
+    needed = set(plan.targets(made)) if plan else set[str]()
+    definition = plan.definition if plan else ""
+    budget = ByteBudget(MAX_LOOK)
+    packages = [_described(p, definition, made, budget) for p in made.packages if p.name in needed]
+    complete = budget.sufficed
+    others = [_described(p, definition, made, budget) for p in made.packages if p.name not in needed]
+    return workspace_report_line(
+        WorkspaceReport(
+            phase=phase,
+            built=made.ok,
+            trouble=made.trouble,
+            package=made.package,
+            line=made.line,
+            log=made.log[-MAX_LOG:],
+            packages=packages,
+            missing=missing,
+            complete=complete,
+            changed=made.changed,
+        ),
+        others,
+    )
+
+
+def no_sources_line(trouble: str) -> str:
+    """Return the line of the report about a check without usable sources.
+
+    Args:
+        trouble: The reason, in words for the student.
+    """
+    return workspace_report_line(WorkspaceReport("built", built=False, trouble="no_workspace", line=trouble))
+
+
+def _described(package: Package, definition: str, made: Build, budget: ByteBudget) -> PackageReport:
+    files = sorted(package.interface_files, key=lambda file: file.name != definition)
+    programs = made.entry_points(package.name, budget)
+    if not programs and budget.has(package.folder / "setup.py"):
+        programs = package.programs
+    launches = made.launch_files(package.name) if made.install else launch_files(package.folder)
+    return PackageReport(
+        package.name,
+        package.build_type,
+        programs,
+        [_interface(package, file, definition, budget) for file in files],
+        package.dependencies,
+        tuple(file.as_posix() for file in package.modules),
+        package.commented,
+        made.programs(package.name),
+        tuple(file.as_posix() for file in launches),
+    )
+
+
+def _interface(package: Package, file: Path, definition: str, budget: ByteBudget) -> Interface:
+    """Describe an interface file; with its text only if the exercise is about this file (``definition``)."""
+    listed = package.cmake_lists is None or file.name in package.cmake_lists
+    if file.name != definition or not budget.has(package.folder / file):
+        return Interface(file.as_posix(), None, listed)
+    text = (package.folder / file).read_text(encoding="utf-8", errors="replace")
+    # Leave out comments and empty lines. A # inside quotes does not begin a comment.
+    lines = (
+        line if re2.search(r"^[^#]*['\"]", line) else line.partition("#")[0] for line in text.splitlines()
+    )
+    return Interface(file.as_posix(), "\n".join(line.strip() for line in lines if line.strip()), listed)

@@ -28,33 +28,6 @@ if TYPE_CHECKING:
     from autograder.messages.json_lines import Lines
 
 
-class ByteBudget:
-    """The number of bytes that may still be read from a set of files.
-
-    Args:
-        size: The maximum number of bytes for all files together.
-
-    Attributes:
-        sufficed: True if the budget was enough for every file so far.
-    """
-
-    def __init__(self, size: int) -> None:
-        self._left = size
-        self.sufficed = True
-
-    def has(self, file: Path) -> bool:
-        """Subtract the size of a file (0 if it is missing). If too little is left, return False instead."""
-        try:
-            size = file.stat().st_size
-        except OSError:
-            size = 0
-        if size > self._left:
-            self.sufficed = False
-            return False
-        self._left -= size
-        return True
-
-
 MAX_FILES = 1_000
 """The maximum number of files and folders in one submission."""
 MAX_BYTES = 4_000_000
@@ -119,9 +92,44 @@ class Tree:
                 path.chmod(0o755 if source.executable else 0o644)
 
 
-def is_source(path: str) -> bool:
-    """Return True if a file with this path may be a source: it is not a .pyc file, nor in a folder that tools make."""
-    return not any(part in _NOT_SOURCES or part.endswith(".pyc") for part in path.split("/"))
+def collect_workspace(workspace: Path) -> list[Source]:
+    """Return all sources in ``src`` of a workspace. Their paths begin with the name of the workspace.
+
+    If the path is not a folder, return no sources, because a later step reports that.
+
+    Raises:
+        BadSources: The workspace is too large.
+    """
+    if not workspace.is_dir():
+        return []
+    name = workspace.resolve().name
+    # Include a package.xml: if the path is a package instead of a workspace, a diagnosis reports this from the file.
+    package = _read_file(workspace / "package.xml", f"{name}/package.xml", MAX_FILE)
+    sources = read_sources(workspace / "src", f"{name}/src", MAX_FILE)
+    return _bounded([Source(name), *([package] if package else []), *sources])
+
+
+def collect_launch(file: Path, workspace: Path | None) -> tuple[str, list[Source]]:
+    """Return a launch file, the small text files next to it, and the workspace around or next to it.
+
+    Args:
+        file: The launch file.
+        workspace: The result of :func:`autograder.workspaces.packages.workspace_of`.
+
+    Returns:
+        The file's path among the sources, and the sources.
+
+    Raises:
+        BadSources: The sources are too large.
+    """
+    file = file.resolve()
+    if workspace is not None and file.is_relative_to(workspace.resolve()):
+        inside = f"{workspace.resolve().name}/{file.relative_to(workspace.resolve()).as_posix()}"
+        near = [] if "/src/" in inside else [_read_file(file, inside, MAX_FILE)]
+        return inside, _bounded([*collect_workspace(workspace), *filter(None, near)])
+    beside = sorted(other for other in file.parent.iterdir() if other.suffix in LAUNCH_COMPANIONS)
+    sources = filter(None, (_read_file(other, other.name, MAX_FILE) for other in beside))
+    return file.name, _bounded([*sources, *(collect_workspace(workspace) if workspace else [])])
 
 
 def read_sources(folder: Path, name: str, largest: int) -> Iterator[Source]:
@@ -143,11 +151,11 @@ def read_sources(folder: Path, name: str, largest: int) -> Iterator[Source]:
         inside = PurePosixPath(name) / Path(root).relative_to(folder)
         yield Source(inside.as_posix())
         for file in sorted(filter(is_source, files)):
-            if (source := read_file(file, (inside / file).as_posix(), largest, descriptor)) is not None:
+            if (source := _read_file(file, (inside / file).as_posix(), largest, descriptor)) is not None:
                 yield source
 
 
-def read_file(file: str | Path, name: str, largest: int, folder: int | None = None) -> Source | None:
+def _read_file(file: str | Path, name: str, largest: int, folder: int | None = None) -> Source | None:
     """Read a source file. Return None if it is unreadable, compiled, or not a regular file.
 
     Args:
@@ -174,75 +182,9 @@ def read_file(file: str | Path, name: str, largest: int, folder: int | None = No
     return Source(name, data, executable)
 
 
-def collect_workspace(workspace: Path) -> list[Source]:
-    """Return all sources in ``src`` of a workspace. Their paths begin with the name of the workspace.
-
-    If the path is not a folder, return no sources, because a later step reports that.
-
-    Raises:
-        BadSources: The workspace is too large.
-    """
-    if not workspace.is_dir():
-        return []
-    name = workspace.resolve().name
-    # Include a package.xml: if the path is a package instead of a workspace, a diagnosis reports this from the file.
-    package = read_file(workspace / "package.xml", f"{name}/package.xml", MAX_FILE)
-    sources = read_sources(workspace / "src", f"{name}/src", MAX_FILE)
-    return _bounded([Source(name), *([package] if package else []), *sources])
-
-
-def collect_launch(file: Path, workspace: Path | None) -> tuple[str, list[Source]]:
-    """Return a launch file, the small text files next to it, and the workspace around or next to it.
-
-    Args:
-        file: The launch file.
-        workspace: The result of :func:`autograder.workspaces.packages.workspace_of`.
-
-    Returns:
-        The file's path among the sources, and the sources.
-
-    Raises:
-        BadSources: The sources are too large.
-    """
-    file = file.resolve()
-    if workspace is not None and file.is_relative_to(workspace.resolve()):
-        inside = f"{workspace.resolve().name}/{file.relative_to(workspace.resolve()).as_posix()}"
-        near = [] if "/src/" in inside else [read_file(file, inside, MAX_FILE)]
-        return inside, _bounded([*collect_workspace(workspace), *filter(None, near)])
-    beside = sorted(other for other in file.parent.iterdir() if other.suffix in LAUNCH_COMPANIONS)
-    sources = filter(None, (read_file(other, other.name, MAX_FILE) for other in beside))
-    return file.name, _bounded([*sources, *(collect_workspace(workspace) if workspace else [])])
-
-
-def checked(sources: Iterable[Source]) -> list[Source]:
-    """Check that sources are harmless (names, number, sizes, no duplicates), and return the real sources among them.
-
-    Other files are dropped, so that a box sees nothing that the build's key does not cover. An honest sender has
-    already left them out.
-
-    Raises:
-        BadSources: The sources could do harm.
-    """
-    taken: dict[str, Source] = {}
-    for source in sources:
-        check_path(source.path)
-        if source.path in taken:
-            raise BadSources(f"{source.path} was sent twice")
-        taken[source.path] = source
-    for path in taken:
-        above = (str(parent) for parent in PurePosixPath(path).parents)
-        if any(taken[name].data is not None for name in above if name in taken):
-            raise BadSources(f"{path} cannot be written, because one of its parent folders is a file")
-    return [source for source in _bounded(list(taken.values())) if _is_source(source)]
-
-
-def _is_source(source: Source) -> bool:
-    return is_source(source.path) and not (source.data or b"").startswith(_MACHINE_CODE)
-
-
-def room_of(source: Source) -> int:
-    """Return how much of the limit :data:`MAX_HELD` a source uses."""
-    return len(source.data or b"") + len(source.path)
+def is_source(path: str) -> bool:
+    """Return True if a file with this path may be a source: it is not a .pyc file, nor in a folder that tools make."""
+    return not any(part in _NOT_SOURCES or part.endswith(".pyc") for part in path.split("/"))
 
 
 def receive_sources(lines: Lines, count: int, path: str, folder: Path) -> None:
@@ -273,6 +215,37 @@ def receive_sources(lines: Lines, count: int, path: str, folder: Path) -> None:
         raise _too_much()
     check_path(path)
     Tree(tuple(checked(taken))).write(folder)
+
+
+def room_of(source: Source) -> int:
+    """Return how much of the limit :data:`MAX_HELD` a source uses."""
+    return len(source.data or b"") + len(source.path)
+
+
+def checked(sources: Iterable[Source]) -> list[Source]:
+    """Check that sources are harmless (names, number, sizes, no duplicates), and return the real sources among them.
+
+    Other files are dropped, so that a box sees nothing that the build's key does not cover. An honest sender has
+    already left them out.
+
+    Raises:
+        BadSources: The sources could do harm.
+    """
+    taken: dict[str, Source] = {}
+    for source in sources:
+        check_path(source.path)
+        if source.path in taken:
+            raise BadSources(f"{source.path} was sent twice")
+        taken[source.path] = source
+    for path in taken:
+        above = (str(parent) for parent in PurePosixPath(path).parents)
+        if any(taken[name].data is not None for name in above if name in taken):
+            raise BadSources(f"{path} cannot be written, because one of its parent folders is a file")
+    return [
+        source
+        for source in _bounded(list(taken.values()))
+        if is_source(source.path) and not (source.data or b"").startswith(_MACHINE_CODE)
+    ]
 
 
 def check_path(path: str) -> None:
@@ -306,3 +279,30 @@ def _too_much() -> BadSources:
         f"src is too large: a check accepts at most {MAX_FILES} files, {MAX_FILE // 1000} kB for each file, and "
         f"{MAX_BYTES // 10**6} MB for all files together"
     )
+
+
+class ByteBudget:
+    """The number of bytes that may still be read from a set of files, each of which may be small enough by itself.
+
+    Args:
+        size: The maximum number of bytes for all files together.
+
+    Attributes:
+        sufficed: True if the budget was enough for every file so far.
+    """
+
+    def __init__(self, size: int) -> None:
+        self._left = size
+        self.sufficed = True
+
+    def has(self, file: Path) -> bool:
+        """Subtract the size of a file (0 if it is missing). If too little is left, return False instead."""
+        try:
+            size = file.stat().st_size
+        except OSError:
+            size = 0
+        if size > self._left:
+            self.sufficed = False
+            return False
+        self._left -= size
+        return True

@@ -23,7 +23,7 @@ from autograder.judge import controlled_judge
 from autograder.judge.ros_setup import boxed_ros_environment
 from autograder.masters.master_files import lab_name, masters
 from autograder.masters.source_notebooks import source_notebook
-from autograder.workspaces.graded_builds import FILE, Files, GradedBuilds
+from autograder.workspaces.graded_builds import BUILT_AHEAD, GradedBuilds, PackageFiles
 from autograder.workspaces.packages import WORKSPACE
 
 if TYPE_CHECKING:
@@ -48,7 +48,7 @@ def main(options: argparse.Namespace) -> int:
     """
     del options
     root = course.root()
-    found: dict[Path, list[Files]] = {}
+    found: dict[Path, list[PackageFiles]] = {}
     with ForkServers(
         controlled_judge.__name__,
         boxed=True,
@@ -66,7 +66,7 @@ def main(options: argparse.Namespace) -> int:
             packages += [files for files in built if files not in packages]
     for chapter, packages in found.items():
         text = json.dumps(packages, ensure_ascii=False, indent=1) + "\n"
-        (chapter / FILE).write_text(text, encoding="utf-8")
+        (chapter / BUILT_AHEAD).write_text(text, encoding="utf-8")
     return 0
 
 
@@ -82,7 +82,7 @@ def _task(master: Path) -> Task | None:
     return Task("reference", "built-ahead", lab_name(master), cells, seed="built ahead", course="")
 
 
-def _built(task: Task, addresses: Addresses) -> list[Files]:
+def _built(task: Task, addresses: Addresses) -> list[PackageFiles]:
     """The packages that a notebook has had built for it."""
     trees: dict[str, Tree] = {}
     entry = GradedBuilds._entry
@@ -104,5 +104,5 @@ def _built(task: Task, addresses: Addresses) -> list[Files]:
     return [_files(tree) for tree in trees.values()]
 
 
-def _files(tree: Tree) -> Files:
+def _files(tree: Tree) -> PackageFiles:
     return {source.path: None if source.data is None else source.data.decode() for source in tree.sources}

@@ -16,11 +16,16 @@ from autograder.masters.master_files import masters
 from autograder.masters.source_notebooks import source_notebook
 from autograder.workspaces import graded_builds
 from autograder.workspaces.builds.colcon_build import look
-from autograder.workspaces.graded_builds import FILE, GradedBuilds, build_ahead, recorded
+from autograder.workspaces.graded_builds import (
+    BUILT_AHEAD,
+    GradedBuilds,
+    build_ahead,
+    packages_to_build_ahead,
+)
 
 sys.path.insert(0, str(Path(__file__).parent))
 from made_workspaces import interface_package, python_package
-from test_service import FakeJobs
+from test_grading_service import FakeJobs
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -83,7 +88,7 @@ def test_a_package_of_the_course_is_built_ahead_whatever_its_comments_say(
         files[str(path.relative_to(tmp_path / "course"))] = path.read_text() if path.is_file() else None
     chapter = tmp_path / "solutions" / "01_chapter"
     chapter.mkdir(parents=True)
-    (chapter / FILE).write_text(json.dumps([files]))
+    (chapter / BUILT_AHEAD).write_text(json.dumps([files]))
     monkeypatch.setattr(course, "root", lambda: tmp_path)
     monkeypatch.setattr(graded_builds, "_done", set())
     jobs = FakeJobs()
@@ -106,7 +111,7 @@ def test_what_the_labs_write_is_recorded() -> None:
     """Else type: python -m tests.measure built_ahead."""
     written = dict(itertools.chain.from_iterable(map(_written_by, masters(course.root()))))
     assert "my_robot_interfaces/CMakeLists.txt" in written
-    everything = [item for files in recorded(course.root()) for item in files.items()]
+    everything = [item for files in packages_to_build_ahead(course.root()) for item in files.items()]
     built = {path for path, _ in everything}  # not what no check builds, as the action of Lab 1.4
     assert len(built & written.keys()) > 4
     old = {path: text for path, text in written.items() if path in built and (path, text) not in everything}

@@ -10,7 +10,7 @@ import pytest
 
 from autograder.workspaces import packages
 from autograder.workspaces.builds import cached_builds
-from autograder.workspaces.builds.interface_packages import holds_only_interfaces, simple_package_xml
+from autograder.workspaces.graded_builds import simple_package_xml
 from autograder.workspaces.sources import BadSources
 
 sys.path.insert(0, str(Path(__file__).parent))
@@ -47,7 +47,7 @@ def trouble_in(src: Path) -> str:
 
 
 def key_of(src: Path) -> str:
-    return cached_builds.key(packages.sources_of(src, packages_in(src)))
+    return cached_builds.build_key(packages.sources_of(src, packages_in(src)))
 
 
 def test_the_key_is_of_bytes_names_and_bits(workspace: Path) -> None:
@@ -186,8 +186,8 @@ def test_a_cmake_file_is_read_once_and_only_where_it_is_short(
     long, short, _ = sorted(packages_in(workspace / "src"), key=lambda package: package.folder.name)
     assert short.cmake_lists == f"\n{CMAKE}"
     assert long.cmake_lists is None
-    assert holds_only_interfaces(short)
-    assert not holds_only_interfaces(long)
+    assert short.holds_only_interfaces
+    assert not long.holds_only_interfaces
     assert len(reads) == 2
 
 

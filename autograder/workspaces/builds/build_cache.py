@@ -82,7 +82,7 @@ def graders_root() -> Path:
 def _own(folder: Path) -> Path:
     try:
         folder.mkdir(parents=True, exist_ok=True, mode=0o700)
-        if is_ones_own(folder):
+        if _is_ones_own(folder):
             return folder
     except OSError:
         pass
@@ -103,7 +103,7 @@ def _in_place_of(folder: Path) -> Path:
     return made
 
 
-def is_ones_own(folder: Path) -> bool:
+def _is_ones_own(folder: Path) -> bool:
     """Return True if only this user may write to a folder."""
     found = folder.lstat()
     own = stat.S_ISDIR(found.st_mode) and found.st_uid == os.getuid()
@@ -141,7 +141,7 @@ def entry(key: str, base: Path, cancelled: Callable[[], bool] = lambda: False) -
     with _turn(base / f"{key}.lock", cancelled) as lock:
         folder = base / key
         marker = folder / _MARKER
-        complete = _is_of(key, marker) and is_ones_own(folder)
+        complete = _is_of(key, marker) and _is_ones_own(folder)
         if complete:
             os.utime(marker)
         else:
@@ -263,8 +263,7 @@ def size_of(folder: Path) -> int:
     for root_, _, names in os.walk(folder):
         size += BLOCK
         for name in names:
-            with contextlib.suppress(
-                FileNotFoundError
-            ):  # another thread or process may be removing this file
+            # Another thread or process may be removing this file.
+            with contextlib.suppress(FileNotFoundError):
                 size += BLOCK + Path(root_, name).lstat().st_size
     return size

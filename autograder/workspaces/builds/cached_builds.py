@@ -22,7 +22,6 @@ from typing import TYPE_CHECKING
 from autograder.workspaces.builds import build_artefacts, build_cache
 from autograder.workspaces.builds.colcon_build import choose, command, failed, moved
 from autograder.workspaces.builds.install_folder import merge
-from autograder.workspaces.builds.interface_packages import holds_only_interfaces
 from autograder.workspaces.jobs import BuildOrder
 from autograder.workspaces.packages import WORKSPACE, sources_of
 from autograder.workspaces.sources import BadSources
@@ -45,8 +44,6 @@ NO_DEFAULTS = {"COLCON_DEFAULTS_FILE": os.devnull}
 """Environment variables that make colcon ignore the user's own settings. The key of a build in the cache does not cover
 these settings, so they must not affect the build.
 """
-_TOOLS = ("colcon_core-", "colcon_cmake-", "colcon_ros-", "setuptools-", "cmake-")
-_ENVIRONMENT = ("CC", "CXX", "CFLAGS", "CXXFLAGS", "LDFLAGS", "CMAKE_GENERATOR", "RMW_IMPLEMENTATION")
 
 
 class BuildTookTooLong(RuntimeError):
@@ -134,7 +131,7 @@ class Builds:
         names = {prefix.name for prefix in made.prefixes}
         built = [package for package in made.packages if package.name in names]
         sources = sources_of(made.workspace / "src", built)
-        order = key(sources, type(self.jobs).__name__, "lent", course.install.parent.name)
+        order = build_key(sources, type(self.jobs).__name__, "lent", course.install.parent.name)
         with build_cache.entry(order, self._folder) as entry:
             install = entry.folder / "install"
             if not entry.complete:
@@ -152,7 +149,12 @@ class Builds:
         src = found.workspace / "src"
         try:
             tree, packages = sources_of(src, chosen), moved(chosen, src, Path("src"))
-            cmake = ONLY_PYTHON if _are_light(chosen) else ()
+            # If the packages are interfaces and Python packages, no package needs the interfaces in C++.
+            only_python = all(
+                package.holds_only_interfaces or package.build_type == "ament_python" for package in chosen
+            )
+            interfaces = any(package.holds_only_interfaces for package in chosen)
+            cmake = ONLY_PYTHON if only_python and interfaces else ()
             order = BuildOrder(name, found.workspace, tree, packages, cancelled, cmake, NO_DEFAULTS)
             made = self._find_or_make(found, chosen, order)
         except BadSources as error:
@@ -174,7 +176,7 @@ class Builds:
         """Return the build request with its key for the cache: a hash of the request and of other facts (``words``)."""
         return replace(
             order,
-            key=key(
+            key=build_key(
                 order.tree,
                 type(self.jobs).__name__,
                 order.name,
@@ -218,17 +220,21 @@ class Builds:
         return replace(found, ok=True, install=install)
 
 
-def key(tree: Tree, *words: str) -> str:
+def build_key(tree: Tree, *words: str) -> str:
     """Return the key of a build: a hash of the sources, of the build tools, and of ``words``.
 
     Args:
         tree: The sources.
         words: Other facts that influence the build, such as the command.
     """
-    return hashlib.sha256("\0".join((FORMAT, tree.digest, *toolchain(), *words)).encode()).hexdigest()
+    return hashlib.sha256("\0".join((FORMAT, tree.digest, *_toolchain(), *words)).encode()).hexdigest()
 
 
-def toolchain() -> tuple[str, ...]:
+_TOOLS = ("colcon_core-", "colcon_cmake-", "colcon_ros-", "setuptools-", "cmake-")
+_ENVIRONMENT = ("CC", "CXX", "CFLAGS", "CXXFLAGS", "LDFLAGS", "CMAKE_GENERATOR", "RMW_IMPLEMENTATION")
+
+
+def _toolchain() -> tuple[str, ...]:
     """Return the tools that influence a build, with their versions: Python, colcon, compilers and so on."""
     programs = [
         shutil.which(os.environ.get(name) or usual) or "" for name, usual in (("CC", "cc"), ("CXX", "c++"))
@@ -238,7 +244,7 @@ def toolchain() -> tuple[str, ...]:
         sys.version,
         sys.prefix,
         *_tools(),
-        *(f"{program} {state(program)}" for program in programs),
+        *(f"{program} {file_state(program)}" for program in programs),
         f"ros {_underlay()}",
         hashlib.sha256(ONLY_PYTHON_FILE.read_bytes()).hexdigest(),
         os.environ.get("ROS_DISTRO", ""),
@@ -250,7 +256,7 @@ def _underlay() -> str:
     """Return path, size and time of a file in the first ROS installation that a build finds; empty if there is none."""
     for prefix in filter(None, (*os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep), sys.prefix)):
         generators = str(Path(prefix, "share", "rosidl_default_generators", "package.xml"))
-        if mark := state(generators):
+        if mark := file_state(generators):
             return f"{generators} {mark}"
     return ""
 
@@ -270,19 +276,13 @@ def _tools() -> tuple[str, ...]:
     return tuple(sorted(e for e in entries if e.startswith(_TOOLS) and e.endswith(("dist-info", "egg-info"))))
 
 
-def state(file: str) -> str:
+def file_state(file: str) -> str:
     """Return the size and the modification time of a file as text; empty if the file is missing."""
     try:
         found = Path(file).stat()
     except OSError:
         return ""
     return f"{found.st_size} {found.st_mtime_ns}"
-
-
-def _are_light(packages: Sequence[Package]) -> bool:
-    return any(holds_only_interfaces(package) for package in packages) and all(
-        holds_only_interfaces(package) or package.build_type == "ament_python" for package in packages
-    )
 
 
 def _log(built: Built, place: Path) -> str:

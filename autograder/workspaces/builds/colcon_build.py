@@ -1,6 +1,6 @@
 """Describes a workspace before and after its build, makes colcon's command line, and finds why a build failed.
 
-If a build failed, the report quotes the line of colcon's output that explains the reason best.
+The reason for a failed build is the line of colcon's output that explains the failure best.
 """
 
 from __future__ import annotations
@@ -21,102 +21,6 @@ if TYPE_CHECKING:
 
     from autograder.workspaces.packages import Package
     from autograder.workspaces.sources import ByteBudget
-
-
-_COMPILER = re2.compile(
-    r"(?m)^(?P<file>[^\s:][^:\n]*):(?P<line>\d+):(?:\d+:)? (?:fatal )?error: (?P<what>.*)$"
-)
-_CMAKE = re2.compile(
-    r"(?m)^CMake Error at (?P<file>[^:\n]+):(?P<line>\d+)[^\n]*:\n+(?P<what>[ \t]+\S.*(?:\n[ \t]+\S.*|\n\n  \S.*)*)"
-)
-_CMAKE_STATUS = re2.compile(r"(?m)^-- .*\n?")
-_CALL_STACK = re2.compile(r"\n+Call Stack \(most recent call first\):(?P<calls>(?:\n[ \t]+\S.*)+)")
-_CALL = re2.compile(r"^(?P<file>[^:\n]+):(?P<line>\d+)")
-_CMAKE_PLAIN = re2.compile(r"(?m)^CMake Error: (?P<what>.*)$")
-_PYTHON = re2.compile(r"(?m)^(?P<what>(?:[\w.]*(?:Error|Exception|Invalid\w+)|[\w.]+\.[A-Z]\w+)(?::.*)?)$")
-_PLACE = re2.compile(r'(?m)^\s*File "(?P<file>[^"]+)", line (?P<line>\d+)')
-_SETUPTOOLS = re2.compile(r"(?m)^error: (?P<what>.*)$")
-_NINJA_MAKE = re2.compile(r"^(?:make|gmake|ninja|---|<<<|>>>)")
-
-
-def telling_line(log: str) -> str:
-    """Return the line of a log that explains best why a build failed, with file and line number if the log has them.
-
-    Args:
-        log: The output of colcon's commands, in order.
-
-    Returns:
-        One line; empty only if the log is empty.
-    """
-    if found := _COMPILER.search(log):
-        return f"{_short(found['file'])}:{found['line']}: {found['what']}"
-    python = _python(log)
-    # Remove CMake's status lines, because they come from another stream and may appear between the lines of an error.
-    log = _CMAKE_STATUS.sub("", log) or log
-    if found := _CMAKE.search(log):
-        # If CMake reports that a Python program that it called has failed, the cause is the error in that program.
-        if python and "execute_process" in found["what"]:
-            return python
-        what = " ".join(found["what"].split())
-        return f"{_place(found, log)}: {_first_sentences(what)}"
-    if found := _CMAKE_PLAIN.search(log):
-        return found["what"].strip()
-    if python:
-        return python
-    if found := _SETUPTOOLS.search(log):
-        return found["what"].strip()
-    lines = [line.strip() for line in log.splitlines() if line.strip() and not _NINJA_MAKE.match(line)]
-    return lines[-1] if lines else ""
-
-
-def _python(log: str) -> str:
-    # CalledProcessError only means that a program that colcon or CMake called has failed, so look for that program's
-    # error.
-    found = list(_PYTHON.finditer(log))
-    errors = [error for error in found if "CalledProcessError" not in error["what"]] or found
-    if not errors:
-        return ""
-    error = errors[-1]
-    places = [place for place in _PLACE.finditer(log, 0, error.start()) if not _is_a_library(place["file"])]
-    if not places:
-        return error["what"].strip()
-    file, line = places[-1]["file"], places[-1]["line"]
-    # setuptools executes setup.py as a text, so tracebacks call the file "<string>".
-    file = "setup.py" if file == "<string>" and "run_setup" in log else file
-    return f"{_short(file)}:{line}: {error['what'].strip()}"
-
-
-def _is_a_library(file: str) -> bool:
-    return "site-packages" in file or "/lib/python3" in file or file.startswith("<frozen")
-
-
-def _place(error: re2.Match[str], log: str) -> str:
-    """Return the package's file and line that caused a CMake error, even if CMake names a library's file."""
-    stack = _CALL_STACK.match(log, error.end())
-    own = _CALL.search(stack["calls"].strip().splitlines()[-1].strip()) if stack else None
-    place = own or error
-    return f"{_short(place['file'])}:{place['line']}"
-
-
-def _short(file: str) -> str:
-    """Return the last two parts of a path: the package and the file."""
-    return "/".join(file.split("/")[-2:])
-
-
-def _first_sentences(text: str, limit: int = 240) -> str:
-    return text if len(text) <= limit else text[: text.rfind(" ", 0, limit)] + " …"
-
-
-MAX_LOG = 40_000
-"""The maximum number of characters to keep from the end of a failed build's log."""
-_REFUSED = "setup()' was never called"
-"""The last line of a build's output contains this text if setuptools rejects an argument in setup.py, without giving
-the reason.
-"""
-_WHAT_REFUSED = (
-    "setuptools refuses setup.py; `python3 setup.py --version`, in the folder of the package, says why"
-)
-_FAILED = re2.compile(r"(?m)^Failed\s+<<< (?P<name>\S+)")
 
 
 @dataclass(frozen=True)
@@ -179,21 +83,6 @@ Targets = Callable[[Build], Iterable[str]]
 """A function that returns the names of the needed packages of a workspace. An empty result means all packages."""
 
 
-def failed(found: Build, log: str) -> Build:
-    """Return the description of a failed build, with the reason taken from colcon's output."""
-    search = _FAILED.search(log)
-    name = search["name"] if search else ""
-    own = _log_of(log, name)
-    # Use the whole log if setup.py fails when colcon asks for its metadata, because the error is then not in the
-    # package's part of the log.
-    own = log if "CalledProcessError" in telling_line(own) else own
-    made = replace(found, trouble="build", package=name, line=telling_line(own), log=own[-MAX_LOG:])
-    if _REFUSED not in made.line:
-        return made
-    bad = next((package.bad_entry_point for package in found.packages if package.name == name), "")
-    return replace(made, trouble="entry_point", line=bad) if bad else replace(made, line=_WHAT_REFUSED)
-
-
 def look(workspace: Path) -> Build:
     """Return the description of a workspace that is not built: its packages, or why it has no usable package.
 
@@ -211,6 +100,14 @@ def look(workspace: Path) -> Build:
     if unusable:
         return replace(found, trouble="bad_package", line=unusable[0])
     return replace(found, trouble="no_package", line=f"there is no package.xml below {src}")
+
+
+def _no_workspace(workspace: Path) -> str:
+    if not workspace.exists():
+        return f"there is no folder {workspace}"
+    if (workspace / "package.xml").is_file():
+        return f"{workspace} is a package: name the workspace, the folder that holds src"
+    return f"{workspace} has no folder src"
 
 
 def choose(found: Build, targets: Targets | None) -> tuple[list[Package], Build]:
@@ -259,6 +156,33 @@ def command(packages: Iterable[Package], folder: Path, cmake: Sequence[str] = ()
     return python_child(*words).command
 
 
+MAX_LOG = 40_000
+"""The maximum number of characters to keep from the end of a failed build's log."""
+_REFUSED = "setup()' was never called"
+"""The last line of a build's output contains this text if setuptools rejects an argument in setup.py, without giving
+the reason.
+"""
+_WHAT_REFUSED = (
+    "setuptools refuses setup.py; `python3 setup.py --version`, in the folder of the package, says why"
+)
+_FAILED = re2.compile(r"(?m)^Failed\s+<<< (?P<name>\S+)")
+
+
+def failed(found: Build, log: str) -> Build:
+    """Return the description of a failed build, with the reason from colcon's output (``log``)."""
+    search = _FAILED.search(log)
+    name = search["name"] if search else ""
+    own = _log_of(log, name)
+    # Use the whole log if setup.py fails when colcon asks for its metadata, because the error is then not in the
+    # package's part of the log.
+    own = log if "CalledProcessError" in telling_line(own) else own
+    made = replace(found, trouble="build", package=name, line=telling_line(own), log=own[-MAX_LOG:])
+    if _REFUSED not in made.line:
+        return made
+    bad = next((package.bad_entry_point for package in found.packages if package.name == name), "")
+    return replace(made, trouble="entry_point", line=bad) if bad else replace(made, line=_WHAT_REFUSED)
+
+
 def _log_of(log: str, package: str) -> str:
     """Return the part of colcon's output that is about one package; the whole output if it has no such part."""
     if package:
@@ -268,9 +192,83 @@ def _log_of(log: str, package: str) -> str:
     return log
 
 
-def _no_workspace(workspace: Path) -> str:
-    if not workspace.exists():
-        return f"there is no folder {workspace}"
-    if (workspace / "package.xml").is_file():
-        return f"{workspace} is a package: name the workspace, the folder that holds src"
-    return f"{workspace} has no folder src"
+MAX_CMAKE_ERROR = 240
+"""The maximum number of characters to quote of an error of CMake."""
+_COMPILER = re2.compile(
+    r"(?m)^(?P<file>[^\s:][^:\n]*):(?P<line>\d+):(?:\d+:)? (?:fatal )?error: (?P<what>.*)$"
+)
+_CMAKE = re2.compile(
+    r"(?m)^CMake Error at (?P<file>[^:\n]+):(?P<line>\d+)[^\n]*:\n+(?P<what>[ \t]+\S.*(?:\n[ \t]+\S.*|\n\n  \S.*)*)"
+)
+_CMAKE_STATUS = re2.compile(r"(?m)^-- .*\n?")
+_CALL_STACK = re2.compile(r"\n+Call Stack \(most recent call first\):(?P<calls>(?:\n[ \t]+\S.*)+)")
+_CALL = re2.compile(r"^(?P<file>[^:\n]+):(?P<line>\d+)")
+_CMAKE_PLAIN = re2.compile(r"(?m)^CMake Error: (?P<what>.*)$")
+_PYTHON = re2.compile(r"(?m)^(?P<what>(?:[\w.]*(?:Error|Exception|Invalid\w+)|[\w.]+\.[A-Z]\w+)(?::.*)?)$")
+_PLACE = re2.compile(r'(?m)^\s*File "(?P<file>[^"]+)", line (?P<line>\d+)')
+_LIBRARIES = ("site-packages", "/lib/python3")
+"""Parts of the paths of Python's own modules and of installed packages, which are never the cause of a failed build."""
+_SETUPTOOLS = re2.compile(r"(?m)^error: (?P<what>.*)$")
+_NINJA_MAKE = re2.compile(r"^(?:make|gmake|ninja|---|<<<|>>>)")
+
+
+def telling_line(log: str) -> str:
+    """Return the line of colcon's output that explains best why a build failed; empty only if there is no output.
+
+    The line begins with the file and the line number if the output contains them.
+    """
+    if found := _COMPILER.search(log):
+        return f"{_short(found['file'])}:{found['line']}: {found['what']}"
+    python = _python(log)
+    # Remove CMake's status lines, because they come from another stream and may appear between the lines of an error.
+    log = _CMAKE_STATUS.sub("", log) or log
+    if found := _CMAKE.search(log):
+        # If CMake reports that a Python program that it called has failed, the cause is the error in that program.
+        if python and "execute_process" in found["what"]:
+            return python
+        what = " ".join(found["what"].split())
+        what = what if len(what) <= MAX_CMAKE_ERROR else what[: what.rfind(" ", 0, MAX_CMAKE_ERROR)] + " …"
+        return f"{_place(found, log)}: {what}"
+    if found := _CMAKE_PLAIN.search(log):
+        return found["what"].strip()
+    if python:
+        return python
+    if found := _SETUPTOOLS.search(log):
+        return found["what"].strip()
+    lines = [line.strip() for line in log.splitlines() if line.strip() and not _NINJA_MAKE.match(line)]
+    return lines[-1] if lines else ""
+
+
+def _python(log: str) -> str:
+    """Return the last error of Python, with the student's file and line; empty if the output has no such error."""
+    # CalledProcessError only means that a program that colcon or CMake called has failed, so look for that program's
+    # error.
+    found = list(_PYTHON.finditer(log))
+    errors = [error for error in found if "CalledProcessError" not in error["what"]] or found
+    if not errors:
+        return ""
+    error = errors[-1]
+    places = [
+        place
+        for place in _PLACE.finditer(log, 0, error.start())
+        if not any(part in place["file"] for part in _LIBRARIES) and not place["file"].startswith("<frozen")
+    ]
+    if not places:
+        return error["what"].strip()
+    file, line = places[-1]["file"], places[-1]["line"]
+    # setuptools executes setup.py as a text, so tracebacks call the file "<string>".
+    file = "setup.py" if file == "<string>" and "run_setup" in log else file
+    return f"{_short(file)}:{line}: {error['what'].strip()}"
+
+
+def _place(error: re2.Match[str], log: str) -> str:
+    """Return the package's file and line that caused a CMake error, even if CMake names a library's file."""
+    stack = _CALL_STACK.match(log, error.end())
+    own = _CALL.search(stack["calls"].strip().splitlines()[-1].strip()) if stack else None
+    place = own or error
+    return f"{_short(place['file'])}:{place['line']}"
+
+
+def _short(file: str) -> str:
+    """Return the last two parts of a path: the package and the file."""
+    return "/".join(file.split("/")[-2:])

@@ -209,16 +209,13 @@ def place(made: Build) -> Path:
             shutil.copytree(made.install, copied, symlinks=True, ignore=shutil.ignore_patterns("__pycache__"))
             rename_paths(copied, str(made.install), str(target))
             for entry in sorted(copied.iterdir()):
-                _replace(target / entry.name, entry)
+                old = target / entry.name
+                if old.is_dir() and not old.is_symlink():
+                    shutil.rmtree(old)
+                entry.replace(old)
     except OSError as error:
         raise CannotPlace(f"{target} cannot be written: {error.strerror}") from error
     return target
-
-
-def _replace(old: Path, new: Path) -> None:
-    if old.is_dir() and not old.is_symlink():
-        shutil.rmtree(old)
-    new.replace(old)
 
 
 def rename_paths(folder: Path, old: str, new: str) -> None:

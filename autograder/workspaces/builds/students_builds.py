@@ -60,6 +60,98 @@ if TYPE_CHECKING:
     from autograder.workspaces.packages import Package
 
 
+GRADERS = "AUTOGRADER_BUILDS"
+"""The environment variable that, in a graded notebook, contains the path of the grader's socket."""
+LIMIT = 300.0
+"""Time limit in seconds of wall time for the grader to make a build."""
+
+
+class OwnBuilds(Builds):
+    """Makes builds in the cache or, in a graded notebook, requests them from the grader.
+
+    A build does not write to the workspace, and does not use earlier results in its ``install`` folder.
+    """
+
+    def __init__(self) -> None:
+        super().__init__(build_cache.root(), PlainJobs(os.environ, handed_in=False))
+
+    def build(
+        self,
+        found: Build,
+        targets: Targets | None,
+        *,
+        name: str = WORKSPACE,
+        cancelled: Callable[[], bool] = lambda: False,
+    ) -> Build:
+        """Build the needed packages. A build that took too long is returned like a failed one."""
+        try:
+            return super().build(found, targets, name=name, cancelled=cancelled)
+        except BuildTookTooLong as error:
+            return error.build
+
+    def _make(self, found: Build, order: BuildOrder, entry: build_cache.CachedBuild) -> Build:
+        socket = os.environ.get(GRADERS)
+        asked = _ask(socket, found, order.packages, entry.folder / "install") if socket else None
+        return asked or super()._make(found, order, entry)
+
+
+class StudentsBuilds(OwnBuilds):
+    """Finds builds for a student's own check: the student's build if it is up to date, else a new one.
+
+    If sources were changed since the student's build, the check builds the changed sources, because students hand in
+    only sources, and the grader of a class builds these. The card then names the changed files.
+    """
+
+    def _find_or_make(self, found: Build, chosen: Sequence[Package], order: BuildOrder) -> Build:
+        if order.name != WORKSPACE:
+            return super()._find_or_make(found, chosen, order)
+        if is_current(found.workspace, chosen):
+            names = tuple(package.name for package in chosen)
+            return replace(found, ok=True, install=found.workspace / "install", chosen=names, reused=True)
+        made = super()._find_or_make(found, chosen, order)
+        return replace(made, changed=changed_since(found.workspace, chosen))
+
+
+def _ask(socket: str, found: Build, chosen: Iterable[Package], install: Path) -> Build | None:
+    """Request a build of packages from the grader.
+
+    Args:
+        socket: The path of the grader's socket.
+        found: The workspace, as :func:`autograder.workspaces.builds.colcon_build.look` returns it.
+        chosen: The packages.
+        install: The folder to create for the build. It must not exist yet.
+
+    Returns:
+        The build, with paths that fit its new install folder; None if the grader does not answer, or refuses.
+    """
+    try:
+        collected = collect_workspace(found.workspace)
+        lines = Lines.to(socket, LIMIT)
+    except (BadSources, Hangup):
+        return None
+    with contextlib.closing(lines), contextlib.suppress(Hangup, NotUnderstood, build_artefacts.BadArtefacts):
+        top = found.workspace.resolve().name
+        lines.say(messages.BuildRequest(len(collected), top, [package.name for package in chosen]))
+        for source in collected:
+            lines.say(source)
+        answer: messages.BuildAnswer = lines.hear(messages.BuildAnswer)
+        if isinstance(answer, messages.BuildFailed):
+            return replace(
+                found,
+                seconds=answer.seconds,
+                trouble=answer.trouble,
+                package=answer.package,
+                line=answer.line,
+                log=answer.log,
+            )
+        if isinstance(answer, messages.BuildDone):
+            archive = b"".join(lines.hear(messages.Piece).data for _ in range(answer.pieces))
+            build_artefacts.unpack(archive, install)
+            rename_paths(install, answer.install, str(install))
+            return replace(found, ok=True, install=install, seconds=answer.seconds)
+    return None
+
+
 _MOST_NAMED = 3
 """The maximum number of changed files to name."""
 _BEGAN = "colcon_command_prefix_*.sh"
@@ -177,115 +269,18 @@ def _text(file: Path) -> str:
     return file.read_text(encoding="utf-8", errors="replace") if file.is_file() else ""
 
 
-GRADERS = "AUTOGRADER_BUILDS"
-"""The environment variable that, in a graded notebook, contains the path of the grader's socket."""
-LIMIT = 300.0
-"""Time limit in seconds of wall time for the grader to make a build."""
-
-
-class OwnBuilds(Builds):
-    """Makes builds in the cache or, in a graded notebook, requests them from the grader.
-
-    A build does not write to the workspace, and does not use earlier results in its ``install`` folder.
-    """
-
-    def __init__(self) -> None:
-        super().__init__(build_cache.root(), PlainJobs(os.environ, handed_in=False))
-
-    def build(
-        self,
-        found: Build,
-        targets: Targets | None,
-        *,
-        name: str = WORKSPACE,
-        cancelled: Callable[[], bool] = lambda: False,
-    ) -> Build:
-        """Build the needed packages. A build that took too long is returned like a failed one."""
-        try:
-            return super().build(found, targets, name=name, cancelled=cancelled)
-        except BuildTookTooLong as error:
-            return error.build
-
-    def _make(self, found: Build, order: BuildOrder, entry: build_cache.CachedBuild) -> Build:
-        socket = os.environ.get(GRADERS)
-        asked = _ask(socket, found, order.packages, entry.folder / "install") if socket else None
-        return asked or super()._make(found, order, entry)
-
-
-class StudentsBuilds(OwnBuilds):
-    """Finds builds for a student's own check: the student's build if it is up to date, else a new one.
-
-    If sources were changed since the student's build, the check builds the changed sources, because students hand in
-    only sources, and the grader of a class builds these. The card then names the changed files.
-    """
-
-    def _find_or_make(self, found: Build, chosen: Sequence[Package], order: BuildOrder) -> Build:
-        if order.name != WORKSPACE:
-            return super()._find_or_make(found, chosen, order)
-        if is_current(found.workspace, chosen):
-            names = tuple(package.name for package in chosen)
-            return replace(found, ok=True, install=found.workspace / "install", chosen=names, reused=True)
-        made = super()._find_or_make(found, chosen, order)
-        return replace(made, changed=changed_since(found.workspace, chosen))
-
-
-def _ask(socket: str, found: Build, chosen: Iterable[Package], install: Path) -> Build | None:
-    """Request a build of packages from the grader.
-
-    Args:
-        socket: The path of the grader's socket.
-        found: The workspace, as :func:`autograder.workspaces.builds.colcon_build.look` returns it.
-        chosen: The packages.
-        install: The folder to create for the build. It must not exist yet.
-
-    Returns:
-        The build, with paths that fit its new install folder; None if the grader does not answer, or refuses.
-    """
-    try:
-        collected = collect_workspace(found.workspace)
-        lines = Lines.to(socket, LIMIT)
-    except (BadSources, Hangup):
-        return None
-    with contextlib.closing(lines), contextlib.suppress(Hangup, NotUnderstood, build_artefacts.BadArtefacts):
-        top = found.workspace.resolve().name
-        lines.say(messages.BuildRequest(len(collected), top, [package.name for package in chosen]))
-        for source in collected:
-            lines.say(source)
-        answer: messages.BuildAnswer = lines.hear(messages.BuildAnswer)
-        if isinstance(answer, messages.BuildFailed):
-            return replace(
-                found,
-                seconds=answer.seconds,
-                trouble=answer.trouble,
-                package=answer.package,
-                line=answer.line,
-                log=answer.log,
-            )
-        if isinstance(answer, messages.BuildDone):
-            archive = b"".join(lines.hear(messages.Piece).data for _ in range(answer.pieces))
-            build_artefacts.unpack(archive, install)
-            rename_paths(install, answer.install, str(install))
-            return replace(found, ok=True, install=install, seconds=answer.seconds)
-    return None
-
-
-UP_TO = "--packages-up-to"
-
-
 def main(arguments: Sequence[str]) -> int:
-    """Request a plain build from the grader, or replace this process by the real colcon. Return the exit code.
-
-    Args:
-        arguments: The arguments of the command line.
-    """
+    """Request a plain build from the grader, or replace this process by the real colcon. Return the exit code."""
     chosen = _chosen(arguments)
     found = look(Path.cwd())
     if os.environ.get(GRADERS) and chosen is not None and not found.trouble and not found.unusable:
         option, names = chosen
         if set(names) <= {package.name for package in found.packages}:
-            made = OwnBuilds().build(found, _targets(option, names))
+            if option == "--packages-up-to":
+                names = [package.name for package in needed(found.packages, names)]
+            made = OwnBuilds().build(found, (lambda _: names) if option else None)
             try:
-                return _told(made)
+                return _take_over(made)
             except CannotPlace:
                 pass  # the real colcon reports the reason
     command = python_child("-m", "colcon", *arguments).command
@@ -303,13 +298,7 @@ def _chosen(arguments: Sequence[str]) -> tuple[str, list[str]] | None:
     return None
 
 
-def _targets(option: str, names: Sequence[str]) -> Targets | None:
-    if option == UP_TO:
-        return lambda found: [package.name for package in needed(found.packages, names)]
-    return (lambda _: names) if option else None
-
-
-def _told(made: Build) -> int:
+def _take_over(made: Build) -> int:
     """Copy the build into the workspace, and print what colcon would print. Return the exit code.
 
     Raises:

@@ -21,7 +21,7 @@ from environment.python_child import python_child
 sys.path.insert(0, str(Path(__file__).parent))
 from made_workspaces import interface_package, python_package
 from test_colcon import run_program
-from test_service import FakeJobs
+from test_grading_service import FakeJobs
 
 if TYPE_CHECKING:
     from autograder.workspaces.builds.colcon_build import Build

@@ -9,8 +9,7 @@ import pytest
 from rosidl_adapter.parser import InvalidSpecification, parse_service_string
 
 from autograder.messages.workspace_messages import Source
-from autograder.workspaces.builds.interface_packages import (
-    holds_only_interfaces,
+from autograder.workspaces.graded_builds import (
     simple_cmake,
     simple_definition,
     simple_package_xml,
@@ -152,10 +151,10 @@ def test_two_packages_that_differ_in_comments_have_one_key(tmp_path: Path) -> No
 )
 def test_a_package_with_more_in_it_is_none(tmp_path: Path, file: str, text: str) -> None:
     folder = interface_package(tmp_path / "my_robot_interfaces")
-    assert all(map(holds_only_interfaces, packages_in(tmp_path)))
+    assert all(package.holds_only_interfaces for package in packages_in(tmp_path))
     (folder / file).parent.mkdir(exist_ok=True)
     (folder / file).write_text(text)
-    assert not any(map(holds_only_interfaces, packages_in(tmp_path)))
+    assert not any(package.holds_only_interfaces for package in packages_in(tmp_path))
 
 
 @pytest.mark.parametrize("name", ["CMakeLists.txt", "srv/AddTwoInts.srv"])
