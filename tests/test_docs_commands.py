@@ -68,7 +68,7 @@ RUN_BY = {
     "./course renew-class": GUIDE,
     "./course replay": GUIDE,
     "./course report": GUIDE,
-    "./course reset": "student/test_resetting.py::test_the_command_says_where_the_copy_is",
+    "./course reset": "student/test_notebook_reset.py::test_the_command_says_where_the_copy_is",
     "./course setup": f"{_SCRIPT}test_setup_always_looks_again_and_runs_nothing_else",
     "./course similar": GUIDE,
     "./course site": "authoring/site/test_site.py::test_every_lab_has_a_page_and_every_page_is_small_and_loads_nothing",

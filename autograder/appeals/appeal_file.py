@@ -113,7 +113,8 @@ def _lines(value: Any, indent: str, before: str = "", after: str = "") -> Iterat
     inside = (
         (list(value.items()) if isinstance(value, dict) else value) if isinstance(value, (dict, list)) else ()
     )
-    if not inside or _is_event(value) or len(indent) + len(before) + len(whole) <= _WIDTH:
+    is_event = isinstance(value, dict) and {"t", "kind", "name"} <= value.keys()
+    if not inside or is_event or len(indent) + len(before) + len(whole) <= _WIDTH:
         yield f"{indent}{before}{whole}{after}"
         return
     yield f"{indent}{before}{'{' if isinstance(value, dict) else '['}"
@@ -128,7 +129,3 @@ def _lines(value: Any, indent: str, before: str = "", after: str = "") -> Iterat
 
 def _json(value: Any) -> str:
     return printable_json(json.dumps(value, ensure_ascii=False))
-
-
-def _is_event(value: Any) -> bool:
-    return isinstance(value, dict) and {"t", "kind", "name"} <= value.keys()

@@ -189,6 +189,16 @@ def _types(kept: Kept) -> dict[tuple[str, str], str]:
     }
 
 
+_JSON_TYPES = {
+    bool: "boolean",
+    int: "number",
+    float: "number",
+    str: "string",
+    list: "array",
+    dict: "object",
+}
+
+
 def _extend(schema: dict[str, Any], value: Any) -> None:
     """Extend a JSON Schema so that it also allows this value."""
     if isinstance(value, dict):
@@ -201,13 +211,8 @@ def _extend(schema: dict[str, Any], value: Any) -> None:
         for inner in value:
             if inner is not None:
                 _extend(items, inner)
-    kind = _kind(value)
+    kind = _JSON_TYPES[type(value)]
     if schema.setdefault("type", kind) != kind:
         # The values of this field have different types. JSON Schema then says ``string``, so that programs show all of
         # them.
         schema["type"] = "string"
-
-
-def _kind(value: Any) -> str:
-    kinds = {bool: "boolean", int: "number", float: "number", str: "string", list: "array", dict: "object"}
-    return kinds[type(value)]

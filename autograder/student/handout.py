@@ -103,7 +103,7 @@ class CannotHandOut(Exception):
 
 
 @dataclass(frozen=True)
-class HandOut:
+class _HandOut:
     """A hand-out that was made.
 
     Attributes:
@@ -124,7 +124,7 @@ def hand_out(
     assignments: Collection[str] = (),
     as_zip: bool = False,
     with_solutions: bool = False,
-) -> HandOut:
+) -> _HandOut:
     """Make the hand-out for a class.
 
     Args:
@@ -157,7 +157,7 @@ def hand_out(
     sizes = [
         len(content) if isinstance(content, bytes) else content.stat().st_size for content in files.values()
     ]
-    return HandOut(place, len(files), sum(sizes))
+    return _HandOut(place, len(files), sum(sizes))
 
 
 def _wanted(chapters: Sequence[course.Chapter], names: Collection[str]) -> list[course.Chapter]:
@@ -225,6 +225,7 @@ def _judges_part(chapter: course.Chapter, *, with_solutions: bool) -> Iterator[P
 
 
 def _below(place: Path, root: Path) -> Iterator[Path]:
+    """Yield the files to hand out from a file or folder: none that is kept back, hidden or generated."""
     kept_back = any(place == root / name for name in KEPT_BACK)
     made = place.name in _MADE or (place.name in _MADE_BY_COLCON and (place.parent / "src").is_dir())
     hidden = place.name.startswith(".") and place != root and place.name not in WHOLE
@@ -251,9 +252,8 @@ def _pack(place: Path, files: dict[str, Path | bytes]) -> None:
     archive = io.BytesIO()
     with zipfile.ZipFile(archive, "w", zipfile.ZIP_DEFLATED) as packed:
         for name, content in files.items():
-            entry = zipfile.ZipInfo(
-                f"{place.stem}/{name}"
-            )  # ZipInfo has a fixed date, so that the same files always give the same zip
+            # ZipInfo has a fixed date, so that the same files always give the same zip.
+            entry = zipfile.ZipInfo(f"{place.stem}/{name}")
             entry.compress_type = zipfile.ZIP_DEFLATED
             runs = isinstance(content, Path) and content.stat().st_mode & stat.S_IXUSR
             entry.external_attr = (0o755 if runs else 0o644) << 16

@@ -26,6 +26,8 @@ PANEL = Path(__file__).with_name("labextensions")
 """The folder of the side panel with the course page, a JupyterLab extension that is ready to be loaded."""
 COURSE_PAGE = "course"
 """The path of the course page on the server, below the server's base address."""
+START_PAGE = (f"--LabApp.default_url=/{COURSE_PAGE}", f"--LabApp.extra_labextensions_path={PANEL}")
+"""The options that make JupyterLab open the course page, with the side panel."""
 NOTHING_TO_SAVE = "--ServerApp.contents_manager_class=autograder.student.lab_server.OpenedNotebooks"
 """The option that keeps JupyterLab from marking a notebook as unsaved when it was only opened."""
 QUIET = ("--ServerApp.log_level=WARN", "--LabApp.log_level=WARN")
@@ -72,9 +74,7 @@ def open_lab(folder: Path, arguments: Sequence[str] = ()) -> None:
 
     try:
         # JupyterLab runs in this process, because the claim on the domain ends with this process.
-        LabApp.launch_instance(
-            [*_start_page(), NOTHING_TO_SAVE, *QUIET, *_start_folder(Path.cwd()), *arguments]
-        )
+        LabApp.launch_instance([*START_PAGE, NOTHING_TO_SAVE, *QUIET, *_start_folder(Path.cwd()), *arguments])
     finally:
         end_idle_workers()
         if claim:
@@ -113,11 +113,6 @@ def join_domain() -> DomainClaim | None:
     claim = claim_free_domain()
     os.environ[DOMAIN_VARIABLE] = str(claim.domain)
     return claim
-
-
-def _start_page() -> list[str]:
-    """Return the options that make JupyterLab open the course page, with the side panel."""
-    return [f"--LabApp.default_url=/{COURSE_PAGE}", f"--LabApp.extra_labextensions_path={PANEL}"]
 
 
 def _start_folder(root: Path) -> list[str]:

@@ -24,25 +24,15 @@ from jupyter_server.utils import url_path_join
 from tornado import web
 
 from autograder import course, exercises
-from autograder.cards import html_rendering
-from autograder.student import check_journal, notebook_reset, progress
+from autograder.cards.html_rendering import certificate_svg
+from autograder.student import check_journal
+from autograder.student.check_journal import JournalEntry
 from autograder.student.lab import COURSE_PAGE
-from autograder.student.progress import Standing, standing
+from autograder.student.notebook_reset import CannotReset, reset
+from autograder.student.progress import Standing, page_html, standing, trouble_html
 
 if TYPE_CHECKING:
     from jupyter_server.serverapp import ServerApp
-
-
-VERSION = sys.version.split()[0]
-"""The version of the kernel's language (``IPythonKernel.language_info``), which is the version of the server's own
-Python.
-"""
-
-
-_THIS_MACHINE = ("", "localhost", "127.0.0.1", "::1")
-_RUNS = """
-JupyterLab runs. Keep this terminal open; press Ctrl-C twice in it to end JupyterLab.
-If no page has opened in your browser, open this address:"""
 
 
 class _CourseHandler(JupyterHandler):
@@ -67,7 +57,7 @@ class _CourseHandler(JupyterHandler):
         """The progress of the student."""
         return standing(course.root(), self.notebooks, check_journal.entries(self.journal))
 
-    def name_in_body(self) -> str:
+    def _name_in_body(self) -> str:
         """Return the notebook that a request names.
 
         Raises:
@@ -82,7 +72,7 @@ class _CourseHandler(JupyterHandler):
         return name
 
 
-class CoursePage(_CourseHandler):
+class _CoursePage(_CourseHandler):
     """The course page."""
 
     @web.authenticated
@@ -91,15 +81,15 @@ class CoursePage(_CourseHandler):
         """Show the page."""
         try:
             found = await asyncio.to_thread(self.standing)
-            text = progress.page_html(found, self.base_url, self.xsrf_token.decode())
+            text = page_html(found, self.base_url, self.xsrf_token.decode())
         except (course.NoCourse, course.BrokenChapter, exercises.BrokenExercise, OSError) as error:
             self.set_status(500)
-            text = progress.trouble_html(str(error), self.base_url)
+            text = trouble_html(str(error), self.base_url)
         self.set_header("Cache-Control", "no-cache")
         self.finish(text)
 
 
-class NotebookFile(_CourseHandler):
+class _ReadMark(_CourseHandler):
     """Marks a notebook as read, or removes the mark."""
 
     @web.authenticated
@@ -115,14 +105,12 @@ class NotebookFile(_CourseHandler):
         self._note("unread")
 
     def _note(self, kind: Any) -> None:
-        if not check_journal.note(
-            check_journal.JournalEntry(kind, self.name_in_body(), time.time()), self.journal
-        ):
+        if not check_journal.note(JournalEntry(kind, self._name_in_body(), time.time()), self.journal):
             raise web.HTTPError(500, reason="the journal cannot be written")
         self.set_status(204)
 
 
-class ResetNotebook(_CourseHandler):
+class _ResetNotebook(_CourseHandler):
     """Resets a notebook."""
 
     @web.authenticated
@@ -132,19 +120,17 @@ class ResetNotebook(_CourseHandler):
 
         The name is empty if the student's notebook did not exist, or was unchanged.
         """
-        name = self.name_in_body()
+        name = self._name_in_body()
         try:
-            done = await asyncio.to_thread(
-                notebook_reset.reset, course.root(), self.notebooks, name, self.journal
-            )
-        except (notebook_reset.CannotReset, course.NoCourse, course.BrokenChapter) as error:
+            done = await asyncio.to_thread(reset, course.root(), self.notebooks, name, self.journal)
+        except (CannotReset, course.NoCourse, course.BrokenChapter) as error:
             self.set_status(409)
             self.finish({"message": str(error)})
             return
         self.finish({"copy": done.copy.name if done.copy else ""})
 
 
-class Certificate(_CourseHandler):
+class _Certificate(_CourseHandler):
     """Serves the certificate of a chapter as a file."""
 
     @web.authenticated
@@ -156,9 +142,15 @@ class Certificate(_CourseHandler):
             if chapter.name == name and chapter.finished is not None:
                 self.set_header("Content-Type", "image/svg+xml")
                 self.set_header("Content-Disposition", f'attachment; filename="certificate-{name}.svg"')
-                self.finish(html_rendering.certificate_svg(chapter.title, chapter.possible, chapter.finished))
+                self.finish(certificate_svg(chapter.title, chapter.possible, chapter.finished))
                 return
         raise web.HTTPError(404, reason="this certificate does not exist yet")
+
+
+VERSION = sys.version.split()[0]
+"""The version of the kernel's language (``IPythonKernel.language_info``), which is the version of the server's own
+Python.
+"""
 
 
 class OpenedNotebooks(AsyncLargeFileManager):
@@ -187,12 +179,18 @@ def _load_jupyter_server_extension(server: ServerApp) -> None:
     server.web_app.add_handlers(  # type: ignore[no-untyped-call]
         ".*$",
         [
-            (f"{base}/?", CoursePage),
-            (f"{base}/read", NotebookFile),
-            (f"{base}/reset", ResetNotebook),
-            (f"{base}/certificate/([A-Za-z0-9_.-]+)\\.svg", Certificate),
+            (f"{base}/?", _CoursePage),
+            (f"{base}/read", _ReadMark),
+            (f"{base}/reset", _ResetNotebook),
+            (f"{base}/certificate/([A-Za-z0-9_.-]+)\\.svg", _Certificate),
         ],
     )
+
+
+_THIS_MACHINE = ("", "localhost", "127.0.0.1", "::1")
+_RUNS = """
+JupyterLab runs. Keep this terminal open; press Ctrl-C twice in it to end JupyterLab.
+If no page has opened in your browser, open this address:"""
 
 
 def _tell_the_address_last(server: ServerApp) -> None:

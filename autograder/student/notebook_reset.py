@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from autograder import course
 from autograder.safe_files import write_whole
-from autograder.student import check_journal
+from autograder.student.check_journal import JournalEntry, note
 from autograder.student.progress import notebook_path
 
 if TYPE_CHECKING:
@@ -55,7 +55,7 @@ def reset(root: Path, folder: Path, name: str, entries_in: Path | None = None) -
         write_whole(path, fresh)
     except OSError as error:
         raise CannotReset(f"{path} cannot be restored: {error.strerror or error}") from error
-    check_journal.note(check_journal.JournalEntry("reset", lab.name, time.time()), entries_in)
+    note(JournalEntry("reset", lab.name, time.time()), entries_in)
     return Reset(path, copy)
 
 
@@ -64,7 +64,7 @@ def released_text(lab: Path) -> bytes:
     kept = course.released(lab)
     if kept.is_file():
         return kept.read_bytes()
-    # Imported here, because a hand-out does not contain this module.
+    # Import these modules only here, because a hand-out does not contain them.
     from autograder.masters.chapter_building import release_text
     from autograder.masters.source_notebooks import source_notebook
 

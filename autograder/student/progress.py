@@ -34,7 +34,7 @@ State = Literal["new", "begun", "done"]
 
 
 @dataclass(frozen=True)
-class ExerciseStanding:
+class _ExerciseStanding:
     """An exercise, with the student's best check.
 
     Attributes:
@@ -51,7 +51,7 @@ class ExerciseStanding:
 
 
 @dataclass(frozen=True)
-class NotebookStanding:
+class _NotebookStanding:
     """A notebook of a chapter, with the student's progress.
 
     Attributes:
@@ -69,7 +69,7 @@ class NotebookStanding:
     title: str
     minutes: int
     path: str
-    exercises: tuple[ExerciseStanding, ...]
+    exercises: tuple[_ExerciseStanding, ...]
     read: bool
     touched: bool
     worked: float
@@ -93,7 +93,7 @@ class NotebookStanding:
 
 
 @dataclass(frozen=True)
-class ChapterStanding:
+class _ChapterStanding:
     """A chapter, with the student's progress.
 
     Attributes:
@@ -105,7 +105,7 @@ class ChapterStanding:
 
     name: str
     title: str
-    notebooks: tuple[NotebookStanding, ...]
+    notebooks: tuple[_NotebookStanding, ...]
     finished: float | None
 
     @property
@@ -139,8 +139,8 @@ class Standing:
         begun: True if the student has begun any notebook.
     """
 
-    chapters: tuple[ChapterStanding, ...]
-    following: NotebookStanding | None
+    chapters: tuple[_ChapterStanding, ...]
+    following: _NotebookStanding | None
     begun: bool
 
 
@@ -165,7 +165,7 @@ def standing(root: Path, folder: Path, entries: Sequence[JournalEntry]) -> Stand
     return Standing(chapters, _following(notebooks), begun)
 
 
-def _following(notebooks: Sequence[NotebookStanding]) -> NotebookStanding | None:
+def _following(notebooks: Sequence[_NotebookStanding]) -> _NotebookStanding | None:
     """Return the notebook to continue with; None if all are done.
 
     This is the notebook that the student last worked on. If that is done, it is the next notebook that is not done, in
@@ -183,7 +183,7 @@ def _chapter(
     reached: dict[str, JournalEntry],
     read: dict[str, bool],
     last: dict[str, JournalEntry],
-) -> ChapterStanding:
+) -> _ChapterStanding:
     notebooks = []
     for lab in chapter.labs:
         title, minutes = _head(lab)
@@ -194,9 +194,9 @@ def _chapter(
         touched = bool(saved) or (entry is not None and entry.kind != "reset")
         worked = max(saved, entry.time if entry is not None else 0.0)
         marked = read.get(lab.name, False)
-        notebooks.append(NotebookStanding(lab.name, title, minutes, shown, known, marked, touched, worked))
+        notebooks.append(_NotebookStanding(lab.name, title, minutes, shown, known, marked, touched, worked))
     finished = check_journal.finished(chapter, reached)
-    return ChapterStanding(chapter.folder.name, chapter.title, tuple(notebooks), finished)
+    return _ChapterStanding(chapter.folder.name, chapter.title, tuple(notebooks), finished)
 
 
 def _is_changed(notebook: Path, lab: Path) -> bool:
@@ -211,10 +211,10 @@ def notebook_path(chapter: course.Chapter, lab: Path, folder: Path) -> Path:
     return alone if alone.is_file() else folder / chapter.folder.name / f"{lab.name}.ipynb"
 
 
-def _exercise(exercise_id: str, reached: dict[str, JournalEntry]) -> ExerciseStanding:
+def _exercise(exercise_id: str, reached: dict[str, JournalEntry]) -> _ExerciseStanding:
     exercise = exercises.get(exercise_id)
     points = reached[exercise_id].points if exercise_id in reached else 0.0
-    return ExerciseStanding(exercise_id, exercise.title, min(points, exercise.points), exercise.points)
+    return _ExerciseStanding(exercise_id, exercise.title, min(points, exercise.points), exercise.points)
 
 
 def _head(lab: Path) -> tuple[str, int]:
@@ -227,6 +227,7 @@ def _head(lab: Path) -> tuple[str, int]:
 
 @lru_cache(maxsize=200)
 def _read_head(file: Path, changed: int) -> tuple[str, int]:
+    """Read the title and the minutes. If the time of the file (``changed``) is another one, the file is read again."""
     del changed
     title, minutes = file.parent.name, 0
     for line in _lines(file):
@@ -240,6 +241,7 @@ def _read_head(file: Path, changed: int) -> tuple[str, int]:
 
 
 def _lines(file: Path) -> Iterator[str]:
+    """Yield the lines of a master, or those of the text cells of a notebook."""
     text = file.read_text(encoding="utf-8")
     if file.suffix != ".ipynb":
         yield from text.splitlines()
@@ -249,12 +251,8 @@ def _lines(file: Path) -> Iterator[str]:
             yield from "".join(cell["source"]).splitlines()
 
 
-MARKS = {"done": "[x]", "begun": "[~]", "new": "[ ]"}
-STATES = {"done": "done", "begun": "begun", "new": "not begun"}
-
-
 def page_html(standing: Standing, base: str, token: str) -> str:
-    """Return the page as HTML.
+    """Return the course page as HTML.
 
     Args:
         standing: The progress of the student.
@@ -274,62 +272,7 @@ def trouble_html(message: str, base: str) -> str:
     return _environment().get_template("trouble.html.j2").render(message=message, base=base)
 
 
-def standing_text(standing: Standing) -> str:
-    """Return the page as lines of text."""
-    lines = [line for chapter in standing.chapters for line in (*_chapter_text(chapter), "")]
-    if standing.following is not None:
-        verb = "Go on" if standing.begun else "Begin"
-        lines.append(f"{verb} with {standing.following.title} ({standing.following.name}): {COMMAND} lab")
-    lines.append("The points come from your own checks on this machine. They are not a grade.")
-    return "\n".join(lines)
-
-
-def standing_json(standing: Standing) -> str:
-    """Return the progress as JSON."""
-    return msgspec.json.encode(
-        {
-            "chapters": [
-                {
-                    "name": chapter.name,
-                    "title": chapter.title,
-                    "points": chapter.points,
-                    "possible": chapter.possible,
-                    "finished": chapter.finished,
-                    "notebooks": [_as_data(one) for one in chapter.notebooks],
-                }
-                for chapter in standing.chapters
-            ],
-            "next": standing.following.name if standing.following else None,
-        }
-    ).decode()
-
-
-def hours(minutes: int) -> str:
-    """Return a rounded duration: ``"40 minutes"``, ``"2 hours"``, ``"8½ hours"``."""
-    if minutes < 60:
-        return f"{minutes} minutes"
-    halves = round(minutes / 30)
-    number = f"{halves // 2}{'½' if halves % 2 else ''}"
-    return f"{number} hour{'' if halves == 2 else 's'}"
-
-
-def _as_data(notebook: NotebookStanding) -> dict[str, object]:
-    reached = {"state": notebook.state, "points": notebook.points, "possible": notebook.possible}
-    return {**msgspec.to_builtins(notebook), **reached}
-
-
-def _chapter_text(chapter: ChapterStanding) -> list[str]:
-    width = max((len(one.title) for one in chapter.notebooks), default=0)
-    lines = [chapter.title, points_of(chapter.points, chapter.possible), ""]
-    for one in chapter.notebooks:
-        reached = points_of(one.points, one.possible) if one.possible else "to read"
-        minutes = f"{one.minutes} min" if one.minutes else ""
-        lines.append(f"  {MARKS[one.state]} {one.title:<{width}}  {minutes:>7}  {reached}".rstrip())
-    if chapter.finished is not None:
-        lines += ["", certificate_text(chapter.title, chapter.possible, chapter.finished)]
-    elif chapter.minutes_left:
-        lines += ["", f"About {hours(chapter.minutes_left)} to go."]
-    return lines
+STATES = {"done": "done", "begun": "begun", "new": "not begun"}
 
 
 @cache
@@ -343,7 +286,7 @@ def _environment() -> Environment:
     def own_file(name: str) -> Markup:
         return Markup(files("autograder.student").joinpath(name).read_text(encoding="utf-8"))
 
-    def drawn(chapter: ChapterStanding) -> Markup:
+    def drawn(chapter: _ChapterStanding) -> Markup:
         return Markup(certificate_svg(chapter.title, chapter.possible, chapter.finished or 0.0))
 
     helpers: dict[str, Any] = {
@@ -359,3 +302,67 @@ def _environment() -> Environment:
     }
     environment.globals.update(helpers)
     return environment
+
+
+def standing_text(standing: Standing) -> str:
+    """Return the course page as text for a terminal."""
+    lines = [line for chapter in standing.chapters for line in (*_chapter_text(chapter), "")]
+    if standing.following is not None:
+        verb = "Go on" if standing.begun else "Begin"
+        lines.append(f"{verb} with {standing.following.title} ({standing.following.name}): {COMMAND} lab")
+    lines.append("The points come from your own checks on this machine. They are not a grade.")
+    return "\n".join(lines)
+
+
+MARKS = {"done": "[x]", "begun": "[~]", "new": "[ ]"}
+
+
+def _chapter_text(chapter: _ChapterStanding) -> list[str]:
+    width = max((len(one.title) for one in chapter.notebooks), default=0)
+    lines = [chapter.title, points_of(chapter.points, chapter.possible), ""]
+    for one in chapter.notebooks:
+        reached = points_of(one.points, one.possible) if one.possible else "to read"
+        minutes = f"{one.minutes} min" if one.minutes else ""
+        lines.append(f"  {MARKS[one.state]} {one.title:<{width}}  {minutes:>7}  {reached}".rstrip())
+    if chapter.finished is not None:
+        lines += ["", certificate_text(chapter.title, chapter.possible, chapter.finished)]
+    elif chapter.minutes_left:
+        lines += ["", f"About {hours(chapter.minutes_left)} to go."]
+    return lines
+
+
+def hours(minutes: int) -> str:
+    """Return a rounded duration: ``"40 minutes"``, ``"2 hours"``, ``"8½ hours"``."""
+    if minutes < 60:
+        return f"{minutes} minutes"
+    halves = round(minutes / 30)
+    number = f"{halves // 2}{'½' if halves % 2 else ''}"
+    return f"{number} hour{'' if halves == 2 else 's'}"
+
+
+def standing_json(standing: Standing) -> str:
+    """Return the progress as JSON."""
+    return msgspec.json.encode(
+        {
+            "chapters": [
+                {
+                    "name": chapter.name,
+                    "title": chapter.title,
+                    "points": chapter.points,
+                    "possible": chapter.possible,
+                    "finished": chapter.finished,
+                    "notebooks": [
+                        {
+                            **msgspec.to_builtins(one),
+                            "state": one.state,
+                            "points": one.points,
+                            "possible": one.possible,
+                        }
+                        for one in chapter.notebooks
+                    ],
+                }
+                for chapter in standing.chapters
+            ],
+            "next": standing.following.name if standing.following else None,
+        }
+    ).decode()

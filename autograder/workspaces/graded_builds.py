@@ -137,6 +137,7 @@ def build_ahead(folder: Path, jobs: Jobs) -> None:
 
 
 def _build(builds: GradedBuilds, files: PackageFiles) -> object:
+    """Build packages that the course has recorded; from simplified sources if the packages only define interfaces."""
     tree = Tree(tuple(Source(path, None if text is None else text.encode()) for path, text in files.items()))
     with HeldFolder("autograder-ahead-") as folder:
         found = _written(tree, folder.path / "as-recorded")
@@ -170,14 +171,14 @@ def _simple(source: Source) -> bytes | None:
     path = PurePosixPath(source.path)
     if source.data is None or path.name in FOR_READERS:
         return None if source.data is None else b""
-    rewrite = simple_definition if path.suffix in DEFINITIONS else _SIMPLE_FORMS.get(path.name)
+    rewrite = _simple_definition if path.suffix in DEFINITIONS else _SIMPLE_FORMS.get(path.name)
     try:
         return rewrite(source.data.decode()).encode() if rewrite else source.data
     except UnicodeDecodeError:
         return source.data
 
 
-def simple_definition(text: str) -> str:
+def _simple_definition(text: str) -> str:
     """Return an interface definition without comments and needless spaces. Unusual lines stay unchanged.
 
     Unusual lines have, for example, a space after ``---`` or before a type, or spaces that are not ASCII. They are kept
@@ -193,7 +194,7 @@ def simple_definition(text: str) -> str:
     return "\n".join(lines) + "\n"
 
 
-def simple_cmake(text: str) -> str:
+def _simple_cmake(text: str) -> str:
     """Return a CMakeLists.txt without comments and needless spaces; unchanged if it has more than plain commands.
 
     For example, it is unchanged if it has bracket arguments or bracket comments, escapes, or quoted texts of several
@@ -223,7 +224,7 @@ def simple_cmake(text: str) -> str:
     return out.strip() + "\n"
 
 
-def simple_package_xml(text: str) -> str:
+def _simple_package_xml(text: str) -> str:
     """Return a package.xml with only the elements that a build reads, in a fixed order."""
     try:
         root = ElementTree.fromstring(text)
@@ -251,4 +252,4 @@ def _element(element: ElementTree.Element) -> str:
     return ElementTree.tostring(element, encoding="unicode")
 
 
-_SIMPLE_FORMS = {"CMakeLists.txt": simple_cmake, "package.xml": simple_package_xml}
+_SIMPLE_FORMS = {"CMakeLists.txt": _simple_cmake, "package.xml": _simple_package_xml}

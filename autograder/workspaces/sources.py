@@ -282,7 +282,7 @@ def _too_much() -> BadSources:
 
 
 class ByteBudget:
-    """The number of bytes that may still be read from a set of files, each of which may be small enough by itself.
+    """The number of bytes that may still be read from a set of files: each may be small, but all together too large.
 
     Args:
         size: The maximum number of bytes for all files together.

@@ -8,10 +8,11 @@ from pathlib import Path
 
 import pytest
 
+from autograder.messages.workspace_messages import Source
 from autograder.workspaces import packages
 from autograder.workspaces.builds import cached_builds
-from autograder.workspaces.graded_builds import simple_package_xml
-from autograder.workspaces.sources import BadSources
+from autograder.workspaces.graded_builds import simplified
+from autograder.workspaces.sources import BadSources, Tree
 
 sys.path.insert(0, str(Path(__file__).parent))
 from made_workspaces import CMAKE, PACKAGE_XML, interface_package, packages_in
@@ -119,7 +120,8 @@ def test_far_too_much_is_refused(workspace: Path, monkeypatch: pytest.MonkeyPatc
 def test_an_odd_package_file_is_the_packages_own_fault(workspace: Path, content: bytes) -> None:
     (workspace / "src" / "tiny_pkg" / "package.xml").write_bytes(content)
     assert "is not valid" in trouble_in(workspace / "src")
-    assert simple_package_xml(content.decode("utf-8", "replace"))
+    text = content.decode("utf-8", "replace").encode()
+    assert simplified(Tree((Source("tiny_pkg/package.xml", text),))).sources[0].data
 
 
 def test_a_format_that_does_not_exist_is_the_packages_own_fault(workspace: Path) -> None:

@@ -9,17 +9,18 @@ import pytest
 from rosidl_adapter.parser import InvalidSpecification, parse_service_string
 
 from autograder.messages.workspace_messages import Source
-from autograder.workspaces.graded_builds import (
-    simple_cmake,
-    simple_definition,
-    simple_package_xml,
-    simplified,
-)
+from autograder.workspaces.graded_builds import simplified
 from autograder.workspaces.packages import sources_of
 from autograder.workspaces.sources import Tree
 
 sys.path.insert(0, str(Path(__file__).parent))
 from made_workspaces import CMAKE, DEFINITION, INTERFACE_PACKAGE_XML, interface_package, packages_in
+
+
+def simple_text(name: str, text: str) -> str:
+    (source,) = simplified(Tree((Source(f"p/{name}", text.encode()),))).sources
+    assert source.data is not None
+    return source.data.decode()
 
 
 @pytest.mark.parametrize(
@@ -35,7 +36,7 @@ from made_workspaces import CMAKE, DEFINITION, INTERFACE_PACKAGE_XML, interface_
 )
 def test_what_means_the_same_to_cmake_becomes_the_same(text: str) -> None:
     assert text != CMAKE
-    assert simple_cmake(text) == simple_cmake(CMAKE)
+    assert simple_text("CMakeLists.txt", text) == simple_text("CMakeLists.txt", CMAKE)
 
 
 @pytest.mark.parametrize(
@@ -52,7 +53,7 @@ def test_what_means_the_same_to_cmake_becomes_the_same(text: str) -> None:
     ],
 )  # fmt: skip
 def test_what_means_something_else_to_cmake_stays_different(text: str) -> None:
-    assert simple_cmake(text) != simple_cmake(CMAKE)
+    assert simple_text("CMakeLists.txt", text) != simple_text("CMakeLists.txt", CMAKE)
 
 
 @pytest.mark.parametrize(
@@ -67,11 +68,11 @@ def test_what_means_something_else_to_cmake_stays_different(text: str) -> None:
     ],
 )
 def test_what_is_more_than_plain_commands_is_left_alone(text: str) -> None:
-    assert simple_cmake(text) == text
+    assert simple_text("CMakeLists.txt", text) == text
 
 
 def test_quoted_texts_keep_their_spaces_and_signs() -> None:
-    assert '"a  (b) # c"' in simple_cmake('message(  "a  (b) # c"   )  # d\n')
+    assert '"a  (b) # c"' in simple_text("CMakeLists.txt", 'message(  "a  (b) # c"   )  # d\n')
 
 
 @pytest.mark.parametrize(
@@ -82,7 +83,7 @@ def test_quoted_texts_keep_their_spaces_and_signs() -> None:
     ],
 )
 def test_definitions_lose_comments_and_needless_spaces(text: str, simple: str) -> None:
-    assert simple_definition(text) == simple
+    assert simple_text("srv/AddTwoInts.srv", text) == simple
 
 
 @pytest.mark.parametrize(
@@ -98,7 +99,7 @@ def test_definitions_lose_comments_and_needless_spaces(text: str, simple: str) -
 )
 def test_a_definition_that_rosidl_refuses_never_becomes_one_that_it_takes(text: str) -> None:
     """The student's own would not build; an equal one of somebody else's did, and was taken for it."""
-    for one, takes in ((DEFINITION, True), (text, False), (simple_definition(text), False)):
+    for one, takes in ((DEFINITION, True), (text, False), (simple_text("srv/AddTwoInts.srv", text), False)):
         try:
             parse_service_string("my_robot_interfaces", "AddTwoInts", one)
         except (InvalidSpecification, IndexError):
@@ -120,7 +121,7 @@ def test_a_definition_that_rosidl_refuses_never_becomes_one_that_it_takes(text: 
     ids=["comment", "people", "order", "spaces"],
 )
 def test_a_package_xml_that_says_the_same_becomes_the_same(text: str) -> None:
-    assert simple_package_xml(text) == simple_package_xml(INTERFACE_PACKAGE_XML)
+    assert simple_text("package.xml", text) == simple_text("package.xml", INTERFACE_PACKAGE_XML)
 
 
 @pytest.mark.parametrize(
@@ -134,7 +135,7 @@ def test_a_package_xml_that_says_the_same_becomes_the_same(text: str) -> None:
     ],
 )
 def test_a_package_xml_that_says_something_else_stays_different(text: str) -> None:
-    assert simple_package_xml(text) != simple_package_xml(INTERFACE_PACKAGE_XML)
+    assert simple_text("package.xml", text) != simple_text("package.xml", INTERFACE_PACKAGE_XML)
 
 
 def test_two_packages_that_differ_in_comments_have_one_key(tmp_path: Path) -> None:
