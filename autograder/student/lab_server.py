@@ -43,19 +43,19 @@ class _CourseHandler(JupyterHandler):
     """
 
     @property
-    def notebooks(self) -> Path:
+    def _notebooks(self) -> Path:
         """The folder that JupyterLab shows."""
         return Path(self.settings["server_root_dir"]).expanduser()
 
     @property
-    def journal(self) -> Path:
+    def _journal(self) -> Path:
         """The path of the journal for the folder that JupyterLab shows."""
         named = os.environ.get(check_journal.VARIABLE)
-        return Path(named) if named else check_journal.place(self.notebooks)
+        return Path(named) if named else check_journal.place(self._notebooks)
 
-    def standing(self) -> Standing:
+    def _standing(self) -> Standing:
         """The progress of the student."""
-        return standing(course.root(), self.notebooks, check_journal.entries(self.journal))
+        return standing(course.root(), self._notebooks, check_journal.entries(self._journal))
 
     def _name_in_body(self) -> str:
         """Return the notebook that a request names.
@@ -80,7 +80,7 @@ class _CoursePage(_CourseHandler):
     async def get(self) -> None:
         """Show the page."""
         try:
-            found = await asyncio.to_thread(self.standing)
+            found = await asyncio.to_thread(self._standing)
             text = page_html(found, self.base_url, self.xsrf_token.decode())
         except (course.NoCourse, course.BrokenChapter, exercises.BrokenExercise, OSError) as error:
             self.set_status(500)
@@ -105,7 +105,7 @@ class _ReadMark(_CourseHandler):
         self._note("unread")
 
     def _note(self, kind: Any) -> None:
-        if not check_journal.note(JournalEntry(kind, self._name_in_body(), time.time()), self.journal):
+        if not check_journal.note(JournalEntry(kind, self._name_in_body(), time.time()), self._journal):
             raise web.HTTPError(500, reason="the journal cannot be written")
         self.set_status(204)
 
@@ -122,7 +122,7 @@ class _ResetNotebook(_CourseHandler):
         """
         name = self._name_in_body()
         try:
-            done = await asyncio.to_thread(reset, course.root(), self.notebooks, name, self.journal)
+            done = await asyncio.to_thread(reset, course.root(), self._notebooks, name, self._journal)
         except (CannotReset, course.NoCourse, course.BrokenChapter) as error:
             self.set_status(409)
             self.finish({"message": str(error)})
@@ -137,7 +137,7 @@ class _Certificate(_CourseHandler):
     @authorized
     async def get(self, name: str) -> None:
         """Send the certificate."""
-        found = await asyncio.to_thread(self.standing)
+        found = await asyncio.to_thread(self._standing)
         for chapter in found.chapters:
             if chapter.name == name and chapter.finished is not None:
                 self.set_header("Content-Type", "image/svg+xml")

@@ -65,7 +65,7 @@ class ServiceSockets:
 
 
 class WorkspaceService:
-    """The service for one submission. At the end of the ``with`` block, its builds and programs are ended.
+    """The service for one submission. At the end of the ``with`` block, its connections, builds and programs are ended.
 
     Args:
         sockets: The sockets to create, in existing folders.
@@ -100,10 +100,6 @@ class WorkspaceService:
         return self
 
     def __exit__(self, *_: object) -> None:
-        self.close()
-
-    def close(self) -> None:
-        """Close all connections, and end their builds and programs."""
         self._closing.set()
         for listener in self._listeners:
             with contextlib.suppress(OSError):
