@@ -49,7 +49,7 @@ def reset(root: Path, folder: Path, name: str, entries_in: Path | None = None) -
     """
     chapter, lab = _find(root, name)
     path = notebook_path(chapter, lab, folder)
-    fresh = released_text(lab)
+    fresh = _released_text(lab)
     try:
         copy = _keep(path) if path.exists() and path.read_bytes() != fresh else None
         write_whole(path, fresh)
@@ -59,7 +59,7 @@ def reset(root: Path, folder: Path, name: str, entries_in: Path | None = None) -
     return Reset(path, copy)
 
 
-def released_text(lab: Path) -> bytes:
+def _released_text(lab: Path) -> bytes:
     """Return a lab's notebook as it was released: from the hand-out, or else made from the master."""
     kept = course.released(lab)
     if kept.is_file():

@@ -175,8 +175,8 @@ def failed(found: Build, log: str) -> Build:
     own = _log_of(log, name)
     # Use the whole log if setup.py fails when colcon asks for its metadata, because the error is then not in the
     # package's part of the log.
-    own = log if "CalledProcessError" in telling_line(own) else own
-    made = replace(found, trouble="build", package=name, line=telling_line(own), log=own[-MAX_LOG:])
+    own = log if "CalledProcessError" in _telling_line(own) else own
+    made = replace(found, trouble="build", package=name, line=_telling_line(own), log=own[-MAX_LOG:])
     if _REFUSED not in made.line:
         return made
     bad = next((package.bad_entry_point for package in found.packages if package.name == name), "")
@@ -212,7 +212,7 @@ _SETUPTOOLS = re2.compile(r"(?m)^error: (?P<what>.*)$")
 _NINJA_MAKE = re2.compile(r"^(?:make|gmake|ninja|---|<<<|>>>)")
 
 
-def telling_line(log: str) -> str:
+def _telling_line(log: str) -> str:
     """Return the line of colcon's output that explains best why a build failed; empty only if there is no output.
 
     The line begins with the file and the line number if the output contains them.

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
-from autograder.workspaces.builds.colcon_build import telling_line
+from autograder.workspaces.builds.colcon_build import Build, failed
 
 LOGS = {
     "compiler": (
@@ -62,4 +64,4 @@ LOGS = {
 @pytest.mark.parametrize("name", LOGS)
 def test_the_line_that_matters(name: str) -> None:
     log, expected = LOGS[name]
-    assert telling_line(log) == expected
+    assert failed(Build(Path(), ok=False), log).line == expected
