@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from autograder.boxes.boxed_processes import Running, WarmCommand
     from autograder.workspaces.builds.build_cache import CachedBuild
-    from autograder.workspaces.jobs import BuildOrder, ProgramJob
+    from autograder.workspaces.jobs import BuildJob, ProgramJob
 
 
 PROGRAM_LIMITS = Limits(cpu_seconds=200.0, memory_bytes=1_500_000_000, processes=400)
@@ -68,16 +68,16 @@ class BoxedJobs:
         del sources
         return WORK
 
-    def build(self, order: BuildOrder, command: Sequence[str], entry: CachedBuild) -> Built:
+    def build(self, job: BuildJob, command: Sequence[str], entry: CachedBuild) -> Built:
         """Run a build in a separate box, and pack its install folder when no process of the build is alive any more.
 
         The memory limit is low at first, because other builds may run at the same time. If a build reaches this limit,
         it is run again with a higher limit; only one build at a time may do so.
         """
-        built, needs_room = self._build(order, command, entry.folder, BUILD_LIMITS)
+        built, needs_room = self._build(job, command, entry.folder, BUILD_LIMITS)
         if needs_room:
-            with self._turn(order.cancelled):
-                built, _ = self._build(order, command, entry.folder, replace(BUILD_LIMITS, beside=False))
+            with self._turn(job.cancelled):
+                built, _ = self._build(job, command, entry.folder, replace(BUILD_LIMITS, beside=False))
         return built
 
     @contextlib.contextmanager
@@ -97,13 +97,13 @@ class BoxedJobs:
             os.close(folder)
 
     def _build(
-        self, order: BuildOrder, command: Sequence[str], entry: Path, limits: Limits
+        self, job: BuildJob, command: Sequence[str], entry: Path, limits: Limits
     ) -> tuple[Built, bool]:
         """Return the result of a build, and whether it reached the memory limit."""
-        place = self.place(order.name, entry)
+        place = self.place(job.name, entry)
         folder = fresh_folder("build-", self._folder)
-        binds = [Bind(entry / "src", place / "src"), *_covers(order.hidden, folder)]
-        environment = box_environment(order.variables)
+        binds = [Bind(entry / "src", place / "src"), *_covers(job.hidden, folder)]
+        environment = box_environment(job.variables)
         guard = BoxGuard(limits)
         try:
             with Enclosure(
@@ -115,7 +115,7 @@ class BoxedJobs:
                     output_bytes=MAX_LOG_BYTES,
                 ) as running:  # fmt: skip
                     guard.watch(running.pid)
-                    returncode, late = _wait(running, lambda: order.cancelled() or bool(guard.exceeded()))
+                    returncode, late = _wait(running, lambda: job.cancelled() or bool(guard.exceeded()))
                     output = running.said
                 if returncode != 0:
                     needs_room = limits.beside and guard.reason() is Ended.OUT_OF_MEMORY

@@ -44,7 +44,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from autograder.workspaces.builds.colcon_build import Build
-    from autograder.workspaces.jobs import BuildOrder, Jobs
+    from autograder.workspaces.jobs import BuildJob, Jobs
     from autograder.workspaces.packages import Package
 
 
@@ -69,30 +69,30 @@ class GradedBuilds(Builds):
         self._ahead = ahead
         self._paid: set[str] = set()
 
-    def _find_or_make(self, found: Build, chosen: Sequence[Package], order: BuildOrder) -> Build:
+    def _find_or_make(self, found: Build, chosen: Sequence[Package], job: BuildJob) -> Build:
         # If the packages define interfaces, hide the course's interfaces from the build.
         hidden = course_interfaces() if any(package.interface_files for package in chosen) else ()
         others = [f"{path} {file_state(str(path))}" for path in course_interfaces() if path not in hidden]
-        order = self._keyed(replace(order, hidden=hidden), *others)
-        wanted = [order]
+        job = self._keyed(replace(job, hidden=hidden), *others)
+        wanted = [job]
         if all(package.holds_only_interfaces for package in chosen):
-            wanted.append(self._keyed(replace(order, tree=simplified(order.tree)), *others))
+            wanted.append(self._keyed(replace(job, tree=simplified(job.tree)), *others))
         for one in wanted:
             if self._ahead and build_cache.is_complete(one.key, self._ahead):
                 return self._entry(found, one, self._ahead)
-        return self._entry(found, order)
+        return self._entry(found, job)
 
-    def _entry(self, found: Build, order: BuildOrder, folder: Path | None = None) -> Build:
+    def _entry(self, found: Build, job: BuildJob, folder: Path | None = None) -> Build:
         """Return the build, or a failed build if all builds, including those made in advance, exceed the size limit."""
-        made = super()._entry(found, order, folder)
-        if made.install is None or order.key in self._paid:
+        made = super()._entry(found, job, folder)
+        if made.install is None or job.key in self._paid:
             return made
         try:
             build_artefacts.check_room(size := build_cache.size_of(made.install), self._room)
         except build_artefacts.BadArtefacts as error:
             return failed(found, f"error: {error}")
         self._room -= size
-        self._paid.add(order.key)
+        self._paid.add(job.key)
         return made
 
 

@@ -144,8 +144,8 @@ class WorkspaceService:
                 shutil.rmtree(folder, ignore_errors=True)
 
     def _serve_judge(self, lines: Lines, folder: Path) -> None:
-        with Session(lines, self._builds, self._variables, folder) as session:
-            session.serve()
+        with _WorkspaceCheck(lines, self._builds, self._variables, folder) as check:
+            check.serve()
 
     def _serve_notebook(self, lines: Lines, folder: Path) -> None:
         """Answer one request for a build (:mod:`autograder.workspaces.builds.students_builds`)."""
@@ -185,7 +185,7 @@ class WorkspaceService:
             lines.say(messages.Piece(piece))
 
 
-class Session:
+class _WorkspaceCheck:
     """One check of a workspace or launch file, whose programs are built once but may be started several times.
 
     Args:

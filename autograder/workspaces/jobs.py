@@ -1,4 +1,4 @@
-"""Jobs (builds and programs): their requests, their results, and the class that runs them without boxes.
+"""Jobs (builds and programs): what to run, the results, and the class that runs jobs without boxes.
 
 The result of a build is only bytes: its output, and the files in its install folder. These bytes may come from a
 student's code, so the process that asked for the build never executes or unpickles them.
@@ -43,8 +43,8 @@ bytes.
 
 
 @dataclass(frozen=True)
-class BuildOrder:
-    """A request for a build.
+class BuildJob:
+    """A build to make.
 
     Attributes:
         name: The kind of workspace; see :meth:`Jobs.place`.
@@ -55,7 +55,7 @@ class BuildOrder:
         cmake: More arguments for CMake.
         variables: More environment variables.
         hidden: Files and folders of the environment that the build must not find.
-        key: A hash of the whole request and of the tools.
+        key: A hash of the whole job and of the tools.
     """
 
     name: str
@@ -114,7 +114,7 @@ class Jobs(Protocol):
 
     @property
     def environment(self) -> Mapping[str, str]:
-        """The environment variables of all jobs, to which the variables of a request are added."""
+        """The environment variables of all jobs, to which the variables of each job are added."""
         ...
 
     def place(self, name: str, entry: Path) -> Path:
@@ -126,11 +126,11 @@ class Jobs(Protocol):
         """
         ...
 
-    def build(self, order: BuildOrder, command: Sequence[str], entry: CachedBuild) -> Built:
+    def build(self, job: BuildJob, command: Sequence[str], entry: CachedBuild) -> Built:
         """Run colcon. Return the result of the build.
 
         Args:
-            order: The build request.
+            job: The build to make.
             command: The command, with paths as the job sees them.
             entry: The entry of the cache. Its folder contains ``src``, which the build may read. Of the files that
                 the build writes, only ``install`` is kept.
@@ -201,17 +201,17 @@ class PlainJobs:
         """Return the path of the sources. Without a box, programs see the sources at their own path."""
         return sources
 
-    def build(self, order: BuildOrder, command: Sequence[str], entry: CachedBuild) -> Built:
+    def build(self, job: BuildJob, command: Sequence[str], entry: CachedBuild) -> Built:
         """Run a build in the folder of the entry. For a submission, pack the install folder and then remove it."""
         seconds, size = (
             (BUILD_SECONDS, MAX_LOG_BYTES) if self._handed_in else (OWN_BUILD_SECONDS, sys.maxsize)
         )
-        environment = {**without_workspaces(self.environment, order.workspace), **order.variables}
+        environment = {**without_workspaces(self.environment, job.workspace), **job.variables}
         # Remove this variable, because with it setuptools would print a warning in every log.
         environment.pop("PYTHONDONTWRITEBYTECODE", None)
         start = PlainProgram if self._handed_in else OwnSession
         with start(command, environment, entry.folder, (entry.lock,)) as colcon:
-            output, late = colcon.collect(seconds, size, order.cancelled)
+            output, late = colcon.collect(seconds, size, job.cancelled)
             code = colcon.exit_code()
         archive = pack(entry.folder / "install") if self._handed_in and code == 0 else None
         made = (*BESIDE, "install") if self._handed_in else BESIDE

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
     from autograder.boxes.fork_server import Addresses
     from autograder.workspaces.builds.colcon_build import Build
-    from autograder.workspaces.jobs import BuildOrder
+    from autograder.workspaces.jobs import BuildJob
     from autograder.workspaces.sources import Tree
 
 
@@ -87,10 +87,10 @@ def _built(task: Task, addresses: Addresses) -> list[PackageFiles]:
     trees: dict[str, Tree] = {}
     entry = GradedBuilds._entry
 
-    def remembering(self: GradedBuilds, found: Build, order: BuildOrder, *rest: Any) -> Build:
-        made = entry(self, found, order, *rest)
-        if made.ok and order.name == WORKSPACE:
-            trees[order.tree.digest] = order.tree
+    def remembering(self: GradedBuilds, found: Build, job: BuildJob, *rest: Any) -> Build:
+        made = entry(self, found, job, *rest)
+        if made.ok and job.name == WORKSPACE:
+            trees[job.tree.digest] = job.tree
         return made
 
     with (

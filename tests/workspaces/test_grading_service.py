@@ -23,7 +23,7 @@ from autograder.workspaces.builds import students_builds
 from autograder.workspaces.builds.build_artefacts import Kind, PackedEntry
 from autograder.workspaces.builds.install_folder import LIBRARY
 from autograder.workspaces.grading_service import ServiceSockets, WorkspaceService
-from autograder.workspaces.jobs import BuildOrder, Built, PlainProgram, ProgramJob
+from autograder.workspaces.jobs import BuildJob, Built, PlainProgram, ProgramJob
 
 sys.path.insert(0, str(Path(__file__).parent))
 from made_workspaces import interface_package, python_package
@@ -58,7 +58,7 @@ class FakeJobs:
     def tree(self, sources: Path) -> Path:
         return Path("/home/student/notebook")
 
-    def build(self, order: BuildOrder, command: Sequence[str], entry: CachedBuild) -> Built:
+    def build(self, job: BuildJob, command: Sequence[str], entry: CachedBuild) -> Built:
         self.builds.append(sorted(path.name for path in (entry.folder / "src").iterdir()))
         self.sources.append("".join(path.read_text() for path in entry.folder.rglob("*") if path.is_file()))
         self.boxes.append(
@@ -71,7 +71,7 @@ class FakeJobs:
                 for path in (entry.folder / "src").rglob("*")
             }
         )
-        self.waiting(order.cancelled)
+        self.waiting(job.cancelled)
         return self.built
 
     def start(self, job: ProgramJob) -> PlainProgram:

@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING
 from autograder.workspaces.builds import build_artefacts, build_cache
 from autograder.workspaces.builds.colcon_build import choose, command, failed, moved
 from autograder.workspaces.builds.install_folder import merge
-from autograder.workspaces.jobs import BuildOrder
+from autograder.workspaces.jobs import BuildJob
 from autograder.workspaces.packages import WORKSPACE, sources_of
 from autograder.workspaces.sources import BadSources
 from environment.interface_packages import ONLY_PYTHON, ONLY_PYTHON_FILE
@@ -131,8 +131,8 @@ class Builds:
         names = {prefix.name for prefix in made.prefixes}
         built = [package for package in made.packages if package.name in names]
         sources = sources_of(made.workspace / "src", built)
-        order = build_key(sources, type(self.jobs).__name__, "lent", course.install.parent.name)
-        with build_cache.entry(order, self._folder) as entry:
+        key = build_key(sources, type(self.jobs).__name__, "lent", course.install.parent.name)
+        with build_cache.entry(key, self._folder) as entry:
             install = entry.folder / "install"
             if not entry.complete:
                 merge(course.prefixes, made.prefixes, install)
@@ -155,8 +155,8 @@ class Builds:
             )
             interfaces = any(package.holds_only_interfaces for package in chosen)
             cmake = ONLY_PYTHON if only_python and interfaces else ()
-            order = BuildOrder(name, found.workspace, tree, packages, cancelled, cmake, NO_DEFAULTS)
-            made = self._find_or_make(found, chosen, order)
+            job = BuildJob(name, found.workspace, tree, packages, cancelled, cmake, NO_DEFAULTS)
+            made = self._find_or_make(found, chosen, job)
         except BadSources as error:
             return replace(found, trouble="bad_package", line=str(error))
         except build_cache.GivenUp as error:
@@ -164,46 +164,46 @@ class Builds:
             return replace(found, trouble="build", line=str(error))
         return replace(made, seconds=time.monotonic() - began)
 
-    def _find_or_make(self, found: Build, chosen: Sequence[Package], order: BuildOrder) -> Build:
+    def _find_or_make(self, found: Build, chosen: Sequence[Package], job: BuildJob) -> Build:
         """Return the build of the chosen packages from the cache, or make it.
 
-        In the request (``order``), the folders of the packages are relative to the folder of the build.
+        In ``job``, the folders of the packages are relative to the folder of the build.
         """
         del chosen
-        return self._entry(found, self._keyed(order))
+        return self._entry(found, self._keyed(job))
 
-    def _keyed(self, order: BuildOrder, *words: str) -> BuildOrder:
-        """Return the build request with its key for the cache: a hash of the request and of other facts (``words``)."""
+    def _keyed(self, job: BuildJob, *words: str) -> BuildJob:
+        """Return the job with its key for the cache: a hash of the job and of other facts (``words``)."""
         return replace(
-            order,
+            job,
             key=build_key(
-                order.tree,
+                job.tree,
                 type(self.jobs).__name__,
-                order.name,
-                *command(order.packages, Path(), order.cmake),
-                *(f"{variable}={value}" for variable, value in order.variables.items()),
-                *(f"hidden {path}" for path in order.hidden),
+                job.name,
+                *command(job.packages, Path(), job.cmake),
+                *(f"{variable}={value}" for variable, value in job.variables.items()),
+                *(f"hidden {path}" for path in job.hidden),
                 *words,
             ),
         )
 
-    def _entry(self, found: Build, order: BuildOrder, folder: Path | None = None) -> Build:
+    def _entry(self, found: Build, job: BuildJob, folder: Path | None = None) -> Build:
         """Return a build from the cache in ``folder`` (None for the cache of this object), or make it there."""
-        with build_cache.entry(order.key, folder or self._folder, order.cancelled) as entry:
+        with build_cache.entry(job.key, folder or self._folder, job.cancelled) as entry:
             install = entry.folder / "install"
             if entry.complete:
                 return replace(found, ok=True, install=install, reused=True)
-            made = self._make(found, order, entry)
+            made = self._make(found, job, entry)
             if made.ok:
                 entry.finish()
             return made
 
-    def _make(self, found: Build, order: BuildOrder, entry: build_cache.CachedBuild) -> Build:
-        place, install = self.jobs.place(order.name, entry.folder), entry.folder / "install"
-        order.tree.write(entry.folder / "src")
-        words = command(moved(order.packages, Path("src"), place / "src"), place, order.cmake)
+    def _make(self, found: Build, job: BuildJob, entry: build_cache.CachedBuild) -> Build:
+        place, install = self.jobs.place(job.name, entry.folder), entry.folder / "install"
+        job.tree.write(entry.folder / "src")
+        words = command(moved(job.packages, Path("src"), place / "src"), place, job.cmake)
         try:
-            built = self.jobs.build(order, words, entry)
+            built = self.jobs.build(job, words, entry)
         finally:
             shutil.rmtree(entry.folder / "src", ignore_errors=True)
         log = _log(built, place)

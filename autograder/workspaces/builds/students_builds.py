@@ -56,7 +56,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Sequence
 
     from autograder.workspaces.builds.colcon_build import Build, Targets
-    from autograder.workspaces.jobs import BuildOrder
+    from autograder.workspaces.jobs import BuildJob
     from autograder.workspaces.packages import Package
 
 
@@ -89,10 +89,10 @@ class OwnBuilds(Builds):
         except BuildTookTooLong as error:
             return error.build
 
-    def _make(self, found: Build, order: BuildOrder, entry: build_cache.CachedBuild) -> Build:
+    def _make(self, found: Build, job: BuildJob, entry: build_cache.CachedBuild) -> Build:
         socket = os.environ.get(GRADERS)
-        asked = _ask(socket, found, order.packages, entry.folder / "install") if socket else None
-        return asked or super()._make(found, order, entry)
+        asked = _ask(socket, found, job.packages, entry.folder / "install") if socket else None
+        return asked or super()._make(found, job, entry)
 
 
 class StudentsBuilds(OwnBuilds):
@@ -102,13 +102,13 @@ class StudentsBuilds(OwnBuilds):
     only sources, and the grader of a class builds these. The card then names the changed files.
     """
 
-    def _find_or_make(self, found: Build, chosen: Sequence[Package], order: BuildOrder) -> Build:
-        if order.name != WORKSPACE:
-            return super()._find_or_make(found, chosen, order)
+    def _find_or_make(self, found: Build, chosen: Sequence[Package], job: BuildJob) -> Build:
+        if job.name != WORKSPACE:
+            return super()._find_or_make(found, chosen, job)
         if is_current(found.workspace, chosen):
             names = tuple(package.name for package in chosen)
             return replace(found, ok=True, install=found.workspace / "install", chosen=names, reused=True)
-        made = super()._find_or_make(found, chosen, order)
+        made = super()._find_or_make(found, chosen, job)
         return replace(made, changed=changed_since(found.workspace, chosen))
 
 
