@@ -32,8 +32,8 @@ CELL_LIMIT = 600
 """Time limit in seconds for one cell. The slowest cells build a workspace."""
 NOTEBOOKS_AT_ONCE = 3
 """The maximum number of notebooks that run at the same time."""
-MOST_FRAMES = 60
-FRAME_SECONDS = 0.25
+_MAX_FRAMES = 60
+_FRAME_SECONDS = 0.25
 RECORDED = "Recorded while the notebook ran"
 MOVING_PICTURES = "moving_pictures"
 """The key in a notebook's metadata for its animations: the texts of SVG files by the files' names."""
@@ -164,14 +164,14 @@ def moving_picture(frames: Sequence[str]) -> str:
     Args:
         frames: The texts of the SVGs, at least one. All have the same size and style.
     """
-    step = -(-len(frames) // MOST_FRAMES)
+    step = -(-len(frames) // _MAX_FRAMES)
     kept = [*frames[:-1:step], frames[-1]]
     last = _INNER.match(kept[-1])
     style = _STYLE.search(kept[0])
     title = _TITLE.search(kept[-1])
     pause = 6
     parts = len(kept) + pause
-    seconds = parts * FRAME_SECONDS
+    seconds = parts * _FRAME_SECONDS
     share = 100 / parts
     motion = (
         ".frame { visibility: hidden; } .frame:last-of-type { visibility: visible; } "
@@ -184,7 +184,7 @@ def moving_picture(frames: Sequence[str]) -> str:
     drawn = []
     for number, frame in enumerate(kept):
         inner = _TITLE.sub("", _STYLE.sub("", _INNER.match(frame)[2]))
-        delay = number * FRAME_SECONDS
+        delay = number * _FRAME_SECONDS
         drawn.append(f'<g class="frame" style="animation-delay:{delay:g}s">{inner}</g>')
     head = (title[0] if title else "") + f"<style>{style[1] if style else ''}{motion}</style>"
     return f"<svg{last[1]}>{head}{''.join(drawn)}</svg>"

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 
 from autograder import course, exercises
 from autograder.masters.code_cells import find_region
-from autograder.masters.master_cells import COPY, CellRole, parse_master
+from autograder.masters.master_cells import COPY_LINE, CellRole, parse_master
 from autograder.masters.source_notebooks import named_cells
 from environment.installation import installing
 from environment.python_child import installed_program
@@ -29,11 +29,11 @@ if TYPE_CHECKING:
     from autograder.masters.source_notebooks import NamedCell
 
 
-ENOUGH_ANSWERS = {"right": 5, "wrong": 8}
+_ENOUGH = {"right": 5, "wrong": 8}
 """The minimum numbers of right and wrong answers that an exercise needs in the bank. An exercise with fewer answers
 works, but its author cannot know whether its verdicts are fair.
 """
-MISTAKES_PAGE = "docs/mistakes.md"
+_MISTAKES_PAGE = "docs/mistakes.md"
 """The page that explains each diagnosis to students. The key of the diagnosis is the heading of its paragraph."""
 _PACKAGE = Path(course.__file__).resolve().parents[1]
 _SETTINGS = _PACKAGE / "pyproject.toml"
@@ -61,11 +61,11 @@ def still_to_do(exercise_id: str, listed: Sequence[Answer]) -> Iterator[str]:
 
 def _of_answers(listed: Sequence[Answer]) -> Iterator[str]:
     there = Counter(answer.file.parent.name for answer in listed)
-    few = [f"{there[kind]} {kind}" for kind, enough in ENOUGH_ANSWERS.items() if there[kind] < enough]
+    few = [f"{there[kind]} {kind}" for kind, enough in _ENOUGH.items() if there[kind] < enough]
     if few:
         yield (
             f"answers: the bank has only {' and '.join(few)} answers; before students get a new exercise, write at "
-            f"least {ENOUGH_ANSWERS['right']} right answers in different styles and {ENOUGH_ANSWERS['wrong']} wrong "
+            f"least {_ENOUGH['right']} right answers in different styles and {_ENOUGH['wrong']} wrong "
             "answers"
         )
     for answer in listed:
@@ -77,12 +77,12 @@ def _of_answers(listed: Sequence[Answer]) -> Iterator[str]:
 
 
 def _of_mistakes(exercise_id: str, listed: Sequence[Answer]) -> Iterator[str]:
-    page = course.root() / MISTAKES_PAGE
+    page = course.root() / _MISTAKES_PAGE
     if page.is_file():
         told = set(re.findall(r"^### `(\w+)`$", page.read_text(encoding="utf-8"), re.MULTILINE))
         used = {mistake.key for mistake in exercises.get(exercise_id).mistakes}
         used |= {key for answer in listed for key in answer.diagnoses}
-        yield from (f"{MISTAKES_PAGE}: no paragraph about `{key}` yet" for key in sorted(used - told))
+        yield from (f"{_MISTAKES_PAGE}: no paragraph about `{key}` yet" for key in sorted(used - told))
 
 
 def _of_text(exercise_id: str, master: Path) -> Iterator[str]:
@@ -142,7 +142,7 @@ def _of_linters(lab: Path) -> Iterator[str]:
                 yield from (f"{name}: {line}" for line in (done.stdout + done.stderr).splitlines())
 
 
-MAX_HEAD_WORDS, MAX_WORDS_BEFORE_A_TASK, MAX_SOLUTION_LINES = 150, 400, 8
+_MAX_HEAD_WORDS, _MAX_WORDS_BEFORE_A_TASK, _MAX_SOLUTION_LINES = 150, 400, 8
 """Three limits of a master: the words before the first code cell, the words before the first task, and the lines that
 a student writes in one cell.
 """
@@ -151,7 +151,7 @@ _PICTURE = re.compile(r"!\[[^\]]*\]\([^)]*\)")
 """Matches a figure. The figure's alternative text does not count as words of the master, because it replaces the
 figure for readers who cannot see it.
 """
-PREDICTION = "**Before you run it:**"
+_PREDICTION = "**Before you run it:**"
 """The first words of a question that students answer before they run a demonstration."""
 _PARAGRAPH = re.compile(r"\n\s*\n|\n(?=\d+\. |- )")
 _CODE = re.compile(r"`[^`]*`|\]\([^)]*\)")
@@ -174,7 +174,7 @@ def broken_rules(master: Path) -> list[str]:
     Raises:
         autograder.masters.master_files.MasterError: The file is not a valid master.
     """
-    copying = {cell.line for cell in parse_master(master) if COPY.search(cell.source)}
+    copying = {cell.line for cell in parse_master(master) if COPY_LINE.search(cell.source)}
     cells = [
         one for one in named_cells(master) if one.cell.line
     ]  # the last cell, which links to the neighboring labs, is left out
@@ -191,16 +191,16 @@ def broken_rules(master: Path) -> list[str]:
 
 def _beginning(cells: list[NamedCell]) -> Iterator[str]:
     head = list(itertools.takewhile(_is_text, cells))
-    if _words(head) > MAX_HEAD_WORDS:
-        yield f"begin by doing: {_words(head)} words before the first code cell; at most {MAX_HEAD_WORDS} are allowed"
+    if _words(head) > _MAX_HEAD_WORDS:
+        yield f"begin by doing: {_words(head)} words before the first code cell; at most {_MAX_HEAD_WORDS} are allowed"
     if not head or not _MINUTES.search(head[0].cell.source):
         yield (
             "minutes: write in the first text how long the lab takes and for whom, such as *20 minutes · for "
             "beginners*"
         )
     task = next((place for place, one in enumerate(cells) if one.cell.kind is CellRole.SOLUTION), 0)
-    if (before := _words(filter(_is_text, cells[:task]))) > MAX_WORDS_BEFORE_A_TASK:
-        most = MAX_WORDS_BEFORE_A_TASK
+    if (before := _words(filter(_is_text, cells[:task]))) > _MAX_WORDS_BEFORE_A_TASK:
+        most = _MAX_WORDS_BEFORE_A_TASK
         yield f"the first task comes soon: {before} words before the first task; at most {most} are allowed"
 
 
@@ -208,10 +208,10 @@ def _solutions(cells: Iterable[NamedCell]) -> Iterator[str]:
     for one in cells:
         if one.cell.kind is CellRole.SOLUTION:
             written = sum(bool(line.strip()) for line in find_region(one.cell.source).answer)
-            if not 1 <= written <= MAX_SOLUTION_LINES:
+            if not 1 <= written <= _MAX_SOLUTION_LINES:
                 yield (
                     f"a task is small: the cell {one.name} (line {one.cell.line}) asks for {written} lines; at most "
-                    f"{MAX_SOLUTION_LINES} are allowed: give students the other lines, or split the cell in two"
+                    f"{_MAX_SOLUTION_LINES} are allowed: give students the other lines, or split the cell in two"
                 )
 
 
@@ -226,9 +226,9 @@ def _predictions(cells: list[NamedCell]) -> Iterator[str]:
     for before, one in itertools.pairwise(cells):
         # A cell that only defines or stops something has no result that a student could predict.
         shows = one.cell.source.startswith("%%bash") or "print(" in one.cell.source
-        if one.cell.kind is CellRole.DEMONSTRATION and shows and PREDICTION not in before.cell.source:
+        if one.cell.kind is CellRole.DEMONSTRATION and shows and _PREDICTION not in before.cell.source:
             yield (
-                f"a demonstration is predicted: write a question '{PREDICTION} …?' before line {one.cell.line}, "
+                f"a demonstration is predicted: write a question '{_PREDICTION} …?' before line {one.cell.line}, "
                 "and its answer in a <details>"
             )
 

@@ -35,7 +35,7 @@ class NothingToTry(LookupError):
 
 
 @dataclass(frozen=True)
-class Surprise:
+class _Surprise:
     """An answer whose verdict differs from what its author expects.
 
     Attributes:
@@ -50,7 +50,7 @@ class Surprise:
 
 
 @dataclass(frozen=True)
-class Transcribed(Answer):
+class _Transcribed(Answer):
     """An answer whose evidence is written into a file when it is judged.
 
     Attributes:
@@ -115,14 +115,14 @@ def try_exercise(
         NothingToTry: No answer has one of the requested names.
     """
     exercises.get(exercise_id)
-    wanted: Sequence[Answer] = chosen(exercise_id, only)
-    _fit(wanted)
-    if not (only and exercises.reference_path(exercise_id).exists()) and not _is_in_step(exercise_id, tell):
+    wanted: Sequence[Answer] = _chosen(exercise_id, only)
+    _refuse_edits_that_do_not_fit(wanted)
+    if not (only and exercises.reference_path(exercise_id).exists()) and not _is_recorded(exercise_id, tell):
         return False
-    gifts = [] if only else list(_given(exercise_id))
+    gifts = [] if only else list(_points_of_unsolved(exercise_id))
     if transcript is not None:
-        wanted = [Transcribed(**vars(answer), folder=transcript) for answer in wanted]
-    surprises = judged(wanted, jobs=jobs, repeat=repeat, tell=tell)
+        wanted = [_Transcribed(**vars(answer), folder=transcript) for answer in wanted]
+    surprises = _judged(wanted, jobs=jobs, repeat=repeat, tell=tell)
     for surprise in surprises:
         tell(f"\n{surprise.name}: {surprise.objection}\n{textwrap.indent(surprise.card, '    ')}")
     times = f", each judged {repeat} times" if repeat > 1 else ""
@@ -136,7 +136,7 @@ def try_exercise(
     return not surprises and not gifts
 
 
-def chosen(exercise_id: str, only: Sequence[str] = ()) -> list[Answer]:
+def _chosen(exercise_id: str, only: Sequence[str] = ()) -> list[Answer]:
     """Return the answers to an exercise, in the order of their tables.
 
     Args:
@@ -161,9 +161,9 @@ def chosen(exercise_id: str, only: Sequence[str] = ()) -> list[Answer]:
     return wanted
 
 
-def judged(
+def _judged(
     wanted: Sequence[Answer], *, jobs: int = JOBS, repeat: int = 1, tell: Callable[[str], object]
-) -> list[Surprise]:
+) -> list[_Surprise]:
     """Judge answers, and print each result.
 
     Args:
@@ -177,7 +177,7 @@ def judged(
         verdict.
     """
     turns = [Turn(answer, f"try {lap}" if lap else "try") for lap in range(repeat) for answer in wanted]
-    surprises: dict[str, Surprise] = {}
+    surprises: dict[str, _Surprise] = {}
     done = 0
 
     def take(turn: Turn[Answer], verdict: Verdict) -> None:
@@ -188,14 +188,14 @@ def judged(
         key = verdict.diagnosis.key if verdict.diagnosis else ""
         tell(f"{done:>3}/{len(turns)} {sign} {answer.short_name:<40} {points:>8}  {key}".rstrip())
         if objection:
-            surprises.setdefault(answer.name, Surprise(answer.short_name, objection, card_text(verdict)))
+            surprises.setdefault(answer.name, _Surprise(answer.short_name, objection, card_text(verdict)))
 
     def fail(turn: Turn[Answer], trouble: str) -> None:
         nonlocal done
         done += 1
         name = turn.subject.short_name
         tell(f"{done:>3}/{len(turns)} ✗ {name:<40} no verdict")
-        surprise = Surprise(name, f"no verdict: {trouble}", "The error stands above.")
+        surprise = _Surprise(name, f"no verdict: {trouble}", "The error stands above.")
         surprises.setdefault(turn.subject.name, surprise)
 
     warm_up()
@@ -203,7 +203,7 @@ def judged(
     return [surprises[answer.name] for answer in wanted if answer.name in surprises]
 
 
-def _fit(wanted: Sequence[Answer]) -> None:
+def _refuse_edits_that_do_not_fit(wanted: Sequence[Answer]) -> None:
     """Unpack each answer once, to find edits that do not fit their bases.
 
     Raises:
@@ -222,7 +222,7 @@ def _fit(wanted: Sequence[Answer]) -> None:
         raise BadTable("\n".join(troubles))
 
 
-def _given(exercise_id: str) -> Iterator[str]:
+def _points_of_unsolved(exercise_id: str) -> Iterator[str]:
     """Yield a line for each criterion that a notebook meets as students get it, before they write anything."""
     verdict = reference_recording.unsolved(exercise_id)
     for one in verdict.criteria if verdict is not None else ():
@@ -233,7 +233,7 @@ def _given(exercise_id: str) -> Iterator[str]:
             )
 
 
-def _is_in_step(exercise_id: str, tell: Callable[[str], object]) -> bool:
+def _is_recorded(exercise_id: str, tell: Callable[[str], object]) -> bool:
     """Return True if the stored reference output equals a new recording. If none is stored, store the new one."""
     there = exercises.reference_path(exercise_id).exists()
     changed = reference_recording.record([exercise_id], only_check=there, tell=tell)

@@ -18,10 +18,10 @@ if TYPE_CHECKING:
 
 EXAMPLES = Path(__file__).with_name("examples")
 """The folder of a course that contains only examples. Each lab is the example for the recipe with the same name."""
-LEFT_OUT = shutil.ignore_patterns("__pycache__", f"*{exercises.REFERENCE}")
+_GENERATED = shutil.ignore_patterns("__pycache__", f"*{exercises.REFERENCE}")
 """Ignores files that must not be copied from an example, because commands generate them."""
 
-DEFINITIONS = {"msg": 0, "srv": 1, "action": 2}
+_SEPARATORS = {"msg": 0, "srv": 1, "action": 2}
 """For each kind of interface, the number of lines ``---`` that separate the parts of a definition."""
 
 _INTERFACE = re.compile(
@@ -63,15 +63,24 @@ def new_exercise(
         CannotMake: The id, the chapter or an interface is not valid; the lab already exists; or the recipe does not
             exist.
     """
-    lab = _lab_of(exercise_id)
-    example = _example(recipe)
+    if not _ID.fullmatch(exercise_id):
+        raise CannotMake(
+            f"{exercise_id!r} is not an id: write the lab, a dot, and the exercise, in small letters, digits and _, "
+            "such as lab_8_1.battery"
+        )
+    lab = exercise_id.partition(".")[0]
+    known = recipes()
+    if recipe not in known:
+        raise CannotMake(f"no recipe is named {recipe!r}. The recipes are: {', '.join(known)}")
+    example = known[recipe]
     folder = _chapter(root, chapter) / lab
     _refuse_what_is_there(root, folder)
     types = [_interface_of(root, folder.parent, interface) for interface in interfaces]
     with HeldFolder("autograder-new-") as scratch:
         made = scratch.path / lab
-        shutil.copytree(example, made, ignore=LEFT_OUT)
-        _rename(made, f"{example.name}.{_exercise_of(example)}", exercise_id)
+        shutil.copytree(example, made, ignore=_GENERATED)
+        old_name = next(file.stem for file in sorted(example.glob("[!_]*.py")))
+        _rename(made, f"{example.name}.{old_name}", exercise_id)
         written = [
             *_described(folder.parent),
             *(file for each in types for file in _defined(folder.parent, each)),
@@ -134,7 +143,7 @@ def _defined(chapter: Path, interface: re.Match[str]) -> list[Path]:
     if definition.exists():
         return []
     definition.parent.mkdir(parents=True, exist_ok=True)
-    definition.write_text("# A field a line: float32 level\n" + "---\n" * DEFINITIONS[kind], encoding="utf-8")
+    definition.write_text("# A field a line: float32 level\n" + "---\n" * _SEPARATORS[kind], encoding="utf-8")
     if package not in _listed(chapter):
         description = chapter / course.CHAPTER
         text = description.read_text(encoding="utf-8") if description.is_file() else ""
@@ -146,26 +155,6 @@ def _defined(chapter: Path, interface: re.Match[str]) -> list[Path]:
             text = f'{text[:end]}interfaces = ["{package}"]\n{text[end:]}'
         description.write_text(text, encoding="utf-8")
     return [definition]
-
-
-def _lab_of(exercise_id: str) -> str:
-    if not _ID.fullmatch(exercise_id):
-        raise CannotMake(
-            f"{exercise_id!r} is not an id: write the lab, a dot, and the exercise, in small letters, digits and _, "
-            "such as lab_8_1.battery"
-        )
-    return exercise_id.partition(".")[0]
-
-
-def _example(recipe: str) -> Path:
-    known = recipes()
-    if recipe not in known:
-        raise CannotMake(f"no recipe is named {recipe!r}. The recipes are: {', '.join(known)}")
-    return known[recipe]
-
-
-def _exercise_of(example: Path) -> str:
-    return next(file.stem for file in sorted(example.glob("[!_]*.py")))
 
 
 def _chapter(root: Path, name: str | None) -> Path:

@@ -18,6 +18,7 @@ from nbconvert import HTMLExporter
 from rich.console import Console
 
 from autograder.boxes.run_limits import Ended, Limits
+from autograder.cards.readable_text import TRACEBACK
 from autograder.execution.executed_cells import CellType
 from autograder.grading.grading_task import Task
 from autograder.grading.rebuilding import nbformat_nodes
@@ -39,250 +40,6 @@ if TYPE_CHECKING:
     from autograder.verdict import Verdict
 
 
-_LIMITS = Limits(cell_seconds=180.0, notebook_seconds=900.0)
-"""Time limits of a cell and a notebook, longer than for a submission: a cell may build a workspace, and several
-notebooks share the machine.
-"""
-
-
-class NotebookKind(StrEnum):
-    """The kind of a notebook, which decides its expected result."""
-
-    MASTER = "master"
-    """The master, which contains the solutions, has to earn full marks."""
-    CHAPTER = "chapter"
-    """The notebook as students get it has to earn no points and raise no error."""
-
-
-@dataclass(frozen=True)
-class Planned:
-    """A notebook that will be executed.
-
-    Attributes:
-        kind: Whether the notebook is a master, or as students get it.
-        notebook: The notebook in format 4.5, without outputs.
-        task: The same notebook as a task for execution.
-    """
-
-    kind: NotebookKind
-    notebook: NotebookNode
-    task: Task
-
-    @property
-    def label(self) -> str:
-        """The name of the notebook in messages, such as ``"master lab_1_2"``."""
-        return f"{self.kind} {self.task.notebook}"
-
-
-class NothingToExecuteError(LookupError):
-    """A notebook does not exist, was not built, or is damaged. The message says what to do."""
-
-
-def execution_plan(root: Path, only: Sequence[str] = ()) -> list[Planned]:
-    """Return two notebooks for each lab of a course: the master, and the one that students get.
-
-    The second notebook is the file in ``chapters`` that students open. It is not built again.
-
-    Args:
-        root: The top folder of the course, which contains ``solutions`` and ``chapters``.
-        only: Names such as ``"lab_1_2"``; all notebooks if empty.
-
-    Raises:
-        NothingToExecuteError: A name does not exist; or a file in ``chapters`` is missing or not a notebook.
-        autograder.masters.master_files.MasterError: A master cannot be used.
-    """
-    found = masters(root)
-    known = [lab_name(master) for master in found]
-    for name in only:
-        if name not in known:
-            raise NothingToExecuteError(
-                f"no notebook is named {name!r}. The notebooks are: {', '.join(known)}."
-            )
-    planned = []
-    for master in found:
-        if only and lab_name(master) not in only:
-            continue
-        chapter = chapter_path(root, master)
-        if not chapter.is_file():
-            raise NothingToExecuteError(f"{chapter.relative_to(root)} does not exist: run `{COMMAND} build`.")
-        try:
-            built = nbformat_nodes.read(chapter.read_text(encoding="utf-8"))
-        except Exception as error:  # nbformat may raise any error of the libraries that it uses
-            raise NothingToExecuteError(
-                f"{chapter.relative_to(root)} is not a notebook: run `{COMMAND} build`."
-            ) from error
-        planned.append(_planned(NotebookKind.MASTER, lab_name(master), source_notebook(master)))
-        planned.append(_planned(NotebookKind.CHAPTER, lab_name(master), built))
-    return planned
-
-
-def _planned(kind: NotebookKind, name: str, notebook: NotebookNode) -> Planned:
-    task = Task(
-        student=kind,
-        assignment="execute",
-        notebook=name,
-        cells=cells_of(notebook),
-        seed=f"execute {name}",
-        course="",
-        limits=_LIMITS,
-        # No sandbox is needed, because these are the course's own notebooks.
-        boxed=False,
-    )
-    return Planned(kind, notebook, task)
-
-
-TRACEBACK = "Traceback (most recent call last)"
-_SHELL = re.compile(r"^\s*(%%|!)", re.MULTILINE)
-"""Matches a cell that runs programs. Such a cell may write to standard error without any problem: colcon and ros2
-do.
-"""
-
-_HOW_IT_ENDED = {
-    Ended.TIMED_OUT: "was stopped at its time limit",
-    Ended.KERNEL_DIED: "ended the kernel",
-    Ended.OUT_OF_MEMORY: "used too much memory",
-    Ended.OUT_OF_CPU: "used too much processor time",
-    Ended.TOO_MANY_PROCESSES: "started too many processes",
-    Ended.TOO_MUCH_OUTPUT: "printed too much",
-    Ended.NOT_RUN: "was not run",
-}
-
-
-@dataclass(frozen=True)
-class Problem:
-    """A problem that was found in an executed notebook.
-
-    Attributes:
-        cell: The index of the cell; None if the problem concerns the whole notebook.
-        text: What is wrong, in words.
-    """
-
-    cell: int | None
-    text: str
-
-
-def problems_of(planned: Planned, execution: Execution) -> list[Problem]:
-    """Return all problems of a notebook, in the order of its cells; empty if there are none."""
-    if execution.trouble:
-        return [Problem(None, f"the grader had trouble: {execution.trouble}")]
-    return [
-        Problem(index, text)
-        for index, (cell, run) in enumerate(zip(planned.task.cells, execution.cells, strict=True))
-        for text in _of_cell(planned.kind, cell, run, execution.verdicts.get(index))
-    ]
-
-
-def _of_cell(kind: NotebookKind, cell: Cell, run: CellRun, verdict: Verdict | None) -> Iterator[str]:
-    if run.ended is Ended.RAISED:
-        yield f"raised {run.error}"
-    elif run.ended is not Ended.DONE:
-        yield _HOW_IT_ENDED[run.ended]
-    elif any(TRACEBACK in _text(output) for output in run.outputs):
-        yield "shows a stray traceback"
-    if not _SHELL.search(cell.source) and any(output.get("name") == "stderr" for output in run.outputs):
-        # nbgrader gives no points to a graded cell that writes to stderr, and students think that such output is an
-        # error.
-        yield "writes to standard error"
-    if cell.check is not None and run.ended is Ended.DONE:
-        yield from _of_check(kind, cell.check.points, run, verdict)
-
-
-def _of_check(kind: NotebookKind, points: float, run: CellRun, verdict: Verdict | None) -> Iterator[str]:
-    wanted = points if kind is NotebookKind.MASTER else 0.0
-    if verdict is None:
-        yield "has no verdict"
-        return
-    if verdict.score != wanted:
-        yield f"earns {verdict.score:g} of {points:g} points instead of {wanted:g}{_why(verdict)}"
-    values = [
-        output["data"].get("text/plain")
-        for output in run.outputs
-        if output["output_type"] == "execute_result"
-    ]
-    if not values or not _is_number(values[-1], verdict.score):
-        # The value of the cell must be the score, because unmodified nbgrader reads partial credit from this value.
-        yield f"has the value {values[-1] if values else 'nothing'} instead of its score, {verdict.score:g}"
-
-
-def _why(verdict: Verdict) -> str:
-    reasons = [f"{c.title}: {c.seen}" for c in verdict.criteria if not c.passed]
-    if verdict.diagnosis is not None:
-        reasons.insert(0, f"{verdict.diagnosis.key}: {verdict.diagnosis.text}")
-    return f" ({'; '.join(reasons)})" if reasons else ""
-
-
-def _is_number(text: str, number: float) -> bool:
-    try:
-        return float(text) == number
-    except (TypeError, ValueError):
-        return False
-
-
-def _text(output: dict[str, Any]) -> str:
-    return str(output.get("text", "")) + str(output.get("data", {}).get("text/plain", ""))
-
-
-def write_report(folder: Path, planned: Planned, execution: Execution, found: Sequence[Problem]) -> Path:
-    """Write the page about the problems of a notebook.
-
-    Args:
-        folder: The folder for the page, which is created if it does not exist.
-        planned: The notebook.
-        execution: The result of the execution.
-        found: The problems.
-
-    Returns:
-        The path of the page.
-    """
-    folder.mkdir(parents=True, exist_ok=True)
-    path = folder / f"{planned.task.notebook}-{planned.kind}.html"
-    # By default, nbconvert also searches the current folder for templates, which may run code.
-    exporter = HTMLExporter(extra_template_basedirs=[])
-    exporter.anchor_link_text = ""
-    page, _ = exporter.from_notebook_node(
-        _with_outputs(planned, execution, found),
-        {"metadata": {"name": planned.label}, "config_dir": str(folder)},
-    )
-    path.write_text(page, encoding="utf-8")
-    return path
-
-
-def _with_outputs(planned: Planned, execution: Execution, found: Sequence[Problem]) -> NotebookNode:
-    notebook = nbformat_nodes.copied(planned.notebook)
-    cells = []
-    for index, cell in enumerate(notebook.cells):
-        if cell.cell_type == CellType.CODE and index < len(execution.cells):
-            cell.outputs = [nbformat_nodes.output(**output) for output in execution.cells[index].outputs]
-            cell.execution_count = None
-        wrong = [problem.text for problem in found if problem.cell == index]
-        if wrong:
-            cells.append(_box(f'<p id="problem-{index}"><b>The next cell {_join(wrong)}.</b></p>'))
-        cells.append(cell)
-    notebook.cells = [_box(_summary(planned, found)), *cells]
-    return notebook
-
-
-def _summary(planned: Planned, found: Sequence[Problem]) -> str:
-    lines = "".join(f"<li>{_line(problem)}</li>" for problem in found)
-    return f"<p><b>{html.escape(planned.label)}</b> failed:</p><ul>{lines}</ul>"
-
-
-def _line(problem: Problem) -> str:
-    text = html.escape(problem.text)
-    if problem.cell is None:
-        return text
-    return f'<a href="#problem-{problem.cell}">cell {problem.cell + 1}</a> {text}'
-
-
-def _join(texts: Sequence[str]) -> str:
-    return " and ".join(html.escape(text) for text in texts)
-
-
-def _box(text: str) -> NotebookNode:
-    style = "border-left: 6px solid #c62828; padding: 0.5em 1em; background: #fdecea; color: #5f1414"
-    return nbformat_nodes.cell(CellType.MARKDOWN, f'<div style="{style}">\n{text}\n</div>')
-
-
 REPORTS_FOLDER = "execution-reports"
 """The name of the folder, in the course's top folder, for pages about failed notebooks."""
 
@@ -300,7 +57,7 @@ class Executed:
 
     planned: Planned
     execution: Execution
-    found: tuple[Problem, ...]
+    found: tuple[_Problem, ...]
     report: Path | None
 
 
@@ -381,7 +138,7 @@ def execute_all(
             for done in running:
                 item = of_task[id(done.task)]
                 found = tuple(problems_of(item, done.execution))
-                page = write_report(reports, item, done.execution, found) if found else None
+                page = _write_report(reports, item, done.execution, found) if found else None
                 results[id(done.task)] = Executed(item, done.execution, found, page)
                 note = f" ({done.execution.seconds:.1f} s)"
                 progress.finished(done.task.label, failed=bool(found), note=note)
@@ -407,3 +164,230 @@ def _remove_reports(folder: Path) -> None:
         page.unlink()
     with contextlib.suppress(OSError):
         folder.rmdir()
+
+
+class NotebookKind(StrEnum):
+    """The kind of a notebook, which decides its expected result."""
+
+    MASTER = "master"
+    """The master, which contains the solutions, has to earn full marks."""
+    CHAPTER = "chapter"
+    """The notebook as students get it has to earn no points and raise no error."""
+
+
+@dataclass(frozen=True)
+class Planned:
+    """A notebook that will be executed.
+
+    Attributes:
+        kind: Whether the notebook is a master, or as students get it.
+        notebook: The notebook in format 4.5, without outputs.
+        task: The same notebook as a task for execution.
+    """
+
+    kind: NotebookKind
+    notebook: NotebookNode
+    task: Task
+
+    @property
+    def label(self) -> str:
+        """The name of the notebook in messages, such as ``"master lab_1_2"``."""
+        return f"{self.kind} {self.task.notebook}"
+
+
+class NothingToExecuteError(LookupError):
+    """A notebook does not exist, was not built, or is damaged. The message says what to do."""
+
+
+def execution_plan(root: Path, only: Sequence[str] = ()) -> list[Planned]:
+    """Return two notebooks for each lab of a course: the master, and the one that students get.
+
+    The second notebook is the file in ``chapters`` that students open. It is not built again.
+
+    Args:
+        root: The top folder of the course, which contains ``solutions`` and ``chapters``.
+        only: Names such as ``"lab_1_2"``; all notebooks if empty.
+
+    Raises:
+        NothingToExecuteError: A name does not exist; or a file in ``chapters`` is missing or not a notebook.
+        autograder.masters.master_files.MasterError: A master cannot be used.
+    """
+    found = masters(root)
+    known = [lab_name(master) for master in found]
+    for name in only:
+        if name not in known:
+            raise NothingToExecuteError(
+                f"no notebook is named {name!r}. The notebooks are: {', '.join(known)}."
+            )
+    planned = []
+    for master in found:
+        if only and lab_name(master) not in only:
+            continue
+        chapter = chapter_path(root, master)
+        if not chapter.is_file():
+            raise NothingToExecuteError(f"{chapter.relative_to(root)} does not exist: run `{COMMAND} build`.")
+        try:
+            built = nbformat_nodes.read(chapter.read_text(encoding="utf-8"))
+        except Exception as error:  # nbformat may raise any error of the libraries that it uses
+            raise NothingToExecuteError(
+                f"{chapter.relative_to(root)} is not a notebook: run `{COMMAND} build`."
+            ) from error
+        planned.append(_planned(NotebookKind.MASTER, lab_name(master), source_notebook(master)))
+        planned.append(_planned(NotebookKind.CHAPTER, lab_name(master), built))
+    return planned
+
+
+_LIMITS = Limits(cell_seconds=180.0, notebook_seconds=900.0)
+"""Time limits of a cell and a notebook, longer than for a submission: a cell may build a workspace, and several
+notebooks share the machine.
+"""
+
+
+def _planned(kind: NotebookKind, name: str, notebook: NotebookNode) -> Planned:
+    task = Task(
+        student=kind,
+        assignment="execute",
+        notebook=name,
+        cells=cells_of(notebook),
+        seed=f"execute {name}",
+        course="",
+        limits=_LIMITS,
+        # No sandbox is needed, because these are the course's own notebooks.
+        boxed=False,
+    )
+    return Planned(kind, notebook, task)
+
+
+@dataclass(frozen=True)
+class _Problem:
+    """A problem that was found in an executed notebook.
+
+    Attributes:
+        cell: The index of the cell; None if the problem concerns the whole notebook.
+        text: What is wrong, in words.
+    """
+
+    cell: int | None
+    text: str
+
+
+def problems_of(planned: Planned, execution: Execution) -> list[_Problem]:
+    """Return all problems of a notebook, in the order of its cells; empty if there are none."""
+    if execution.trouble:
+        return [_Problem(None, f"the grader had trouble: {execution.trouble}")]
+    return [
+        _Problem(index, text)
+        for index, (cell, run) in enumerate(zip(planned.task.cells, execution.cells, strict=True))
+        for text in _problems_of_cell(planned.kind, cell, run, execution.verdicts.get(index))
+    ]
+
+
+_SHELL = re.compile(r"^\s*(%%|!)", re.MULTILINE)
+"""Matches a cell that runs programs. Such a cell may write to standard error without any problem: colcon and ros2
+do.
+"""
+
+_HOW_IT_ENDED = {
+    Ended.TIMED_OUT: "was stopped at its time limit",
+    Ended.KERNEL_DIED: "ended the kernel",
+    Ended.OUT_OF_MEMORY: "used too much memory",
+    Ended.OUT_OF_CPU: "used too much processor time",
+    Ended.TOO_MANY_PROCESSES: "started too many processes",
+    Ended.TOO_MUCH_OUTPUT: "printed too much",
+    Ended.NOT_RUN: "was not run",
+}
+
+
+def _problems_of_cell(kind: NotebookKind, cell: Cell, run: CellRun, verdict: Verdict | None) -> Iterator[str]:
+    if run.ended is Ended.RAISED:
+        yield f"raised {run.error}"
+    elif run.ended is not Ended.DONE:
+        yield _HOW_IT_ENDED[run.ended]
+    elif any(TRACEBACK in _text(output) for output in run.outputs):
+        yield "shows a stray traceback"
+    if not _SHELL.search(cell.source) and any(output.get("name") == "stderr" for output in run.outputs):
+        # nbgrader gives no points to a graded cell that writes to stderr, and students think that such output is an
+        # error.
+        yield "writes to standard error"
+    if cell.check is not None and run.ended is Ended.DONE:
+        yield from _problems_of_check(kind, cell.check.points, run, verdict)
+
+
+def _problems_of_check(
+    kind: NotebookKind, points: float, run: CellRun, verdict: Verdict | None
+) -> Iterator[str]:
+    wanted = points if kind is NotebookKind.MASTER else 0.0
+    if verdict is None:
+        yield "has no verdict"
+        return
+    if verdict.score != wanted:
+        reasons = [f"{c.title}: {c.seen}" for c in verdict.criteria if not c.passed]
+        if verdict.diagnosis is not None:
+            reasons.insert(0, f"{verdict.diagnosis.key}: {verdict.diagnosis.text}")
+        because = f" ({'; '.join(reasons)})" if reasons else ""
+        yield f"earns {verdict.score:g} of {points:g} points instead of {wanted:g}{because}"
+    values = [
+        output["data"].get("text/plain")
+        for output in run.outputs
+        if output["output_type"] == "execute_result"
+    ]
+    if not values or not _is_number(values[-1], verdict.score):
+        # The value of the cell must be the score, because unmodified nbgrader reads partial credit from this value.
+        yield f"has the value {values[-1] if values else 'nothing'} instead of its score, {verdict.score:g}"
+
+
+def _is_number(text: str, number: float) -> bool:
+    try:
+        return float(text) == number
+    except (TypeError, ValueError):
+        return False
+
+
+def _text(output: dict[str, Any]) -> str:
+    return str(output.get("text", "")) + str(output.get("data", {}).get("text/plain", ""))
+
+
+def _write_report(folder: Path, planned: Planned, execution: Execution, found: Sequence[_Problem]) -> Path:
+    """Write a page about the problems of a notebook into a folder. Return the path of the page."""
+    folder.mkdir(parents=True, exist_ok=True)
+    path = folder / f"{planned.task.notebook}-{planned.kind}.html"
+    # By default, nbconvert also searches the current folder for templates, which may run code.
+    exporter = HTMLExporter(extra_template_basedirs=[])
+    exporter.anchor_link_text = ""
+    page, _ = exporter.from_notebook_node(
+        _with_outputs(planned, execution, found),
+        {"metadata": {"name": planned.label}, "config_dir": str(folder)},
+    )
+    path.write_text(page, encoding="utf-8")
+    return path
+
+
+def _with_outputs(planned: Planned, execution: Execution, found: Sequence[_Problem]) -> NotebookNode:
+    notebook = nbformat_nodes.copied(planned.notebook)
+    cells = []
+    for index, cell in enumerate(notebook.cells):
+        if cell.cell_type == CellType.CODE and index < len(execution.cells):
+            cell.outputs = [nbformat_nodes.output(**output) for output in execution.cells[index].outputs]
+            cell.execution_count = None
+        wrong = [problem.text for problem in found if problem.cell == index]
+        if wrong:
+            said = html.escape(" and ".join(wrong))
+            cells.append(_box(f'<p id="problem-{index}"><b>The next cell {said}.</b></p>'))
+        cells.append(cell)
+    notebook.cells = [_box(_summary(planned, found)), *cells]
+    return notebook
+
+
+def _summary(planned: Planned, found: Sequence[_Problem]) -> str:
+    lines = ""
+    for problem in found:
+        text = html.escape(problem.text)
+        if problem.cell is not None:
+            text = f'<a href="#problem-{problem.cell}">cell {problem.cell + 1}</a> {text}'
+        lines += f"<li>{text}</li>"
+    return f"<p><b>{html.escape(planned.label)}</b> failed:</p><ul>{lines}</ul>"
+
+
+def _box(text: str) -> NotebookNode:
+    style = "border-left: 6px solid #c62828; padding: 0.5em 1em; background: #fdecea; color: #5f1414"
+    return nbformat_nodes.cell(CellType.MARKDOWN, f'<div style="{style}">\n{text}\n</div>')

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from autograder.verdict import Verdict
 
 
-RUN_LIMIT = 600.0
+_RUN_LIMIT = 600.0
 """Time limit in seconds for running one reference solution, which may build a workspace twice."""
 
 _CALL = """
@@ -122,7 +122,7 @@ def _judged(exercise_id: str, text: str, *, record: bool) -> tuple[Report, str]:
         except JudgeDied as error:
             raise CannotRecord(f"{exercise_id}: {error}") from error
         except subprocess.TimeoutExpired as error:
-            raise CannotRecord(f"{exercise_id}: the notebook did not end within {RUN_LIMIT:g} s") from error
+            raise CannotRecord(f"{exercise_id}: the notebook did not end within {_RUN_LIMIT:g} s") from error
 
 
 def program(exercise_id: str, *, solved: bool = True) -> str:
@@ -153,7 +153,7 @@ def _run(file: Path, socket: Path) -> str:
         stderr=subprocess.STDOUT,
         text=True,
         errors="replace",
-        timeout=RUN_LIMIT,
+        timeout=_RUN_LIMIT,
         check=False,
     )
     return done.stdout[-4000:]

@@ -23,8 +23,7 @@ from autograder import course
 from autograder.authoring.executed_masters import MOVING_PICTURES, run_masters
 from autograder.masters.chapter_building import release_text
 from autograder.masters.master_files import chapter_path, lab_name, masters
-from autograder.masters.source_notebooks import SET_UP_CELL as SET_UP_CELL
-from autograder.masters.source_notebooks import source_notebook
+from autograder.masters.source_notebooks import SET_UP_CELL, source_notebook
 from autograder.safe_files import HeldFolder
 from autograder.student.handout import hand_out
 
@@ -38,7 +37,93 @@ SELF_EDITION, CLASS_EDITION = "self", "class"
 EDITIONS = (SELF_EDITION, CLASS_EDITION)
 """The editions of the website: ``self`` for learners on their own, with solutions; ``class`` without solutions."""
 SOLUTION_SUMMARY = "Solution (click to expand)"
-STATIC_FOLDER = "_static"
+_STATIC = "_static"
+MAX_PAGE_BYTES = 1_000_000
+"""The maximum size of a page in bytes."""
+_STYLE_SHEET = "book.css"
+_SPHINX_SETTINGS: dict[str, Any] = {
+    "author": "The maintainers of this course",
+    "extensions": ["myst_nb", "sphinx_copybutton", "autograder.authoring.site_building"],
+    "html_theme": "sphinx_book_theme",
+    "html_static_path": [_STATIC],
+    "html_css_files": [_STYLE_SHEET],
+    "html_theme_options": {
+        "navbar_persistent": [],
+        "show_navbar_depth": 1,
+        "use_download_button": False,
+        "use_fullscreen_button": False,
+        "pygments_light_style": "a11y-high-contrast-light",
+        "pygments_dark_style": "a11y-high-contrast-dark",
+    },
+    "html_context": {"default_mode": "auto"},
+    "html_copy_source": False,
+    "html_show_sphinx": False,
+    "language": "en",
+    "nb_execution_mode": "off",
+    # Without this line, pages would load scripts for Jupyter widgets from another host. No page has such widgets.
+    "nb_ipywidgets_js": {},
+    "myst_enable_extensions": ["colon_fence", "html_image"],
+    "myst_heading_anchors": 6,
+    "copybutton_prompt_text": "$ ",
+    "suppress_warnings": ["myst.header", "misc.highlighting_failure"],
+}
+
+
+def build_site(root: Path, folder: Path, edition: str, *, outputs: bool, tell: Callable[[str], None]) -> int:
+    """Build the website of a course.
+
+    Args:
+        root: The top folder of the course.
+        folder: The folder for the pages. Pages from an earlier build in it are replaced.
+        edition: A value from ``autograder.authoring.site_building.EDITIONS``.
+        outputs: True to execute the notebooks first and show their outputs.
+        tell: Called with each line to print.
+
+    Returns:
+        The number of problems: links that lead nowhere, and pages that are too large.
+    """
+    with HeldFolder("course-site-") as held:
+        executed = run_masters(masters(root), course_of(edition, root, held.path), tell) if outputs else {}
+        sources, pages = held.path / "sources", held.path / "pages"
+        sources.mkdir()
+        _write_sources(root, sources, edition, executed)
+        shutil.copyfile(Path(__file__).with_name(_STYLE_SHEET), sources / _STATIC / _STYLE_SHEET)
+        title = next(iter(course.chapters(root))).title
+        address = course.repository(root)
+        files = f"{address}/blob/{course.BRANCH}" if address else ""
+        settings = _SPHINX_SETTINGS | {"project": title, "html_title": title, "course_files": files}
+        with (held.path / "warnings").open("w+", encoding="utf-8") as warnings:
+            app = Sphinx(
+                sources, None, pages, held.path / "trees", "html", settings, status=None, warning=warnings
+            )
+            app.build()
+            warnings.seek(0)
+            problems = [line.strip().replace(f"{sources}/", "") for line in warnings if line.strip()]
+        problems += [
+            f"{page.relative_to(pages)} has {page.stat().st_size} bytes: at most {MAX_PAGE_BYTES} are allowed"
+            for page in pages.rglob("*.html")
+            if page.stat().st_size > MAX_PAGE_BYTES
+        ]
+        _leave_out_what_no_page_needs(pages)
+        if folder.exists():
+            shutil.rmtree(folder)
+        shutil.move(pages, folder)
+    for problem in problems:
+        tell(problem)
+    return len(problems)
+
+
+def course_of(edition: str, root: Path, folder: Path) -> Path:
+    """Return the course to execute for an edition. For a class, make a hand-out: its cards do not offer solutions.
+
+    Raises:
+        autograder.student.handout.CannotHandOut: A notebook of the chapters contains the author's own work.
+    """
+    if edition == SELF_EDITION:
+        return root
+    return hand_out(folder / "handed-out", root).place
+
+
 _ATTACHMENT = re2.compile(r"\(attachment:([^)]+)\)")
 _NOTEBOOK_LINK = re2.compile(r"\]\(([\w./-]*\.ipynb)#([^)]+)\)")
 _README_PICTURE = re2.compile(r"!\[[^\]]*\]\(docs/images/[^)]+\)")
@@ -48,7 +133,7 @@ _READER = re2.compile(r"(?m)^\*\*(.+)\*\*$")
 _TARGET = re2.compile(r"\]\(([^)#:]+)[^)]*\)")
 
 
-def write_sources(root: Path, folder: Path, edition: str, executed: Mapping[str, NotebookNode]) -> None:
+def _write_sources(root: Path, folder: Path, edition: str, executed: Mapping[str, NotebookNode]) -> None:
     """Write the sources of the website.
 
     Args:
@@ -57,7 +142,7 @@ def write_sources(root: Path, folder: Path, edition: str, executed: Mapping[str,
         edition: A value from ``EDITIONS``.
         executed: The executed source notebooks, by the names of the labs. The pages of other labs have no outputs.
     """
-    (folder / STATIC_FOLDER).mkdir()
+    (folder / _STATIC).mkdir()
     if (root / "docs").is_dir():
         shutil.copytree(root / "docs", folder / "docs", ignore=shutil.ignore_patterns("*.py", "*.json"))
     (folder / "index.md").write_text(f"# {course.chapters(root)[0].title}{_contents(root)}", encoding="utf-8")
@@ -78,7 +163,7 @@ def write_sources(root: Path, folder: Path, edition: str, executed: Mapping[str,
     for master in masters(root):
         source = executed.get(lab_name(master)) or source_notebook(master)
         for name, picture in source.metadata.pop(MOVING_PICTURES, {}).items():
-            (folder / STATIC_FOLDER / name).write_text(picture, encoding="utf-8")
+            (folder / _STATIC / name).write_text(picture, encoding="utf-8")
         file = folder / chapter_path(root, master).relative_to(root)
         file.parent.mkdir(parents=True, exist_ok=True)
         figures = {svg.with_suffix(".png").name: svg for svg in master.parents[1].glob("**/figures/*.svg")}
@@ -205,89 +290,16 @@ def _guides(root: Path) -> dict[str, list[Path]]:
     return found | {"About": sorted(left)}
 
 
-MAX_PAGE_BYTES = 1_000_000
-"""The maximum size of a page in bytes."""
-STYLE_SHEET = "book.css"
 _ICON = re2.compile(r'(?:"?([\w-]+)"?):\[\d+,\d+,\[([^\]]*)\],"[0-9a-f]*",(?:"[^"]*"|\[[^\]]*\])\],?')
 """Matches one of the 2,000 icons in the theme's script: its name, size, other names, code and drawing."""
 _ICON_NAME = re2.compile(r"\bfa-([\w-]+)")
-_SPHINX_SETTINGS: dict[str, Any] = {
-    "author": "The maintainers of this course",
-    "extensions": ["myst_nb", "sphinx_copybutton", "autograder.authoring.site_building"],
-    "html_theme": "sphinx_book_theme",
-    "html_static_path": [STATIC_FOLDER],
-    "html_css_files": [STYLE_SHEET],
-    "html_theme_options": {
-        "navbar_persistent": [],
-        "show_navbar_depth": 1,
-        "use_download_button": False,
-        "use_fullscreen_button": False,
-        "pygments_light_style": "a11y-high-contrast-light",
-        "pygments_dark_style": "a11y-high-contrast-dark",
-    },
-    "html_context": {"default_mode": "auto"},
-    "html_copy_source": False,
-    "html_show_sphinx": False,
-    "language": "en",
-    "nb_execution_mode": "off",
-    # Without this line, pages would load scripts for Jupyter widgets from another host. No page has such widgets.
-    "nb_ipywidgets_js": {},
-    "myst_enable_extensions": ["colon_fence", "html_image"],
-    "myst_heading_anchors": 6,
-    "copybutton_prompt_text": "$ ",
-    "suppress_warnings": ["myst.header", "misc.highlighting_failure"],
-}
-
-
-def build_site(root: Path, folder: Path, edition: str, *, outputs: bool, tell: Callable[[str], None]) -> int:
-    """Build the website of a course.
-
-    Args:
-        root: The top folder of the course.
-        folder: The folder for the pages. Pages from an earlier build in it are replaced.
-        edition: A value from ``autograder.authoring.site_building.EDITIONS``.
-        outputs: True to execute the notebooks first and show their outputs.
-        tell: Called with each line to print.
-
-    Returns:
-        The number of problems: links that lead nowhere, and pages that are too large.
-    """
-    with HeldFolder("course-site-") as held:
-        executed = run_masters(masters(root), course_of(edition, root, held.path), tell) if outputs else {}
-        sources, pages = held.path / "sources", held.path / "pages"
-        sources.mkdir()
-        write_sources(root, sources, edition, executed)
-        shutil.copyfile(Path(__file__).with_name(STYLE_SHEET), sources / STATIC_FOLDER / STYLE_SHEET)
-        title = next(iter(course.chapters(root))).title
-        address = course.repository(root)
-        files = f"{address}/blob/{course.BRANCH}" if address else ""
-        settings = _SPHINX_SETTINGS | {"project": title, "html_title": title, "course_files": files}
-        with (held.path / "warnings").open("w+", encoding="utf-8") as warnings:
-            app = Sphinx(
-                sources, None, pages, held.path / "trees", "html", settings, status=None, warning=warnings
-            )
-            app.build()
-            warnings.seek(0)
-            problems = [line.strip().replace(f"{sources}/", "") for line in warnings if line.strip()]
-        problems += [
-            f"{page.relative_to(pages)} has {page.stat().st_size} bytes: at most {MAX_PAGE_BYTES} are allowed"
-            for page in pages.rglob("*.html")
-            if page.stat().st_size > MAX_PAGE_BYTES
-        ]
-        _leave_out_what_no_page_needs(pages)
-        if folder.exists():
-            shutil.rmtree(folder)
-        shutil.move(pages, folder)
-    for problem in problems:
-        tell(problem)
-    return len(problems)
 
 
 def _leave_out_what_no_page_needs(pages: Path) -> None:
     """Delete templates, source maps and icons that no page uses. A first visit then loads 1.5 MB less."""
-    for file in [*(pages / STATIC_FOLDER).glob("*macros.html"), *(pages / STATIC_FOLDER).rglob("*.map")]:
+    for file in [*(pages / _STATIC).glob("*macros.html"), *(pages / _STATIC).rglob("*.map")]:
         file.unlink()
-    script = pages / STATIC_FOLDER / "scripts" / "fontawesome.js"
+    script = pages / _STATIC / "scripts" / "fontawesome.js"
     texts = (file.read_text(encoding="utf-8") for kind in ("html", "js") for file in pages.rglob(f"*.{kind}"))
     shown = {name for text in texts for name in _ICON_NAME.findall(text)}
 
@@ -296,17 +308,6 @@ def _leave_out_what_no_page_needs(pages: Path) -> None:
         return "" if names.isdisjoint(shown) else icon[0]
 
     script.write_text(_ICON.sub(kept, script.read_text(encoding="utf-8")), encoding="utf-8")
-
-
-def course_of(edition: str, root: Path, folder: Path) -> Path:
-    """Return the course to execute for an edition. For a class, make a hand-out: its cards do not offer solutions.
-
-    Raises:
-        autograder.student.handout.CannotHandOut: A notebook of the chapters contains the author's own work.
-    """
-    if edition == SELF_EDITION:
-        return root
-    return hand_out(folder / "handed-out", root).place
 
 
 def _settle_what_is_elsewhere(app: Sphinx, tree: nodes.document) -> None:

@@ -15,7 +15,7 @@ import re2
 
 from autograder.cards import card_wording
 from autograder.cards.card_traffic import Traffic, traffic
-from autograder.cards.readable_text import TRACEBACK, TracebackLine, block, one_line, paragraph, place
+from autograder.cards.readable_text import TRACEBACK, TracebackLine, block, one_line, paragraph, students_line
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -23,83 +23,10 @@ if TYPE_CHECKING:
     from autograder.verdict import CriterionResult, State, Verdict
 
 
-MIN_SIMILARITY = 0.5
-"""The minimum similarity of two texts, from 0 to 1. If they are less similar, showing their difference would not help.
-"""
-LONGEST_COMPARED = 120
-"""The maximum length of a compared text, in characters, because the time grows with the square of the length."""
-_QUOTED = re2.compile("“([^“”]*)”")
-_BLANK = "␣"
-_ANY_NUMBER = "N"
-"""The letter that stands for any whole number in an expected text."""
-
-
-class DiffTag(StrEnum):
-    """The kind of a piece of text: equal, missing, or too much."""
-
-    SAME = "same"
-    MISSING = "missing"
-    EXTRA = "extra"
-
-
-@dataclass(frozen=True)
-class TextPiece:
-    """A sequence of characters, all equal in both texts, all missing, or all too much."""
-
-    kind: DiffTag
-    text: str
-
-    @property
-    def marked(self) -> str:
-        """Return the text with marks that show its kind without color: ``[missing]``, ``{too much}``."""
-        if self.kind is DiffTag.SAME:
-            return self.text
-        text = self.text.replace(" ", _BLANK)
-        return f"[{text}]" if self.kind is DiffTag.MISSING else f"{{{text}}}"
-
-
-def difference(criterion: CriterionResult) -> tuple[TextPiece, ...]:
-    """Return the difference between the first quoted text that was seen and the first one that was expected.
-
-    The result is empty if the criterion is met or if one side has no quoted text. It is also empty if the two texts are
-    equal, too long, or too different for a comparison to help.
-    """
-    if criterion.passed:
-        return ()
-    expected, seen = _QUOTED.search(criterion.expected), _QUOTED.search(criterion.seen)
-    if expected is None or seen is None:
-        return ()
-    return _compared(expected[1], seen[1])
-
-
-def marked(pieces: Iterable[TextPiece]) -> str:
-    """Return all pieces as one text, with brackets around what is missing: ``"Hello[,] world[!] 0"``."""
-    return "".join(piece.marked for piece in pieces)
-
-
-def _compared(expected: str, seen: str) -> tuple[TextPiece, ...]:
-    if expected == seen or max(len(expected), len(seen)) > LONGEST_COMPARED:
-        return ()
-    matcher = difflib.SequenceMatcher(None, expected, seen, autojunk=False)
-    if matcher.ratio() < MIN_SIMILARITY:
-        return ()
-    found = []
-    for operation, a1, a2, b1, b2 in matcher.get_opcodes():
-        fills_in = expected[a1:a2] == _ANY_NUMBER and seen[b1:b2].isdigit()
-        if operation == "equal" or fills_in:
-            found.append(TextPiece(DiffTag.SAME, seen[b1:b2]))
-            continue
-        if operation in ("delete", "replace"):
-            found.append(TextPiece(DiffTag.MISSING, expected[a1:a2]))
-        if operation in ("insert", "replace"):
-            found.append(TextPiece(DiffTag.EXTRA, seen[b1:b2]))
-    return tuple(found)
-
-
-UNFOLDED = 16
+_UNFOLDED = 16
 """A traceback is shown unfolded if it has fewer lines than this."""
-SOLUTION_LINES = 120
-SOLUTION_COLUMNS = 200
+_SOLUTION_LINES = 120
+_SOLUTION_COLUMNS = 200
 """The maximum numbers of lines, and of characters in a line, of a cell of the reference solution."""
 
 
@@ -177,7 +104,7 @@ class CriterionRow:
     points: str
     unit: str
     weight: str
-    difference: tuple[TextPiece, ...]
+    difference: tuple[_TextPiece, ...]
 
     @classmethod
     def of(cls, criterion: CriterionResult, form: Form) -> CriterionRow:
@@ -193,7 +120,7 @@ class CriterionRow:
             points=f"{card_wording.points(earned)} of {card_wording.points(criterion.points)}",
             unit=card_wording.unit(criterion.points),
             weight=card_wording.points(max(criterion.points, 0.1)),
-            difference=tuple(TextPiece(one.kind, one_line(one.text, 200, mark=form.mark)) for one in pieces),
+            difference=tuple(_TextPiece(one.kind, one_line(one.text, 200, mark=form.mark)) for one in pieces),
         )
 
 
@@ -267,7 +194,7 @@ class Card:
                 paragraph(advice.text, 1200, mark=mark),
                 paragraph(advice.next_step, 1200, mark=mark),
             ),
-            place=_readable(place(verdict.detail), mark),
+            place=_readable(students_line(verdict.detail), mark),
             criteria=tuple(CriterionRow.of(criterion, form) for criterion in verdict.criteria),
             remarks=tuple(paragraph(remark, 600, mark=mark) for remark in verdict.remarks),
             traffic=shown,
@@ -276,7 +203,7 @@ class Card:
             detail=tuple(block(detail, max_lines=form.lines, max_columns=form.columns, mark=mark))
             if detail
             else (),
-            unfolded=TRACEBACK in detail and detail.count("\n") < UNFOLDED,
+            unfolded=TRACEBACK in detail and detail.count("\n") < _UNFOLDED,
             facts=tuple(card_wording.fine_print(verdict)),
             solution=solution.readable() if solution and verdict.passed else None,
         )
@@ -294,4 +221,77 @@ def _readable(found: TracebackLine | None, mark: str) -> TracebackLine | None:
 
 
 def _code(text: str) -> str:
-    return "\n".join(block(text, max_lines=SOLUTION_LINES, max_columns=SOLUTION_COLUMNS)) if text else ""
+    return "\n".join(block(text, max_lines=_SOLUTION_LINES, max_columns=_SOLUTION_COLUMNS)) if text else ""
+
+
+_MIN_SIMILARITY = 0.5
+"""The minimum similarity of two texts, from 0 to 1. If they are less similar, showing their difference would not help.
+"""
+_LONGEST_COMPARED = 120
+"""The maximum length of a compared text, in characters, because the time grows with the square of the length."""
+_QUOTED = re2.compile("“([^“”]*)”")
+_BLANK = "␣"
+_ANY_NUMBER = "N"
+"""The letter that stands for any whole number in an expected text."""
+
+
+class _DiffTag(StrEnum):
+    """The kind of a piece of text: equal, missing, or too much."""
+
+    SAME = "same"
+    MISSING = "missing"
+    EXTRA = "extra"
+
+
+@dataclass(frozen=True)
+class _TextPiece:
+    """A sequence of characters, all equal in both texts, all missing, or all too much."""
+
+    kind: _DiffTag
+    text: str
+
+    @property
+    def marked(self) -> str:
+        """Return the text with marks that show its kind without color: ``[missing]``, ``{too much}``."""
+        if self.kind is _DiffTag.SAME:
+            return self.text
+        text = self.text.replace(" ", _BLANK)
+        return f"[{text}]" if self.kind is _DiffTag.MISSING else f"{{{text}}}"
+
+
+def difference(criterion: CriterionResult) -> tuple[_TextPiece, ...]:
+    """Return the difference between the first quoted text that was seen and the first one that was expected.
+
+    The result is empty if the criterion is met or if one side has no quoted text. It is also empty if the two texts are
+    equal, too long, or too different for a comparison to help.
+    """
+    if criterion.passed:
+        return ()
+    expected, seen = _QUOTED.search(criterion.expected), _QUOTED.search(criterion.seen)
+    if expected is None or seen is None:
+        return ()
+    return _compared(expected[1], seen[1])
+
+
+def marked(pieces: Iterable[_TextPiece]) -> str:
+    """Return all pieces as one text, with brackets around what is missing: ``"Hello[,] world[!] 0"``."""
+    return "".join(piece.marked for piece in pieces)
+
+
+def _compared(expected: str, seen: str) -> tuple[_TextPiece, ...]:
+    if expected == seen or max(len(expected), len(seen)) > _LONGEST_COMPARED:
+        return ()
+    matcher = difflib.SequenceMatcher(None, expected, seen, autojunk=False)
+    if matcher.ratio() < _MIN_SIMILARITY:
+        return ()
+    found = []
+    for operation, a1, a2, b1, b2 in matcher.get_opcodes():
+        fills_in = expected[a1:a2] == _ANY_NUMBER and seen[b1:b2].isdigit()
+        if operation == "equal" or fills_in:
+            found.append(_TextPiece(_DiffTag.SAME, seen[b1:b2]))
+            continue
+        if operation in ("delete", "replace"):
+            found.append(_TextPiece(_DiffTag.MISSING, expected[a1:a2]))
+        if operation in ("insert", "replace"):
+            found.append(_TextPiece(_DiffTag.EXTRA, seen[b1:b2]))
+    return tuple(found)

@@ -114,7 +114,9 @@ def traffic(timeline: Sequence[Moment], *, at_most: int) -> Traffic:
     groups: dict[tuple[str, bool], list[Moment]] = {}
     for moment in timeline:
         # One axis shows one kind of time, so a part that has both kinds is split.
-        groups.setdefault((moment.part, moment.simulated), []).append(_with_finite_time(moment))
+        groups.setdefault((moment.part, moment.simulated), []).append(
+            moment if math.isfinite(moment.t) else replace(moment, t=0.0)
+        )
     shown = list(groups.items())[:_MAX_PARTS]
     total = sum(len(moments) for _, moments in shown)
     parts = []
@@ -155,14 +157,10 @@ def _few_lanes(moments: list[Moment]) -> list[Moment]:
     ]
 
 
-def _with_finite_time(moment: Moment) -> Moment:
-    return moment if math.isfinite(moment.t) else replace(moment, t=0.0)
-
-
 CHARACTER_WIDTH = 6.7
 """The width in pixels of a character of the 11-pixel monospaced label font. Names of lanes use a 12-pixel font."""
-AXIS_MARGIN = 10.0
-SHORTEST_AXIS = 0.002
+_MARGIN = 10.0
+_SHORTEST = 0.002
 """The minimum length of an axis, in seconds."""
 TURNS = "one after the other"
 """The label of an axis that does not show seconds."""
@@ -205,27 +203,25 @@ class Axis:
             start, end = 0.0, max(last, 1.0)
         else:
             start = 0.0 if 0 <= first <= 2 * (last - first) else first
-            end = max(last, start + SHORTEST_AXIS)
-        room = width - AXIS_MARGIN
+            end = max(last, start + _SHORTEST)
+        room = width - _MARGIN
         right = room
         for place, length in zip(places, lengths, strict=True):
             share = (place - start) / (end - start)
             if share > 0:
-                right = min(right, AXIS_MARGIN + (room - length - 2 * AXIS_MARGIN) / share)
+                right = min(right, _MARGIN + (room - length - 2 * _MARGIN) / share)
         return cls(start, end, right, width, seconds=not part.stands_still)
 
     def x(self, place: float) -> float:
         """Return the distance from the left, in pixels, of a position."""
-        return AXIS_MARGIN + (place - self.start) / (self.end - self.start) * (self.right - AXIS_MARGIN)
+        return _MARGIN + (place - self.start) / (self.end - self.start) * (self.right - _MARGIN)
 
     def ticks(self) -> Iterator[Tick]:
         """Yield ticks at round values that cover the axis, including the space to the right of the last moment."""
         if not self.seconds:
             yield Tick(0.0, TURNS, "start")
             return
-        edge = self.start + (self.width - 3 * AXIS_MARGIN) / (self.right - AXIS_MARGIN) * (
-            self.end - self.start
-        )
+        edge = self.start + (self.width - 3 * _MARGIN) / (self.right - _MARGIN) * (self.end - self.start)
         step = round_step((edge - self.start) * 100 / self.width)
         short = edge - self.start < 0.1
         decimals = max(0, -math.floor(math.log10(step) + 1e-9) - (3 if short else 0))

@@ -1,8 +1,10 @@
-"""Renders HTML: the card of a verdict and the certificate of a chapter, as a notebook displays them; also other pages.
+"""Renders HTML: the card of a verdict and the certificate of a chapter, which a notebook displays.
 
 The HTML of a card contains no script, no id and no URL, so several cards can share a page and nothing is loaded. If a
 notebook is not trusted, JupyterLab's sanitizer removes ``<style>``, ``<svg>`` and ``aria-*`` from the card. The card
 then still consists of a heading, sentences and tables in the right order.
+
+Other parts of the course take the templates of their pages from :func:`page_templates`.
 """
 
 from __future__ import annotations
@@ -13,8 +15,6 @@ from functools import cache
 from importlib.resources import files
 from typing import TYPE_CHECKING, Any, Unpack
 
-from jinja2 import Environment, PackageLoader, StrictUndefined, Template
-
 from autograder.cards import card_wording
 from autograder.cards.card_content import ON_A_PAGE, Card, Choices
 from autograder.cards.readable_text import one_line, wrap
@@ -24,6 +24,8 @@ from autograder.verdict import State
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
+
+    from jinja2 import Environment
 
     from autograder.cards.card_traffic import TrafficPart
     from autograder.verdict import Verdict
@@ -50,10 +52,8 @@ def waiting_bundle(title: str, doing: str, *, over: bool = False) -> dict[str, s
         doing: The current step, or why there is no result.
         over: True if the check has ended. If False, JupyterLab changes the card as soon as the kernel ends.
     """
-    css, template = _templates()
-    waiting = template.environment.get_template("waiting.html.j2")
     title, doing = one_line(title, 160), one_line(doing, 600)
-    html = waiting.render(title=title, doing=doing, over=over, css=css)
+    html = _templates().get_template("waiting.html.j2").render(title=title, doing=doing, over=over)
     return {"text/html": html, "text/plain": f"{title}: {doing}"}
 
 
@@ -71,14 +71,13 @@ def card_html(verdict: Verdict, *, buttons: bool = False, **choices: Unpack[Choi
             commands.
         choices: Further options for the card.
     """
-    css, template = _templates()
     card = Card.of(verdict, ON_A_PAGE, **choices)
     width = WIDTH if len(card.traffic.parts) <= 2 else HALF_WIDTH
+    template = _templates().get_template("card.html.j2")
     return template.render(
         card=card,
         parts=[_Part.of(part, width) for part in card.traffic.parts],
         moments=[moment for part in card.traffic.parts for moment in part.moments],
-        css=css,
         symbol=_SYMBOLS[card.state],
         colour=_PLAIN_COLOURS[card.state],
         facts=one_line(" · ".join(card.facts), 200),
@@ -120,23 +119,38 @@ class _Part:
 
 
 @cache
-def _templates() -> tuple[Any, Template]:
-    """Return the style sheet and the template of the card. They are read only once."""
-    # Imported at the first use, because a terminal that only prints text does not need it.
-    from jinja2 import Environment, PackageLoader, StrictUndefined
+def _templates() -> Environment:
+    """Return the templates of cards and certificates. They are read only once."""
     from markupsafe import Markup
 
-    environment = Environment(
-        loader=PackageLoader("autograder.cards", ""), autoescape=True, undefined=StrictUndefined
-    )
+    environment = page_templates("autograder.cards", trimmed=False)
     environment.filters["breakable"] = _breakable
     shapes: Any = environment.get_template("shapes.html.j2").module
-    environment.globals |= {"shape": shapes.shape, "wording": card_wording}
+    css = (files("autograder.cards") / "card.css").read_text(encoding="utf-8")
+    environment.globals |= {"shape": shapes.shape, "wording": card_wording, "css": Markup(css)}
     for name in environment.list_templates(extensions=["j2"]):
         # Compile the included templates now, so that the first card does not have to wait for that.
         environment.get_template(name)
-    css = (files("autograder.cards") / "card.css").read_text(encoding="utf-8")
-    return Markup(css), environment.get_template("card.html.j2")
+    return environment
+
+
+def page_templates(package: str, *, trimmed: bool = True) -> Environment:
+    """Return the templates in the folder of a package. Values are escaped, and an undefined name is an error.
+
+    Args:
+        package: The name of the package, such as ``"autograder.student"``.
+        trimmed: True to remove the line breaks and indents that only the tags of the templates need.
+    """
+    # Imported at the first use, because a terminal that only prints text does not need it.
+    from jinja2 import Environment, PackageLoader, StrictUndefined
+
+    return Environment(
+        loader=PackageLoader(package, ""),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=trimmed,
+        lstrip_blocks=trimmed,
+    )
 
 
 def _breakable(text: str) -> Any:
@@ -160,7 +174,8 @@ def certificate_svg(title: str, points: float, finished: float) -> str:
         points: The total points of the chapter.
         finished: The Unix time in seconds at which the last point was reached.
     """
-    return _certificate_template().render(
+    template = _templates().get_template("certificate.svg.j2")
+    return template.render(
         label=certificate_text(title, points, finished),
         title=_lines(title),
         points=_points(points),
@@ -200,29 +215,9 @@ def _date(finished: float) -> str:
 
 
 def _lines(title: str) -> Sequence[str]:
+    """Return the lines of a certificate's title: at most two, and broken after the colon if there is one."""
     title = one_line(title, 2 * _TITLE_WIDTH)
     name, colon, rest = title.partition(": ")
     if colon and len(title) > _TITLE_WIDTH and max(len(name), len(rest)) < _TITLE_WIDTH:
         return [f"{name}:", rest]
     return wrap(title, _TITLE_WIDTH)[:2]
-
-
-@cache
-def _certificate_template() -> Template:
-    source = files("autograder.cards").joinpath("certificate.svg.j2").read_text(encoding="utf-8")
-    return Template(source, autoescape=True)
-
-
-def page_templates(package: str) -> Environment:
-    """Return the templates in the folder of a package.
-
-    Args:
-        package: The name of the package, such as ``"autograder.student"``.
-    """
-    return Environment(
-        loader=PackageLoader(package, ""),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )

@@ -1,8 +1,8 @@
-"""Prepares text that a student's program wrote: makes it safe and legible, and finds the student's line in a traceback.
+r"""Makes text from a student's program safe and legible to show, and finds the student's line in a traceback.
 
 A program may log anything: color codes, bidirectional overrides that reverse a line, a megabyte on one line. A card
 must show what the program really printed, so nothing is dropped silently. A special character is written as an escape
-that a Python programmer knows (a backslash and ``x1b``). A long text is cut in the middle, with a mark.
+that a Python programmer knows (``\x1b``). A long text is cut in the middle, with a mark.
 """
 
 from __future__ import annotations
@@ -182,7 +182,7 @@ def last_error(detail: str) -> str:
     return next((line for line in told if line and not _FORM_OF_CALL.match(line)), "")
 
 
-def place(detail: str) -> TracebackLine | None:
+def students_line(detail: str) -> TracebackLine | None:
     """Return the last line of the student's own code in the last traceback of a text.
 
     Return None if there is no such line, or if the line only calls ``spin``: the mistake is then in a callback.

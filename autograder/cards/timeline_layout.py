@@ -238,13 +238,6 @@ class _Flag:
     left: float
     right: float
 
-    def clear_of(self, other: _Flag) -> bool:
-        """Return True if the two texts do not touch, and neither leader line crosses the other's text."""
-        if self.level == other.level:
-            return self.right + 4 <= other.left or other.right + 4 <= self.left
-        upper, lower = (self, other) if self.level > other.level else (other, self)
-        return not (lower.left < upper.pole <= lower.right + 2) or upper.pole == lower.pole
-
 
 def _length(label: str) -> float:
     """Return the distance in pixels from a mark to the end of its label."""
@@ -282,6 +275,14 @@ def _place(wish: _Wish, levels: int, placed: Sequence[_Flag], *, free_left: floa
     for left in (x, x - long) if long < free_left and not wish.needed else (x,):
         for level in range(levels):
             flag = _Flag(level, x, left, left + long)
-            if all(flag.clear_of(other) for other in placed):
+            if all(_are_apart(flag, other) for other in placed):
                 return flag
     return None
+
+
+def _are_apart(one: _Flag, other: _Flag) -> bool:
+    """Return True if the texts of two labels do not touch, and neither leader line crosses the other's text."""
+    if one.level == other.level:
+        return one.right + 4 <= other.left or other.right + 4 <= one.left
+    upper, lower = (one, other) if one.level > other.level else (other, one)
+    return not (lower.left < upper.pole <= lower.right + 2) or upper.pole == lower.pole

@@ -16,7 +16,7 @@ from autograder.cli import author_commands, class_commands, result_commands, stu
 GROUPS = {
     "Students": student_commands.STUDENT_COMMANDS,
     "Instructors, a class": class_commands.CLASS_COMMANDS,
-    "Instructors, its results": (*result_commands.REPORT_COMMANDS, *result_commands.APPEAL_COMMANDS),
+    "Instructors, its results": result_commands.RESULT_COMMANDS,
     "Authors": author_commands.AUTHOR_COMMANDS,
 }
 """The commands, grouped by the people who use them, in the order of the help page."""

@@ -188,25 +188,6 @@ def compare(folder: Path, before: str, after: str, as_json: bool) -> None:
         click.echo(printable(difference.line()))
 
 
-REPORT_COMMANDS = (
-    report,
-    export,
-    similar,
-    compare,
-)
-
-
-_MAX_COLUMNS = 4_000
-"""The maximum length of a printed line, in characters. Lines about ordinary appeals have at most half as many."""
-_MAX_LINES = 100
-"""The maximum number of differences to print, and also of notes. A damaged file could cause any number of them."""
-
-
-def _fail_safely(message: str) -> NoReturn:
-    """End the command with a message that may quote text from a student's file."""
-    fail(_shown(message))
-
-
 @click.command()
 @class_folder
 @click.argument("student")
@@ -249,11 +230,6 @@ def appeal(folder: Path, student: str, exercise: str, output: Path | None) -> No
         click.echo(write_appeal(folder, student, exercise, output))
 
 
-def _shown(line: str) -> str:
-    """Return a line that is safe to print: shortened, and without characters that control a terminal."""
-    return printable(line if len(line) <= _MAX_COLUMNS else f"{line[:_MAX_COLUMNS]}…")
-
-
 @click.command()
 @click.argument("file", type=click.Path(path_type=Path))
 @click.option(
@@ -282,12 +258,12 @@ def replay(file: Path, mcap: Path | None, bag: Path | None, as_json: bool) -> No
     try:
         for path in (mcap, bag):
             if path is not None:
-                check_name(path)
+                require_mcap_suffix(path)
         appeal = appeal_file.read(file)
         if mcap is not None:
             click.echo(save_messages(appeal.seen, mcap), err=as_json)
         if bag is not None:
-            click.echo(save_bag(appeal.seen, bag), err=as_json)
+            click.echo(_save_bag(appeal.seen, bag), err=as_json)
         again = replaying.replay(appeal.seen)
         lines = list(_lines_of_replay(appeal, again))
     except (appeal_file.BadAppeal, replaying.CannotReplay) as error:
@@ -305,7 +281,7 @@ def replay(file: Path, mcap: Path | None, bag: Path | None, as_json: bool) -> No
     sys.exit(1 if again.differences else 0)
 
 
-def check_name(path: Path) -> None:
+def require_mcap_suffix(path: Path) -> None:
     """End the command with exit code 2 if the name of a file for messages does not end in .mcap."""
     if path.suffix != ".mcap":
         _fail_safely(
@@ -325,7 +301,7 @@ def save_messages(seen: Kept, path: Path) -> str:
     return f"{path}: {count} events, as JSON"
 
 
-def save_bag(seen: Kept, path: Path) -> str:
+def _save_bag(seen: Kept, path: Path) -> str:
     """Write the messages of topics for ``ros2 bag play``. Return and fail in the same way as ``save_messages``."""
     from autograder.appeals.evidence_as_mcap import write_bag
 
@@ -361,7 +337,27 @@ def _told(verdict: Verdict) -> str:
     return f"{verdict.state}, {verdict.score:g} of {verdict.max_score:g} points{diagnosis}"
 
 
-APPEAL_COMMANDS = (
+_MAX_COLUMNS = 4_000
+"""The maximum length of a printed line, in characters. Lines about ordinary appeals have at most half as many."""
+_MAX_LINES = 100
+"""The maximum number of differences to print, and also of notes. A damaged file could cause any number of them."""
+
+
+def _fail_safely(message: str) -> NoReturn:
+    """End the command with a message that may quote text from a student's file."""
+    fail(_shown(message))
+
+
+def _shown(line: str) -> str:
+    """Return a line that is safe to print: shortened, and without characters that control a terminal."""
+    return printable(line if len(line) <= _MAX_COLUMNS else f"{line[:_MAX_COLUMNS]}…")
+
+
+RESULT_COMMANDS = (
+    report,
+    export,
+    similar,
+    compare,
     attempts,
     appeal,
     replay,

@@ -69,7 +69,7 @@ def check(
     if not boxed:
         course.use_the_one_around(Path.cwd())
     if exercise is None:
-        list_exercises()
+        _list_exercises()
         return
     try:
         wanted = exercises.get(exercise)
@@ -81,7 +81,7 @@ def check(
             + (f" (it is called with {wanted.arguments})" if wanted.arguments else "")
         )
     if mcap is not None:
-        result_commands.check_name(mcap)
+        result_commands.require_mcap_suffix(mcap)
     need_ros()
     from autograder.judge.command_check import CommandNotFound, check_and_keep
     from autograder.standard_output import stray_lines_on_stderr
@@ -123,7 +123,7 @@ def _box(command: Sequence[str]) -> Iterator[OneCommandBox]:
             yield box
 
 
-def list_exercises() -> None:
+def _list_exercises() -> None:
     """Print one line for each exercise: id, points and task."""
     from autograder import exercises
 

@@ -37,11 +37,11 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 
-NOTEBOOK = ".ipynb"
+_NOTEBOOK = ".ipynb"
 
 
 @dataclass(frozen=True)
-class BuildReport:
+class _BuildReport:
     """What a build did with each chapter notebook, solution file and README, or what it would do in check mode.
 
     Attributes:
@@ -65,7 +65,7 @@ class BuildReport:
         return not (self.stale or self.edited or self.orphans)
 
 
-def build(root: Path, *, check: bool = False, points: Points = exercise_points) -> BuildReport:
+def build(root: Path, *, check: bool = False, points: Points = exercise_points) -> _BuildReport:
     """Build the chapters of the course in ``root`` from its masters.
 
     All masters are read before the first notebook is written, so that a bad master changes nothing.
@@ -91,14 +91,14 @@ def build(root: Path, *, check: bool = False, points: Points = exercise_points) 
         found[_settle(path, text, check=check)].append(path)
     solutions = [path for master in cells for path in sorted(master.parent.glob(f"*{SOLUTION}"))]
     orphans = [path for path in (*chapter_notebooks(root), *solutions) if path not in texts]
-    return BuildReport(**{state: tuple(paths) for state, paths in found.items()}, orphans=tuple(orphans))
+    return _BuildReport(**{state: tuple(paths) for state, paths in found.items()}, orphans=tuple(orphans))
 
 
 def _settle(path: Path, text: str, *, check: bool) -> str:
-    """Write one file if necessary and allowed. Return the name of the field of :class:`BuildReport` for this file."""
+    """Write one file if necessary and allowed. Return the name of the field of :class:`_BuildReport` for this file."""
     if path.exists() and path.read_bytes() == text.encode():
         return "unchanged"
-    if path.suffix == NOTEBOOK and holds_work(path):
+    if path.suffix == _NOTEBOOK and holds_work(path):
         return "edited"
     if check:
         return "stale"
@@ -120,22 +120,18 @@ def build_command(
     except MasterError as error:
         console.print(f"[bold red]cannot build[/]  {error}", highlight=False, soft_wrap=True)
         return 2
-    for word, paths, meaning in _lines(report):
-        for path in paths:
-            console.print(f"{word:<10} {path.relative_to(root)}  {meaning}", highlight=False, soft_wrap=True)
-    in_step = sum(path.suffix == NOTEBOOK for path in (*report.unchanged, *report.written))
-    notebooks = "chapter notebook" if in_step == 1 else "chapter notebooks"
-    console.print(f"{in_step} {notebooks} up to date with the masters.", highlight=False)
-    return 0 if report.in_step else 1
-
-
-def _lines(report: BuildReport) -> list[tuple[str, tuple[Path, ...], str]]:
-    return [
+    for word, paths, meaning in (
         ("written", report.written, ""),
         ("stale", report.stale, f"— run: {COMMAND} build"),
         ("edited", report.edited, "— a person has changed it: move it away, then build again"),
         ("orphan", report.orphans, "— it has no master: write a master for it, or delete the file"),
-    ]
+    ):
+        for path in paths:
+            console.print(f"{word:<10} {path.relative_to(root)}  {meaning}", highlight=False, soft_wrap=True)
+    in_step = sum(path.suffix == _NOTEBOOK for path in (*report.unchanged, *report.written))
+    notebooks = "chapter notebook" if in_step == 1 else "chapter notebooks"
+    console.print(f"{in_step} {notebooks} up to date with the masters.", highlight=False)
+    return 0 if report.in_step else 1
 
 
 def holds_work(path: Path) -> bool:
@@ -164,11 +160,11 @@ def _edited(cell: Any) -> bool:
     return bool(cell.source.strip())
 
 
-class LeaveStubs(ClearSolutions):
+class _LeaveStubs(ClearSolutions):
     """nbgrader's ClearSolutions, changed so that each removed solution leaves its own stub.
 
     Stock nbgrader replaces every solution by the same text. Here each region begins with the comment that
-    students get instead (``code_cells.py``), so the cell can run and says what to do. A solution of any other form is
+    students get instead (:func:`find_region`), so the cell can run and says what to do. A solution of any other form is
     cleared as nbgrader does it.
     """
 
@@ -187,7 +183,7 @@ class LeaveStubs(ClearSolutions):
         return super().preprocess_cell(cell, resources, cell_index)
 
 
-class KeepShownPictures(NbGraderPreprocessor):
+class _KeepShownPictures(NbGraderPreprocessor):
     """Removes attached pictures that the released text does not show, because they belong to a solution."""
 
     def preprocess_cell(
@@ -218,11 +214,11 @@ def shown_attachments(source: str, attachments: NotebookNode) -> NotebookNode:
 def release_preprocessors() -> list[type[NbGraderPreprocessor]]:
     """Return the steps of nbgrader's ``generate_assignment``, adapted to this course.
 
-    :class:`LeaveStubs` replaces ClearSolutions, and :class:`KeepShownPictures` is added. A class's
+    :class:`_LeaveStubs` replaces ClearSolutions, and :class:`_KeepShownPictures` is added. A class's
     ``nbgrader_config.py`` gets the steps through :class:`autograder.masters.release_steps.ReleaseSteps`.
     """
-    steps = [LeaveStubs if step is ClearSolutions else step for step in GenerateAssignment().preprocessors]
-    return [*steps, KeepShownPictures]
+    steps = [_LeaveStubs if step is ClearSolutions else step for step in GenerateAssignment().preprocessors]
+    return [*steps, _KeepShownPictures]
 
 
 def release_text(source: NotebookNode) -> str:
@@ -240,7 +236,7 @@ def release_text(source: NotebookNode) -> str:
 
 
 README = "README.md"
-TO_FILL_IN = "ADDRESS_OF_THIS_REPOSITORY"
+_TO_FILL_IN = "ADDRESS_OF_THIS_REPOSITORY"
 """The placeholder in README.md for the address of a repository that is not public yet."""
 WITHOUT_ADDRESS = (
     "This course has no public address yet. If you have its folder, leave the line with `git clone` out, and type the "
@@ -286,4 +282,4 @@ def readme(root: Path, notebook: Path) -> str | None:
     address = course.repository(root)
     shown = f"{_badges(address, notebook.relative_to(root).as_posix())}\n" if address else WITHOUT_ADDRESS
     text = _BADGES_BLOCK.sub(lambda found: f"{found[1]}{shown}{found[2]}", text)
-    return str(_CLONE_LINE.sub(lambda found: f"{found[1]}{address or TO_FILL_IN}{found[2]}", text))
+    return str(_CLONE_LINE.sub(lambda found: f"{found[1]}{address or _TO_FILL_IN}{found[2]}", text))

@@ -48,12 +48,11 @@ COPIED = "# copied from this notebook: "
 """The beginning of a stub line that is replaced with code from the notebook when the student runs the cell
 (:mod:`autograder.notebook.program_magic`).
 """
-ONE_THING = "A cell may ask for one thing only: split it into two cells."
-MAGIC = re.compile(r"%%(?P<name>\w+)[ \t]*(?P<rest>.*)")
+_ONE_THING = "A cell may ask for one thing only: split it into two cells."
 
 
 @dataclass(frozen=True)
-class Region:
+class _Region:
     """A solution cell, divided into parts. Each part is a tuple of lines, without the two markers."""
 
     before: tuple[str, ...]
@@ -77,7 +76,7 @@ def mentions_a_region(source: str) -> bool:
     return "BEGIN SOLUTION" in source or "END SOLUTION" in source
 
 
-def find_region(source: str) -> Region:
+def find_region(source: str) -> _Region:
     """Split a solution cell into its parts.
 
     Raises:
@@ -95,8 +94,10 @@ def find_region(source: str) -> Region:
         )
     if not any(line.strip() for line in inside[length:]):
         raise CellError(begin + 1, "The region holds no solution.", "Write it below the TODO comment.")
-    _only_one_todo(lines, begin + 1)
-    return Region(
+    for offset, line in enumerate(lines):
+        if "TODO" in line and offset != begin + 1:
+            raise CellError(offset, "A second TODO in one cell.", _ONE_THING)
+    return _Region(
         before=tuple(lines[:begin]),
         stub=tuple(inside[:length]),
         answer=tuple(inside[length:]),
@@ -144,7 +145,7 @@ def _marker(lines: list[str], marker: str) -> int:
         raise CellError(
             places[1],
             f"A second '{marker}' in one cell.",
-            ONE_THING,
+            _ONE_THING,
         )
     if _words(lines[places[0]]) != marker:
         raise CellError(
@@ -170,10 +171,7 @@ def _words(line: str) -> str:
     return bare.removeprefix("<!--").removesuffix("-->").strip() if commented else bare
 
 
-def _only_one_todo(lines: list[str], stub: int) -> None:
-    for offset, line in enumerate(lines):
-        if "TODO" in line and offset != stub:
-            raise CellError(offset, "A second TODO in one cell.", ONE_THING)
+_MAGIC = re.compile(r"%%(?P<name>\w+)[ \t]*(?P<rest>.*)")
 
 
 @dataclass(frozen=True)
@@ -196,12 +194,12 @@ class WrittenFile:
 
 def has_magic(source: str) -> bool:
     """Return True if a cell magic, and not Python, executes the cell."""
-    return MAGIC.match(source) is not None
+    return _MAGIC.match(source) is not None
 
 
 def written_file(source: str) -> WrittenFile | None:
     """Return the file that a cell writes; None for any other cell."""
-    magic = MAGIC.match(source)
+    magic = _MAGIC.match(source)
     if magic is None or magic["name"] not in ("writefile", "program"):
         return None
     words = shlex.split(magic["rest"])
@@ -212,7 +210,7 @@ def written_file(source: str) -> WrittenFile | None:
 
 def shell_script(source: str) -> str | None:
     """Return the script of a ``%%bash`` cell; None for any other cell."""
-    magic = MAGIC.match(source)
+    magic = _MAGIC.match(source)
     if magic is None or magic["name"] != "bash":
         return None
     return source.partition("\n")[2]
@@ -226,7 +224,7 @@ def python_of(source: str) -> str:
     return f"\n{file.text}" if file is not None and file.is_python else ""
 
 
-CHECK_FORM = (
+_CHECK_FORM = (
     "A check cell is one line such as: "
     'check("lab_9_1.battery", BatteryNode) or check("lab_9_1.workspace", "ros2_ws")'
 )
@@ -289,7 +287,7 @@ def _check_call(master: Path, cell: MasterCell) -> tuple[str, str, bool]:
                     return exercise, name, False
                 case ast.Constant(str() as path):
                     return exercise, repr(path), True
-    raise MasterError(master, cell.line, "This check cell cannot be read.", f"{CHECK_FORM}.")
+    raise MasterError(master, cell.line, "This check cell cannot be read.", f"{_CHECK_FORM}.")
 
 
 def exercise_points(check: CheckCall) -> float:

@@ -8,8 +8,8 @@ which is then copied automatically, so that copy and original cannot differ::
     ### COPY TalkerNode
     ### END SOLUTION
 
-Text cells have two things that Markdown does not have. The first are hints that open one at a time. An author writes
-one block after the other::
+Text cells contain two things that Markdown does not have: hints and figures. For hints, which open one at a time, an
+author writes one block after the other::
 
     :::{hint} Where do I begin?
     With the publisher.
@@ -22,8 +22,8 @@ one block after the other::
 In the notebook, hints become ``<details>``. Each hint is put inside the hint before it, so that a student cannot see
 the second before opening the first.
 
-The second are figures, which are embedded in a notebook, so that it can be moved to any folder. They are embedded as
-PNGs, because JupyterLab does not show an attached SVG. :mod:`autograder.masters.drawing` draws each PNG from its SVG,
+Figures are embedded in a notebook, so that it can be moved to any folder. They are embedded as PNGs, because JupyterLab
+does not show an attached SVG. :mod:`autograder.masters.drawing` draws each PNG from its SVG,
 and stores a digest of the SVG in it, so that a PNG that is older than its SVG is noticed. Both files are committed.
 """
 
@@ -46,144 +46,6 @@ from autograder.masters.master_files import CellError, MasterError
 
 if TYPE_CHECKING:
     from pathlib import Path
-
-
-HINT_OPENING = re.compile(r":::\{hint\}\s*(?P<question>.*?)\s*")
-HINT_CLOSING = ":::"
-FIGURE_REFERENCE = re.compile(r"!\[\]\((?P<path>[^)\s]+\.svg)\)")
-"""Matches a line of a master that shows a figure. The alternative text is in the SVG, not in this line."""
-DIGEST_KEYWORD = b"Drawn from SVG"
-_SVG = "{http://www.w3.org/2000/svg}"
-
-
-@dataclass(frozen=True)
-class Hint:
-    """A hint: the question that it answers, and the answer in Markdown."""
-
-    question: str
-    answer: str
-
-
-def nest_hints(markdown: str) -> str:
-    """Return ``markdown`` with every run of hint blocks replaced by nested ``<details>``.
-
-    Raises:
-        CellError: A hint has no question or no answer, contains another hint, or is never closed.
-    """
-    lines = markdown.split("\n")
-    result: list[str] = []
-    run: list[Hint] = []
-    offset = 0
-    while offset < len(lines):
-        opening = HINT_OPENING.fullmatch(lines[offset])
-        if opening:
-            end = _closing(lines, offset)
-            run.append(_hint(opening["question"], lines[offset + 1 : end], offset))
-            offset = end + 1
-            continue
-        # Blank lines between two hints do not end the run.
-        if run and lines[offset].strip():
-            result.extend([_nested(run), ""])
-            run = []
-        if not run:
-            result.append(lines[offset])
-        offset += 1
-    if run:
-        result.append(_nested(run))
-    return "\n".join(result)
-
-
-def _closing(lines: list[str], opening: int) -> int:
-    for offset in range(opening + 1, len(lines)):
-        if HINT_OPENING.fullmatch(lines[offset]):
-            break
-        if lines[offset].strip() == HINT_CLOSING:
-            return offset
-    raise CellError(
-        opening, "A hint that is not closed.", f"End it with a line '{HINT_CLOSING}' in the same text cell."
-    )
-
-
-def _hint(question: str, answer: list[str], offset: int) -> Hint:
-    text = "\n".join(answer).strip("\n")
-    if not question or not text.strip():
-        raise CellError(
-            offset, "A hint without its question, its answer, or both.", "Write ':::{hint} What is asked?'."
-        )
-    return Hint(question, text)
-
-
-def _nested(hints: list[Hint]) -> str:
-    text = ""
-    for number, hint in reversed(list(enumerate(hints, 1))):
-        inner = f"{hint.answer}\n\n{text}" if text else f"{hint.answer}\n"
-        text = (
-            f"<details>\n<summary><b>Hint {number} of {len(hints)}.</b> {hint.question}</summary>\n"
-            # The blank lines make JupyterLab read the content as Markdown.
-            f"<blockquote>\n\n{inner}\n</blockquote>\n</details>\n"
-        )
-    return text.rstrip("\n")
-
-
-def attach_figures(folder: Path, markdown: str) -> tuple[str, dict[str, dict[str, str]]]:
-    """Return the text of a text cell with its figures as attachments.
-
-    Args:
-        folder: The folder of the master. References to figures are relative to it.
-        markdown: The text of the cell.
-
-    Returns:
-        The text with references to the attachments, and the attachments by name.
-
-    Raises:
-        CellError: A figure is missing, has no description, or its PNG is out of date.
-    """
-    figures: dict[str, dict[str, str]] = {}
-
-    def shown(reference: re.Match[str]) -> str:
-        line = markdown.count("\n", 0, reference.start())
-        name, words, png = _read_figure(folder / reference["path"], reference["path"], line)
-        figures[name] = {"image/png": base64.b64encode(png).decode("ascii")}
-        return f"![{words}](attachment:{name})"
-
-    return FIGURE_REFERENCE.sub(shown, markdown), figures
-
-
-def figure_digest(svg: bytes) -> bytes:
-    """Return the digest of an SVG. A PNG that was made from this SVG contains this digest, so an old PNG is noticed."""
-    return hashlib.sha256(svg).hexdigest().encode("ascii")
-
-
-def _read_figure(svg: Path, named: str, line: int) -> tuple[str, str, bytes]:
-    """Return the name of a figure's PNG, the figure's description, and the PNG itself."""
-    png = svg.with_suffix(".png")
-    try:
-        drawing, picture = svg.read_bytes(), png.read_bytes()
-        root = ElementTree.fromstring(drawing)
-    except FileNotFoundError as error:
-        raise CellError(
-            line,
-            f"The figure {named} needs {error.filename}.",
-            "Draw it: python -m autograder.masters.drawing",
-        ) from error
-    except ElementTree.ParseError as error:
-        raise CellError(
-            line,
-            f"The figure {named} is not an SVG ({error}).",
-            "Write it as an SVG file that a browser shows.",
-        ) from error
-    words = [(root.findtext(f"{_SVG}{tag}") or "").strip() for tag in ("title", "desc")]
-    if not all(words):
-        raise CellError(
-            line, f"The figure {named} has no description.", "Give its SVG a <title> and a <desc>."
-        )
-    if DIGEST_KEYWORD + b"\0" + figure_digest(drawing) not in picture:
-        raise CellError(
-            line,
-            f"The figure {named} has changed since its PNG was drawn.",
-            "Draw it: python -m autograder.masters.drawing",
-        )
-    return (png.name, " ".join(re.sub(r"[\[\]]", "", ". ".join(words)).split()), picture)
 
 
 MASTER_HEADER = """\
@@ -214,10 +76,10 @@ class CellRole(StrEnum):
     """The line of code that requests a verdict. It is locked and graded, and carries the exercise's points."""
 
 
-TAGS = {kind.value: kind for kind in CellRole if kind not in (CellRole.TEXT, CellRole.MANUAL)}
-COPY = re.compile(r"^### COPY (?P<names>\w+(?: \w+)*)$", re.MULTILINE)
-OPTIONS = {"tags", "grade_id"}
-MANUAL_FORM = '+++ {"tags": ["manual"], "points": 5, "grade_id": "some_name"}'
+_TAGS = {kind.value: kind for kind in CellRole if kind not in (CellRole.TEXT, CellRole.MANUAL)}
+COPY_LINE = re.compile(r"^### COPY (?P<names>\w+(?: \w+)*)$", re.MULTILINE)
+_OPTIONS = {"tags", "grade_id"}
+_MANUAL_FORM = '+++ {"tags": ["manual"], "points": 5, "grade_id": "some_name"}'
 """An example of the line with options that a master has above each question that a person grades."""
 
 
@@ -279,7 +141,7 @@ def _cell(path: Path, node: Any, place: int, lines: list[str]) -> MasterCell:
     if node.cell_type == "markdown":
         first = next(number for number in range(place, len(lines)) if lines[number].strip()) + 1
         try:
-            text, figures = attach_figures(path.parent, nest_hints(node.source))
+            text, figures = _with_attached_figures(path.parent, _with_nested_hints(node.source))
             if node.metadata:
                 return _question(path, node.metadata, text, first, figures)
             return MasterCell(CellRole.TEXT, text, first, first, attachments=figures)
@@ -290,7 +152,10 @@ def _cell(path: Path, node: Any, place: int, lines: list[str]) -> MasterCell:
     kind, grade_id = _options(path, node.metadata, place)
     if not node.source.strip():
         raise MasterError(path, place, "An empty code cell.", "Write code in it, or delete it.")
-    return MasterCell(kind, node.source, place, _body_line(node.source, place, lines), grade_id)
+    # The text of the cell begins below its fence and options.
+    first_line = node.source.split("\n", 1)[0].strip()
+    below = (number + 1 for number in range(place, len(lines)) if lines[number].strip() == first_line)
+    return MasterCell(kind, node.source, place, next(below, place), grade_id)
 
 
 def _question(
@@ -308,39 +173,30 @@ def _question(
             path,
             line,
             "A text cell may have options only if it is a question that a person grades.",
-            f"Write: '{MANUAL_FORM}'.",
+            f"Write: '{_MANUAL_FORM}'.",
         )
     return MasterCell(CellRole.MANUAL, text, line, line, str(name), figures, float(points))
 
 
 def _options(path: Path, metadata: Any, line: int) -> tuple[CellRole, str | None]:
-    for option in sorted(set(metadata) - OPTIONS):
+    for option in sorted(set(metadata) - _OPTIONS):
         raise MasterError(
-            path, line, f"Unknown cell option '{option}'.", f"Known are: {', '.join(sorted(OPTIONS))}."
+            path, line, f"Unknown cell option '{option}'.", f"Known are: {', '.join(sorted(_OPTIONS))}."
         )
     tags = metadata.get("tags", [])
     tags = [tags] if isinstance(tags, str) else list(tags)
     for tag in tags:
         if tag == CellRole.MANUAL:
-            raise MasterError(path, line, "A person grades text, not code.", f"Begin with '{MANUAL_FORM}'.")
-        if tag not in TAGS:
-            raise MasterError(path, line, f"Unknown tag '{tag}'.", f"Known are: {', '.join(TAGS)}.")
+            raise MasterError(path, line, "A person grades text, not code.", f"Begin with '{_MANUAL_FORM}'.")
+        if tag not in _TAGS:
+            raise MasterError(path, line, f"Unknown tag '{tag}'.", f"Known are: {', '.join(_TAGS)}.")
     if len(tags) > 1:
         raise MasterError(
             path, line, f"A cell with {len(tags)} tags.", "A cell may have only one: keep one tag."
         )
-    kind = TAGS[tags[0]] if tags else CellRole.GIVEN
+    kind = _TAGS[tags[0]] if tags else CellRole.GIVEN
     grade_id = metadata.get("grade_id")
     return kind, None if grade_id is None else str(grade_id)
-
-
-def _body_line(source: str, place: int, lines: list[str]) -> int:
-    """Return the line on which the text of a code cell begins, below its fence and options."""
-    first = source.split("\n", 1)[0]
-    for number in range(place, len(lines)):
-        if lines[number].strip() == first.strip():
-            return number + 1
-    return place
 
 
 def with_copies(master: Path, cells: list[MasterCell]) -> list[MasterCell]:
@@ -356,7 +212,7 @@ def with_copies(master: Path, cells: list[MasterCell]) -> list[MasterCell]:
     defined: dict[str, str] = {}
     result = []
     for cell in cells:
-        if cell.kind not in (CellRole.TEXT, CellRole.MANUAL) and COPY.search(cell.source):
+        if cell.kind not in (CellRole.TEXT, CellRole.MANUAL) and COPY_LINE.search(cell.source):
             cell = _copied(master, cell, defined)
         elif cell.kind in (CellRole.SOLUTION, CellRole.GIVEN) and not has_magic(cell.source):
             defined |= _definitions(cell)
@@ -376,7 +232,7 @@ def _copied(master: Path, cell: MasterCell, defined: dict[str, str]) -> MasterCe
                 )
         return "\n\n\n".join(defined[name] for name in names)
 
-    return replace(cell, source=COPY.sub(copy, cell.source))
+    return replace(cell, source=COPY_LINE.sub(copy, cell.source))
 
 
 def _definitions(cell: MasterCell) -> dict[str, str]:
@@ -397,3 +253,137 @@ def _definitions(cell: MasterCell) -> dict[str, str]:
         elif isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Name):
             found[node.targets[0].id] = text
     return found
+
+
+_HINT_OPENING = re.compile(r":::\{hint\}\s*(?P<question>.*?)\s*")
+_HINT_CLOSING = ":::"
+_FIGURE_REFERENCE = re.compile(r"!\[\]\((?P<path>[^)\s]+\.svg)\)")
+"""Matches a line of a master that shows a figure. The alternative text is in the SVG, not in this line."""
+DIGEST_KEYWORD = b"Drawn from SVG"
+_SVG = "{http://www.w3.org/2000/svg}"
+
+
+@dataclass(frozen=True)
+class _Hint:
+    """A hint: the question that it answers, and the answer in Markdown."""
+
+    question: str
+    answer: str
+
+
+def _with_nested_hints(markdown: str) -> str:
+    """Return ``markdown`` with every run of hint blocks replaced by nested ``<details>``.
+
+    Raises:
+        CellError: A hint has no question or no answer, contains another hint, or is never closed.
+    """
+    lines = markdown.split("\n")
+    result: list[str] = []
+    run: list[_Hint] = []
+    offset = 0
+    while offset < len(lines):
+        opening = _HINT_OPENING.fullmatch(lines[offset])
+        if opening:
+            end = _closing(lines, offset)
+            answer = "\n".join(lines[offset + 1 : end]).strip("\n")
+            if not opening["question"] or not answer.strip():
+                raise CellError(
+                    offset, "A hint without its question or its answer.", "Write ':::{hint} What is asked?'."
+                )
+            run.append(_Hint(opening["question"], answer))
+            offset = end + 1
+            continue
+        # Blank lines between two hints do not end the run.
+        if run and lines[offset].strip():
+            result.extend([_nested(run), ""])
+            run = []
+        if not run:
+            result.append(lines[offset])
+        offset += 1
+    if run:
+        result.append(_nested(run))
+    return "\n".join(result)
+
+
+def _closing(lines: list[str], opening: int) -> int:
+    for offset in range(opening + 1, len(lines)):
+        if _HINT_OPENING.fullmatch(lines[offset]):
+            break
+        if lines[offset].strip() == _HINT_CLOSING:
+            return offset
+    raise CellError(
+        opening, "A hint that is not closed.", f"End it with a line '{_HINT_CLOSING}' in the same text cell."
+    )
+
+
+def _nested(hints: list[_Hint]) -> str:
+    text = ""
+    for number, hint in reversed(list(enumerate(hints, 1))):
+        inner = f"{hint.answer}\n\n{text}" if text else f"{hint.answer}\n"
+        text = (
+            f"<details>\n<summary><b>Hint {number} of {len(hints)}.</b> {hint.question}</summary>\n"
+            # The blank lines make JupyterLab read the content as Markdown.
+            f"<blockquote>\n\n{inner}\n</blockquote>\n</details>\n"
+        )
+    return text.rstrip("\n")
+
+
+def _with_attached_figures(folder: Path, markdown: str) -> tuple[str, dict[str, dict[str, str]]]:
+    """Return the text of a text cell with its figures as attachments.
+
+    Args:
+        folder: The folder of the master. References to figures are relative to it.
+        markdown: The text of the cell.
+
+    Returns:
+        The text with references to the attachments, and the attachments by name.
+
+    Raises:
+        CellError: A figure is missing, has no description, or its PNG is out of date.
+    """
+    figures: dict[str, dict[str, str]] = {}
+
+    def shown(reference: re.Match[str]) -> str:
+        line = markdown.count("\n", 0, reference.start())
+        name, words, png = _read_figure(folder / reference["path"], reference["path"], line)
+        figures[name] = {"image/png": base64.b64encode(png).decode("ascii")}
+        return f"![{words}](attachment:{name})"
+
+    return _FIGURE_REFERENCE.sub(shown, markdown), figures
+
+
+def figure_digest(svg: bytes) -> bytes:
+    """Return the digest of an SVG. A PNG that was made from this SVG contains this digest, so an old PNG is noticed."""
+    return hashlib.sha256(svg).hexdigest().encode("ascii")
+
+
+def _read_figure(svg: Path, named: str, line: int) -> tuple[str, str, bytes]:
+    """Return the name of a figure's PNG, the figure's description, and the PNG itself."""
+    png = svg.with_suffix(".png")
+    try:
+        drawing, picture = svg.read_bytes(), png.read_bytes()
+        root = ElementTree.fromstring(drawing)
+    except FileNotFoundError as error:
+        raise CellError(
+            line,
+            f"The figure {named} needs {error.filename}.",
+            "Draw it: python -m autograder.masters.drawing",
+        ) from error
+    except ElementTree.ParseError as error:
+        raise CellError(
+            line,
+            f"The figure {named} is not an SVG ({error}).",
+            "Write it as an SVG file that a browser shows.",
+        ) from error
+    words = [(root.findtext(f"{_SVG}{tag}") or "").strip() for tag in ("title", "desc")]
+    if not all(words):
+        raise CellError(
+            line, f"The figure {named} has no description.", "Give its SVG a <title> and a <desc>."
+        )
+    if DIGEST_KEYWORD + b"\0" + figure_digest(drawing) not in picture:
+        raise CellError(
+            line,
+            f"The figure {named} has changed since its PNG was drawn.",
+            "Draw it: python -m autograder.masters.drawing",
+        )
+    return (png.name, " ".join(re.sub(r"[\[\]]", "", ". ".join(words)).split()), picture)

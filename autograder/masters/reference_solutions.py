@@ -27,17 +27,17 @@ if TYPE_CHECKING:
 
 _KEPT = (ast.Import, ast.ImportFrom, ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)
 """The kinds of statements that a program takes from a given cell. It also takes constants."""
-OTHER_WAY = "## Another way"
-LINES = 2
+_OTHER_WAY = "## Another way"
+_MAX_LINES = 2
 """The maximum number of lines that explain a solution. They are few, because a student who has solved a task wants to
 go on.
 """
-WIDTH = 140
+_MAX_WIDTH = 140
 """The maximum length of such a line, in characters."""
 
 
 @dataclass(frozen=True)
-class ReferenceSolution:
+class _ReferenceSolution:
     """The reference solution of an exercise.
 
     Attributes:
@@ -53,7 +53,7 @@ class ReferenceSolution:
 
 def reference_source(
     master: Path, exercise: str, *, points: Points = exercise_points, solved: bool = True
-) -> ReferenceSolution:
+) -> _ReferenceSolution:
     """Return a program that defines everything that a notebook defines before the check of ``exercise``.
 
     If ``solved`` is false, the solution cells are as students get them.
@@ -69,13 +69,13 @@ def reference_source(
     for named in named_cells(master, points=points):
         if named.check is not None and named.check.exercise == exercise:
             shell = named.check.is_path
-            parts = [part for cell in cells for part in _kept(cell, shell=shell, solved=solved)]
-            return ReferenceSolution("\n\n".join(parts) + "\n", named.check.subject)
+            parts = [part for cell in cells for part in _program_parts(cell, shell=shell, solved=solved)]
+            return _ReferenceSolution("\n\n".join(parts) + "\n", named.check.subject)
         cells.append(named.cell)
     raise MasterError(master, None, f"No cell checks '{exercise}'.", f'Write one: check("{exercise}", …).')
 
 
-def _kept(cell: MasterCell, *, shell: bool, solved: bool) -> Iterator[str]:
+def _program_parts(cell: MasterCell, *, shell: bool, solved: bool) -> Iterator[str]:
     """Yield the part of one cell that the program needs.
 
     Args:
@@ -87,23 +87,20 @@ def _kept(cell: MasterCell, *, shell: bool, solved: bool) -> Iterator[str]:
         return
     is_stub = cell.kind is CellRole.SOLUTION and not solved
     source = find_region(cell.source).unsolved if is_stub else cell.source
-    if has_magic(source):
-        yield from _on_disk(source, shell=shell)
-    elif cell.kind is CellRole.SOLUTION:
-        yield source
-    else:
-        yield from _definitions(cell)
-
-
-def _on_disk(source: str, *, shell: bool) -> Iterator[str]:
-    file, script = written_file(source), shell_script(source)
-    if file is not None:
+    if (file := written_file(source)) is not None:
         yield (
             f"import pathlib\nfile = pathlib.Path({str(file.path)!r})\n"
             f"file.parent.mkdir(parents=True, exist_ok=True)\nfile.write_text({file.text!r})"
         )
-    elif script is not None and shell:
-        yield f"import subprocess\nsubprocess.run(['bash', '-c', {script!r}], check=False)"
+    elif (script := shell_script(source)) is not None:
+        if shell:
+            yield f"import subprocess\nsubprocess.run(['bash', '-c', {script!r}], check=False)"
+    elif has_magic(source):
+        return  # another magic, which no program needs
+    elif cell.kind is CellRole.SOLUTION:
+        yield source
+    else:
+        yield from _definitions(cell)
 
 
 def _definitions(cell: MasterCell) -> Iterator[str]:
@@ -135,10 +132,7 @@ def solution_files(master: Path, cells: Sequence[NamedCell]) -> dict[Path, str]:
     Raises:
         MasterError: A file with reasons does not have the right form.
     """
-    return dict(_solution_files(master, cells))
-
-
-def _solution_files(master: Path, cells: Sequence[NamedCell]) -> Iterator[tuple[Path, str]]:
+    texts = {}
     code: list[str] = []
     for named in cells:
         # Leave out shell cells: commands that a student types in a terminal are not part of the checked code.
@@ -148,25 +142,27 @@ def _solution_files(master: Path, cells: Sequence[NamedCell]) -> Iterator[tuple[
             exercise = named.check.exercise
             why = master.with_name(f"{exercise.partition('.')[2]}{WHY}")
             if why.is_file():
-                yield why.with_name(why.name.removesuffix(WHY) + SOLUTION), _text(exercise, code, why)
+                file = why.with_name(why.name.removesuffix(WHY) + SOLUTION)
+                texts[file] = _solution_text(exercise, code, why)
             code = []
+    return texts
 
 
-def _text(exercise: str, code: list[str], why: Path) -> str:
-    reason, _, other = (part.strip() for part in why.read_text(encoding="utf-8").partition(OTHER_WAY))
+def _solution_text(exercise: str, code: list[str], why: Path) -> str:
+    reason, _, other = (part.strip() for part in why.read_text(encoding="utf-8").partition(_OTHER_WAY))
     if (
         not reason
-        or len(reason.splitlines()) > LINES
-        or any(len(line) > WIDTH for line in reason.splitlines())
+        or len(reason.splitlines()) > _MAX_LINES
+        or any(len(line) > _MAX_WIDTH for line in reason.splitlines())
     ):
         raise MasterError(
-            why, 1, f"A reason has one or {LINES} lines.", "Give only the most important reason."
+            why, 1, f"A reason has one or {_MAX_LINES} lines.", "Give only the most important reason."
         )
     words, _, rest = other.partition("```python\n")
     example, fence, after = rest.partition("\n```")
     if other and (not words.strip() or not fence or after.strip()):
         raise MasterError(
-            why, None, f"'{OTHER_WAY}' has another form.", "Write a paragraph, then one block ```python."
+            why, None, f"'{_OTHER_WAY}' has another form.", "Write a paragraph, then one block ```python."
         )
     said = {
         "exercise": exercise,

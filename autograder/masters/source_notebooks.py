@@ -48,12 +48,12 @@ _HEADING = re.compile(r"^#{1,6}\s+(.*?)\s*$", re.MULTILINE)
 _FENCED = re.compile(r"^```.*?^```", re.MULTILINE | re.DOTALL)
 _LONGEST = 48
 """The maximum length of a heading within a cell's name, in characters; nbformat allows 64 in an id."""
-GRADE_ID = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,63}")
-SCHEMA_VERSION = 3
+_GRADE_ID = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,63}")
+_SCHEMA_VERSION = 3
 """The version of nbgrader's cell metadata."""
 
 # The metadata do not contain versions of Python or packages, so that the chapters are the same on every machine.
-NOTEBOOK_METADATA: dict[str, Any] = {
+_NOTEBOOK_METADATA: dict[str, Any] = {
     "kernelspec": {"display_name": "Python 3 (ipykernel)", "language": "python", "name": "python3"},
     "language_info": {
         "codemirror_mode": {"name": "ipython", "version": 3},
@@ -100,7 +100,7 @@ def source_notebook(master: Path, *, points: Points = exercise_points) -> Notebo
 
 def notebook_of(cells: list[NamedCell]) -> NotebookNode:
     """Return the nbgrader source notebook with these cells and their solutions."""
-    notebook = new_notebook(metadata=from_dict(NOTEBOOK_METADATA))
+    notebook = new_notebook(metadata=from_dict(_NOTEBOOK_METADATA))
     notebook.nbformat_minor = 5
     notebook.cells = [_node(named) for named in cells]
     return notebook
@@ -113,7 +113,7 @@ def named_cells(master: Path, *, points: Points = exercise_points) -> list[Named
         MasterError: The master cannot be used; see :func:`source_notebook`.
     """
     try:
-        cells = with_first_cells(master, with_copies(master, parse_master(master)))
+        cells = _with_set_up_cells(master, with_copies(master, parse_master(master)))
     except course.BrokenChapter as error:
         raise MasterError(master, None, f"{error}.", "Correct that file.") from error
     cells += _links(master)
@@ -147,7 +147,8 @@ def _name_all(master: Path, cells: list[MasterCell], points: Points) -> Iterator
 
     for cell in cells:
         if cell.kind is CellRole.TEXT:
-            section = _last_heading(cell.source) or section
+            headings = _HEADING.findall(_FENCED.sub("", cell.source))
+            section = headings[-1] if headings else section
             # A text cell has no grade_id, so its name is made from its text.
             yield NamedCell(cell, numbered("text-" + hashlib.sha256(cell.source.encode()).hexdigest()[:10]))
             continue
@@ -161,11 +162,6 @@ def _name_all(master: Path, cells: list[MasterCell], points: Points) -> Iterator
             yield NamedCell(cell, cell.grade_id or _defined_name(master, cell))
         else:
             yield NamedCell(cell, cell.grade_id or numbered(f"{CellRole.GIVEN}-{_slug(section)}"))
-
-
-def _last_heading(markdown: str) -> str | None:
-    headings = _HEADING.findall(_FENCED.sub("", markdown))
-    return headings[-1] if headings else None
 
 
 def _slug(text: str) -> str:
@@ -234,7 +230,7 @@ def _defined_name(master: Path, cell: MasterCell) -> str:
 def _unique(master: Path, named: list[NamedCell]) -> None:
     seen: dict[str, int] = {}
     for item in named:
-        if not GRADE_ID.fullmatch(item.name):
+        if not _GRADE_ID.fullmatch(item.name):
             raise MasterError(
                 master,
                 item.cell.line,
@@ -300,7 +296,7 @@ def _nbgrader(named: NamedCell) -> dict[str, Any]:
         "grade": kind in (CellRole.CHECK, CellRole.MANUAL),
         "grade_id": named.name,
         "locked": kind not in (CellRole.SOLUTION, CellRole.MANUAL),
-        "schema_version": SCHEMA_VERSION,
+        "schema_version": _SCHEMA_VERSION,
         "solution": kind in (CellRole.SOLUTION, CellRole.MANUAL),
         "task": False,
     }
@@ -365,7 +361,7 @@ def service_links(address: str, notebook: str) -> dict[str, str]:
     }
 
 
-def with_first_cells(master: Path, cells: list[MasterCell]) -> list[MasterCell]:
+def _with_set_up_cells(master: Path, cells: list[MasterCell]) -> list[MasterCell]:
     """Return a master's cells, with the set-up cells of this module inserted before the first cell that is not text."""
     root = master.parents[3]
     first = next((place for place, cell in enumerate(cells) if cell.kind is not CellRole.TEXT), None)

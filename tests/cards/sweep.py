@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import re2
 
 from autograder.cards import card_wording
-from autograder.cards.readable_text import TRACEBACK, place
+from autograder.cards.readable_text import TRACEBACK, students_line
 from autograder.verdict import State
 
 if TYPE_CHECKING:
@@ -40,7 +40,7 @@ def objection(verdict: Verdict) -> str:
     ]
     if held and _NO_NODE.search(words):
         return f"its card says that {held[0]!r} holds, beside: {words}"
-    if _POINTS_AT.search(words) and not (place(verdict.detail) or "(line " in words):
+    if _POINTS_AT.search(words) and not (students_line(verdict.detail) or "(line " in words):
         return f"its card points at a line and names none: {words}"
     if "program did nothing" in words and TRACEBACK in verdict.detail:
         return f"its card says of a program that raised that it did nothing: {words}"

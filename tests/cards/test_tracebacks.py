@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from autograder.cards.readable_text import TracebackLine, place
+from autograder.cards.readable_text import TracebackLine, students_line
 
 OF_A_PROGRAM = """Traceback (most recent call last):
   File "/home/ada/talker.py", line 30, in main
@@ -14,15 +14,15 @@ TypeError: tick() takes 0 positional arguments but 1 was given"""
 
 def test_of_a_program_it_is_the_last_line_of_its_own() -> None:
     error = "TypeError: tick() takes 0 positional arguments but 1 was given"
-    assert place(OF_A_PROGRAM) == TracebackLine("Line 30 of talker.py", "rclpy.spin(node)", error)
+    assert students_line(OF_A_PROGRAM) == TracebackLine("Line 30 of talker.py", "rclpy.spin(node)", error)
 
 
 def test_a_line_that_spins_is_not_blamed_for_a_callback() -> None:
     task = '  File "/opt/x/lib/python3.12/site-packages/rclpy/task.py", line 239, in __call__\n    self._handler()'
     first, last = OF_A_PROGRAM.rsplit("\n", 1)
-    assert place(f"{first}\n{task}\n{last}") is None
+    assert students_line(f"{first}\n{task}\n{last}") is None
     own = '  File "/home/ada/talker.py", line 12, in tick\n    self.sey()'
-    found = place(f"{first}\n{task}\n{own}\n{last}")
+    found = students_line(f"{first}\n{task}\n{own}\n{last}")
     assert found
     assert (found.where, found.quote) == ("Line 12 of talker.py", "self.sey()")
 
@@ -31,7 +31,7 @@ def test_a_file_that_python_cannot_read_has_a_line_without_a_traceback() -> None
     detail = (
         "  File \"/home/ada/talker.py\", line 14\n    def tick(self)\n          ^\nSyntaxError: expected ':'"
     )
-    assert place(detail) == TracebackLine(
+    assert students_line(detail) == TracebackLine(
         "Line 14 of talker.py", "def tick(self)", "SyntaxError: expected ':'"
     )
 
@@ -41,25 +41,27 @@ def test_what_a_build_has_installed_is_the_students_own() -> None:
     detail = (
         f'Traceback (most recent call last):\n  File "{file}", line 9, in main\n    tock()\nNameError: tock'
     )
-    assert place(detail) == TracebackLine("Line 9 of talker.py", "tock()", "NameError: tock")
-    assert place(detail.replace("/ws/install/my_robot_pkg", "/ws/.venv")) is None
+    assert students_line(detail) == TracebackLine("Line 9 of talker.py", "tock()", "NameError: tock")
+    assert students_line(detail.replace("/ws/install/my_robot_pkg", "/ws/.venv")) is None
 
 
 def test_a_line_that_python_does_not_quote_has_no_quote() -> None:
-    found = place('Traceback (most recent call last):\n  File "<ipython-input-3>", line 2, in f\nKeyError: 1')
+    found = students_line(
+        'Traceback (most recent call last):\n  File "<ipython-input-3>", line 2, in f\nKeyError: 1'
+    )
     assert found == TracebackLine("Line 2 of your cell", "", "KeyError: 1")
 
 
 def test_the_script_of_an_entry_point_is_nobodys() -> None:
     script = '  File "/ws/install/my_pkg/lib/my_pkg/talker", line 25, in importlib_load_entry_point\n    return 1\n'
     text = f"Traceback (most recent call last):\n{script}ModuleNotFoundError: No module named 'talker'"
-    assert place(text) is None
+    assert students_line(text) is None
 
 
 def test_output_that_is_no_traceback_has_no_place() -> None:
-    assert place("Hello, world! 0\nTerminated") is None
-    assert place("") is None
-    assert place("Traceback (most recent call last):") is None
+    assert students_line("Hello, world! 0\nTerminated") is None
+    assert students_line("") is None
+    assert students_line("Traceback (most recent call last):") is None
 
 
 def test_an_error_of_compiled_code_is_told_without_the_arguments_below_it() -> None:
@@ -68,6 +70,6 @@ def test_an_error_of_compiled_code_is_told_without_the_arguments_below_it() -> N
         "TypeError: resolve(): incompatible function arguments. The following argument types are supported:\n"
         "    1. (name: str) -> str\n\nInvoked with: <class 'String'>, False"
     )
-    found = place(detail)
+    found = students_line(detail)
     assert found
     assert found.error.startswith("TypeError: resolve(): incompatible function arguments")

@@ -17,7 +17,7 @@ from autograder import exercises
 from autograder.authoring.exercise_faults import broken_rules
 from autograder.masters.chapter_building import build, release_text
 from autograder.masters.code_cells import COPIED, find_region
-from autograder.masters.master_cells import COPY, CellRole, parse_master
+from autograder.masters.master_cells import COPY_LINE, CellRole, parse_master
 from autograder.masters.master_files import chapter_path, lab_name, masters
 from autograder.masters.source_notebooks import named_cells, source_notebook
 from tests.tiers import drawn
@@ -61,7 +61,7 @@ def test_no_line_of_a_solution_is_in_its_chapter(master: Path) -> None:
     assert "### COPY" not in everything
     for cell in parse_master(master):
         # What is copied comes from another cell, whose lines are looked for.
-        if cell.kind is CellRole.SOLUTION and not COPY.search(cell.source):
+        if cell.kind is CellRole.SOLUTION and not COPY_LINE.search(cell.source):
             for line in find_region(cell.source).answer:
                 # A hint may say how a method begins, and a short line is nobody's secret.
                 if len(line.strip()) > len("return total") and not line.strip().startswith("def "):

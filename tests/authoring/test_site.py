@@ -36,7 +36,7 @@ from autograder.masters.source_notebooks import service_links, source_notebook
 from environment.python_child import python_child
 
 pytest.importorskip("sphinx_book_theme")
-ROOT = Path(__file__).resolve().parents[3]
+ROOT = Path(__file__).resolve().parents[2]
 ELSEWHERE = re.compile(
     r"""<(?:script|img|iframe|source)\b[^>]*\bsrc=["'](?:https?:)?//|<link\b(?=[^>]*stylesheet|[^>]*preload)[^>]*href=["'](?:https?:)?//"""
 )
