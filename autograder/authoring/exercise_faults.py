@@ -175,9 +175,8 @@ def broken_rules(master: Path) -> list[str]:
         autograder.masters.master_files.MasterError: The file is not a valid master.
     """
     copying = {cell.line for cell in parse_master(master) if COPY_LINE.search(cell.source)}
-    cells = [
-        one for one in named_cells(master) if one.cell.line
-    ]  # the last cell, which links to the neighboring labs, is left out
+    # Leave out the cells that are added to each master, such as links to the neighboring labs: they have no line.
+    cells = [one for one in named_cells(master) if one.cell.line]
     return [
         *_beginning(cells),
         *_solutions(one for one in cells if one.cell.line not in copying),

@@ -128,7 +128,8 @@ def execute_all(
         BatchProgress(console, len(planned), doing="executing", did="executed") as progress,
     ):
         running = execution_backends.execute_all(
-            [item.task for item in _longest_first(planned)],
+            # Long notebooks start first. Otherwise one core could be busy long after the others.
+            [one.task for one in sorted(planned, key=lambda one: -sum(map(_weight, one.task.cells)))],
             scratch.path,
             jobs,
             on_start=lambda task: progress.started(task.label),
@@ -143,11 +144,6 @@ def execute_all(
                 note = f" ({done.execution.seconds:.1f} s)"
                 progress.finished(done.task.label, failed=bool(found), note=note)
     return [results[id(item.task)] for item in planned]
-
-
-def _longest_first(planned: Sequence[Planned]) -> list[Planned]:
-    """Sort notebooks so that long ones start first. Otherwise one core could be busy long after the others."""
-    return sorted(planned, key=lambda item: -sum(_weight(cell) for cell in item.task.cells))
 
 
 def _weight(cell: Cell) -> float:

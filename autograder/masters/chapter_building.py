@@ -254,22 +254,10 @@ _BADGES_BLOCK = re2.compile(r"(?s)(<!-- badges -->\n).*?(<!-- end of badges -->)
 _CLONE_LINE = re2.compile(r"(git clone )\S+( )")
 
 
-def _badges(address: str, notebook: str) -> str:
-    """Return the Markdown of a repository's badges: for its tests, and for services that open a notebook.
-
-    Args:
-        address: The address of the repository, as :func:`autograder.course.repository` returns it.
-        notebook: The path of the notebook in the repository.
-    """
-    tests = f"{address}/actions/workflows/{_TESTS_WORKFLOW.rpartition('/')[2]}"
-    shown = [f"[![Tests]({tests}/badge.svg)]({tests})"]
-    for name, link in service_links(address, notebook).items():
-        shown.append(f"[![Open in {name}]({_BADGE_PICTURES[name]})]({link})")
-    return "\n".join(shown)
-
-
 def readme(root: Path, notebook: Path) -> str | None:
-    """Return README.md with its badges and address filled in; None if it has no marks for the badges.
+    """Return README.md with the address of the repository and badges filled in; None if it has no marks for the badges.
+
+    The badges are for the repository's tests, and for services that open a notebook.
 
     Args:
         root: The folder of the course.
@@ -280,6 +268,11 @@ def readme(root: Path, notebook: Path) -> str | None:
     if not _BADGES_BLOCK.search(text):
         return None
     address = course.repository(root)
-    shown = f"{_badges(address, notebook.relative_to(root).as_posix())}\n" if address else WITHOUT_ADDRESS
+    shown = WITHOUT_ADDRESS
+    if address:
+        tests = f"{address}/actions/workflows/{_TESTS_WORKFLOW.rpartition('/')[2]}"
+        shown = f"[![Tests]({tests}/badge.svg)]({tests})\n"
+        for name, link in service_links(address, notebook.relative_to(root).as_posix()).items():
+            shown += f"[![Open in {name}]({_BADGE_PICTURES[name]})]({link})\n"
     text = _BADGES_BLOCK.sub(lambda found: f"{found[1]}{shown}{found[2]}", text)
     return str(_CLONE_LINE.sub(lambda found: f"{found[1]}{address or _TO_FILL_IN}{found[2]}", text))

@@ -23,8 +23,8 @@ In the notebook, hints become ``<details>``. Each hint is put inside the hint be
 the second before opening the first.
 
 Figures are embedded in a notebook, so that it can be moved to any folder. They are embedded as PNGs, because JupyterLab
-does not show an attached SVG. :mod:`autograder.masters.drawing` draws each PNG from its SVG,
-and stores a digest of the SVG in it, so that a PNG that is older than its SVG is noticed. Both files are committed.
+does not show an attached SVG. :mod:`autograder.masters.figure_drawing` draws each PNG from its SVG, and stores a digest
+of the SVG in it, so that a PNG that is older than its SVG is noticed. Both files are committed.
 """
 
 from __future__ import annotations
@@ -367,7 +367,7 @@ def _read_figure(svg: Path, named: str, line: int) -> tuple[str, str, bytes]:
         raise CellError(
             line,
             f"The figure {named} needs {error.filename}.",
-            "Draw it: python -m autograder.masters.drawing",
+            "Draw it: python -m autograder.masters.figure_drawing",
         ) from error
     except ElementTree.ParseError as error:
         raise CellError(
@@ -384,6 +384,6 @@ def _read_figure(svg: Path, named: str, line: int) -> tuple[str, str, bytes]:
         raise CellError(
             line,
             f"The figure {named} has changed since its PNG was drawn.",
-            "Draw it: python -m autograder.masters.drawing",
+            "Draw it: python -m autograder.masters.figure_drawing",
         )
     return (png.name, " ".join(re.sub(r"[\[\]]", "", ". ".join(words)).split()), picture)

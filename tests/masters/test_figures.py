@@ -12,7 +12,7 @@ import nbformat
 import pytest
 
 from autograder.grading.returning.sanitize import harmless_markdown
-from autograder.masters.drawing import SIGNATURE, chunk, signed, stale_figures
+from autograder.masters.figure_drawing import SIGNATURE, chunk, signed, stale_figures
 from autograder.masters.master_cells import figure_digest
 from autograder.masters.master_files import MasterError, chapter_path, masters
 from autograder.masters.source_notebooks import Points, source_notebook

@@ -1,4 +1,4 @@
-"""Draws a PNG next to each SVG of the masters' figures: ``python -m autograder.masters.drawing``.
+"""Draws a PNG next to each SVG of the masters' figures: ``python -m autograder.masters.figure_drawing``.
 
 An author runs this and commits the PNGs. A build does not draw, because on a machine with other fonts the PNGs would
 look different.
@@ -46,8 +46,12 @@ _PIXELS = """async png => {
 
 def stale_figures(root: Path) -> list[Path]:
     """Return those figures of the course in ``root`` whose PNG is missing or out of date."""
-    found = sorted((root / SOLUTIONS).rglob("figures/*.svg"))
-    return [svg for svg in found if not _is_drawn(svg)]
+    found = []
+    for svg in sorted((root / SOLUTIONS).rglob("figures/*.svg")):
+        png = svg.with_suffix(".png")
+        if not png.exists() or figure_digest(svg.read_bytes()) not in png.read_bytes():
+            found.append(svg)
+    return found
 
 
 def draw(figures: Sequence[Path], chromium: str) -> None:
@@ -69,11 +73,6 @@ def draw(figures: Sequence[Path], chromium: str) -> None:
         browser.close()
 
 
-def _is_drawn(svg: Path) -> bool:
-    png = svg.with_suffix(".png")
-    return png.exists() and figure_digest(svg.read_bytes()) in png.read_bytes()
-
-
 def _with_few_colours(page: Page, png: bytes) -> bytes:
     """Return the picture as a PNG with a palette of few colors, which makes the file a third as large.
 
@@ -90,9 +89,8 @@ def _with_few_colours(page: Page, png: bytes) -> bytes:
     distances = ((colours[:, None, :].astype(int) - colours[None, kept, :]) ** 2).sum(axis=2)
     rows = distances.argmin(axis=1).astype(numpy.uint8)[places].reshape(height, width)
     palette = colours[kept].astype(numpy.uint8)
-    lines = numpy.insert(
-        rows, 0, 0, axis=1
-    ).tobytes()  # in a PNG, each line of pixels begins with the number of its filter; 0 means none
+    # In a PNG, each line of pixels begins with the number of its filter; 0 means none.
+    lines = numpy.insert(rows, 0, 0, axis=1).tobytes()
     header = width.to_bytes(4) + height.to_bytes(4) + bytes((8, 3, 0, 0, 0))
     return SIGNATURE + b"".join(
         (
