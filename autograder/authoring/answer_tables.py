@@ -144,9 +144,9 @@ class ListedAnswer:
         try:
             text = self.base.read_text(encoding="utf-8")
         except FileNotFoundError:
-            there = sorted(file.name for file in self.base.parent.glob("*.*"))
-            like = difflib.get_close_matches(self.base.name, there, 1)
-            hint = f"did you mean {like[0]}?" if like else f"there are {', '.join(there)}"
+            existing = sorted(file.name for file in self.base.parent.glob("*.*"))
+            similar = difflib.get_close_matches(self.base.name, existing, 1)
+            hint = f"did you mean {similar[0]}?" if similar else f"there are {', '.join(existing)}"
             raise self._bad(
                 f"{self.base.parent} has no file {self.base.name}, which is the entry's base; {hint}"
             ) from None
@@ -242,13 +242,13 @@ def edited_text(base: str, change: str) -> str:
             edit.
     """
     lines = base.split("\n")
-    places = []
-    for block in change.removesuffix("\n").split(f"\n{_BETWEEN_PLACES}\n"):
-        old, new = _sides(block)
-        places.append((_place(lines, old), old, new))
-    places.sort(key=lambda place: place[0], reverse=True)
+    changes = []
+    for part in change.removesuffix("\n").split(f"\n{_BETWEEN_PLACES}\n"):
+        old, new = _before_and_after(part)
+        changes.append((_only_index(lines, old), old, new))
+    changes.sort(key=lambda one: one[0], reverse=True)
     end = len(lines)
-    for at, old, new in places:
+    for at, old, new in changes:
         if at + len(old) > end:
             raise CannotEdit(f"two places of the change share the line {lines[end]!r}: write them as one")
         lines[at : at + len(old)] = new
@@ -256,10 +256,10 @@ def edited_text(base: str, change: str) -> str:
     return "\n".join(lines)
 
 
-def _sides(block: str) -> tuple[list[str], list[str]]:
+def _before_and_after(part: str) -> tuple[list[str], list[str]]:
     """Return the lines of one place of the base, before and after the edit."""
     old, new = [], []
-    for line in block.split("\n"):
+    for line in part.split("\n"):
         if line[:1] not in ("", " ", "-", "+"):
             raise CannotEdit(f"{line!r} does not begin with -, + or a space")
         if line[:1] != "+":
@@ -268,17 +268,17 @@ def _sides(block: str) -> tuple[list[str], list[str]]:
             new.append(line[1:])
     if old == new:
         raise CannotEdit(
-            f"{block!r} changes nothing: put - in front of each line to remove and + in front of each line to add"
+            f"{part!r} changes nothing: put - in front of each line to remove and + in front of each line to add"
         )
     if not old:
         raise CannotEdit(
-            f"{block!r} does not say where to add its lines: also write the unchanged line before or after them, "
+            f"{part!r} does not say where to add its lines: also write the unchanged line before or after them, "
             "with a space in front"
         )
     return old, new
 
 
-def _place(lines: list[str], old: list[str]) -> int:
+def _only_index(lines: list[str], old: list[str]) -> int:
     """Return the index of the only place in ``lines`` at which the lines ``old`` occur."""
     found = [at for at in range(len(lines) - len(old) + 1) if lines[at : at + len(old)] == old]
     if len(found) == 1:

@@ -60,8 +60,8 @@ def still_to_do(exercise_id: str, listed: Sequence[Answer]) -> Iterator[str]:
 
 
 def _of_answers(listed: Sequence[Answer]) -> Iterator[str]:
-    there = Counter(answer.file.parent.name for answer in listed)
-    few = [f"{there[kind]} {kind}" for kind, enough in _ENOUGH.items() if there[kind] < enough]
+    counts = Counter(answer.file.parent.name for answer in listed)
+    few = [f"{counts[kind]} {kind}" for kind, enough in _ENOUGH.items() if counts[kind] < enough]
     if few:
         yield (
             f"answers: the bank has only {' and '.join(few)} answers; before students get a new exercise, write at "
@@ -79,10 +79,10 @@ def _of_answers(listed: Sequence[Answer]) -> Iterator[str]:
 def _of_mistakes(exercise_id: str, listed: Sequence[Answer]) -> Iterator[str]:
     page = course.root() / _MISTAKES_PAGE
     if page.is_file():
-        told = set(re.findall(r"^### `(\w+)`$", page.read_text(encoding="utf-8"), re.MULTILINE))
+        explained = set(re.findall(r"^### `(\w+)`$", page.read_text(encoding="utf-8"), re.MULTILINE))
         used = {mistake.key for mistake in exercises.get(exercise_id).mistakes}
         used |= {key for answer in listed for key in answer.diagnoses}
-        yield from (f"{_MISTAKES_PAGE}: no paragraph about `{key}` yet" for key in sorted(used - told))
+        yield from (f"{_MISTAKES_PAGE}: no paragraph about `{key}` yet" for key in sorted(used - explained))
 
 
 def _of_text(exercise_id: str, master: Path) -> Iterator[str]:
@@ -91,20 +91,20 @@ def _of_text(exercise_id: str, master: Path) -> Iterator[str]:
     if not exercise.text:
         yield "text: map words of the task to the criteria that judge them (the argument text of the exercise)"
         return
-    said = "\n".join(one.cell.source for one in named_cells(master))
-    yield from (f"text: {fault}" for fault in faults_of_text(exercise, said))
+    lab_text = "\n".join(one.cell.source for one in named_cells(master))
+    yield from (f"text: {fault}" for fault in faults_of_text(exercise, lab_text))
 
 
-def faults_of_text(exercise: Exercise, said: str) -> Iterator[str]:
+def faults_of_text(exercise: Exercise, lab_text: str) -> Iterator[str]:
     """Yield the faults of ``Exercise.text``: sentences that the lab does not contain, missing or unknown criteria.
 
     Args:
         exercise: The exercise.
-        said: All texts of the lab, in one string.
+        lab_text: All texts of the lab, in one string.
     """
-    whole = " ".join(said.split())
+    words_of_lab = " ".join(lab_text.split())
     sentences = (" ".join(words.split()) for words in exercise.text)
-    yield from (f"{course.LAB} does not say “{words}”" for words in sentences if words not in whole)
+    yield from (f"{course.LAB} does not say “{words}”" for words in sentences if words not in words_of_lab)
     judged = {name for names in exercise.text.values() for name in names.split()}
     known = {criterion.name for criterion in exercise.criteria}
     yield from (
@@ -216,8 +216,10 @@ def _solutions(cells: Iterable[NamedCell]) -> Iterator[str]:
 
 def _introductions(cells: list[NamedCell]) -> Iterator[str]:
     for before, one in itertools.pairwise(cells):
-        said = [line for line in before.cell.source.splitlines() if line.strip() and not line.startswith("#")]
-        if not _is_text(one) and not (_is_text(before) and said):
+        sentences = [
+            line for line in before.cell.source.splitlines() if line.strip() and not line.startswith("#")
+        ]
+        if not _is_text(one) and not (_is_text(before) and sentences):
             yield f"a code cell is introduced: write a sentence before the code cell at line {one.cell.line}"
 
 

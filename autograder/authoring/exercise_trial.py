@@ -235,9 +235,9 @@ def _points_of_unsolved(exercise_id: str) -> Iterator[str]:
 
 def _is_recorded(exercise_id: str, tell: Callable[[str], object]) -> bool:
     """Return True if the stored reference output equals a new recording. If none is stored, store the new one."""
-    there = exercises.reference_path(exercise_id).exists()
-    changed = reference_recording.record([exercise_id], only_check=there, tell=tell)
-    if not (there and changed):
+    is_stored = exercises.reference_path(exercise_id).exists()
+    changed = reference_recording.record([exercise_id], only_check=is_stored, tell=tell)
+    if not (is_stored and changed):
         return True
     tell(
         "The solution or the scenario has changed since the reference output was recorded. "

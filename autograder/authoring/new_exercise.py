@@ -74,7 +74,7 @@ def new_exercise(
         raise CannotMake(f"no recipe is named {recipe!r}. The recipes are: {', '.join(known)}")
     example = known[recipe]
     folder = _chapter(root, chapter) / lab
-    _refuse_what_is_there(root, folder)
+    _refuse_existing(root, folder)
     types = [_interface_of(root, folder.parent, interface) for interface in interfaces]
     with HeldFolder("autograder-new-") as scratch:
         made = scratch.path / lab
@@ -121,9 +121,9 @@ def _interface_of(root: Path, chapter: Path, interface: str) -> re.Match[str]:
     own = (chapter / course.INTERFACES / package).is_dir()
     taken = not own and (_is_a_module(package) or package in _listed(chapter))
     if elsewhere or taken:
-        place = f"chapter {elsewhere[0]}" if elsewhere else "installation of ROS or of the course"
+        owner = f"chapter {elsewhere[0]}" if elsewhere else "installation of ROS or of the course"
         raise CannotMake(
-            f"the {place} already has a package {package}: use its types, or choose another name for your package"
+            f"the {owner} already has a package {package}: use its types, or choose another name for your package"
         )
     return found
 
@@ -158,14 +158,14 @@ def _defined(chapter: Path, interface: re.Match[str]) -> list[Path]:
 
 
 def _chapter(root: Path, name: str | None) -> Path:
-    there = course.chapters(root)
+    chapters = course.chapters(root)
     if name is None:
-        if not there:
+        if not chapters:
             raise CannotMake(
                 f"{root / course.SOLUTIONS} contains no chapter yet: add the name of a new chapter, such as --chapter "
                 "01_my_chapter"
             )
-        return there[-1].folder
+        return chapters[-1].folder
     if not re.fullmatch(r"[A-Za-z0-9_][A-Za-z0-9_-]*", name, re.ASCII):
         raise CannotMake(
             f"{name!r} is not a valid name for a chapter's folder: use letters, digits, _ and -, such as 02_navigation"
@@ -173,7 +173,7 @@ def _chapter(root: Path, name: str | None) -> Path:
     return root / course.SOLUTIONS / name
 
 
-def _refuse_what_is_there(root: Path, folder: Path) -> None:
+def _refuse_existing(root: Path, folder: Path) -> None:
     # Two labs with the same name would be one Python package, and one notebook for nbgrader.
     others = [lab for chapter in course.chapters(root) for lab in chapter.labs if lab.name == folder.name]
     for lab in (folder, *others):

@@ -367,8 +367,8 @@ def _with_outputs(planned: Planned, execution: Execution, found: Sequence[_Probl
             cell.execution_count = None
         wrong = [problem.text for problem in found if problem.cell == index]
         if wrong:
-            said = html.escape(" and ".join(wrong))
-            cells.append(_box(f'<p id="problem-{index}"><b>The next cell {said}.</b></p>'))
+            problems = html.escape(" and ".join(wrong))
+            cells.append(_box(f'<p id="problem-{index}"><b>The next cell {problems}.</b></p>'))
         cells.append(cell)
     notebook.cells = [_box(_summary(planned, found)), *cells]
     return notebook

@@ -88,8 +88,8 @@ def recording(exercise_id: str) -> str:
             f"{exercise.id}: {report.trouble or 'the solution never called check'}\n{output}".strip()
         )
     if not report.verdict.passed:
-        there = json.loads(report.reference)["interface"]
-        missing = " and no ".join(role for role in exercise.roles if role not in there)
+        interface = json.loads(report.reference)["interface"]
+        missing = " and no ".join(role for role in exercise.roles if role not in interface)
         has_none = f" The solution has no {missing}, which this recipe judges." * bool(missing)
         failed = (criterion for criterion in report.verdict.criteria if not criterion.passed)
         missed = "".join(f"\n  {c.title}: expected {c.expected}; seen {c.seen}" for c in failed)

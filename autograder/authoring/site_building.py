@@ -235,8 +235,10 @@ def _folded(solved: NotebookNode, outputs: list[NotebookNode]) -> NotebookNode:
         )
     lines = solved.source.split("\n")
     shown = [line for line in lines if "### BEGIN SOLUTION" not in line and "### END SOLUTION" not in line]
-    said = {"code_prompt_show": SOLUTION_SUMMARY, "code_prompt_hide": "Solution (click to fold)"}
-    return new_code_cell("\n".join(shown), outputs=outputs, metadata={"tags": ["hide-input"], "mystnb": said})
+    labels = {"code_prompt_show": SOLUTION_SUMMARY, "code_prompt_hide": "Solution (click to fold)"}
+    return new_code_cell(
+        "\n".join(shown), outputs=outputs, metadata={"tags": ["hide-input"], "mystnb": labels}
+    )
 
 
 def _with_plain_anchors(text: str) -> str:
@@ -279,9 +281,11 @@ def _guides(root: Path) -> dict[str, list[Path]]:
     left = {*root.glob("*.md"), *(root / "docs").rglob("*.md")} - {root / "README.md"}
     found = {}
     for reader, listed in zip(parts[::2], parts[1::2], strict=True):
-        places = [(index.parent / target).resolve() for target in _TARGET.findall(listed)]
+        targets = [(index.parent / target).resolve() for target in _TARGET.findall(listed)]
         pages = [
-            page for place in places for page in (sorted(place.glob("*.md")) if place.is_dir() else [place])
+            page
+            for target in targets
+            for page in (sorted(target.glob("*.md")) if target.is_dir() else [target])
         ]
         found[f"For {reader[:1].lower()}{reader[1:]}"] = [
             page for page in dict.fromkeys(pages) if page in left

@@ -178,8 +178,8 @@ class TracebackLine:
 
 def last_error(detail: str) -> str:
     """Return the last line that is not empty. If the text is a traceback, this is the exception."""
-    told = (line.strip() for line in reversed(detail.splitlines()) if not line.startswith(_CALLED_WITH))
-    return next((line for line in told if line and not _FORM_OF_CALL.match(line)), "")
+    lines = (line.strip() for line in reversed(detail.splitlines()) if not line.startswith(_CALLED_WITH))
+    return next((line for line in lines if line and not _FORM_OF_CALL.match(line)), "")
 
 
 def students_line(detail: str) -> TracebackLine | None:

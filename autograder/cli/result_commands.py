@@ -319,10 +319,10 @@ def _save_bag(seen: Kept, path: Path) -> str:
 def _lines_of_replay(appeal: Appeal, again: Replay) -> Iterator[str]:
     """Yield the result of a replay as lines."""
     then = again.then
-    at = datetime.fromtimestamp(appeal.seen.at, tz=UTC)
-    yield f"{then.exercise} by {appeal.student}, checked {at:%Y-%m-%d %H:%M:%S} UTC with course {appeal.course[:8]}"
-    yield f"then: {_told(then)}"
-    yield f"now:  {_told(again.now)}"
+    checked = f"{datetime.fromtimestamp(appeal.seen.at, tz=UTC):%Y-%m-%d %H:%M:%S} UTC"
+    yield f"{then.exercise} by {appeal.student}, checked {checked} with course {appeal.course[:8]}"
+    yield f"then: {_verdict_in_words(then)}"
+    yield f"now:  {_verdict_in_words(again.now)}"
     if again.differences:
         yield "a different verdict:"
         yield from (f"  {line}" for line in again.differences[:_MAX_LINES])
@@ -332,7 +332,7 @@ def _lines_of_replay(appeal: Appeal, again: Replay) -> Iterator[str]:
     yield f"note: any person can write such a file; for proof, have `{COMMAND} appeal` write it from the class"
 
 
-def _told(verdict: Verdict) -> str:
+def _verdict_in_words(verdict: Verdict) -> str:
     diagnosis = f", {verdict.diagnosis.key}" if verdict.diagnosis else ""
     return f"{verdict.state}, {verdict.score:g} of {verdict.max_score:g} points{diagnosis}"
 

@@ -134,24 +134,24 @@ def _markers(lines: list[str]) -> tuple[int, int]:
 def _marker(lines: list[str], marker: str) -> int:
     """Return the index of the line ``marker``, which must occur exactly once, alone on its line and spelt correctly."""
     words = marker.removeprefix("### ")
-    places = [offset for offset, line in enumerate(lines) if words in line]
-    if not places:
+    found = [offset for offset, line in enumerate(lines) if words in line]
+    if not found:
         raise CellError(
             0,
             f"A solution cell without '{marker}'.",
             f"Put what students write between '{BEGIN}' and '{END}'.",
         )
-    if len(places) > 1:
+    if len(found) > 1:
         raise CellError(
-            places[1],
+            found[1],
             f"A second '{marker}' in one cell.",
             _ONE_THING,
         )
-    if _words(lines[places[0]]) != marker:
+    if _words(lines[found[0]]) != marker:
         raise CellError(
-            places[0], "A marker is misspelt.", f"The line must contain '{marker}' and nothing else."
+            found[0], "A marker is misspelt.", f"The line must contain '{marker}' and nothing else."
         )
-    return places[0]
+    return found[0]
 
 
 def _stub_length(inside: list[str]) -> int:

@@ -124,8 +124,11 @@ def parse_master(path: Path) -> list[MasterCell]:
         problem = f"Jupyter refuses the header: {reason}."
         raise MasterError(path, 1, problem, f"Begin with:\n{MASTER_HEADER}") from error
     lines = text.splitlines()
-    places = notebook.metadata["source_map"]
-    return [_cell(path, node, place, lines) for node, place in zip(notebook.cells, places, strict=True)]
+    first_lines = notebook.metadata["source_map"]
+    return [
+        _cell(path, node, first_line, lines)
+        for node, first_line in zip(notebook.cells, first_lines, strict=True)
+    ]
 
 
 def _read_master(path: Path) -> str:
@@ -257,10 +260,6 @@ def _definitions(cell: MasterCell) -> dict[str, str]:
 
 _HINT_OPENING = re.compile(r":::\{hint\}\s*(?P<question>.*?)\s*")
 _HINT_CLOSING = ":::"
-_FIGURE_REFERENCE = re.compile(r"!\[\]\((?P<path>[^)\s]+\.svg)\)")
-"""Matches a line of a master that shows a figure. The alternative text is in the SVG, not in this line."""
-DIGEST_KEYWORD = b"Drawn from SVG"
-_SVG = "{http://www.w3.org/2000/svg}"
 
 
 @dataclass(frozen=True)
@@ -326,6 +325,12 @@ def _nested(hints: list[_Hint]) -> str:
             f"<blockquote>\n\n{inner}\n</blockquote>\n</details>\n"
         )
     return text.rstrip("\n")
+
+
+_FIGURE_REFERENCE = re.compile(r"!\[\]\((?P<path>[^)\s]+\.svg)\)")
+"""Matches a line of a master that shows a figure. The alternative text is in the SVG, not in this line."""
+DIGEST_KEYWORD = b"Drawn from SVG"
+_SVG = "{http://www.w3.org/2000/svg}"
 
 
 def _with_attached_figures(folder: Path, markdown: str) -> tuple[str, dict[str, dict[str, str]]]:

@@ -164,11 +164,11 @@ def _solution_text(exercise: str, code: list[str], why: Path) -> str:
         raise MasterError(
             why, None, f"'{_OTHER_WAY}' has another form.", "Write a paragraph, then one block ```python."
         )
-    said = {
+    fields = {
         "exercise": exercise,
         "code": code,
         "why": " ".join(reason.split()),
         "other_way": " ".join(words.split()),
         "other_code": example.strip("\n"),
     }
-    return json.dumps(said, indent=1, ensure_ascii=False) + "\n"
+    return json.dumps(fields, indent=1, ensure_ascii=False) + "\n"

@@ -371,8 +371,8 @@ def _with_set_up_cells(master: Path, cells: list[MasterCell]) -> list[MasterCell
     added = []
     if address:
         notebook = chapter_path(root, master).relative_to(root).as_posix()
-        ways = " · ".join(f"[{name}]({link})" for name, link in service_links(address, notebook).items())
-        text = f"Nothing installed? Open this notebook in {ways}."
+        services = " · ".join(f"[{name}]({link})" for name, link in service_links(address, notebook).items())
+        text = f"Nothing installed? Open this notebook in {services}."
         added.append(MasterCell(CellRole.TEXT, text, line=0, body_line=0))
     archive = course.archive(address) if address else ""
     source = _SET_UP_SOURCE.format(part=SET_UP_CODE, archive=archive).rstrip("\n")
