@@ -1,7 +1,6 @@
 """Lists for an author the faults of an exercise that the project's tests and linters would report.
 
-The faults include those of the master by the house rules for masters, such as a limit on the words before the first
-task.
+They include each house rule that the lab's master breaks, such as the limit on the words before the first task.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """``autograder execute``: runs every notebook of the course, and reports each problem.
 
-A master is expected to earn full marks, a student's notebook no points. For each notebook with a problem, a page shows
-the notebook with its problems.
+A master is expected to earn full marks, a student's notebook no points. A notebook with problems is written as an HTML
+page that shows the problems next to the cells.
 """
 
 from __future__ import annotations

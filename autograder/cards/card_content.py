@@ -1,7 +1,7 @@
 """Prepares the content of both kinds of card, HTML and text, as strings that are safe to show.
 
-If a text was seen that differs a little from the expected text, the content also contains the characters that are
-missing or too much. Two long texts look equal when only a comma is missing.
+If a text differs a little from the expected text, the content also contains the characters that are missing or too
+much, because two long texts look equal if only a comma is missing.
 """
 
 from __future__ import annotations

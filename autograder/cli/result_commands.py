@@ -1,6 +1,6 @@
 """The commands for instructors about graded work: report, export to the LMS, similar answers, changed points, appeals.
 
-For an appeal, they list a student's results, save one check with its evidence, and judge it again.
+For an appeal, an instructor lists a student's results, saves one check with its evidence, and judges the check again.
 """
 
 from __future__ import annotations
