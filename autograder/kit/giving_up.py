@@ -127,7 +127,7 @@ def await_it(bench: Bench) -> None:
 # --- without a server ----------------------------------------------------------------------------------------
 
 
-def says_that_it_waits(part: Part) -> bool:
+def _says_that_it_waits(part: Part) -> bool:
     """Return True if the subject repeatedly reports that it waits, and not only at its beginning.
 
     The beginning is the moment when the judge first saw the client, and not the start of the program, because on a busy
@@ -150,7 +150,7 @@ def _moments(part: Part, outcome: Outcome) -> set[int]:
 
 def goes_on_waiting(part: Part) -> bool:
     """Return True if the subject waits forever and may do so: it reports that it waits, and was given no patience."""
-    return bool(part.events) and part.ending is None and patience(part) is None and says_that_it_waits(part)
+    return bool(part.events) and part.ending is None and patience(part) is None and _says_that_it_waits(part)
 
 
 def waits_in_silence(part: Part) -> bool:
@@ -172,7 +172,7 @@ def objection(part: Part, others: Sequence[Part] = (), role: str = "") -> str:
         if role and not part.endpoints(role):
             return "looks for no server"
         return "" if goes_on_waiting(part) else f"still waiting after {GIVE_UP_LIMIT:g} s"
-    if value := returned_answer(part):
+    if value := _returned_answer(part):
         return f"returned {value}, as if that were the answer"
     return _unsaid(part, others) or broken_patience(part)
 
@@ -195,7 +195,7 @@ def silent_end(part: Part, others: Sequence[Part], noun: str) -> Advice | None:
     """
     if part.ending is None:
         return None
-    if value := returned_answer(part):
+    if value := _returned_answer(part):
         return Advice(
             f"If the {noun} is not available, your function returns {value}, which its caller takes for the answer.",
             "Raise TimeoutError instead, with a message that contains the words `not available`.",
@@ -211,7 +211,7 @@ def silent_end(part: Part, others: Sequence[Part], noun: str) -> Advice | None:
     )
 
 
-def returned_answer(part: Part) -> str:
+def _returned_answer(part: Part) -> str:
     """Return the number or text that a function returned; empty if the value does not look like an answer."""
     value = part.returned or ""
     is_answer = re2.fullmatch(r"-?\d+|['\"].*\pL.*", value) and not NOT_AVAILABLE.is_said_in(value)
@@ -279,10 +279,8 @@ def looked_for_nobody(parts: Iterable[Part]) -> bool:
     whether the function looked for a server.
     """
     return all(
-        part.ending is not None and part.ending.name in ("exited", "returned") and not _was_seen(part)
+        part.ending is not None
+        and part.ending.name in ("exited", "returned")
+        and not (part.had_node or any(map(part.endpoints, _CLIENTS)) or any(map(part.of, _AT_WORK)))
         for part in parts
     )
-
-
-def _was_seen(part: Part) -> bool:
-    return part.had_node or any(map(part.endpoints, _CLIENTS)) or any(map(part.of, _AT_WORK))

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from autograder.kit.evidence import Part
 
 
-ERROR_GOAL_TERMINATED = 3
+_ERROR_GOAL_TERMINATED = 3
 """The return code of action_msgs/srv/CancelGoal for a goal that has already ended."""
 SUCCEEDED, CANCELED, ABORTED = 4, 5, 6
 """The numbers of three statuses, as defined in action_msgs/msg/GoalStatus."""
@@ -113,7 +113,7 @@ def goal(part: Part, number: int) -> Goal:
         answered_at=data.get("goal_answer", {}).get("arrived"),
         cancel_answered_at=data.get("cancel_answer", {}).get("arrived"),
         cancel_accepted=data.get("cancel_answer", {}).get("accepted"),
-        cancelled_too_late=data.get("cancel_answer", {}).get("return_code") == ERROR_GOAL_TERMINATED,
+        cancelled_too_late=data.get("cancel_answer", {}).get("return_code") == _ERROR_GOAL_TERMINATED,
         before_cancel=sum(place < split for place in places),
         unread=sum(split < place < answered for place in places),
         seconds=by_kind["result_heard"].t - by_kind["goal_answer"].t if "result_heard" in by_kind else None,
@@ -132,7 +132,7 @@ def status_text(number: int | None) -> str:
     return "none" if number is None else f"{STATUS.get(number, '?')} ({number})"
 
 
-_STATUS = re2.compile(r"(?i)status")
+_STATUS_WORD = re2.compile(r"(?i)status")
 _STATUS_NUMBER = re2.compile(r"(^\D*|[:=]\s*|\bis )([0-6])\b")
 """Matches a status number in the text after the word ``status``: the first number in it, or one after a colon, an
 equals sign or ``is``.
@@ -175,7 +175,7 @@ class Outcome:
             part: The run that ended with this outcome.
             others: Runs that ended with another outcome.
         """
-        usual = shapes(others)
+        usual = _shapes(others)
         return next((line for line in self.lines(part) if shape(line) not in usual), "")
 
     def missing(self, part: Part, others: Sequence[Part]) -> str:
@@ -220,13 +220,13 @@ def shape(line: str) -> str:
     return " ".join(_NUMBERS.sub(" ", _with_status_names(line).lower()).split())
 
 
-def shapes(parts: Iterable[Part]) -> set[str]:
+def _shapes(parts: Iterable[Part]) -> set[str]:
     """Return the :func:`shape` of each line in the given runs."""
     return {shape(line) for part in parts for line in all_lines(part)}
 
 
 def _with_status_names(line: str) -> str:
-    word = _STATUS.search(line)
+    word = _STATUS_WORD.search(line)
     if word is None:
         return line
     behind = _STATUS_NUMBER.sub(lambda found: found[1] + STATUS[int(found[2])], line[word.end() :])
@@ -236,6 +236,6 @@ def _with_status_names(line: str) -> str:
 def _most_telling(part: Part, others: Sequence[Part]) -> str:
     """Return the last line whose words occur in no other run; if there is none, the last line with words."""
     lines = [line for line in all_lines(part) if re2.search(r"\pL", line) and line != "None"]
-    usual = shapes(others)
+    usual = _shapes(others)
     new = [line for line in lines if shape(line) not in usual]
     return (new or lines or [""])[-1]

@@ -1,6 +1,6 @@
 """The kinds of runners, which build and start a path that is given as the subject, and the reports that they print.
 
-A report is one line of JSON in the output of the program that builds or launches the path. The judge observes the
+Each report is one line of JSON in the output of the program that builds or launches the path. The judge observes the
 subject's programs on the network. The reports add facts that are not visible there, such as the line at which the
 build failed and the command lines of the processes that a launch started.
 
@@ -99,6 +99,7 @@ Runner = RunsProgram | RunsPrograms | ServesInterface | Launches | LaunchesFromP
 
 
 WORKSPACE_MARK = REPORTS[0]
+"""The beginning of a line that reports on a workspace."""
 MAX_LINE = 3_900
 """The maximum length of a report in bytes; the judge reads lines of at most 4,000."""
 _LIMITS = (2_500, 1_200, 600, 200, 50)
@@ -220,22 +221,19 @@ def _shortened(package: PackageReport, limit: int) -> PackageReport:
     return replace(
         package,
         programs=package.programs[:few],
-        interfaces=[_left_out(i) if len(i.text or "") > limit else i for i in package.interfaces[:few]],
+        interfaces=[
+            replace(i, text=None) if len(i.text or "") > limit else i for i in package.interfaces[:few]
+        ],
         # Dependencies whose names begin with rosidl_ come first, because a task may require them.
         dependencies=sorted(package.dependencies, key=lambda name: not name.startswith("rosidl_"))[
             : max(few, 5)
         ],
-        modules=package.modules[
-            : limit // 60
-        ],  # Empty for the smallest limit, because other fields need the space.
+        # For the smallest limit, these two lists are empty, because other fields need the space.
+        modules=package.modules[: limit // 60],
         commented=package.commented[: limit // 60],
         installed=package.installed[:few],
         launch_files=package.launch_files[: max(few, 5)],
     )
-
-
-def _left_out(interface: Interface) -> Interface:
-    return replace(interface, text=None)
 
 
 def _written(report: WorkspaceReport) -> str:
@@ -280,6 +278,7 @@ def _parsed_report(text: str) -> WorkspaceReport | None:
 
 
 PROCESS_MARK = REPORTS[1]
+"""The beginning of a line that reports a process of a launch."""
 
 
 @dataclass(frozen=True)
@@ -322,10 +321,10 @@ def _parsed_process(text: str) -> Process | None:
 
 def remappings(argv: Sequence[str]) -> list[tuple[str, str]]:
     """Return the remapping rules ``from:=to`` of a command line, as pairs of names."""
-    return [(old, new) for _, old, new in placed_remappings(argv)]
+    return [(old, new) for _, old, new in _placed_remappings(argv)]
 
 
-def placed_remappings(argv: Sequence[str]) -> list[tuple[range, str, str]]:
+def _placed_remappings(argv: Sequence[str]) -> list[tuple[range, str, str]]:
     """Return the remapping rules ``from:=to`` of a command line, each with the indexes of its arguments.
 
     After ``--ros-args``, a rule follows ``-r`` or ``--remap``. Before it, an argument ``from:=to`` alone is a rule: rcl
@@ -362,7 +361,7 @@ def as_run(
     own = argv[: argv.index("--ros-args")] if "--ros-args" in argv else argv
     for place, word in enumerate(own, 1):
         if found := _OF_A_PACKAGE.search(word) or _OF_A_PACKAGE.search(_path_of_program(word, programs)):
-            rules = [at for at, *rule in placed_remappings(argv) if leads_there(*rule)]
+            rules = [at for at, *rule in _placed_remappings(argv) if leads_there(*rule)]
             gone = {at for places in rules for at in places}
             gone |= {at + more for at, word in enumerate(argv) if word == "--params-file" for more in (0, 1)}
             rest = [one for at, one in enumerate(argv) if at >= place and at not in gone]

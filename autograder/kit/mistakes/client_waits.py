@@ -43,7 +43,7 @@ class Wait:
         """Return True if the client sent a request or a goal in a run."""
         return part.first(self.asks) is not None
 
-    def had_server(self, evidence: Evidence) -> list[Part]:
+    def _had_server(self, evidence: Evidence) -> list[Part]:
         """Return the runs in which the client must not report that the server is missing.
 
         These are the runs with a server in which the client sent a request. But in the first run the server comes late,
@@ -69,7 +69,7 @@ class Wait:
 
     def fault(self, evidence: Evidence) -> str:
         """Return in words what is wrong in the run without a server; empty if the client gives up as it should."""
-        return giving_up.objection(evidence.part(self.absent), self.had_server(evidence), self.role)
+        return giving_up.objection(evidence.part(self.absent), self._had_server(evidence), self.role)
 
     def gives_up(self, evidence: Evidence, wrong: str = "") -> Finding:
         """Decide whether the client handles a missing server well, in one of two ways.
@@ -183,6 +183,6 @@ class Wait:
         def recognise(evidence: Evidence) -> Advice | None:
             if not self.asked(evidence.part(self.served[0])):
                 return None
-            return giving_up.silent_end(evidence.part(self.absent), self.had_server(evidence), self.noun)
+            return giving_up.silent_end(evidence.part(self.absent), self._had_server(evidence), self.noun)
 
         return Mistake("silent_end", recognise, certain)

@@ -59,7 +59,7 @@ def _recogniser(crash: Crash | Elsewhere) -> Mistake:
 
 def what_and_where(traceback: str) -> str:
     """Return a text for a card: the exception that was raised, and the student's line that led to it."""
-    line = raised_line(traceback)
+    line = _raised_line(traceback)
     frames = [found for found in _FRAME.finditer(traceback) if not is_a_library(found["file"])]
     where = f" (line {frames[-1]['line']}, in {frames[-1]['function']})" if frames else ""
     if not line or line.startswith("Traceback"):
@@ -167,7 +167,7 @@ def _got_an_answer(part: Part) -> bool:
 
 def _stopped_at(part: Part, ending: Event) -> float:
     """Return when the client's traceback ended; if it has none, when the client ended."""
-    outputs = (event for event in part.of("output") if raised_line(part.traceback) in event.data["text"])
+    outputs = (event for event in part.of("output") if _raised_line(part.traceback) in event.data["text"])
     return (next(outputs, ending) if part.traceback else ending).t
 
 
@@ -285,14 +285,14 @@ def raised_lines(traceback: str) -> list[str]:
     return [line for line in dropwhile(lambda line: not line[:1].strip(), behind) if line.strip()]
 
 
-def raised_line(traceback: str) -> str:
+def _raised_line(traceback: str) -> str:
     """Return the last exception's type and the first line of its message, as one line; empty if there is none."""
     return next(iter(raised_lines(traceback)), "")
 
 
 def on_purpose(traceback: str) -> bool:
     """Return True if the student's code raised the exception itself, or if its type is not in :data:`SLIPS`."""
-    line = raised_line(traceback)
+    line = _raised_line(traceback)
     return bool(line) and (meant(traceback) or not line.startswith(SLIPS))
 
 

@@ -37,7 +37,7 @@ _SPINS = {
 
 
 @dataclass(frozen=True)
-class StackFrame:
+class _StackFrame:
     """One call in a stack; ``rclpy`` is the file of rclpy that contains the call, and empty for other code."""
 
     rclpy: str
@@ -45,18 +45,18 @@ class StackFrame:
     line: str = ""
 
 
-Stack = Sequence[StackFrame]
+Stack = Sequence[_StackFrame]
 
 
-def stacks(part: Part) -> list[Stack]:
+def _stacks(part: Part) -> list[Stack]:
     """Return the stacks of the subject's threads at the time when it hung, innermost call first."""
-    found: list[list[StackFrame]] = []
+    found: list[list[_StackFrame]] = []
     for event in part.of("stack"):
         for line in str(event.data["text"]).splitlines():
             if "most recent call first" in line:
                 found.append([])
             elif (match := _FRAME.match(line)) and found:
-                found[-1].append(StackFrame(_rclpy_file(match["file"]), match["function"], match["line"]))
+                found[-1].append(_StackFrame(_rclpy_file(match["file"]), match["function"], match["line"]))
     return [stack for stack in found if stack]
 
 
@@ -86,7 +86,7 @@ def _spins(stack: Stack) -> bool:
 
 def something_spins(part: Part) -> bool:
     """Return True if one of the subject's threads was spinning when the subject hung."""
-    return any(map(_spins, stacks(part)))
+    return any(map(_spins, _stacks(part)))
 
 
 def _spins_in_callback(stack: Stack) -> bool:
@@ -209,7 +209,7 @@ _HANGS: tuple[tuple[str, Recognise, str, str], ...] = (
 
 def _mistake(key: str, fits: Recognise, text: str, next_step: str) -> Mistake:
     def recognise(evidence: Evidence) -> Advice | None:
-        found = [stack for part in evidence for stack in stacks(part)]
+        found = [stack for part in evidence for stack in _stacks(part)]
         if not found or not fits(found):
             return None
         blocked = _that(found, _blocks)

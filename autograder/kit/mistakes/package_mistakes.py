@@ -111,10 +111,6 @@ BUILD = (
 """Mistakes that keep a workspace from being built."""
 
 
-BEGINNING = {Pace.FAST: 4.0, Pace.REAL_TIME: 15.0}
-"""For each pace, the time limit in seconds of wall time until a program or its build must print a first line."""
-
-
 @dataclass(frozen=True)
 class EntryPoint:
     """The entry point in setup.py that a task requires.
@@ -140,7 +136,8 @@ class EntryPoint:
         return f"'{self.program} = {self.package}.{self.module}:main'"
 
 
-FORM = "a string of this form: executable = package.module:function, with no slash and no parentheses"
+BEGINNING = {Pace.FAST: 4.0, Pace.REAL_TIME: 15.0}
+"""For each pace, the time limit in seconds of wall time until a program or its build must print a first line."""
 
 
 def await_build(bench: Bench) -> None:
@@ -154,6 +151,9 @@ def await_build(bench: Bench) -> None:
 def package_of(report: WorkspaceReport | None, name: str) -> PackageReport | None:
     """Return a workspace's package with this name; None if there is no such package or no workspace."""
     return next((package for package in report.packages if package.name == name), None) if report else None
+
+
+FORM = "a string of this form: executable = package.module:function, with no slash and no parentheses"
 
 
 def entry_point(evidence: Evidence, entry: EntryPoint) -> Advice | None:
@@ -241,7 +241,9 @@ def wrong_folder(evidence: Evidence, entry: EntryPoint) -> Advice | None:
     if report is None or own is None or not report.complete or f"{package}/{file}" in own.modules:
         return None
     lost = next((known for known in own.modules if PurePosixPath(known).name == file), None)
-    if lost is None or any(_module(named) == _dotted(lost) for named in own.programs):
+    if lost is None or any(
+        _module(named) == lost.removesuffix(".py").replace("/", ".") for named in own.programs
+    ):
         return None
     return Advice(
         f"{file} is not in the folder with the package's modules, but at src/{package}/{lost}.",
@@ -274,8 +276,3 @@ def lost_entry_point(report: WorkspaceReport | None, package: str, program: str)
 def _module(entry: str) -> str:
     """Return the module of an entry point such as ``name = module:function``."""
     return entry.partition("=")[2].partition(":")[0].strip()
-
-
-def _dotted(file: str) -> str:
-    """Return a file's path as the name with which Python imports it."""
-    return file.removesuffix(".py").replace("/", ".")

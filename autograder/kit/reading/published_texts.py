@@ -67,7 +67,7 @@ class Publisher:
     @cached_property
     def counters(self) -> list[int]:
         """The last number of each text, if it is a whole number; texts before the count began are left out."""
-        return counters(self.texts[self.greetings :])
+        return _counters(self.texts[self.greetings :])
 
     @cached_property
     def templates(self) -> list[str]:
@@ -82,7 +82,7 @@ class Publisher:
         receives them only by chance.
         """
         begins = self.templates.index(Counter(self.templates).most_common(1)[0][0]) if self.texts else 0
-        around = last_numbers(self.texts[begins - 1 : begins + 1]) if begins else []
+        around = _last_numbers(self.texts[begins - 1 : begins + 1]) if begins else []
         # From 09 to 10 the template changes, because 09 is not a whole number in its usual form. But the count goes on,
         # so the texts up to 09 are not greetings.
         leads_on = (
@@ -110,11 +110,6 @@ class Publisher:
         return (number - self.counters[0]) // self.step if self.step else 0
 
     @property
-    def has_numbers_alone(self) -> bool:
-        """True if the texts of the messages are whole numbers and nothing else."""
-        return self.templates[:1] == ["#"]
-
-    @property
     def went_on(self) -> bool:
         """True if the publisher published for so long that the judge cannot have missed it by chance."""
         if not self.messages:
@@ -131,13 +126,6 @@ class Publisher:
         """The times between successive messages, in seconds of the subject's time."""
         times = simulated(self.messages) or sent_times(self.messages)
         return [after - before for before, after in pairwise(times)]
-
-    def goes_on_slowly(self, expected: Publisher) -> bool:
-        """Return True if the publisher is slower than the reference solution and published until the run's end."""
-        if self.part.ending is not None or len(self.pauses) < SURE:
-            return False
-        silent = self.part.events[-1].moment - self.messages[-1].moment
-        return min(self.pauses) >= SLOWLY * max(expected.pauses) and silent <= SLOWLY * max(self.pauses)
 
     @property
     def endpoints(self) -> dict[str, str]:
@@ -180,17 +168,14 @@ def template(text: str) -> str:
     return str(_NUMBER.sub(lambda number: "#" if _WHOLE.fullmatch(number[0]) else number[0], text))
 
 
-def counters(texts: Sequence[str]) -> list[int]:
+def _counters(texts: Sequence[str]) -> list[int]:
     """Return the last number of each text, if it is a whole number."""
-    return [int(number) for number in last_numbers(texts) if _WHOLE.fullmatch(number)]
+    return [int(number) for number in _last_numbers(texts) if _WHOLE.fullmatch(number)]
 
 
-def last_numbers(texts: Sequence[str]) -> list[str]:
+def _last_numbers(texts: Sequence[str]) -> list[str]:
     """Return the last number of each text, as it is written; texts without a number are left out."""
     return [numbers[-1] for text in texts if (numbers := _NUMBER.findall(text))]
-
-
-_UNFILLED = re2.compile(r"\{[^{}]*\}|%[ds]|\(?\bself\.\w+\)?")
 
 
 def says_text(seen: Publisher, expected: Publisher) -> Finding:
@@ -216,7 +201,7 @@ def counts(seen: Publisher, expected: Publisher) -> Finding:
         raise ValueError("the reference solution does not count, so leave out heard.counts(...)")
     # A slow publisher sent fewer numbers; the rate criterion judges that.
     enough = seen.enough - seen.greetings
-    all_of_them = len(numbers) >= enough or (bool(numbers) and seen.goes_on_slowly(expected))
+    all_of_them = len(numbers) >= enough or (bool(numbers) and _goes_on_slowly(seen, expected))
     steady = all_of_them and not _slip(numbers, step)
     found = ", ".join(map(str, numbers)) if len(numbers) < enough else _around(numbers, _slip(numbers, step))
     if steady and (more := _uncounted(seen, expected)):
@@ -225,6 +210,14 @@ def counts(seen: Publisher, expected: Publisher) -> Finding:
     if passed and (lost := seen.number_of_first - 1):
         found += f" after {counted(lost, 'message')} before anybody could hear"
     return Finding(passed, _row(expected.counters[:5]), found or "no whole number arrived")
+
+
+def _goes_on_slowly(seen: Publisher, expected: Publisher) -> bool:
+    """Return True if the publisher is slower than the reference solution and published until the run's end."""
+    if seen.part.ending is not None or len(seen.pauses) < SURE:
+        return False
+    silent = seen.part.events[-1].moment - seen.messages[-1].moment
+    return min(seen.pauses) >= SLOWLY * max(expected.pauses) and silent <= SLOWLY * max(seen.pauses)
 
 
 def field_typo(seen: Publisher, _: Publisher) -> Advice | None:
@@ -236,6 +229,10 @@ def field_typo(seen: Publisher, _: Publisher) -> Advice | None:
         "Set the only field of a String, as in `message.data = your_text`. Check the spelling: String(...) ignores a "
         "misspelled keyword silently.",
     )
+
+
+_UNFILLED = re2.compile(r"\{[^{}]*\}|%[ds]|\(?\bself\.\w+\)?")
+"""Matches a variable of the program that Python did not replace by its value."""
 
 
 @dataclass(frozen=True)
@@ -273,7 +270,7 @@ class Counting:
             return None
         made = (
             "make a new message with the counter"
-            if expected.has_numbers_alone
+            if expected.templates[:1] == ["#"]  # The texts are numbers and nothing else.
             else "make a new string from the counter, with an f-string"
         )
         return Advice(
@@ -339,7 +336,7 @@ def _first_number(seen: Publisher, expected: Publisher) -> int | None:
     The judge knows how many messages it missed, because DDS numbers them, and counts back from the received number. The
     result may lie before the reference's first number, if some of the missed messages contained no number.
     """
-    first = counters(seen.texts[seen.greetings :][:1])
+    first = _counters(seen.texts[seen.greetings :][:1])
     return first[0] - expected.step * (seen.number_of_first - 1) if first else None
 
 

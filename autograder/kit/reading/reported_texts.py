@@ -1,8 +1,8 @@
 """Draws the texts that the judge sends to a listener, and finds texts and numbers in the lines that a subject reports.
 
 No program can guess the texts, and careless programs change some of them. Each line that a listener printed, logged or
-returned is compared with the texts: the line may report such a text, change it,
-repeat it, or invent a text that was never sent.
+returned is compared with the texts: the line may report a text, change it, repeat it, or invent a text that was never
+sent.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ moment.
 """
 GREETING = "Hello, world!"
 """The text with which many talkers begin their messages, and which some of the judge's texts contain."""
-KINDS = 6
+_UNUSUAL = 6
 """The number of unusual texts in each series, not counting the text that comes twice."""
 
 _WORDS = (
@@ -62,7 +62,7 @@ def random_texts(random: Random) -> list[str]:
     for row in (*at_pace, range(count - SINGLY, count)):
         twice = random.choice(row[:-1])
         rest = [place for place in row if place not in (twice, twice + 1)]
-        greets, greeted, long, marks, far, single = random.sample(rest, KINDS)
+        greets, greeted, long, marks, far, single = random.sample(rest, _UNUSUAL)
         texts[twice + 1] = texts[twice]
         texts[greets] = f"{GREETING} {texts[greets].rpartition(' ')[2]}"
         texts[greeted] = f"{texts[greeted]} {GREETING}"
@@ -78,9 +78,7 @@ _OPENING, _CLOSING = tuple("\"'“‘«`"), tuple("\"'”’»`")
 _A_TALKERS = re2.compile(r"\W*[Hh]ello,? [Ww]orld!?\W*\d+\W*")
 """Matches texts of talkers in this course and in the official tutorials."""
 _TWO_WORDS = re2.compile(r"\b([a-z]+) ([a-z]+) \d{4}\b")
-"""Matches the two random words and the number in the judge's texts; see
-:func:`autograder.kit.reading.reported_texts.random_texts`.
-"""
+"""Matches the two random words and the number in a text of :func:`random_texts`."""
 _BRACES = re2.compile(r"\{[\pL_][^{}]*\}")
 """Matches a variable's name in braces, which an f-string would have replaced by the value."""
 _BYTE = ("\\x00", "\0")
@@ -145,7 +143,7 @@ def has_much_of(line: str, text: str) -> bool:
 
 
 @dataclass(frozen=True)
-class Frame:
+class _Frame:
     """The words before and after a received text in a program's lines, such as "I heard: ".
 
     Attributes:
@@ -164,20 +162,15 @@ class Frame:
         return line[len(self.before) : len(line) - len(self.after)]
 
     @property
-    def is_telling(self) -> bool:
-        """Return True if the surrounding words are too long to appear in other lines by chance."""
-        return len(self.before.strip()) > 3
-
-    @property
-    def has_quotes(self) -> bool:
-        """Return True if the surrounding words put the text in quotation marks."""
+    def _has_quotes(self) -> bool:
+        """True if the surrounding words put the text in quotation marks."""
         return self.before.endswith(_OPENING) and self.after.startswith(_CLOSING)
 
     @property
     def quotes(self) -> bool:
-        """Return True if the quotation marks belong to the text, and not to every line, as in JSON or ``msg="…"``."""
+        """True if the quotation marks belong to the text, and not to every line, as in JSON or ``msg="…"``."""
         rest = self.before[:-1]
-        return self.has_quotes and not rest.endswith("=") and not any(mark in rest for mark in _OPENING)
+        return self._has_quotes and not rest.endswith("=") and not any(mark in rest for mark in _OPENING)
 
     def is_claim(self, content: str) -> bool:
         """Return True if a line with the surrounding words and this content claims to report a received text.
@@ -185,7 +178,7 @@ class Frame:
         Many programs begin each line with their name, even a line about what they wait for. So a content without
         quotation marks counts only if it looks like a talker's text.
         """
-        return self.quotes or (self.has_quotes and not content) or _A_TALKERS.fullmatch(content) is not None
+        return self.quotes or (self._has_quotes and not content) or _A_TALKERS.fullmatch(content) is not None
 
 
 def invented(part: Part, sent: Sequence[str]) -> list[str]:
@@ -224,7 +217,7 @@ def changed(part: Part, sent: Sequence[str], text: str) -> list[str]:
     ]
 
 
-def _frames(part: Part, sent: Sequence[str]) -> set[Frame]:
+def _frames(part: Part, sent: Sequence[str]) -> set[_Frame]:
     spoken = part.said()
     found = (_frame(line, text) for text in sent if (line := _claim(spoken, text)) is not None)
     return {frame for frame in found if frame is not None}
@@ -235,11 +228,12 @@ def _others(part: Part, sent: Sequence[str]) -> list[str]:
     return [line for line in part.said() if not any(_frame(line, text) for text in sent)]
 
 
-def _in_frames(part: Part, sent: Sequence[str], frames: set[Frame]) -> Iterator[tuple[str, Frame, str]]:
+def _in_frames(part: Part, sent: Sequence[str], frames: set[_Frame]) -> Iterator[tuple[str, _Frame, str]]:
     for line in _others(part, sent):
         for frame in frames:
             content = frame.content(line)
-            if content is not None and frame.is_telling:
+            # Fewer than four characters before the text may begin other lines by chance.
+            if content is not None and len(frame.before.strip()) > 3:
                 yield line, frame, content
 
 
@@ -299,11 +293,11 @@ def _by_channel(part: Part) -> Iterator[tuple[tuple[str, ...], str]]:
             yield (event.kind, event.name, str(event.data.get("level", "")), str(logged)), line
 
 
-def _frame(line: str, text: str) -> Frame | None:
+def _frame(line: str, text: str) -> _Frame | None:
     for form in _forms(text):
         before, found, after = line.partition(form)
         if found:
-            return Frame(before, after)
+            return _Frame(before, after)
     return None
 
 

@@ -94,7 +94,7 @@ def reports(part: Part) -> bool:
     """Return True if the client reports the last answer. A function must also return the answer."""
     given = part.of("response")
     said = bool(given) and mentions(part.said(after=given[-1]), answers(part)[-1])
-    return said and not says_otherwise(part)
+    return said and not _says_otherwise(part)
 
 
 def returns_another(part: Part) -> bool:
@@ -103,7 +103,7 @@ def returns_another(part: Part) -> bool:
     return bool(given) and part.returned not in (None, str(given[-1]))
 
 
-def says_otherwise(part: Part) -> bool:
+def _says_otherwise(part: Part) -> bool:
     """Return True if the client returns or prints something that contradicts the last answer.
 
     The result is True even if the client reports the answer rightly elsewhere. An exception in a notebook's function
@@ -150,7 +150,7 @@ def reports_the_sum(evidence: Evidence) -> Finding:
         (
             p
             for p in ClientSeen(evidence).served
-            if says_otherwise(p) or not (reports(p) or has_reported(p, calls))
+            if _says_otherwise(p) or not (reports(p) or has_reported(p, calls))
         ),
         None,
     )
@@ -177,11 +177,11 @@ def gives_up_in_time(evidence: Evidence) -> Finding:
 
     The client may report the missing service and end, or it may repeatedly report that it waits.
     """
-    alone = own_sum(evidence.part(ABSENT)) is not None
+    alone = _own_sum(evidence.part(ABSENT)) is not None
     return WAIT.gives_up(evidence, "reported a sum although no service answered" if alone else "")
 
 
-def own_sum(part: Part) -> int | None:
+def _own_sum(part: Part) -> int | None:
     """Return the sum that the client reported although no service existed, so that it added the numbers itself.
 
     Return None if there is no such sum. A sum that equals one of the inputs does not count, because it proves nothing.

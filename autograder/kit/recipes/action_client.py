@@ -93,10 +93,10 @@ more.
 """
 
 
-def scenario(bench: Bench) -> None:
+def _scenario(bench: Bench) -> None:
     """Make four runs: first a late server; then, in random order, a refused goal, an aborted goal, and no server."""
-    inputs = begin(bench, LATE)
-    if not late(bench, inputs, late_at_first(bench)) or called_before_server(bench.seen()):
+    inputs = _begin(bench, LATE)
+    if not _late(bench, inputs, late_at_first(bench)) or called_before_server(bench.seen()):
         return
     first, impatient = bench.seen(), False
     for run in bench.random.sample((refused, aborted, unserved), 3):
@@ -105,10 +105,10 @@ def scenario(bench: Bench) -> None:
             impatient = may_be_impatient(bench)
     if impatient and first.of("goal"):
         bench.again(LATE)
-        late(bench, inputs, LATENESS, answers_late(bench))
+        _late(bench, inputs, LATENESS, answers_late(bench))
 
 
-def begin(bench: Bench, name: str) -> dict[str, Any]:
+def _begin(bench: Bench, name: str) -> dict[str, Any]:
     """Begin a part, and return the inputs with which the subject is started."""
     order = bench.random.randint(*ORDERS[name])
     inputs = {
@@ -120,12 +120,12 @@ def begin(bench: Bench, name: str) -> dict[str, Any]:
     return inputs
 
 
-def start(bench: Bench, inputs: Mapping[str, Any]) -> None:
+def _start(bench: Bench, inputs: Mapping[str, Any]) -> None:
     """Start the subject."""
     bench.start(inputs["order"], patience_sec=inputs[PATIENCE])
 
 
-def late(bench: Bench, inputs: Mapping[str, Any], lateness: float, held: float = ANSWERS_LATE) -> bool:
+def _late(bench: Bench, inputs: Mapping[str, Any], lateness: float, held: float = ANSWERS_LATE) -> bool:
     """Make one run with a late server. Return True if the subject finished its work.
 
     Args:
@@ -137,10 +137,10 @@ def late(bench: Bench, inputs: Mapping[str, Any], lateness: float, held: float =
     """
 
     def meet(seconds: float, answer: float) -> bool:
-        return meets_late_server(bench, inputs, seconds, answer, SHOWN_WITHIN)
+        return _meets_late_server(bench, inputs, seconds, answer, SHOWN_WITHIN)
 
     def in_haste() -> bool:
-        return meets_late_server(bench, inputs, SOON, ANSWERS_SOON, HASTE)
+        return _meets_late_server(bench, inputs, SOON, ANSWERS_SOON, HASTE)
 
     done = meets_late_action(bench, meet, ["goal"], lateness, held)
     done = again_while(bench, missed_a_result, in_haste, done)
@@ -148,7 +148,7 @@ def late(bench: Bench, inputs: Mapping[str, Any], lateness: float, held: float =
     return done
 
 
-def meets_late_server(
+def _meets_late_server(
     bench: Bench, inputs: Mapping[str, Any], lateness: float, held: float, shown_within: Mapping[Pace, float]
 ) -> bool:
     """Start the subject, and its server some seconds later. Return True if the subject finished its work.
@@ -162,7 +162,7 @@ def meets_late_server(
             show one.
     """
     action, type_name = bench.reference.only("action_client")
-    start(bench, inputs)
+    _start(bench, inputs)
     if not bench.await_endpoint("action_client", action):
         return bench.await_end(0.0)
     bench.let_wait(lateness)
@@ -170,7 +170,7 @@ def meets_late_server(
     return works_on_a_goal(bench, server, "succeeded", FEEDBACKS, shown_within[bench.pace])
 
 
-def meets_server(
+def _meets_server(
     bench: Bench, begin_it: Callable[[], object], *, accept: bool = True, prepared: bool = False
 ) -> ActionCounterpart:
     """Start the subject, and its server once the judge has discovered the subject. Return the server.
@@ -195,10 +195,10 @@ def aborted(bench: Bench, first: Part) -> None:
     """Make one run in which the goal is aborted. ``first`` is the run with the late server."""
     if bench.before and not aborted_as_seen(bench.before) and bench.keep(ABORTED):
         return
-    inputs = begin(bench, ABORTED)
+    inputs = _begin(bench, ABORTED)
 
     def meet() -> bool:
-        server = meets_server(bench, lambda: start(bench, inputs), prepared=needs_no_search(bench, first))
+        server = _meets_server(bench, lambda: _start(bench, inputs), prepared=needs_no_search(bench, first))
         return works_on_a_goal(bench, server, "aborted", 1, HASTE[bench.pace])
 
     meets_present(bench, meet, "goal", known=bool(first.of("goal")))
@@ -250,7 +250,7 @@ def works_on_a_goal(
         server.await_result_request(END_LIMIT[bench.pace])
         hold_back(bench, "result_request")
         server.finish(status, sequence=result)
-        done = bench.wait_until(is_done, END_LIMIT[bench.pace])
+        done = bench.wait_until(_is_done, END_LIMIT[bench.pace])
     if done or bench.await_end(0.0):
         bench.await_end(AFTERMATH)
         return True
@@ -259,7 +259,7 @@ def works_on_a_goal(
     return False
 
 
-def is_done(evidence: Evidence) -> bool:
+def _is_done(evidence: Evidence) -> bool:
     """Return True if the subject has ended, or has printed something since its result was sent.
 
     It need not have ended, because a program may report part of the result and then keep spinning.
@@ -273,10 +273,10 @@ def refused(bench: Bench, first: Part) -> None:
     """Make one run with a server that refuses every goal. ``first`` is the run with the late server."""
     if bench.before and not refused_as_seen(bench.before) and bench.keep(REFUSED):
         return
-    inputs = begin(bench, REFUSED)
+    inputs = _begin(bench, REFUSED)
     refuse(
         bench,
-        lambda: start(bench, inputs),
+        lambda: _start(bench, inputs),
         known=bool(first.of("goal")),
         prepared=needs_no_search(bench, first),
         may_stay=first.ending is None,
@@ -306,7 +306,7 @@ def refuse(
         return may_stay and bool(REJECTED.lines(seen.main))
 
     def meet() -> bool:
-        server = meets_server(bench, begin_it, accept=False, prepared=prepared)
+        server = _meets_server(bench, begin_it, accept=False, prepared=prepared)
         if server.await_goal(GOAL_LIMIT) and bench.wait_until(reported, END_LIMIT[bench.pace]):
             bench.await_end(AFTERMATH)
         return bench.await_end(0.0)
@@ -320,8 +320,8 @@ def unserved(bench: Bench, _: Part) -> None:
     if bench.keep(ABSENT):
         return
     action, _ = bench.reference.only("action_client")
-    inputs = begin(bench, ABSENT)
-    start(bench, inputs)
+    inputs = _begin(bench, ABSENT)
+    _start(bench, inputs)
     bench.await_endpoint("action_client", action)
     await_it(bench)
     bench.stop()
@@ -379,7 +379,7 @@ class ActionClient(SeenAsItIs):
 def sends_goals() -> ActionClient:
     """Return the recipe for a client that sends one goal of a given order and reports how it ended."""
     return ActionClient(
-        scenario,
+        _scenario,
         goals.WRONG_ORDER,
         unfinished.NOT_BEGUN,
         unfinished.USAGE_MESSAGE,

@@ -16,7 +16,7 @@ import re2
 
 from autograder.kit.draft import OWN, OWN_LATE
 from autograder.kit.evidence import Evidence
-from autograder.kit.mistakes import package_mistakes as workspace
+from autograder.kit.mistakes import package_mistakes
 from autograder.kit.mistakes.crashes import CRASHES, OTHER_CRASHES
 from autograder.kit.model import Advice, Bench, Mistake, Pace
 from autograder.kit.runners import ALONE, BUILDING, Process, as_run, processes, remappings, report_of
@@ -214,7 +214,9 @@ class Launched:
     def _leads_there(self, old: str, new: str) -> bool:
         """Return True if the rule ``old:=new`` renames the topic of the program to the topic of the exercise."""
         begins = old.rpartition(":")[2].rpartition("/")[2] == self._old_name
-        return begins and _leads_to(self.topic, new)
+        # A relative name counts in any namespace.
+        leads_to_it = self.topic == new or self.topic.endswith(f"/{new.removeprefix('~').lstrip('/')}")
+        return begins and leads_to_it
 
 
 class LaunchFile:
@@ -234,7 +236,7 @@ class LaunchFile:
     def ladder(self) -> tuple[Mistake, ...]:
         """The common mistakes, most specific first."""
         return (
-            *workspace.BUILD,
+            *package_mistakes.BUILD,
             OWN,
             *CRASHES,
             Mistake("syntax_error", _syntax_error, certain=True),
@@ -346,11 +348,6 @@ def _lower(pid: int) -> int:
 def _is_a_tool(argv: tuple[str, ...]) -> bool:
     """Return True if a command line starts the command ``ros2``, with or without a Python before it."""
     return any(word.rpartition("/")[2] == "ros2" for word in argv[:2])
-
-
-def _leads_to(topic: str, target: str) -> bool:
-    """Return True if ``target`` of a remapping rule is the topic; in any namespace if ``target`` is relative."""
-    return topic == target or topic.endswith(f"/{target.removeprefix('~').lstrip('/')}")
 
 
 def _of_nodes(part: Part) -> list[Process]:

@@ -130,8 +130,8 @@ class OwnScenario:
             wanted, made = evidence.reference.interface.get(role, {}), evidence.main.endpoints(role)
             return Finding(
                 bool(wanted) and wanted.items() <= made.items(),
-                _in_words(role, wanted),
-                _in_words(role, made) or "nothing of this kind",
+                _endpoints(role, wanted),
+                _endpoints(role, made) or "nothing of this kind",
             )
 
         return judge
@@ -177,7 +177,7 @@ class Spoken(OwnScenario):
         ]
         # A logged line is recorded twice: on /rosout and in the terminal. Leave out the terminal's copy.
         if any(event.kind == "log" for event, _ in lines):
-            lines = [(event, word) for event, word in lines if not _is_a_logged_one(event)]
+            lines = [(event, word) for event, word in lines if not _has_logger_prefix(event)]
         told = {
             id(event): replace(
                 event, kind="message", name="log", data={**event.data, "fields": {"data": word}}
@@ -194,8 +194,8 @@ class Spoken(OwnScenario):
         return found[0] if len(found) == 1 else ""
 
 
-def _is_a_logged_one(event: Event) -> bool:
-    """True if a line of the terminal has the prefix of a logger."""
+def _has_logger_prefix(event: Event) -> bool:
+    """Return True if a line of the terminal has the prefix of a logger."""
     return event.kind == "output" and spoken_by(event) != event.data["text"]
 
 
@@ -208,7 +208,7 @@ def _without_echoes(lines: Sequence[tuple[Event, str]]) -> Iterator[tuple[Event,
             yield event, word
 
 
-def _in_words(role: str, endpoints: Mapping[str, str]) -> str:
+def _endpoints(role: str, endpoints: Mapping[str, str]) -> str:
     return ", ".join(f"{_NOUN[role]} {name} ({kind})" for name, kind in sorted(endpoints.items()))
 
 
@@ -231,7 +231,6 @@ class OwnLadder(SeenAsItIs):
 
 SILENCE = object()
 """The author's function returns this if the subject must not publish anything."""
-Function = TypeVar("Function", bound=Callable[..., Any])
 
 
 class Declared:
@@ -246,6 +245,7 @@ class Declared:
             subject.
         given: The kind of event that records an input that the subject has certainly received. If a subject got fewer
             inputs than the reference solution, it fails the criteria about its outputs.
+        words: The words that the subject logs or prints; empty if it publishes its output.
     """
 
     def __init__(
@@ -313,6 +313,9 @@ class Declared:
         self, key: str, found: Callable[[Part], object], says: str, next_step: str, *, certain: bool = True
     ) -> None:
         self._draft.knows(key, lambda seen, _: found(seen), says, next_step, certain=certain)
+
+
+Function = TypeVar("Function", bound=Callable[..., Any])
 
 
 def variant(right: Function, changed: Function | Mapping[str, Any]) -> Function | partial[Any]:

@@ -9,9 +9,7 @@ import re2
 
 from autograder.kit.draft import OWN, OWN_LATE
 from autograder.kit.in_words import first_difference
-from autograder.kit.mistakes import package_mistakes as programs
-from autograder.kit.mistakes import package_mistakes as workspace
-from autograder.kit.mistakes import unfinished
+from autograder.kit.mistakes import package_mistakes, unfinished
 from autograder.kit.mistakes.crashes import CRASHES, OTHER_CRASHES
 from autograder.kit.model import Bench, Finding, Mistake, Pace
 from autograder.kit.runners import RunsProgram
@@ -27,7 +25,7 @@ COMPARED, LONG = 200, 400
 """The maximum number of lines to compare, and of characters in each, because comparing more could take minutes."""
 
 
-class Ran:
+class _Ran:
     """A program as the judge saw it: its nodes and its lines.
 
     Args:
@@ -111,24 +109,24 @@ class Program:
     roles = ()
 
     def __init__(self, package: str, program: str, part: str) -> None:
-        self._entry, self._part = programs.EntryPoint(package, program), part
+        self._entry, self._part = package_mistakes.EntryPoint(package, program), part
         self.runner = RunsProgram(package, program)
 
-    def seen(self, evidence: Evidence) -> Ran:
+    def seen(self, evidence: Evidence) -> _Ran:
         """Return what the judge saw of the student's program."""
-        return Ran(evidence)
+        return _Ran(evidence)
 
-    def expected(self, evidence: Evidence) -> Ran:
-        """Return the same as :meth:`seen`, because a :class:`Ran` also contains the line of the reference output."""
-        return Ran(evidence)
+    def expected(self, evidence: Evidence) -> _Ran:
+        """Return the same as :meth:`seen`, because a :class:`_Ran` also contains the line of the reference output."""
+        return _Ran(evidence)
 
     def scenario(self, bench: Bench) -> None:
         """Build and run the program, and wait for its node and its line."""
         bench.part(self._part)
         bench.start()
-        programs.await_build(bench)
+        package_mistakes.await_build(bench)
         there = bench.await_node()
-        bench.wait_until(lambda evidence: Ran(evidence).says_it, SAYING[bench.pace])
+        bench.wait_until(lambda evidence: _Ran(evidence).says_it, SAYING[bench.pace])
         if there:
             bench.run_time(SAYING[bench.pace], quiet=LATE)
         bench.note_its_log()
@@ -137,17 +135,17 @@ class Program:
     def starts(self, evidence: Evidence) -> Finding:
         """Decide whether the package builds and ``ros2 run`` starts its program."""
         expected = f"colcon builds {self._entry.package}, and ros2 run starts {self._entry.program}"
-        report = workspace.build_report(evidence.main)
+        report = package_mistakes.build_report(evidence.main)
         ends = ("constructed", "returned", "raised")
         if any(part.of("subject", name) for part in evidence for name in ends):
             return Finding(False, expected, "a class or function from a notebook, which is not a package")
         if report is not None and not report.built:
-            return Finding(False, expected, workspace.seen_of_build(report))
+            return Finding(False, expected, package_mistakes.seen_of_build(report))
         if report is not None and report.missing:
             return Finding(False, expected, f"built, but it does not contain {report.missing}")
-        if programs.entry_point(evidence, self._entry):
+        if package_mistakes.entry_point(evidence, self._entry):
             return Finding(False, expected, "built, but its entry point points to nothing")
-        seen = Ran(evidence)
+        seen = _Ran(evidence)
         # A program that raised an exception did start, so this criterion holds. Other criteria judge the exception's
         # effects.
         ran = seen.has_node or bool(seen.words) or any(part.traceback for part in evidence)
@@ -155,13 +153,13 @@ class Program:
 
     def is_a_node(self, evidence: Evidence) -> Finding:
         """Decide whether a node of the program is on the graph."""
-        ran = Ran(evidence)
+        ran = _Ran(evidence)
         unnamed = "a node, for a moment" if ran.has_node else "no node"
         return Finding(ran.has_node, "a node on the graph", ", ".join(ran.nodes) or unnamed)
 
     def says_the_line(self, evidence: Evidence) -> Finding:
         """Decide whether the program logged or printed the reference's line."""
-        seen = Ran(evidence)
+        seen = _Ran(evidence)
         near, recording = seen.nearest, not evidence.reference.parts
         return Finding(seen.says_it or recording, f"“{seen.line}”", f"“{near}”" if near else "nothing")
 
@@ -170,9 +168,9 @@ class Program:
         """The common mistakes, most specific first."""
         entry = self._entry
         return (
-            *workspace.BUILD,
-            Mistake("package_name", lambda e: programs.package_name(e, entry.package), certain=True),
-            *programs.mistakes(entry),
+            *package_mistakes.BUILD,
+            Mistake("package_name", lambda e: package_mistakes.package_name(e, entry.package), certain=True),
+            *package_mistakes.mistakes(entry),
             OWN,
             *CRASHES,
             *OTHER_CRASHES,

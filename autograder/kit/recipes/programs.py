@@ -12,9 +12,7 @@ from typing import TYPE_CHECKING, Any, cast
 import re2
 
 from autograder.kit.evidence import INTERRUPTED, Evidence, Part
-from autograder.kit.mistakes import package_mistakes as package
-from autograder.kit.mistakes import package_mistakes as workspace
-from autograder.kit.mistakes import unfinished
+from autograder.kit.mistakes import package_mistakes, unfinished
 from autograder.kit.mistakes.crashes import traceback_of
 from autograder.kit.model import Advice, Bench, Criterion, Exercise, Finding, Mistake, Pace
 from autograder.kit.runners import RunsPrograms, report_of
@@ -120,8 +118,8 @@ class _OneProgram:
 
     def start(self, *arguments: Any, **options: Any) -> None:
         self._bench.start(self._program.name, *arguments, **options)
-        package.await_build(self._bench)
-        report = workspace.build_report(self._bench.seen())
+        package_mistakes.await_build(self._bench)
+        report = package_mistakes.build_report(self._bench.seen())
         self.built = report is None or report.built
 
     def stop(self) -> None:
@@ -208,9 +206,9 @@ class Programs:
 
     def _has_entry_points(self, evidence: Evidence) -> Finding:
         expected = f"ros2 run starts {_and([p.name for p in self._programs])}"
-        report = workspace.build_report(evidence.main)
+        report = package_mistakes.build_report(evidence.main)
         if report is not None and not report.built:
-            return Finding(False, expected, workspace.seen_of_build(report))
+            return Finding(False, expected, package_mistakes.seen_of_build(report))
         absent = [program.name for program in self._programs if not self._is_there(program, evidence)]
         if absent:
             return Finding(False, expected, f"it does not start {_and(absent)}")
@@ -222,18 +220,18 @@ class Programs:
     def _is_there(self, program: LabProgram, evidence: Evidence) -> bool:
         view = program.view(evidence)
         report = report_of(view.main)
-        if package.entry_point(view, self._entry(program)):
+        if package_mistakes.entry_point(view, self._entry(program)):
             return False
         if report is not None:
             return report.built and not report.missing
         return any(part.endpoints(role) for part in view for role in program.node.roles)
 
-    def _entry(self, program: LabProgram) -> package.EntryPoint:
-        return package.EntryPoint(self._name, program.name, program.file)
+    def _entry(self, program: LabProgram) -> package_mistakes.EntryPoint:
+        return package_mistakes.EntryPoint(self._name, program.name, program.file)
 
     def _lost(self, evidence: Evidence) -> list[str]:
         report = report_of(evidence.main)
-        return [name for name in self._keeps if package.lost_entry_point(report, self._name, name)]
+        return [name for name in self._keeps if package_mistakes.lost_entry_point(report, self._name, name)]
 
     def _all_end(self, evidence: Evidence) -> Finding:
         seen = {program.name: self._ending(program, evidence) for program in self._programs}
@@ -246,7 +244,9 @@ class Programs:
             return "did not start"
         view, entry = program.view(evidence), self._entry(program)
         ending = program.ending(evidence)
-        nowhere = ending and (package.entry_point(view, entry) or package.no_executable(view, entry))
+        nowhere = ending and (
+            package_mistakes.entry_point(view, entry) or package_mistakes.no_executable(view, entry)
+        )
         return "did not start" if nowhere else ending
 
     def _ends(self, all_on_ctrl_c: str) -> str:
@@ -258,10 +258,10 @@ class Programs:
     # --- mistakes ------------------------------------------------------------------------------------------------
 
     def _of_the_package(self) -> Iterable[Mistake]:
-        yield from workspace.BUILD
-        yield Mistake("package_name", lambda e: package.package_name(e, self._name), certain=True)
+        yield from package_mistakes.BUILD
+        yield Mistake("package_name", lambda e: package_mistakes.package_name(e, self._name), certain=True)
         for program in self._programs:
-            for mistake in package.mistakes(self._entry(program)):
+            for mistake in package_mistakes.mistakes(self._entry(program)):
                 yield replace(mistake, recognise=partial(_of_the_view, mistake, program))
 
     def _of_the_programs(self) -> Iterable[Mistake]:

@@ -86,7 +86,7 @@ class Hears:
         bench.start()
         if bench.await_endpoint("publisher", topic):
             bench.release()
-            self._hear(bench, topic, reference_period(bench.reference))
+            self._hear(bench, topic, _reference_period(bench.reference))
         bench.stop()
 
     def _hear(self, bench: Bench, topic: str, period: float) -> None:
@@ -202,7 +202,7 @@ class Hears:
     def keeps_rate(self, evidence: Evidence) -> Finding:
         """Decide whether the intervals between messages equal the reference's."""
         topic, _ = evidence.reference.only("publisher")
-        wanted = reference_period(evidence.reference)
+        wanted = _reference_period(evidence.reference)
         messages = evidence.main.of("message", topic)
         before = self._simulated_rate(evidence.before)
         # Use the rate in simulated time, because real time is not exact on a busy machine. But use real time if the
@@ -222,7 +222,8 @@ class Hears:
         if burst := self._burst(evidence):
             return Finding(False, expected, f"{seen}, but unevenly: {burst}")
         if not rate.even:
-            seen += f", but unevenly: {_gaps(rate)} s apart"
+            gaps = ", ".join(f"{gap:.2g}" if gap >= 0.01 else "0" for gap in rate.intervals[:4])
+            seen += f", but unevenly: {gaps} s apart"
         if before and confirmed(rate, before, wanted):
             return Finding(False, expected, seen)
         return Finding(rate.kept, expected, seen)
@@ -233,15 +234,16 @@ class Hears:
         if not seen.counters or not expected.counters:
             return ""
         unheard = min(seen.number_of_first - 1, expected.place(seen.counters[0]))
-        published_texts = seen.messages[seen.greetings :]
-        return burst_at_the_start(published_texts, unheard, reference_period(evidence.reference))
+        return burst_at_the_start(
+            seen.messages[seen.greetings :], unheard, _reference_period(evidence.reference)
+        )
 
     def _simulated_rate(self, evidence: Evidence | None) -> Rate | None:
         """Return the rate in simulated time; None if too few messages follow the simulated clock."""
         if evidence is None or not self._is_simulated(evidence):
             return None
         topic, _ = evidence.reference.only("publisher")
-        return rate_of(evidence.main.of("message", topic), reference_period(evidence.reference))
+        return rate_of(evidence.main.of("message", topic), _reference_period(evidence.reference))
 
     # --- mistakes --------------------------------------------------------------------------------------------
 
@@ -306,8 +308,8 @@ class Hears:
             if twin
             else "If your code still has a TODO, write that step first. The timer's method must call publish(...) "
             "with the message between the parentheses; a log line is not a message. Give the timer its period "
-            f"in seconds, {reference_period(evidence.reference):g} and not "
-            f"{1000 * reference_period(evidence.reference):g}.",
+            f"in seconds, {_reference_period(evidence.reference):g} and not "
+            f"{1000 * _reference_period(evidence.reference):g}.",
         )
 
     def _wrong_rate(self, evidence: Evidence) -> Advice | None:
@@ -315,7 +317,7 @@ class Hears:
         finding = self.keeps_rate(evidence)
         if finding.passed or not self._holds(self._text, evidence) or "every" not in finding.seen:
             return None
-        period = reference_period(evidence.reference)
+        period = _reference_period(evidence.reference)
         return Advice(
             f"Your node publishes at a wrong rate: {finding.seen}. The task asks for {finding.expected}.",
             f"Use one create_timer({period:g}, your_method), and publish one message in that method, without a loop, "
@@ -338,7 +340,7 @@ class Hears:
         )
 
 
-def reference_period(reference: Reference) -> float:
+def _reference_period(reference: Reference) -> float:
     """Return the time between two messages of the reference solution, in seconds."""
     if not reference.parts:
         return USUAL_PERIOD
@@ -371,7 +373,3 @@ def _lost(evidence: Evidence, topic: str) -> int:
     """Return the number of messages that the publisher sent before the first one that the judge received."""
     first = evidence.main.first("message", topic)
     return int(first.data.get("number", 1)) - 1 if first is not None else 0
-
-
-def _gaps(rate: Rate) -> str:
-    return ", ".join(f"{gap:.2g}" if gap >= 0.01 else "0" for gap in rate.intervals[:4])

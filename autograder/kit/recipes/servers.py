@@ -190,7 +190,7 @@ class Asks:
 
 IMMEDIATELY = 0.3
 """A limit in seconds. A server that computes many numbers in less time makes no pause for each number."""
-MANY = 2
+UNREAD = 2
 """If this many feedback messages arrive after the cancel request and before its answer, the server reads no requests
 while it works.
 """
@@ -266,7 +266,7 @@ class SendsGoals(SeenAsItIs):
                 "Call succeed(), canceled() or abort() of the goal handle exactly once, just before you return the "
                 "result.",
             )
-        unread = long.cancelled_too_late and long.unread >= MANY
+        unread = long.cancelled_too_late and long.unread >= UNREAD
         if long.cancel_accepted is not False or unread or is_quick(long):
             return None
         return Advice(
@@ -283,7 +283,7 @@ class SendsGoals(SeenAsItIs):
     def _cancel_not_read(self, evidence: Evidence) -> Advice | None:
         """Return advice if the server keeps working and does not answer the cancel request."""
         long = self.canceled(evidence)
-        if long.cancel_accepted or long.unread < MANY or is_quick(long):
+        if long.cancel_accepted or long.unread < UNREAD or is_quick(long):
             return None
         if any(seen.accepted and not seen.over for seen in self._good(evidence)):
             return None  # A goal without a result may keep the only thread busy.

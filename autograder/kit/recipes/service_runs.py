@@ -92,7 +92,7 @@ def scenario(bench: Bench, runs: Sequence[Run], nobody: Sequence[int], *, calls:
         calls: The number of calls of a subject that has finished its work.
     """
     late, *others = runs
-    begin(bench, late)
+    _begin(bench, late)
     if not called_late(bench, late, calls, late_at_first(bench)) or called_before_server(bench.seen()):
         return
     first = bench.seen()
@@ -106,7 +106,7 @@ def scenario(bench: Bench, runs: Sequence[Run], nobody: Sequence[int], *, calls:
             unserved(bench, nobody)
             impatient = may_be_impatient(bench)
         elif not hangs:
-            begin(bench, run)
+            _begin(bench, run)
             hangs = not called(bench, run, calls, served)
             served.append(bench.seen())
     if impatient and requests(first):
@@ -114,7 +114,7 @@ def scenario(bench: Bench, runs: Sequence[Run], nobody: Sequence[int], *, calls:
         called_late(bench, late, calls, LATENESS)
 
 
-def begin(bench: Bench, run: Run) -> None:
+def _begin(bench: Bench, run: Run) -> None:
     """Begin the part of a run with a service."""
     bench.part(run.name, numbers=list(run.numbers), patience_sec=drawn_patience(bench))
 
@@ -145,7 +145,7 @@ def called(bench: Bench, run: Run, calls: int, earlier: Sequence[Part]) -> bool:
     prepared = bench.in_a_cell and reports(first)
     # A client that did not report an answer has lost the points for the sum, so the judge need not wait for a sum any
     # more.
-    silent = [part for part in earlier if is_silent(part, calls)]
+    silent = [part for part in earlier if _is_silent(part, calls)]
     says_more = AFTERMATH if silent else SAYS_MORE[bench.pace]
     meet = partial(meets_service, bench, run, calls, prepared=prepared, says_more=says_more)
     done = meets_present(bench, meet, "request", known=bool(requests(first)), wanted=calls)
@@ -154,7 +154,7 @@ def called(bench: Bench, run: Run, calls: int, earlier: Sequence[Part]) -> bool:
     return _with_quick_answers(bench, run, calls, done, 0 if lost else 1 if silent else TRIES)
 
 
-def is_silent(part: Part, calls: int) -> bool:
+def _is_silent(part: Part, calls: int) -> bool:
     """Return True if a client reported neither its last answer nor its answer number ``calls`` (from 1)."""
     return not reports(part) and not has_reported(part, calls)
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import re2
 
 from autograder.kit.draft import OWN, SeenAsItIs
-from autograder.kit.mistakes import package_mistakes as workspace
+from autograder.kit.mistakes import package_mistakes
 from autograder.kit.mistakes.crashes import CRASHES, OTHER_CRASHES
 from autograder.kit.model import Advice, Bench, Finding, Mistake
 from autograder.kit.runners import (
@@ -70,7 +70,7 @@ class ServiceType(SeenAsItIs):
         bench.stop()
 
     def _holders(self, evidence: Evidence) -> list[tuple[PackageReport, Interface]]:
-        report = workspace.build_report(evidence.main)
+        report = package_mistakes.build_report(evidence.main)
         packages = report.packages if report is not None else ()
         return [(p, i) for p in packages for i in p.interfaces if i.file.rpartition("/")[2] == self._file]
 
@@ -81,12 +81,12 @@ class ServiceType(SeenAsItIs):
     def has_the_fields(self, evidence: Evidence) -> Finding:
         """Decide whether the file has the reference's fields: the same types and names in the same order."""
         expected, texts = _expected(evidence), self._texts(evidence)
-        right = any(fields(text) == expected for _, text in texts) or (bool(texts) and not expected)
+        right = any(_fields(text) == expected for _, text in texts) or (bool(texts) and not expected)
         if not right and not self._is_read(evidence):
             # If the report does not contain the text, the generated type shows what the file contains.
             wire = self.is_on_the_wire(evidence)
             return Finding(wire.passed, _shown(expected), wire.seen)
-        seen = _shown(fields(texts[0][1])) if texts else f"no file {self._file}"
+        seen = _shown(_fields(texts[0][1])) if texts else f"no file {self._file}"
         return Finding(right, _shown(expected), seen or "an empty file")
 
     def declares(self, evidence: Evidence) -> Finding:
@@ -107,7 +107,7 @@ class ServiceType(SeenAsItIs):
         """Return True if the report contains each file with the task's name, and its text."""
         if files := [file for _, file in self._holders(evidence)]:
             return all(file.text is not None for file in files)
-        report = workspace.build_report(evidence.main)
+        report = package_mistakes.build_report(evidence.main)
         return report is None or report.complete
 
     def builds(self, evidence: Evidence) -> Finding:
@@ -115,11 +115,13 @@ class ServiceType(SeenAsItIs):
         expected = f"colcon builds a package that generates {self._file.partition('.')[0]}"
         report = report_of(evidence.main)
         if report is None:
-            found = workspace.build_report(evidence.main)
-            seen = workspace.seen_of_build(found) if found is not None and found.trouble else "not built"
+            found = package_mistakes.build_report(evidence.main)
+            seen = (
+                package_mistakes.seen_of_build(found) if found is not None and found.trouble else "not built"
+            )
             return Finding(False, expected, seen)
         if not report.built:
-            return Finding(False, expected, workspace.seen_of_build(report))
+            return Finding(False, expected, package_mistakes.seen_of_build(report))
         if report.missing:
             return Finding(False, expected, f"built; no {report.missing}")
         # A generated file with the right name proves little, but a program that serves the type proves that the type
@@ -141,7 +143,7 @@ class ServiceType(SeenAsItIs):
     def _three_dashes(self, evidence: Evidence) -> Advice | None:
         """Return advice if the file does not have exactly one line of three dashes, between request and response."""
         for file, text in self._texts(evidence):
-            number = len(fields(text))
+            number = len(_fields(text))
             if number == 2:
                 continue
             return Advice(
@@ -156,7 +158,7 @@ class ServiceType(SeenAsItIs):
         """Return advice if the fields in the file differ from the reference's."""
         finding = self.has_the_fields(evidence)
         texts = self._texts(evidence)
-        if finding.passed or not texts or not self._is_read(evidence) or len(fields(texts[0][1])) != 2:
+        if finding.passed or not texts or not self._is_read(evidence) or len(_fields(texts[0][1])) != 2:
             return None
         return Advice(
             f"{texts[0][0]} has the fields {finding.seen}; the task asks for {finding.expected}.",
@@ -228,14 +230,14 @@ class ServiceType(SeenAsItIs):
             Mistake("interface_in_python_package", self._interface_in_python_package, certain=True),
             Mistake("member_of_group", self._member_of_group, certain=True),
             Mistake("interface_not_listed", self._interface_not_listed, certain=True),
-            *workspace.BUILD,
+            *package_mistakes.BUILD,
             *CRASHES,
             *OTHER_CRASHES,
             Mistake("dependency_missing", self._dependency_missing, certain=True),
         )
 
 
-def fields(text: str) -> list[Fields]:
+def _fields(text: str) -> list[Fields]:
     """Return the fields in each section of an interface file, without comments, constants and default values.
 
     Only a line that is exactly ``---`` begins a new section, as in ``rosidl_adapter/parser.py``.

@@ -252,11 +252,6 @@ def _replaced(evidence: Evidence) -> int:
     return max((gone[i] for i in range(len(met) - 1) if met[-1]["count"] > met[i]["count"]), default=0)
 
 
-def _expected_texts(evidence: Evidence) -> int:
-    """Return the number of texts that the judge sends to a listener that reports all of them."""
-    return SIMULATED if _is_simulated(evidence) else 1 + AT_PACE + SINGLY
-
-
 def says_every_text(evidence: Evidence) -> Finding:
     """Decide whether the listener reports each text after it was sent."""
     sent, missing = _sent(evidence), _missing(evidence)
@@ -265,7 +260,8 @@ def says_every_text(evidence: Evidence) -> Finding:
     seen = f"{len(sent) - len(missing)} of {len(sent)} said" if sent else no_subscriber
     if missing:
         seen += f"; not “{_text(missing[0])}”"
-    complete = len(sent) >= _expected_texts(evidence) and not missing
+    all_sent = SIMULATED if _is_simulated(evidence) else 1 + AT_PACE + SINGLY
+    complete = len(sent) >= all_sent and not missing
     if complete and (replaced := _replaced(evidence)) >= REPLACED:
         return Finding(
             False, "one subscription that receives every string", f"{replaced + 1} one after another"

@@ -35,7 +35,7 @@ GRAIN = 0.02
 
 
 @dataclass
-class Span:
+class _Span:
     """An interval of time in which one state holds. The subject must report this state once.
 
     Attributes:
@@ -255,7 +255,7 @@ class Watch(Declared):
             met.bench.run_time(seconds)
         return bool(self._subject.view(met.bench.seen()).of("message"))
 
-    def _spans(self, seen: Part, rule: State) -> list[Span]:
+    def _spans(self, seen: Part, rule: State) -> list[_Span]:
         """Return each state that the subject must report, with the time from its begin to its end, in order of time."""
         sent = seen.of("sent")
         if not sent:
@@ -272,10 +272,10 @@ class Watch(Declared):
             if not same(held, begins[-1][0]):
                 begins.append((held, next(moments)))
         ends = [*(at for _, at in begins[1:]), end]
-        spans = [Span(held, at, until) for (held, at), until in zip(begins, ends, strict=True)]
+        spans = [_Span(held, at, until) for (held, at), until in zip(begins, ends, strict=True)]
         return [span for span in spans[1:] if span.state is not SILENCE]
 
-    def _matched(self, seen: Part, rule: State) -> tuple[list[Span], list[Event]]:
+    def _matched(self, seen: Part, rule: State) -> tuple[list[_Span], list[Event]]:
         """Return each due state with the time at which it was reported, and the messages that report none of them."""
         spans, stray = self._spans(seen, rule), []
         for event in seen.of("message"):
@@ -292,7 +292,7 @@ class Watch(Declared):
     def _late(self, seen: Part) -> float:
         return self._within + (BUSY if seen.of("sent")[-1].sim is None else 0.0)
 
-    def _in_time(self, span: Span, seen: Part) -> bool:
+    def _in_time(self, span: _Span, seen: Part) -> bool:
         return (span.end if span.said is None else span.said) - span.begin <= self._late(seen)
 
     def _told(self, event: Event) -> Any:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from exercise_1_1 import remap
 
-from autograder.kit.mistakes import package_mistakes as workspace
+from autograder.kit.mistakes import package_mistakes
 from autograder.kit.mistakes.package_mistakes import package_name, package_of
 from autograder.kit.model import Advice, Criterion, Finding, Mistake
 from autograder.kit.runners import LaunchesFromPackage, report_of
@@ -26,11 +26,11 @@ SHOWN = f"{FILE}.py"
 def installed(evidence: Evidence) -> Finding:
     """The build has put the launch file into the folder of the package where launch files belong."""
     expected = f"the build puts {SHOWN} into {FOLDER}"
-    report = workspace.build_report(evidence.main)
+    report = package_mistakes.build_report(evidence.main)
     if report is None:
         return Finding(False, expected, "no workspace was built")
     if not report.built:
-        return Finding(False, expected, workspace.seen_of_build(report))
+        return Finding(False, expected, package_mistakes.seen_of_build(report))
     found = _launch_files(evidence, "built")
     # What a long report has left out is not judged as missing.
     in_place = any(str(path.parent) == FOLDER for path in _named(found))
