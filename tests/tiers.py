@@ -140,7 +140,7 @@ DRAWS = (
         "tests/grading/test_nbgrader_and_ours.py::test_a_command_of_plain_nbgrader_ends_with_the_exit_code_of_ours[",
         1,
     ),
-    Draw("tests/grading/gradebooks/test_conversion.py::test_nbgraders_own_steps_find_nothing_to_change[", 1),
+    Draw("tests/grading/classes/test_result_writer.py::test_nbgraders_own_steps_find_nothing_to_change[", 1),
     Draw(
         "tests/grading/returning/test_figures_on_pages.py::test_a_page_shows_every_figure_of_the_chapter[", 1
     ),

@@ -1,1 +1,1 @@
-"""Makes class directories, and reads their folders, configuration and lock."""
+"""Makes class directories, reads their folders, configuration and gradebook, and writes results into them."""

@@ -181,13 +181,13 @@ def changed_master_warnings(
             + course_command("renew-class", directory.path)
         ]
     return [
-        changed_master_warning(directory, name)
+        _changed_master_warning(directory, name)
         for name in assignments
         if name in known and _has_changed(known[name])
     ]
 
 
-def changed_master_warning(directory: ClassDirectory, assignment: str) -> str:
+def _changed_master_warning(directory: ClassDirectory, assignment: str) -> str:
     """Return the warning that the master of an assignment has changed."""
     return (
         f"{assignment}: the course's tasks have changed since this class got its notebook. The judge expects what the "

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Holder:
+class _Holder:
     """The process that holds the lock of a class.
 
     Attributes:
@@ -41,7 +41,7 @@ class Holder:
         return f"process {self.pid}{where}, since {self.since}"
 
 
-_own: dict[Path, Holder] = {}
+_own: dict[Path, _Holder] = {}
 """The locks that this process holds. They are listed because the system would let a process take the same lock twice.
 """
 _changing = threading.Lock()
@@ -64,7 +64,7 @@ def held(path: Path, of: Path) -> Iterator[bool]:
         OSError: The lock file cannot be written.
     """
     path = path.resolve()
-    now = Holder(os.getpid(), socket.gethostname(), f"{datetime.now():%Y-%m-%d %H:%M:%S}")
+    now = _Holder(os.getpid(), socket.gethostname(), f"{datetime.now():%Y-%m-%d %H:%M:%S}")
     with _changing:
         if path in _own:
             raise ClassBusy(of, str(_own[path]))
@@ -84,7 +84,7 @@ def held(path: Path, of: Path) -> Iterator[bool]:
             file.close()
 
 
-def _take(file: IO[bytes], holder: Holder, of: Path) -> bool:
+def _take(file: IO[bytes], holder: _Holder, of: Path) -> bool:
     try:
         fcntl.lockf(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError:
@@ -100,6 +100,6 @@ def _who(file: IO[bytes]) -> str:
     """Return the description of the holder in the file; empty if the holder has not written it yet."""
     file.seek(0)
     try:
-        return str(msgspec.json.decode(file.read(), type=Holder))
+        return str(msgspec.json.decode(file.read(), type=_Holder))
     except msgspec.MsgspecError:
         return ""

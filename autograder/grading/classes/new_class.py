@@ -139,7 +139,7 @@ def new_class(
     """
     path = path.absolute()
     _check_place(path, course_root)
-    sources = sources_of(course_root, assignments)
+    sources = _sources_of(course_root, assignments)
     timezone = timezone or machine_timezone()
     config = CONFIG.format(
         command=COMMAND, timezone=timezone, cell_seconds=cell_seconds, notebook_seconds=notebook_seconds
@@ -188,7 +188,7 @@ Sources = dict[str, "tuple[Path, NotebookNode]"]
 """For each assignment, the path of its master, and the source notebook made from the master."""
 
 
-def sources_of(course_root: Path, wanted: Sequence[str]) -> Sources:
+def _sources_of(course_root: Path, wanted: Sequence[str]) -> Sources:
     """Return the masters for a class's assignments, and a source notebook made from each.
 
     Args:
@@ -222,13 +222,13 @@ def _fill(path: Path, sources: Sources, config: str) -> None:
     (path / ".gitignore").write_text("*\n", encoding="utf-8")
     for name, (_, notebook) in sources.items():
         (path / "source" / name).mkdir(parents=True)
-        write_source(ClassDirectory(path), name, notebook, sources)
+        _write_source(ClassDirectory(path), name, notebook, sources)
     release(ClassDirectory(path))
     with ClassStore(ClassDirectory(path)) as store:
         note_origins(store, sources)
 
 
-def write_source(
+def _write_source(
     directory: ClassDirectory, name: str, notebook: NotebookNode, assignments: Container[str]
 ) -> None:
     """Write a source notebook into a class, and adapt its links to other notebooks.
@@ -306,7 +306,7 @@ def renew(path: Path, course_root: Path, assignments: Sequence[str] = ()) -> lis
             raise GradingError(
                 f"The class has no assignment {name}. The assignments of the class are: {', '.join(there)}."
             )
-    made = {name: one for name, one in sources_of(course_root, assignments).items() if name in there}
+    made = {name: one for name, one in _sources_of(course_root, assignments).items() if name in there}
     if not made:
         raise GradingError(
             f"The class has only assignments that the course does not have: {', '.join(there)}."
@@ -317,7 +317,7 @@ def renew(path: Path, course_root: Path, assignments: Sequence[str] = ()) -> lis
             shutil.copytree(directory.path / "source" / name, kept / name)
         try:
             for name, (_, notebook) in made.items():
-                write_source(directory, name, notebook, there)
+                _write_source(directory, name, notebook, there)
             release(directory, list(made))
         except BaseException:  # restore the earlier notebooks after any error, also after Ctrl-C
             for name in made:

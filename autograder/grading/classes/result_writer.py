@@ -54,10 +54,180 @@ if TYPE_CHECKING:
     from autograder.verdict import Verdict
 
 
+class NotWritten(RuntimeError):
+    """The points could not be written to the gradebook, or the gradebook does not contain the judge's points."""
+
+
+class Writer:
+    """Writes results into the gradebook, ``autograded/`` and ``feedback/`` of one class.
+
+    Args:
+        directory: The class, which this process has locked.
+        store: The class's store, which records what was entered.
+    """
+
+    def __init__(self, directory: ClassDirectory, store: ClassStore) -> None:
+        self._directory = directory
+        self._store = store
+        self._pages = feedback_pages.FeedbackPages(directory)
+
+    def take_back(self, submissions: Sequence[Submission]) -> None:
+        """Set the grades of submissions to zero, and remove their converted notebooks and feedback pages."""
+        self._store.forget_entered(submissions)
+        for submission in submissions:
+            for step in ("autograded", "feedback"):
+                _remove(self._folder(step, submission))
+        pairs = [(submission.assignment, submission.student) for submission in submissions]
+        gradebook_writing.reset(self._directory.gradebook_url, pairs)
+
+    def write(
+        self,
+        submission: Submission,
+        fingerprint: str,
+        results: Sequence[tuple[Task, Execution]],
+        rows: tuple[Row, ...],
+    ) -> None:
+        """Convert the submission and enter its grades.
+
+        Args:
+            submission: The submission that was executed.
+            fingerprint: The hash of all files that influence the results, from :class:`Fingerprints`.
+            results: Pairs of a task and its result, one for each notebook of the assignment.
+            rows: The results as rows of the report.
+
+        Raises:
+            NotWritten: Writing failed, or the gradebook contains wrong points afterwards. The grades were set to zero.
+            OSError: The disk is full.
+        """
+        try:
+            with quiet(self._directory.state):
+                self._convert_and_enter(submission, results)
+            self._verify(submission, results)
+        except NotWritten:
+            self.take_back([submission])
+            raise
+        except Exception as error:
+            self.take_back([submission])
+            raise NotWritten(f"{submission.student}/{submission.assignment}: {error}") from error
+        course = results[0][0].course
+        entered = Entered(
+            fingerprint=fingerprint,
+            tasks={task.notebook: task.key() for task, _ in results},
+            scores={task.notebook: scores_of(task, execution) for task, execution in results},
+            rows=rows,
+            course=course,
+        )
+        attempt = Attempt(datetime.now(tz=UTC), submission.assignment, fingerprint, course, rows)
+        is_final = not any(execution.trouble for _, execution in results)
+        self._store.enter(submission, attempt, entered if is_final else None)
+
+    def _convert_and_enter(self, submission: Submission, results: Sequence[tuple[Task, Execution]]) -> None:
+        """Write the notebooks, then enter the grades.
+
+        The notebooks come first because notebooks without grades do no harm, if the grader is interrupted between the
+        two steps.
+        """
+        folder = self._folder("autograded", submission)
+        _remove(folder)
+        entries = _convert(self._directory, submission, results, folder)
+        url = self._directory.gradebook_url
+        has_due_date = gradebook_writing.enter(
+            url, submission.assignment, submission.student, entries, handed_in_at(submission.folder)
+        )
+        if has_due_date:
+            self._assign_penalties(submission)
+
+    def enter_time(self, submission: Submission, at: datetime | None) -> None:
+        """Enter a new submission time of a graded submission, and the late penalty for it.
+
+        Args:
+            submission: A graded submission. Its grades stay unchanged.
+            at: The time in UTC; None if the gradebook already has the time, so that only the penalty is computed.
+        """
+        names = submission.assignment, submission.student
+        with quiet(self._directory.state):
+            if at is not None:
+                gradebook_writing.enter_time(self._directory.gradebook_url, *names, at)
+                _write_companions(submission, self._folder("autograded", submission))
+            self._assign_penalties(submission)
+
+    def _assign_penalties(self, submission: Submission) -> None:
+        url, student = self._directory.gradebook_url, submission.student
+        costs = penalties(self._directory.config, student, self._entry(submission))
+        gradebook_writing.enter_penalties(url, submission.assignment, student, costs)
+
+    def _entry(self, submission: Submission) -> SubmissionEntry:
+        student, assignment = submission.student, submission.assignment
+        url = self._directory.gradebook_url
+        return read_entries(url, student=student, assignment=assignment)[student, assignment]
+
+    def write_feedback(self, submission: Submission) -> bool:
+        """Write the feedback pages of a submission. Return False if that failed; the log then contains the reason.
+
+        Raises:
+            OSError: The disk is full.
+        """
+        notebooks = self._directory.notebooks(submission.assignment)
+        with quiet(self._directory.state):
+            try:
+                self._pages.write(submission, notebooks)
+                _write_companions(submission, self._folder("feedback", submission))
+            except Exception as error:
+                if is_disk_full(error):
+                    raise
+                logging.getLogger("traitlets").exception("no page for %s", submission.folder)
+                return False
+        return self._directory.has_pages(submission, notebooks)
+
+    def _verify(self, submission: Submission, results: Sequence[tuple[Task, Execution]]) -> None:
+        entry = self._entry(submission)
+        for task, execution in results:
+            for name, score in scores_of(task, execution).items():
+                if entry.judged(task.notebook, name) != score:
+                    raise NotWritten(f"{task.label}: the gradebook does not have {score:g} points for {name}")
+
+    def _folder(self, step: str, submission: Submission) -> Path:
+        return self._directory.path / step / submission.student / submission.assignment
+
+
+class _LogFile(logging.FileHandler):
+    """A log file that ignores errors when it is written, because the grader itself reports a full disk, once."""
+
+    def handleError(self, record: logging.LogRecord) -> None:  # noqa: N802  (logging's name)
+        """Ignore the error."""
+
+
+@contextlib.contextmanager
+def quiet(state: Path) -> Iterator[None]:
+    """During the block, write nbgrader's log to a file of the class, not to the terminal with the progress bar."""
+    logger = logging.getLogger("traitlets")
+    handler = _LogFile(state / "nbgrader.log", delay=True)
+    handler.setFormatter(logging.Formatter("%(asctime)s %(levelname)s %(message)s"))
+    before, propagates = list(logger.handlers), logger.propagate
+    logger.handlers[:] = [handler]
+    logger.propagate = False
+    try:
+        with warnings.catch_warnings():
+            # SQLAlchemy warns about outdated calls in nbgrader 0.9, which was written for an older version.
+            warnings.simplefilter("ignore")
+            yield
+    finally:
+        logger.handlers[:] = before
+        logger.propagate = propagates
+        handler.close()
+
+
+def _remove(folder: Path) -> None:
+    """Remove a folder, even if its files are read-only."""
+    if folder.is_dir():
+        folder.chmod(0o700)
+        shutil.rmtree(folder)
+
+
 _READ_ONLY = 0o444
 
 
-def convert(
+def _convert(
     directory: ClassDirectory,
     submission: Submission,
     results: Sequence[tuple[Task, Execution]],
@@ -81,7 +251,7 @@ def convert(
     folder.mkdir(parents=True)
     for name, data in directory.files(submission.assignment).items():
         _write_read_only(folder / name, data)
-    write_companions(submission, folder)
+    _write_companions(submission, folder)
     entries = {}
     for task, execution in results:
         notebook = _graded_notebook(directory, submission, task, execution)
@@ -91,7 +261,7 @@ def convert(
     return entries
 
 
-def write_companions(submission: Submission, folder: Path) -> None:
+def _write_companions(submission: Submission, folder: Path) -> None:
     """Copy the files that nbgrader keeps about a submission (its timestamp and its secret) into a folder.
 
     Raises:
@@ -128,13 +298,10 @@ def _notebook_entry(notebook: NotebookNode) -> NotebookEntry:
         if is_grade(cell):
             scores[cell.metadata.nbgrader.grade_id] = determine_grade(cell)[0]
         if is_solution(cell) or is_task(cell):
-            comments[cell.metadata.nbgrader.grade_id] = _comment(cell)
+            untouched = cell.metadata.nbgrader.get("checksum") == compute_checksum(cell)
+            no_answer = untouched and not is_task(cell)
+            comments[cell.metadata.nbgrader.grade_id] = "No response." if no_answer else None
     return NotebookEntry(scores, comments)
-
-
-def _comment(cell: Any) -> str | None:
-    untouched = cell.metadata.nbgrader.get("checksum") == compute_checksum(cell)
-    return "No response." if untouched and not is_task(cell) else None
 
 
 def _write_read_only(path: Path, data: bytes) -> None:
@@ -224,173 +391,3 @@ def _remark(node: NotebookNode, cell: Cell, run: CellRun, limits: Limits) -> lis
     }
     text = words.get(run.ended) if cell.source.strip() else LEFT_OUT if node.source.strip() else None
     return [nbformat_nodes.output(output_type="stream", name="stdout", text=f"{text}\n")] if text else []
-
-
-class NotWritten(RuntimeError):
-    """The points could not be written to the gradebook, or the gradebook does not contain the judge's points."""
-
-
-class Writer:
-    """Writes results into the gradebook, ``autograded/`` and ``feedback/`` of one class.
-
-    Args:
-        directory: The class, which this process has locked.
-        store: The class's store, which records what was entered.
-    """
-
-    def __init__(self, directory: ClassDirectory, store: ClassStore) -> None:
-        self._directory = directory
-        self._store = store
-        self._pages = feedback_pages.FeedbackPages(directory)
-
-    def take_back(self, submissions: Sequence[Submission]) -> None:
-        """Set the grades of submissions to zero, and remove their converted notebooks and feedback pages."""
-        self._store.forget_entered(submissions)
-        for submission in submissions:
-            for step in ("autograded", "feedback"):
-                _remove(self._folder(step, submission))
-        pairs = [(submission.assignment, submission.student) for submission in submissions]
-        gradebook_writing.reset(self._directory.gradebook_url, pairs)
-
-    def write(
-        self,
-        submission: Submission,
-        fingerprint: str,
-        results: Sequence[tuple[Task, Execution]],
-        rows: tuple[Row, ...],
-    ) -> None:
-        """Convert the submission and enter its grades.
-
-        Args:
-            submission: The submission that was executed.
-            fingerprint: The hash of all files that influence the results, from :class:`Fingerprints`.
-            results: Pairs of a task and its result, one for each notebook of the assignment.
-            rows: The results as rows of the report.
-
-        Raises:
-            NotWritten: Writing failed, or the gradebook contains wrong points afterwards. The grades were set to zero.
-            OSError: The disk is full.
-        """
-        try:
-            with quiet(self._directory.state):
-                self._convert_and_enter(submission, results)
-            self._verify(submission, results)
-        except NotWritten:
-            self.take_back([submission])
-            raise
-        except Exception as error:
-            self.take_back([submission])
-            raise NotWritten(f"{submission.student}/{submission.assignment}: {error}") from error
-        course = results[0][0].course
-        entered = Entered(
-            fingerprint=fingerprint,
-            tasks={task.notebook: task.key() for task, _ in results},
-            scores={task.notebook: scores_of(task, execution) for task, execution in results},
-            rows=rows,
-            course=course,
-        )
-        attempt = Attempt(datetime.now(tz=UTC), submission.assignment, fingerprint, course, rows)
-        is_final = not any(execution.trouble for _, execution in results)
-        self._store.enter(submission, attempt, entered if is_final else None)
-
-    def _convert_and_enter(self, submission: Submission, results: Sequence[tuple[Task, Execution]]) -> None:
-        """Write the notebooks, then enter the grades.
-
-        The notebooks come first because notebooks without grades do no harm, if the grader is interrupted between the
-        two steps.
-        """
-        folder = self._folder("autograded", submission)
-        _remove(folder)
-        entries = convert(self._directory, submission, results, folder)
-        url = self._directory.gradebook_url
-        has_due_date = gradebook_writing.enter(
-            url, submission.assignment, submission.student, entries, handed_in_at(submission.folder)
-        )
-        if has_due_date:
-            self._assign_penalties(submission)
-
-    def enter_time(self, submission: Submission, at: datetime | None) -> None:
-        """Enter a new submission time of a graded submission, and the late penalty for it.
-
-        Args:
-            submission: A graded submission. Its grades stay unchanged.
-            at: The time in UTC; None if the gradebook already has the time, so that only the penalty is computed.
-        """
-        names = submission.assignment, submission.student
-        with quiet(self._directory.state):
-            if at is not None:
-                gradebook_writing.enter_time(self._directory.gradebook_url, *names, at)
-                write_companions(submission, self._folder("autograded", submission))
-            self._assign_penalties(submission)
-
-    def _assign_penalties(self, submission: Submission) -> None:
-        url, student = self._directory.gradebook_url, submission.student
-        costs = penalties(self._directory.config, student, self._entry(submission))
-        gradebook_writing.enter_penalties(url, submission.assignment, student, costs)
-
-    def _entry(self, submission: Submission) -> SubmissionEntry:
-        student, assignment = submission.student, submission.assignment
-        url = self._directory.gradebook_url
-        return read_entries(url, student=student, assignment=assignment)[student, assignment]
-
-    def write_feedback(self, submission: Submission) -> bool:
-        """Write the feedback pages of a submission. Return False if that failed; the log then contains the reason.
-
-        Raises:
-            OSError: The disk is full.
-        """
-        notebooks = self._directory.notebooks(submission.assignment)
-        with quiet(self._directory.state):
-            try:
-                self._pages.write(submission, notebooks)
-                write_companions(submission, self._folder("feedback", submission))
-            except Exception as error:
-                if is_disk_full(error):
-                    raise
-                logging.getLogger("traitlets").exception("no page for %s", submission.folder)
-                return False
-        return self._directory.has_pages(submission, notebooks)
-
-    def _verify(self, submission: Submission, results: Sequence[tuple[Task, Execution]]) -> None:
-        entry = self._entry(submission)
-        for task, execution in results:
-            for name, score in scores_of(task, execution).items():
-                if entry.judged(task.notebook, name) != score:
-                    raise NotWritten(f"{task.label}: the gradebook does not have {score:g} points for {name}")
-
-    def _folder(self, step: str, submission: Submission) -> Path:
-        return self._directory.path / step / submission.student / submission.assignment
-
-
-class _LogFile(logging.FileHandler):
-    """A log file that ignores errors when it is written, because the grader itself reports a full disk, once."""
-
-    def handleError(self, record: logging.LogRecord) -> None:  # noqa: N802  (logging's name)
-        """Ignore the error."""
-
-
-@contextlib.contextmanager
-def quiet(state: Path) -> Iterator[None]:
-    """During the block, write nbgrader's log to a file of the class, not to the terminal with the progress bar."""
-    logger = logging.getLogger("traitlets")
-    handler = _LogFile(state / "nbgrader.log", delay=True)
-    handler.setFormatter(logging.Formatter("%(asctime)s %(levelname)s %(message)s"))
-    before, propagates = list(logger.handlers), logger.propagate
-    logger.handlers[:] = [handler]
-    logger.propagate = False
-    try:
-        with warnings.catch_warnings():
-            # SQLAlchemy warns about outdated calls in nbgrader 0.9, which was written for an older version.
-            warnings.simplefilter("ignore")
-            yield
-    finally:
-        logger.handlers[:] = before
-        logger.propagate = propagates
-        handler.close()
-
-
-def _remove(folder: Path) -> None:
-    """Remove a folder, even if its files are read-only."""
-    if folder.is_dir():
-        folder.chmod(0o700)
-        shutil.rmtree(folder)

@@ -71,7 +71,7 @@ def sample_notebooks() -> tuple[SampleNotebook, ...]:
     return msgspec.convert(data["notebook"], tuple[SampleNotebook, ...])
 
 
-def submit_sample(path: Path) -> None:
+def _submit_sample(path: Path) -> None:
     """Write every sample notebook into ``submitted`` of the class at ``path``."""
     for notebook in sample_notebooks():
         folder = path / "submitted" / notebook.student / notebook.assignment
@@ -122,7 +122,7 @@ def _make(path: Path, console: Console) -> None:
         cell_seconds=CELL_SECONDS,
         notebook_seconds=NOTEBOOK_SECONDS,
     )
-    submit_sample(path)
+    _submit_sample(path)
     stamp.write_text(version)
 
 

@@ -18,6 +18,7 @@ from autograder.grading.grading_errors import ClassIncomplete
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+
 pytestmark = pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning")
 
 
