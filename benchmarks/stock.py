@@ -20,7 +20,7 @@ from nbgrader.api import Gradebook
 
 from autograder.boxes.run_limits import Limits
 from autograder.grading.classes.class_directory import CONFIG_NAME
-from autograder.judge.ros_setup import lease
+from autograder.judge.ros_setup import lease_domain
 from benchmarks.machine import Usage, Watch
 from environment.python_child import python_child
 
@@ -169,7 +169,7 @@ def _nbgrader(
 @contextmanager
 def _environment() -> Iterator[dict[str, str]]:
     """A terminal's environment with what the class's own configuration sets for ``nbgrader validate``."""
-    with lease() as domain:
+    with lease_domain() as domain:
         yield {
             **os.environ,
             "RCUTILS_LOGGING_USE_STDOUT": "1",

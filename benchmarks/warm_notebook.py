@@ -48,7 +48,7 @@ def main() -> None:
     html_rendering.prepare_templates()
     from autograder.judge import controlled_judge
 
-    controlled_judge.imports()
+    controlled_judge.import_judge()
     for line in sys.stdin.buffer:
         answers.write(msgspec.json.encode(_floor(msgspec.json.decode(line, type=Task))) + b"\n")
         answers.flush()
@@ -57,10 +57,10 @@ def main() -> None:
 def _floor(task: Task) -> dict[str, Any]:
     """CPU seconds of a task's cells and of the judge's children; and by cell."""
     from autograder.judge.controlled_judge import JudgeProcess
-    from autograder.judge.ros_setup import lease
+    from autograder.judge.ros_setup import lease_domain
 
     group = CpuGroup.make()
-    with HeldFolder("autograder-bench-") as held, lease() as domain:
+    with HeldFolder("autograder-bench-") as held, lease_domain() as domain:
         folder = held.path
         reading, writing = os.pipe()
         with JudgeProcess(folder / "judge", seed=task.seed) as judge:

@@ -47,7 +47,7 @@ LONGEST = (
     "tests/browser",
     "tests/boxes",
     "tests/execution",
-    "tests/judge/verdicts/test_misnamed.py",
+    "tests/judge/test_misnamed.py",
     "tests/test_handed_out_answers.py",
     "tests/workspaces/test_graded_notebooks.py",
     "tests/environment/ros2_command/test_graph.py",

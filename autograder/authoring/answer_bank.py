@@ -261,4 +261,4 @@ def warm_up() -> None:
     ros_setup.prepare_judge()
     from autograder.judge import controlled_judge
 
-    controlled_judge.imports()
+    controlled_judge.import_judge()

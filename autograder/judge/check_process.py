@@ -29,79 +29,6 @@ if TYPE_CHECKING:
     from autograder.verdict import Verdict
 
 
-VERDICT_LIMIT = 10.0
-"""The limit in seconds of processor time for one verdict, which usually takes a hundredth of a second."""
-SIGNAL_AGAIN_AFTER = 0.05
-"""The seconds of processor time after which the signal is sent again if the verdict is still not ready.
-
-The signal's exception may be lost, because Python prints and drops an exception that is raised in a destructor or in a
-callback of the garbage collector.
-"""
-SURE = 1.0
-"""If a verdict has taken this many seconds of processor time, the cause is the subject's output, not a busy machine."""
-STOP_SIGNAL = signal.SIGVTALRM
-"""The signal that stops the computation of a verdict. At other times the judge ignores this signal."""
-
-
-class Undecided(BaseException):
-    """The judge did not reach a verdict in time.
-
-    This is a BaseException, so that ``except Exception`` does not catch it.
-    """
-
-
-@contextlib.contextmanager
-def limited(seconds: float = VERDICT_LIMIT) -> Iterator[None]:
-    """Run the block within a limit of processor time.
-
-    Args:
-        seconds: Limit in seconds of processor time.
-
-    Raises:
-        Undecided: The time is over, or the parent process has sent ``STOP_SIGNAL`` after the block used at least
-            :data:`SURE` seconds of processor time: the subject's output is the cause, and the verdict says so. An
-            earlier signal is ignored here: the machine is the cause, and the parent process ends the check without a
-            verdict.
-    """
-    if threading.current_thread() is not threading.main_thread():
-        yield  # only the main thread can handle signals, so elsewhere there is no limit
-        return
-
-    began = time.process_time()
-
-    def give_up(*_: object) -> None:
-        if time.process_time() - began >= min(seconds, SURE):
-            raise Undecided
-
-    before = signal.signal(STOP_SIGNAL, give_up)
-    signal.setitimer(signal.ITIMER_VIRTUAL, seconds, SIGNAL_AGAIN_AFTER)
-    try:
-        yield
-    finally:
-        _switch_limit_off(before)
-
-
-def _switch_limit_off(before: signal.Handlers | Callable[..., object] | int | None) -> None:
-    """Switch the limit off, even if the signal arrives again meanwhile."""
-    while True:
-        try:
-            signal.setitimer(signal.ITIMER_VIRTUAL, 0.0)
-            signal.signal(STOP_SIGNAL, before)
-            return
-        except Undecided:
-            continue
-
-
-def undecidable(exercise: Exercise, seed: str) -> Verdict:
-    """Return a verdict of zero points, which says that the subject's output is too long to judge."""
-    diagnosis = Diagnosis(
-        "undecidable",
-        "Your program said and sent far too much: the judge could not finish reading it.",
-        "Log what the task asks for, one short line for each thing that happens, and nothing else.",
-    )
-    return replace(failed(exercise.id, exercise.title, float(exercise.points), diagnosis), seed=seed)
-
-
 _ENDING_SIGNALS = (signal.SIGINT, signal.SIGTERM)
 LAST_WORDS = 2.0
 """Seconds of wall time that a judge gets for its verdict after the time limit of the check, before it is killed."""
@@ -236,3 +163,76 @@ def _run_in_child(work: Callable[[], bytes], writing: int) -> None:
         sys.stdout.flush()
         sys.stderr.flush()
         os._exit(code)
+
+
+VERDICT_LIMIT = 10.0
+"""The limit in seconds of processor time for one verdict, which usually takes a hundredth of a second."""
+SIGNAL_AGAIN_AFTER = 0.05
+"""The seconds of processor time after which the signal is sent again if the verdict is still not ready.
+
+The signal's exception may be lost, because Python prints and drops an exception that is raised in a destructor or in a
+callback of the garbage collector.
+"""
+SURE = 1.0
+"""If a verdict has taken this many seconds of processor time, the cause is the subject's output, not a busy machine."""
+STOP_SIGNAL = signal.SIGVTALRM
+"""The signal that stops the computation of a verdict. At other times the judge ignores this signal."""
+
+
+class Undecided(BaseException):
+    """The judge did not reach a verdict in time.
+
+    This is a BaseException, so that ``except Exception`` does not catch it.
+    """
+
+
+@contextlib.contextmanager
+def limited(seconds: float = VERDICT_LIMIT) -> Iterator[None]:
+    """Run the block within a limit of processor time.
+
+    Args:
+        seconds: Limit in seconds of processor time.
+
+    Raises:
+        Undecided: The time is over, or the parent process has sent ``STOP_SIGNAL`` after the block used at least
+            :data:`SURE` seconds of processor time: the subject's output is the cause, and the verdict says so. An
+            earlier signal is ignored here: the machine is the cause, and the parent process ends the check without a
+            verdict.
+    """
+    if threading.current_thread() is not threading.main_thread():
+        yield  # only the main thread can handle signals, so elsewhere there is no limit
+        return
+
+    began = time.process_time()
+
+    def give_up(*_: object) -> None:
+        if time.process_time() - began >= min(seconds, SURE):
+            raise Undecided
+
+    before = signal.signal(STOP_SIGNAL, give_up)
+    signal.setitimer(signal.ITIMER_VIRTUAL, seconds, SIGNAL_AGAIN_AFTER)
+    try:
+        yield
+    finally:
+        _switch_limit_off(before)
+
+
+def _switch_limit_off(before: signal.Handlers | Callable[..., object] | int | None) -> None:
+    """Switch the limit off, even if the signal arrives again meanwhile."""
+    while True:
+        try:
+            signal.setitimer(signal.ITIMER_VIRTUAL, 0.0)
+            signal.signal(STOP_SIGNAL, before)
+            return
+        except Undecided:
+            continue
+
+
+def undecidable(exercise: Exercise, seed: str) -> Verdict:
+    """Return a verdict of zero points, which says that the subject's output is too long to judge."""
+    diagnosis = Diagnosis(
+        "undecidable",
+        "Your program said and sent far too much: the judge could not finish reading it.",
+        "Log what the task asks for, one short line for each thing that happens, and nothing else.",
+    )
+    return replace(failed(exercise.id, exercise.title, float(exercise.points), diagnosis), seed=seed)

@@ -11,8 +11,10 @@ from typing import TYPE_CHECKING
 import msgspec
 
 from autograder import exercises
-from autograder.judge import ros_setup
+from autograder.dds_discovery import NoFreeDomainError
+from autograder.judge import evidence_files, ros_setup
 from autograder.judge.check_process import Child
+from autograder.judge.machine_fitness import JudgeFailed
 from autograder.kit.runners import Launches
 from autograder.messages.judge_messages import Report
 from autograder.verdict import Verdict, not_checked
@@ -68,7 +70,9 @@ def check_and_keep(
         CommandNotFound: The program does not exist.
     """
     exercise = exercises.get(exercise_id)
-    if not is_path(exercise, command, cwd) and shutil.which(command[0], path=_search_path(cwd)) is None:
+    # shutil.which looks up names without a slash in these folders, of which the command's working folder is one.
+    folders = os.environ.get("PATH") if cwd is None else f"{os.environ.get('PATH', '')}:{cwd}"
+    if not is_path(exercise, command, cwd) and shutil.which(command[0], path=folders) is None:
         raise CommandNotFound(
             f"the program {command[0]!r} does not exist here: check its spelling, and that it is executable"
         )
@@ -76,7 +80,9 @@ def check_and_keep(
 
     def report() -> bytes:
         verdict, checked = checked_here(exercise, command, chosen, cwd, box)
-        return msgspec.json.encode(Report(verdict, evidence=_packed(checked)))
+        return msgspec.json.encode(
+            Report(verdict, evidence=evidence_files.packed(checked) if checked else b"")
+        )
 
     ros_setup.provide_log_folder()  # before the fork, because a child exits without removing its folders
     outcome = Child(report, exercise.limit + FOR_BUILDS + SPARE).result()
@@ -88,7 +94,7 @@ def check_and_keep(
     return said.verdict, said.evidence
 
 
-def as_run(exercise: Exercise, command: Sequence[str], cwd: Path | None) -> Sequence[str]:
+def _as_run(exercise: Exercise, command: Sequence[str], cwd: Path | None) -> Sequence[str]:
     """Return the command that runs the subject.
 
     If ``command`` is the path of a workspace or launch file, this is ``python -m autograder.workspaces`` with the path.
@@ -107,17 +113,6 @@ def is_path(exercise: Exercise, command: Sequence[str], cwd: Path | None) -> boo
     return path.is_dir() if not isinstance(exercise.runner, Launches) else path.suffix in LAUNCH_FILES
 
 
-def _search_path(cwd: Path | None) -> str | None:
-    # shutil.which looks up names without a slash in these folders, of which the command's working folder is one.
-    return os.environ.get("PATH") if cwd is None else f"{os.environ.get('PATH', '')}:{cwd}"
-
-
-def _packed(checked: Checked | None) -> bytes:
-    from autograder.judge import evidence_files
-
-    return evidence_files.packed(checked) if checked else b""
-
-
 def checked_here(
     exercise: Exercise, command: Sequence[str], seed: str, cwd: Path | None, box: CommandBox | None = None
 ) -> tuple[Verdict, Checked | None]:
@@ -125,15 +120,14 @@ def checked_here(
     ros_setup.prepare_judge(boxed=box is not None)
     if box is not None:
         box.enter()
-    from autograder.judge import evidence_files, one_check
-    from autograder.judge.bench.judge_nodes import JudgeFailed
+    from autograder.judge import one_check
     from autograder.judge.subject import CommandSubject
 
     try:
         expected = evidence_files.load_reference(exercise.id)
-        with ros_setup.lease() as domain_id:
-            subject = CommandSubject(as_run(exercise, command, cwd), cwd, box)
+        with ros_setup.lease_domain() as domain_id:
+            subject = CommandSubject(_as_run(exercise, command, cwd), cwd, box)
             checked = one_check.check(exercise, subject, expected, seed=seed, domain_id=domain_id)
             return checked.verdict, checked
-    except (ros_setup.NoFreeDomainError, evidence_files.NoReference, JudgeFailed) as error:
+    except (NoFreeDomainError, evidence_files.NoReference, JudgeFailed) as error:
         return not_checked(exercise.id, exercise.title, exercise.points, str(error)), None

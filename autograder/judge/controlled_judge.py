@@ -34,83 +34,6 @@ if TYPE_CHECKING:
     from autograder.verdict import Verdict
 
 
-def prepare() -> None:
-    """Set up ROS for a judge in this process and import everything that a check needs."""
-    ros_setup.prepare_judge()
-    importlib.import_module("autograder.judge.check_server")
-    imports()
-
-
-def run(call: Mapping[str, Any], descriptors: Sequence[int]) -> None:
-    """Serve one notebook until the grader disconnects.
-
-    Args:
-        call: Empty; the fork server passes this argument to every service.
-        descriptors: The listening socket for the notebook, and the socket for the grader's orders.
-    """
-    from autograder.judge.check_server import JudgeServer
-
-    del call
-    os.environ.pop("RMW_IMPLEMENTATION", None)
-    sys.stdout = sys.stderr
-    listener, control = (socket.socket(fileno=descriptor) for descriptor in descriptors)
-    with control.makefile("rb") as orders, control.makefile("wb") as answers:
-        JudgeServer(listener, controlled=True).serve(orders, answers)
-
-
-def environment(*, boxed: bool) -> dict[str, str]:
-    """Return the environment variables of a new judge: ROS settings and the folder of the course.
-
-    :func:`autograder.judge.ros_setup.prepare_judge` sets the same ROS variables in a process that already runs.
-
-    ``ROS_LOG_DIR`` is not among them, because the folder for logs is inside the sandbox.
-    """
-    return {
-        **course.variables(),
-        **(ros_setup.boxed_ros_environment() if boxed else ros_setup.ros_environment()),
-        **ros_setup.OF_THE_JUDGE,
-    }
-
-
-def readable() -> list[Path]:
-    """Return the files outside the package that a judge reads: the reference outputs."""
-    files = [exercises.reference_path(exercise_id) for exercise_id in exercises.all_ids()]
-    return [file for file in files if file.is_file()]
-
-
-_INTERFACES = (
-    "std_msgs.msg",
-    "rcl_interfaces.msg",
-    "rcl_interfaces.srv",
-    "rosgraph_msgs.msg",
-    "action_msgs.msg",
-    "action_msgs.srv",
-    # Every node offers a service from this package. Loading its type costs 5 ms of processor time, so do it in advance.
-    "type_description_interfaces.msg",
-    "type_description_interfaces.srv",
-)
-
-
-def imports() -> None:
-    """Import the judge, every exercise, the course's interfaces and their compiled type supports.
-
-    A check that is forked later then needs no imports. Forking stays safe, because no node and no thread is created
-    here.
-    """
-    for name in ("subject", "notebook_subject", "one_check"):
-        importlib.import_module(f"autograder.judge.{name}")
-
-    # Skip broken exercises: an unfinished exercise must not prevent checks of other exercises.
-    exercises.unbroken()
-    for name in (*_INTERFACES, *course.interface_modules()):
-        with contextlib.suppress(ImportError):
-            module = importlib.import_module(name)
-            for kind in vars(module).values():
-                load = getattr(type(kind), "__import_type_support__", None)
-                if load is not None:
-                    load()
-
-
 START_LIMIT = 60.0
 """Time limit in seconds of wall time for starting a judge, which takes well under one second on an idle machine."""
 ANSWER_LIMIT = 30.0
@@ -124,7 +47,7 @@ class JudgeDied(RuntimeError):
     """The judge process has ended or does not answer, so there is no verdict about the subject."""
 
 
-class StartedJudge(Protocol):
+class _StartedJudge(Protocol):
     """A running judge process, inside or outside a sandbox."""
 
     def end(self) -> None:
@@ -132,7 +55,7 @@ class StartedJudge(Protocol):
         ...
 
 
-Start = Callable[[int, int], StartedJudge]
+Start = Callable[[int, int], _StartedJudge]
 """A function that starts a judge. Its arguments are the descriptors of a listening socket for notebooks and of a
 connected socket for the grader's orders; the caller closes both.
 """
@@ -159,7 +82,7 @@ class JudgeProcess:
         self.is_boxed = False
         """True if the judge runs in a sandbox next to the sandbox of the submission."""
         self._start = start or _Child
-        self._process: StartedJudge | None = None
+        self._process: _StartedJudge | None = None
         self._orders: Lines | None = None
 
     def __enter__(self) -> Self:
@@ -265,3 +188,77 @@ class _Child:
             self._process.wait(timeout=2.0)
         signal_group(self._process.pid, signal.SIGKILL)
         self._process.wait()
+
+
+def prepare() -> None:
+    """Set up ROS for a judge in this process and import everything that a check needs."""
+    ros_setup.prepare_judge()
+    import_judge()
+
+
+def run(call: Mapping[str, Any], descriptors: Sequence[int]) -> None:
+    """Serve one notebook until the grader disconnects.
+
+    Args:
+        call: Empty; the fork server passes this argument to every service.
+        descriptors: The listening socket for the notebook, and the socket for the grader's orders.
+    """
+    from autograder.judge.check_server import JudgeServer
+
+    del call
+    os.environ.pop("RMW_IMPLEMENTATION", None)
+    sys.stdout = sys.stderr
+    listener, control = (socket.socket(fileno=descriptor) for descriptor in descriptors)
+    with control.makefile("rb") as orders, control.makefile("wb") as answers:
+        JudgeServer(listener, controlled=True).serve(orders, answers)
+
+
+def environment(*, boxed: bool) -> dict[str, str]:
+    """Return the environment variables of a new judge: ROS settings and the folder of the course.
+
+    :func:`autograder.judge.ros_setup.prepare_judge` sets the same ROS variables in a process that already runs.
+
+    ``ROS_LOG_DIR`` is not among them, because the folder for logs is inside the sandbox.
+    """
+    return {
+        **course.variables(),
+        **(ros_setup.boxed_ros_environment() if boxed else ros_setup.ros_environment()),
+        **ros_setup.OF_THE_JUDGE,
+    }
+
+
+def readable() -> list[Path]:
+    """Return the files outside the package that a judge reads: the reference outputs."""
+    files = [exercises.reference_path(exercise_id) for exercise_id in exercises.all_ids()]
+    return [file for file in files if file.is_file()]
+
+
+_INTERFACES = (
+    "std_msgs.msg",
+    "rcl_interfaces.msg",
+    "rcl_interfaces.srv",
+    "rosgraph_msgs.msg",
+    "action_msgs.msg",
+    "action_msgs.srv",
+    # Every node offers a service from this package. Loading its type costs 5 ms of processor time, so do it in advance.
+    "type_description_interfaces.msg",
+    "type_description_interfaces.srv",
+)
+
+
+def import_judge() -> None:
+    """Import the judge, every exercise, the course's interfaces and their compiled type supports.
+
+    A check that is forked later then needs no imports. Forking stays safe, because no node and no thread is created
+    here.
+    """
+    importlib.import_module("autograder.judge.check_server")
+    # Skip broken exercises: an unfinished exercise must not prevent checks of other exercises.
+    exercises.unbroken()
+    for name in (*_INTERFACES, *course.interface_modules()):
+        with contextlib.suppress(ImportError):
+            module = importlib.import_module(name)
+            for kind in vars(module).values():
+                load = getattr(type(kind), "__import_type_support__", None)
+                if load is not None:
+                    load()

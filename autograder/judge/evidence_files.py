@@ -1,8 +1,8 @@
 """Writes evidence and reads it back: reference outputs, and the packed evidence of checks.
 
-A reference output is what a reference solution does on the wire, as JSON that people can review. Its file contains only
-what the task determines, such as messages, requests and answers. Facts that differ from run to run are left out, such
-as wall times, random node names and the order of log lines from two channels.
+A reference output contains the events of a reference solution on the wire, as JSON that people can review. It contains
+only facts that the task determines, such as messages, requests and answers. Facts that differ from run to run are left
+out, such as wall times, random node names and the order of log lines from two channels.
 
 The evidence of a check is packed unchanged into bytes of limited size: JSON, compressed with gzip, with one line for
 each event. Evidence that is too long is cut and marked as cut, because no verdict may be derived from a part of it.

@@ -1,14 +1,9 @@
-"""Tells whether this machine is fit for judging: not overloaded, and able to deliver messages.
+"""Time limits that get longer while this machine is busy, and whether this machine is fit for judging at all.
 
-If it is not, a check that the subject does not pass may end without a verdict, so that no right answer fails because of
-the machine.
-
-The load average (getloadavg(3)) would be the wrong measure of the load, because it is a mean over at least a minute: it
-still counts programs that ended before the look, and hardly counts those that started with the look.
-
-The kernel limits the memory of all sockets of a machine, and the number of epoll watches of each user, sandboxes
-included. If either is used up, a node still starts without an error, but it receives little or nothing (udp(7),
-epoll(7)).
+A limit that is generous on an idle machine is too short if thirty processes wait for a processor, because even a
+correct program would exceed it. So a second of a limit lasts longer while the machine is busy, up to ``SLOWEST``
+seconds. If the machine is still busier, or loses messages, a check that the subject does not pass may end without a
+verdict, so that no right answer fails because of the machine.
 """
 
 from __future__ import annotations
@@ -19,13 +14,84 @@ import select
 import socket
 import threading
 import time
+from pathlib import Path
 from typing import TYPE_CHECKING, Self
-
-from autograder.judge.bench.judge_nodes import JudgeFailed
-from autograder.judge.bench.patience import SLOWEST, runnable_threads, slowness
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+
+
+class JudgeFailed(RuntimeError):
+    """There is no verdict, because the judge or its machine failed; the message says why."""
+
+
+CROWDED = 4.0
+"""The number of runnable threads per processor from which on time limits get longer."""
+SLOWEST = 3.0
+"""The maximum factor by which a busy machine makes a time limit longer."""
+_LOOK_EVERY = 0.1
+_LOADAVG = Path("/proc/loadavg")
+
+
+class Patience:
+    """A time limit that gets longer while the machine is busy.
+
+    Args:
+        seconds: The time limit in seconds, on an idle machine.
+        slowness: Returns the factor by which the time limit is longer at the moment; 1.0 on an idle machine.
+        now: A monotonic clock, in seconds.
+    """
+
+    def __init__(
+        self,
+        seconds: float,
+        *,
+        slowness: Callable[[], float] | None = None,
+        now: Callable[[], float] = time.monotonic,
+    ) -> None:
+        self._seconds = seconds
+        self.slowness, self._now = slowness or machine_slowness, now
+        self.restart()
+
+    def restart(self) -> None:
+        """Start the time limit again from the beginning."""
+        self._used = 0.0
+        self._at = self._looked = self._now()
+        self._factor = 1.0
+
+    @property
+    def left(self) -> float:
+        """The time that is left, in seconds of an idle machine; zero or negative if the limit is reached."""
+        now = self._now()
+        if now - self._looked >= _LOOK_EVERY:
+            self._factor = self.slowness()
+            self._looked = now
+        self._used += (now - self._at) / self._factor
+        self._at = now
+        return self._seconds - self._used
+
+
+def machine_slowness() -> float:
+    """Return the factor by which the present load of this machine lengthens time limits."""
+    return slowness(_runnable_threads(), os.cpu_count() or 1)
+
+
+def _runnable_threads() -> int:
+    """Return how many threads run or wait for a processor now; 0 if /proc/loadavg cannot be read (proc(5))."""
+    try:
+        return int(_LOADAVG.read_text().split()[3].partition("/")[0])
+    except (OSError, ValueError, IndexError):
+        return 0
+
+
+def slowness(runnable: float, processors: int) -> float:
+    """Return the factor by which a load lengthens time limits.
+
+    Args:
+        runnable: The number of threads that run or wait for a processor.
+        processors: The number of processors.
+    """
+    return min(SLOWEST, max(1.0, runnable / (CROWDED * processors)))
 
 
 TOO_BUSY = (
@@ -56,13 +122,16 @@ class OutOfTime(BaseException):
 class Crowding:
     """A context that counts, again and again, how many threads run or wait for a processor.
 
+    The load average (getloadavg(3)) would be the wrong measure, because it is a mean over at least a minute: it still
+    counts programs that ended before this context, and hardly counts those that started with this context.
+
     Args:
         runnable: Returns the number of threads that run or wait for a processor now.
         processors: The number of processors that they share.
     """
 
     def __init__(
-        self, runnable: Callable[[], int] = runnable_threads, processors: int = os.cpu_count() or 1
+        self, runnable: Callable[[], int] = _runnable_threads, processors: int = os.cpu_count() or 1
     ) -> None:
         self._runnable, self._processors = runnable, processors
         self._counts: list[int] = []
@@ -104,7 +173,7 @@ class Hurry:
 
     def __init__(
         self,
-        runnable: Callable[[], int] = runnable_threads,
+        runnable: Callable[[], int] = _runnable_threads,
         processors: int = os.cpu_count() or 1,
         now: Callable[[], float] = time.monotonic,
         is_building: Callable[[], bool] = lambda: False,
@@ -150,7 +219,12 @@ class NotDelivered(JudgeFailed):
 
 
 def delivers() -> bool:
-    """Return True if datagrams that this process sends to itself arrive, and epoll reports them."""
+    """Return True if datagrams that this process sends to itself arrive, and epoll reports them.
+
+    The kernel limits the memory of all sockets of a machine, and the number of epoll watches of each user, sandboxes
+    included. If either is used up, a node still starts without an error, but it receives little or nothing (udp(7),
+    epoll(7)).
+    """
     try:
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as end, select.epoll() as watch:
             end.bind(("127.0.0.1", 0))

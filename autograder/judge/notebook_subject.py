@@ -42,7 +42,7 @@ STOP_LIMIT = 3.0
 """Time limit in seconds of wall time for the notebook to stop a run."""
 
 
-class RemoteSubject:
+class NotebookSubject:
     """A Node class or a function that a notebook's kernel runs."""
 
     shares_participant = True
@@ -229,7 +229,7 @@ class RemoteSubject:
             self._ended = True
 
 
-class RemotePath(InOwnProcesses, RemoteSubject):
+class NotebookPath(InOwnProcesses, NotebookSubject):
     """A workspace or launch file whose programs the notebook's kernel starts."""
 
     in_a_notebook = True
@@ -239,7 +239,7 @@ class RemotePath(InOwnProcesses, RemoteSubject):
         super().__init__(lines)
         self.keeper = InOwnProcesses.keeper
 
-    tell_so_far = RemoteSubject.tell_so_far
+    tell_so_far = NotebookSubject.tell_so_far
 
     def _take_of_run(self, message: judge_messages.RunMessage, recorder: Recorder) -> None:
         super()._take_of_run(message, recorder)

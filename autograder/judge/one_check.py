@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING
 from autograder import exercises, kit
 from autograder.judge import verdict_timeline
 from autograder.judge.bench.bench import TestBench
-from autograder.judge.bench.judge_nodes import JudgeFailed
 from autograder.judge.check_process import Undecided, limited, undecidable
 from autograder.judge.machine_fitness import (
     NOT_DELIVERED,
@@ -22,6 +21,7 @@ from autograder.judge.machine_fitness import (
     TOO_BUSY,
     Crowding,
     Hurry,
+    JudgeFailed,
     NotDelivered,
     OutOfTime,
     TooBusy,
@@ -38,74 +38,6 @@ if TYPE_CHECKING:
 
     from autograder.judge.subject import Subject
     from autograder.kit.evidence import Event
-
-
-WHAT_TO_DO = "Show this card to your instructor: the exercise has to be corrected first."
-_KIT = Path(kit.__file__).parent
-MAX_QUOTED_ERROR = 300
-"""The maximum length of the quoted error, in characters. It is limited because the error may contain output of the
-subject.
-"""
-
-
-class ExerciseFailed(JudgeFailed):
-    """The exercise's own code raised an exception."""
-
-
-@contextlib.contextmanager
-def of_exercise(exercise: Exercise) -> Iterator[None]:
-    """Turn an exception in an exercise's own code into an :class:`ExerciseFailed`, which says what to do about it.
-
-    Raises:
-        ExerciseFailed: The code in the block raised an exception, and code of the exercise or of the kit called it.
-    """
-    try:
-        yield
-    except (JudgeFailed, OSError):
-        raise
-    except Exception as error:
-        where = _line_of_exercise(error, exercise)
-        if not where:
-            raise
-        words = " ".join(f"{type(error).__name__}: {error}".split())[:MAX_QUOTED_ERROR]
-        raise ExerciseFailed(f"The exercise has a fault: {words} ({where}).\n{WHAT_TO_DO}") from error
-
-
-def _line_of_exercise(error: Exception, exercise: Exercise) -> str:
-    """Return the file and line of the exercise's code, or else of the kit's, that raised the error; empty if none."""
-    frames = traceback.extract_tb(error.__traceback__)
-    for folder in (exercises.path(exercise.id).parent, _KIT):
-        for frame in reversed(frames):
-            if folder in Path(frame.filename).parents:
-                return f"{Path(frame.filename).name}, line {frame.lineno}"
-    return ""
-
-
-def misnamed(evidence: Evidence, verdict: Verdict) -> dict[str, dict[str, str]]:
-    """Return the endpoints to which the subject gives a wrong name; the keys are the right names, as in the task.
-
-    An endpoint counts as misnamed if, in all parts, the subject has no endpoint with the right name, role and type, but
-    exactly one other endpoint with this role and type. If there are two others, neither is returned, because it is
-    unclear which one was meant.
-
-    Args:
-        evidence: The evidence of a look in which the judge used the names in the task.
-        verdict: The verdict on this evidence, which is not a pass.
-
-    Returns:
-        For each name: ``real``, the name that the subject uses, and ``costs``, the name of the first criterion that
-        fails because of the wrong name.
-    """
-    costs = next(criterion.name for criterion in verdict.criteria if not criterion.passed)
-    found: dict[str, dict[str, str]] = {}
-    for role, asked in evidence.reference.interface.items():
-        made = {name: kind for part in evidence for name, kind in part.endpoints(role).items()}
-        for kind in set(asked.values()):
-            missing = [name for name, type_name in asked.items() if type_name == kind and name not in made]
-            others = [name for name, type_name in made.items() if type_name == kind and name not in asked]
-            if len(missing) == len(others) == 1:
-                found[missing[0]] = {"real": others[0], "costs": costs}
-    return found
 
 
 UNKNOWN = "unknown"
@@ -160,7 +92,7 @@ def check(
 
     A subject that passes the first look, in simulated time, has passed. If it fails, a second look in real time
     decides, unless the evidence proves the mistake whatever the load is. A check whose verdict takes longer than
-    :data:`.deciding.LIMIT` has failed.
+    :data:`autograder.judge.check_process.VERDICT_LIMIT` has failed.
 
     Args:
         exercise: The exercise that the subject has to fulfill.
@@ -302,7 +234,7 @@ def look(
 
 
 def judge(exercise: Exercise, evidence: Evidence, seed: str) -> Verdict:
-    """Return the verdict that follows from the evidence. Call this within :func:`.deciding.limited`."""
+    """Return the verdict that follows from the evidence. Call this within :func:`.check_process.limited`."""
     lost = {event.data["costs"]: event for part in evidence for event in part.of("misnamed")}
     criteria = tuple(
         CriterionResult(c.name, c.title, c.points, finding.passed, _cut(finding.expected), _cut(finding.seen))
@@ -375,3 +307,71 @@ def is_certain(exercise: Exercise, evidence: Evidence) -> bool:
 def _cut(text: str, limit: int = MAX_WORDS) -> str:
     """Return a sentence, cut to the length that fits on a card."""
     return text if len(text) <= limit else f"{text[: limit - 1]}…"
+
+
+WHAT_TO_DO = "Show this card to your instructor: the exercise has to be corrected first."
+_KIT = Path(kit.__file__).parent
+MAX_QUOTED_ERROR = 300
+"""The maximum length of the quoted error, in characters. It is limited because the error may contain output of the
+subject.
+"""
+
+
+class ExerciseFailed(JudgeFailed):
+    """The exercise's own code raised an exception."""
+
+
+@contextlib.contextmanager
+def of_exercise(exercise: Exercise) -> Iterator[None]:
+    """Turn an exception in an exercise's own code into an :class:`ExerciseFailed`, which says what to do about it.
+
+    Raises:
+        ExerciseFailed: The code in the block raised an exception, and code of the exercise or of the kit called it.
+    """
+    try:
+        yield
+    except (JudgeFailed, OSError):
+        raise
+    except Exception as error:
+        where = _line_of_exercise(error, exercise)
+        if not where:
+            raise
+        words = " ".join(f"{type(error).__name__}: {error}".split())[:MAX_QUOTED_ERROR]
+        raise ExerciseFailed(f"The exercise has a fault: {words} ({where}).\n{WHAT_TO_DO}") from error
+
+
+def _line_of_exercise(error: Exception, exercise: Exercise) -> str:
+    """Return the file and line of the exercise's code, or else of the kit's, that raised the error; empty if none."""
+    frames = traceback.extract_tb(error.__traceback__)
+    for folder in (exercises.path(exercise.id).parent, _KIT):
+        for frame in reversed(frames):
+            if folder in Path(frame.filename).parents:
+                return f"{Path(frame.filename).name}, line {frame.lineno}"
+    return ""
+
+
+def misnamed(evidence: Evidence, verdict: Verdict) -> dict[str, dict[str, str]]:
+    """Return the endpoints to which the subject gives a wrong name; the keys are the right names, as in the task.
+
+    An endpoint counts as misnamed if, in all parts, the subject has no endpoint with the right name, role and type, but
+    exactly one other endpoint with this role and type. If there are two others, neither is returned, because it is
+    unclear which one was meant.
+
+    Args:
+        evidence: The evidence of a look in which the judge used the names in the task.
+        verdict: The verdict on this evidence, which is not a pass.
+
+    Returns:
+        For each name: ``real``, the name that the subject uses, and ``costs``, the name of the first criterion that
+        fails because of the wrong name.
+    """
+    costs = next(criterion.name for criterion in verdict.criteria if not criterion.passed)
+    found: dict[str, dict[str, str]] = {}
+    for role, asked in evidence.reference.interface.items():
+        made = {name: kind for part in evidence for name, kind in part.endpoints(role).items()}
+        for kind in set(asked.values()):
+            missing = [name for name, type_name in asked.items() if type_name == kind and name not in made]
+            others = [name for name, type_name in made.items() if type_name == kind and name not in asked]
+            if len(missing) == len(others) == 1:
+                found[missing[0]] = {"real": others[0], "costs": costs}
+    return found

@@ -10,7 +10,7 @@ import threading
 import time
 from typing import TYPE_CHECKING, Any
 
-from autograder.judge.bench.judge_nodes import JudgeFailed
+from autograder.judge.machine_fitness import JudgeFailed
 from autograder.judge.subject import InOwnProcesses
 from autograder.kit.evidence import REPORTS
 from autograder.messages import workspace_messages

@@ -83,7 +83,10 @@ def _endpoints_of_solution(exercise: Exercise, subject: Subject, domain_id: int)
             bench.start(*program, *exercise.sample_arguments)
             if exercise.runner:
                 # The endpoints of a workspace appear only after its build, so wait until the build has ended.
-                bench.wait_until(_is_at_work, exercise.limit)
+                bench.wait_until(
+                    lambda evidence: report_of(evidence.main) is not None or bool(processes(evidence.main)),
+                    exercise.limit,
+                )
             shown = bench.await_any_endpoint(exercise.roles)
             found |= {role: shown[role] for role in shown if shown[role] or role not in found}
             if not exercise.runner and bench.seen().ending is None:
@@ -101,7 +104,3 @@ def _programs(exercise: Exercise) -> list[tuple[str, ...]]:
     """Return the arguments of each of the exercise's programs; a single empty tuple if it has only one subject."""
     runner = exercise.runner
     return [(name,) for name in runner.programs] if isinstance(runner, RunsPrograms) else [()]
-
-
-def _is_at_work(evidence: Evidence) -> bool:
-    return report_of(evidence.main) is not None or bool(processes(evidence.main))

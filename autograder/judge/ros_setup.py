@@ -105,8 +105,6 @@ def provide_log_folder() -> None:
                 folder.remove()
 
 
-__all__ = ["NoFreeDomainError", "lease", "remove_abandoned", "remove_if_abandoned"]
-
 SHARED_MEMORY = Path("/dev/shm")
 _LOCK_SUFFIX = "_el"
 _LOCKS = f"fastrtps_{'[0-9a-f]' * 16}{_LOCK_SUFFIX}"
@@ -121,7 +119,7 @@ its owner has only just created it.
 
 
 @contextlib.contextmanager
-def lease(*, alone: bool = False) -> Iterator[int]:
+def lease_domain(*, alone: bool = False) -> Iterator[int]:
     """Reserve a free domain id while the block runs. The id becomes free again even if the process crashes.
 
     Shared memory that killed programs of earlier checks left behind is removed first.
@@ -133,7 +131,7 @@ def lease(*, alone: bool = False) -> Iterator[int]:
     Raises:
         NoFreeDomainError: All domains are in use.
     """
-    remove_abandoned()
+    remove_abandoned_memory()
     try:
         claim = claim_free_domain()
     except NoFreeDomainError:
@@ -147,7 +145,7 @@ def lease(*, alone: bool = False) -> Iterator[int]:
         claim.release()
 
 
-def remove_abandoned(folder: Path = SHARED_MEMORY, age: float = ABANDONED_AFTER) -> None:
+def remove_abandoned_memory(folder: Path = SHARED_MEMORY, age: float = ABANDONED_AFTER) -> None:
     """Remove the shared memory of this user's programs that have ended.
 
     Args:
@@ -157,10 +155,10 @@ def remove_abandoned(folder: Path = SHARED_MEMORY, age: float = ABANDONED_AFTER)
     with contextlib.suppress(OSError):
         for lock in folder.glob(_LOCKS):
             with contextlib.suppress(OSError):
-                remove_if_abandoned(lock, time.time() - age)
+                remove_memory_if_abandoned(lock, time.time() - age)
 
 
-def remove_if_abandoned(lock: Path, made_before: float) -> None:
+def remove_memory_if_abandoned(lock: Path, made_before: float) -> None:
     """Remove a shared memory segment and its lock file if the program that owns them has ended.
 
     Args:

@@ -1,4 +1,4 @@
-"""What the judge observes: the interface of a subject, and the subject that is a command of its own.
+"""The interface of a subject, which is the code that the judge observes, and a command as a subject.
 
 A command may be any program, such as a script, ``ros2 run`` or ``ros2 launch``.
 """

@@ -28,10 +28,8 @@ if TYPE_CHECKING:
 PACKAGE = Path(autograder.__file__).parent
 JUDGE = (
     "judge/bench",
-    "judge/subject.py",
-    "judge/notebook_subject.py",
-    "judge/path_subject.py",
-    "judge/ros_setup.py",
+    *(f"judge/{name}.py" for name in ("subject", "notebook_subject", "path_subject", "command_check")),
+    *(f"judge/{name}.py" for name in ("ros_setup", "machine_fitness")),
     "judge/fastdds_profile.xml",
     "kit/evidence.py",
 )

@@ -22,8 +22,8 @@ if TYPE_CHECKING:
 
 _JUDGE = """
 import runpy, sys
-from autograder.judge import ros_setup as settings
-settings.prepare_judge()
+from autograder.judge import ros_setup
+ros_setup.prepare_judge()
 {change}
 sys.argv = ["judge", "--attached", sys.argv[1], sys.argv[2]]
 runpy.run_module("autograder.judge", run_name="__main__")

@@ -21,8 +21,8 @@ from autograder.execution.notebook_boxes import SHARED_FOLDER, BoxedPlace, Judge
 from autograder.execution.notebook_runner import Unfinished, run_notebook
 from autograder.grading.returning.rendering_time import too_costly
 from autograder.judge import controlled_judge
-from autograder.judge.bench.patience import Patience
-from autograder.judge.ros_setup import boxed_ros_environment, lease, ros_environment
+from autograder.judge.machine_fitness import Patience
+from autograder.judge.ros_setup import boxed_ros_environment, lease_domain, ros_environment
 from autograder.messages.judge_messages import SOCKET_VARIABLE
 from autograder.safe_files import scratch_folder
 from autograder.workspaces.boxed_jobs import BoxedJobs
@@ -303,7 +303,7 @@ def _ros_variables(stack: contextlib.ExitStack, *, boxed: bool) -> Mapping[str, 
     if boxed:
         # No other nodes are on this network, so any domain is free.
         return {**boxed_ros_environment(), "ROS_DOMAIN_ID": "0"}
-    return {**ros_environment(), "ROS_DOMAIN_ID": str(stack.enter_context(lease()))}
+    return {**ros_environment(), "ROS_DOMAIN_ID": str(stack.enter_context(lease_domain()))}
 
 
 def _imported(name: str) -> Any:

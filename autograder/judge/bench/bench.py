@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from autograder.judge.bench import discovery
 from autograder.judge.bench.discovery import Announcements, process_of
-from autograder.judge.bench.judge_nodes import DecoyNodes, JudgeFailed, Wire
+from autograder.judge.bench.judge_nodes import DecoyNodes, Wire
 from autograder.judge.bench.recorded_actions import RecordedActionClient, ScriptedActionServer
 from autograder.judge.bench.recorded_services import Answer, RecordedCaller, RecordedServer
 from autograder.judge.bench.recorded_topics import LogReader, RecordedPublisher, RecordedSubscription
@@ -20,6 +20,7 @@ from autograder.judge.bench.recorder import Recorder
 from autograder.judge.bench.ros_interfaces import expected_hashes, served_hashes, service_fields
 from autograder.judge.bench.subject_presence import GRAPH_POLL, MATCH, Presence
 from autograder.judge.bench.subject_time import SubjectTime, answers
+from autograder.judge.machine_fitness import JudgeFailed
 from autograder.kit.evidence import INTERRUPTED, Evidence, Part, Reference
 from autograder.kit.giving_up import patience
 from autograder.kit.model import STEP, Pace
@@ -30,22 +31,14 @@ if TYPE_CHECKING:
 
     from autograder.judge.subject import Subject
 
-SETTLED = {Pace.FAST: 1.0, Pace.REAL_TIME: 3.0}
-"""If the graph has not changed for this many seconds, a command is assumed to have made all its endpoints. By pace."""
 GRAPH_LOOK = 0.02
 """Seconds between two queries of the graph whose results are recorded."""
-T = TypeVar("T")
-
-
-def _of_a_part(made: T | None) -> T:
-    """Return ``made``. Raise an error if ``made`` is None because the scenario has not begun a part."""
-    if made is None:
-        raise RuntimeError("a scenario begins with bench.part(...)")
-    return made
+_T = TypeVar("_T")
+_Client = TypeVar("_Client", RecordedCaller, RecordedActionClient)
 
 
 class TestBench:
-    """Implements :class:`autograder.kit.model.Bench` on real ROS.
+    """Implements :class:`autograder.kit.model.Bench` on real ROS. Its methods are documented there.
 
     Attributes:
         in_a_cell: True if the subject runs in a notebook's kernel.
@@ -81,7 +74,7 @@ class TestBench:
         self._subject = subject
         self._domain_id = domain_id
         self._recorder = Recorder(hurry)
-        self._wire: Wire | None = None
+        self._participant: Wire | None = None
         self._decoys: DecoyNodes | None = None
         # Announcements show that a program has made a node. They would not show this for a notebook, whose kernel
         # announces one participant for all runs.
@@ -95,45 +88,42 @@ class TestBench:
         self._clean = True
         self._in_part = False
 
-    # --- parts ---------------------------------------------------------------------------------------------
-
     def part(self, name: str, **inputs: Any) -> None:
-        """Begin a part, that is, a new run of the subject."""
         self.stop()
         self._recorder.begin(name, inputs)
         for asked, facts in self._misnamed.items():
             self._recorder.record("misnamed", asked, **facts)
         self._in_part = True
-        if self._wire is None or not (self._subject.shares_participant and self._clean):
+        if self._participant is None or not (self._subject.shares_participant and self._clean):
             self._close_wire()
-            self._wire, self._decoys = Wire(self._domain_id), DecoyNodes(self._domain_id)
+            self._participant, self._decoys = Wire(self._domain_id), DecoyNodes(self._domain_id)
             # Each participant of the judge gets one log reader for all parts, because a new reader would receive the
             # log lines of earlier parts again.
-            self._log = LogReader(self._wire, self._recorder)
+            self._log = LogReader(self._participant, self._recorder)
             self._subject.renew()
-            self._recorder.take_in = partial(self._wire.take_in, lambda: self._recorder.count)
+            self._recorder.take_in = partial(self._participant.take_in, lambda: self._recorder.count)
         self._on_graph = Presence(
-            self._wire.node, self._recorder, self._subject, SETTLED[self.pace], self._has_announced_itself
+            self._participant.node, self._recorder, self._subject, self.pace, self._has_announced_itself
         )
         self._time_of_part = SubjectTime(
-            self._wire, self._recorder, self._subject, self._on_graph, self._open, self.pace, self.doubt
+            self._participant,
+            self._recorder,
+            self._subject,
+            self._on_graph,
+            self._open,
+            self.pace,
+            self.doubt,
         )
 
     def again(self, name: str = "") -> None:
-        """Discard the record of a part (by default, of the last one) and run this part again."""
         self.stop()
         dropped = next(part for part in reversed(self.parts) if name in ("", part.name))
         self.parts.remove(dropped)
         self.part(dropped.name, **dropped.inputs)
 
     def keep(self, name: str) -> bool:
-        """If the subject ended by itself in this part of the first look, reuse the part's record, and return True.
-
-        Do not reuse the record if the part tells a function how many seconds to wait (``patience_sec``). Such a wait
-        depends on the pace, so the part has to be run again.
-        """
         known = self.before.part(name) if self.before else Part(name)
-        if known.ending is None or patience(known) is not None:
+        if known.ending is None or patience(known) is not None:  # how long it waits depends on the pace
             return False
         self.stop()
         self.parts.append(known)
@@ -144,9 +134,7 @@ class TestBench:
         if not self._in_part:
             return
         self._in_part = False
-        self._presence.note_interface()
-        self._presence.note_how_it_leaves()
-        self._presence.note_whom_it_met()
+        self._presence.note_last_state()
         self._presence.note_short_life()
         # After Ctrl-C, the old endpoints of the subject may stay on the graph for a while. So the judge uses a new
         # participant in the next part, because a new participant never discovers them.
@@ -157,11 +145,11 @@ class TestBench:
         self._gone, self._there = self._gone | self._there, set()
         if self._decoys is not None:
             self._decoys.clear()
-        if self.wire.failure is not None:
-            raise JudgeFailed(f"the judge's own node failed: {self.wire.failure!r}")
+        if self._wire.failure is not None:
+            raise JudgeFailed(f"the judge's own node failed: {self._wire.failure!r}")
 
     def close(self) -> None:
-        """Stop the subject and remove everything from the graph. This may be called at any time."""
+        """Stop the subject and remove everything from the graph. A call is allowed at any time."""
         try:
             self.stop()
         finally:
@@ -170,36 +158,32 @@ class TestBench:
                 self._announcements.close()
 
     def _close_wire(self) -> None:
-        if self._wire is not None and self._decoys is not None:
+        if self._participant is not None and self._decoys is not None:
             self._decoys.close()
-            self._wire.close()
-            self._wire = self._decoys = None
+            self._participant.close()
+            self._participant = self._decoys = None
             # The endpoints disappear together with the judge's participant, so the next subject cannot discover them.
             self._gone = set()
 
     @property
-    def wire(self) -> Wire:
+    def _wire(self) -> Wire:
         """The judge's DDS participant in this part of the check."""
-        return _of_a_part(self._wire)
+        return _of_a_part(self._participant)
 
     @property
     def _presence(self) -> Presence:
-        """The subject's nodes and endpoints on the graph in this part."""
         return _of_a_part(self._on_graph)
 
     @property
     def _time(self) -> SubjectTime:
-        """The subject's time (simulated or real) in this part."""
         return _of_a_part(self._time_of_part)
 
-    # --- the subject ---------------------------------------------------------------------------------------
-
     def start(self, *arguments: Any, **options: Any) -> None:
-        """Start the subject, but first wait until its process knows which endpoints the judge has added and removed."""
+        # Before the start, wait until the subject's process knows which endpoints the judge has added and removed.
         if (self._there or self._gone) and not self._subject.knows(there=self._there, gone=self._gone):
             self.unmet = True
         if self._announcements is not None:
-            self._older_processes = {process_of(self.wire.node), *self._announcements.heard()}
+            self._older_processes = {process_of(self._wire.node), *self._announcements.heard()}
         self._subject.start(self._recorder, arguments, options)
 
     def _has_announced_itself(self) -> bool:
@@ -207,16 +191,12 @@ class TestBench:
         return self._announcements is not None and bool(self._announcements.heard() - self._older_processes)
 
     def release(self) -> None:
-        """Start spinning the node of a notebook's class. Until this call, only the constructor has run."""
         self._subject.release()
 
     def press_ctrl_c(self, within: float) -> bool:
-        """Record the graph, then send Ctrl-C to the subject. Return True if it ends within ``within`` seconds."""
         if self._subject.ended:
             return False
-        self._presence.note_interface()
-        self._presence.note_how_it_leaves()
-        self._presence.note_whom_it_met()
+        self._presence.note_last_state()
         if self._subject.ended:
             return False
         self._recorder.record("subject", INTERRUPTED)
@@ -224,14 +204,9 @@ class TestBench:
         return self.await_end(within)
 
     def await_end(self, within: float) -> bool:
-        """Wait until the subject has ended by itself. Return False if it is still running after ``within`` seconds."""
         return self._recorder.wait(lambda: self._subject.ended, within)
 
     def await_endpoint(self, role: str, name: str) -> bool:
-        """Wait until the subject has this endpoint, matched with the judge's. Return False if that takes too long.
-
-        If a notebook's class has not made the endpoint in the constructor, spin its node and wait again.
-        """
         at = self._real(name)
         there = self._presence.await_endpoint(role, at)
         if there or not self._subject.may_make_more:
@@ -244,11 +219,9 @@ class TestBench:
         return self._misnamed[name]["real"] if name in self._misnamed else name
 
     def await_node(self) -> bool:
-        """Wait for a node of the subject on the graph. Also return True if the subject had a node but has ended."""
         return self._presence.await_node()
 
     def await_sign_of_life(self, within: float) -> bool:
-        """Wait until the subject has printed something or has a node on the graph; give up if the subject has ended."""
         return self._presence.await_sign_of_life(within)
 
     def await_any_endpoint(self, roles: tuple[str, ...]) -> discovery.Interface:
@@ -256,8 +229,6 @@ class TestBench:
         return self._presence.await_interface(lambda interface: any(interface[role] for role in roles))
 
     def watch_graph(self, condition: Callable[[Evidence], bool], within: float) -> bool:
-        """Wait until a condition on the graph holds. Record each change of the graph meanwhile."""
-
         def look() -> Evidence:
             self._presence.note_interface()
             return self._evidence()
@@ -267,78 +238,61 @@ class TestBench:
     def _evidence(self) -> Evidence:
         return Evidence([self._recorder.part()], self.reference, self.pace is Pace.REAL_TIME)
 
-    # --- counterparts --------------------------------------------------------------------------------------
-
     def listen(self, topic: str, type_name: str, *, latched: bool = False) -> None:
-        """Subscribe with the QoS of the course's listener. If ``latched``, also receive messages sent earlier."""
         at = self._real(topic)
         subscription = RecordedSubscription(
-            self.wire, self._recorder, topic, type_name, at=at, latched=latched
+            self._wire, self._recorder, topic, type_name, at=at, latched=latched
         )
         self._presence.subscriptions[at] = subscription
-        self._open.callback(self.wire.node.destroy_subscription, subscription.subscription)
+        self._open.callback(self._wire.node.destroy_subscription, subscription.subscription)
 
     def seen(self) -> Part:
-        """Return the events of this part that were recorded so far."""
         return self._recorder.part()
 
     def heard(self, topic: str) -> int:
-        """Return the number of messages that arrived on a topic so far in this part."""
         return len(self._recorder.part().of("message", topic))
 
     def speak(self, topic: str, type_name: str) -> RecordedPublisher:
-        """Create a publisher with the course's default QoS."""
         at = self._real(topic)
-        publisher = RecordedPublisher(self.wire, self._recorder, topic, type_name, at=at)
+        publisher = RecordedPublisher(self._wire, self._recorder, topic, type_name, at=at)
         self._presence.publishers[at] = publisher
-        self._open.callback(self.wire.node.destroy_publisher, publisher.publisher)
+        self._open.callback(self._wire.node.destroy_publisher, publisher.publisher)
         return publisher
 
     def plant(self, name: str, *, publishes: Mapping[str, str], subscribes: Mapping[str, str]) -> None:
-        """Put a decoy node on the graph. :meth:`start` then waits until the subject has discovered its endpoints."""
         assert self._decoys is not None
         self._there |= self._decoys.plant(name, publishes=publishes, subscribes=subscribes)
 
     def serve(self, service: str, type_name: str, answer: Answer, *, hold: int = 0) -> RecordedServer:
-        """Offer a service until the part ends. Hold back the answer to request number ``hold`` until ``release()``."""
         self._get_ready_to_serve(service)
         at = self._real(service)
-        server = RecordedServer(self.wire, self._recorder, service, type_name, answer, at=at, hold=hold)
+        server = RecordedServer(self._wire, self._recorder, service, type_name, answer, at=at, hold=hold)
         self._open.callback(server.close)
         self._announce(server.services)
         return server
 
     def call(self, service: str, type_name: str) -> RecordedCaller:
-        """Create a client of the subject's service. The client is removed when the part ends."""
-        caller = RecordedCaller(
-            self.wire,
-            self._recorder,
-            service,
-            type_name,
-            at=self._real(service),
-            server_is_gone=lambda: self._subject.ended,
-        )
-        self._open.callback(caller.close)
-        return caller
+        return self._client(RecordedCaller, service, type_name)
 
     def call_action(self, action: str, type_name: str) -> RecordedActionClient:
-        """Create a client of the subject's action. The client is removed when the part ends."""
-        caller = RecordedActionClient(
-            self.wire,
+        return self._client(RecordedActionClient, action, type_name)
+
+    def _client(self, kind: type[_Client], name: str, type_name: str) -> _Client:
+        client = kind(
+            self._wire,
             self._recorder,
-            action,
+            name,
             type_name,
-            at=self._real(action),
+            at=self._real(name),
             server_is_gone=lambda: self._subject.ended,
         )
-        self._open.callback(caller.close)
-        return caller
+        self._open.callback(client.close)
+        return client
 
     def serve_action(self, action: str, type_name: str, **how: Any) -> ScriptedActionServer:
-        """Offer an action until the part ends. The scenario decides when the server sends feedback and results."""
         self._get_ready_to_serve(action)
         server = ScriptedActionServer(
-            self.wire,
+            self._wire,
             self._recorder,
             action,
             type_name,
@@ -361,9 +315,7 @@ class TestBench:
 
     def _announce(self, services: Iterable[str]) -> None:
         # Subtract removed endpoints, because the judge's participant may still see them.
-        self._there |= discovery.server_endpoints(self.wire.node, services) - self._gone
-
-    # --- time ----------------------------------------------------------------------------------------------
+        self._there |= discovery.server_endpoints(self._wire.node, services) - self._gone
 
     def run_time(
         self,
@@ -373,46 +325,35 @@ class TestBench:
         quiet: float | None = None,
         step: float = STEP,
     ) -> bool:
-        """Let ``seconds`` pass for the subject, in simulated time if possible; stop earlier if ``until`` holds."""
         return self._time.run(seconds, until=until, quiet=quiet, step=step)
 
     def pass_time(self, seconds: float, role: str, name: str) -> None:
-        """Make timers fire sooner in the node with this endpoint, as if ``seconds`` had passed.
-
-        The node gets a simulated clock for this (:meth:`NodeClock.lend`). If it refuses the clock, wait ``seconds``.
-        """
         self._time.lend(seconds, role, self._real(name))
 
     def let_wait(self, seconds: float) -> None:
-        """Let the subject wait ``seconds`` of wall time for a late server."""
         self._recorder.wait(lambda: self._subject.ended, seconds, wall=True)
 
     def settle(self) -> None:
-        """Wait until the subject's nodes have handled all received messages. Skip nodes that do not answer."""
         self._time.settle()
 
     def await_attention(self) -> None:
-        """Wait until each node that the judge is matched with has discovered the judge's publishers."""
         self._time.await_attention()
 
     def doubt(self) -> None:
-        """Mark this look as doubtful, so that a second look in real time must confirm it."""
         self.doubtful = True
 
     def note_whether_it_spins(self) -> None:
-        """Request a parameter from each node of the subject, and record which node does not answer."""
         nodes = self._presence.counterparts()
         if not nodes:
             # A program that has destroyed its nodes is about to end, so wait for its end: the exit code and the last
             # lines of output tell more than missing answers.
             self.await_end(MATCH)
         for node in nodes:
-            if not self._subject.ended and not answers(self.wire, self._recorder, node):
+            if not self._subject.ended and not answers(self._wire, self._recorder, node):
                 self._recorder.record("unanswered", node.full)
                 self.note_where_it_hangs()
 
     def note_where_it_hangs(self) -> None:
-        """Record the stacks of the subject's threads. This ends a command, so call it last."""
         if not self._subject.ended:
             self._presence.note_interface()
             self._recorder.record("stack", "subject", text=self._subject.stack())
@@ -420,7 +361,6 @@ class TestBench:
     def wait_until(
         self, condition: Callable[[Evidence], bool], within: float, *, quiet: float | None = None
     ) -> bool:
-        """Wait until a condition on this part's evidence holds or the subject has ended. Return True if it holds."""
         return self._wait_for(condition, self._evidence, within, quiet=quiet)
 
     def _wait_for(
@@ -441,20 +381,25 @@ class TestBench:
         return held
 
     def compare_type(self, service: str, like: str) -> None:
-        """Record whether a service's type has the same fields as ``like``, by comparing type hashes on the graph."""
         at = self._real(service)
-        made = discovery.survey(self.wire.node)["service"].get(at, "")
+        made = discovery.survey(self._wire.node)["service"].get(at, "")
         expected = expected_hashes(like, made.partition("/")[0])
         seen: dict[str, str] = {}
 
         def hashes_known() -> bool:
-            seen.update(served_hashes(self.wire.node, at))
+            seen.update(served_hashes(self._wire.node, at))
             return len(seen) == len(expected) or self._subject.ended
 
         self._recorder.wait(hashes_known, MATCH, poll=GRAPH_POLL)
         self._recorder.record("type", service, type=made, same=seen == expected, fields=service_fields(like))
 
     def note_its_log(self) -> None:
-        """Record each distinct text in the subject's log, for the reference output."""
         for text in dict.fromkeys(event.data["text"] for event in self._recorder.part().of("log")):
             self._recorder.record("said", "log", text=text)
+
+
+def _of_a_part(made: _T | None) -> _T:
+    """Return ``made``. Raise an error if ``made`` is None because the scenario has not begun a part."""
+    if made is None:
+        raise RuntimeError("a scenario begins with bench.part(...)")
+    return made

@@ -100,7 +100,7 @@ def survey(judge: Node) -> Interface:
 
 
 @dataclass(frozen=True)
-class TopicEnd:
+class _TopicEnd:
     """A publisher or a subscription of the subject.
 
     Attributes:
@@ -116,7 +116,7 @@ class TopicEnd:
     process: int
 
 
-def topic_ends(judge: Node) -> list[TopicEnd]:
+def topic_ends(judge: Node) -> list[_TopicEnd]:
     """Return the subject's publishers and subscriptions.
 
     The query is by topic, not by node, for two reasons. If two nodes have the same name, a query by node returns the
@@ -125,7 +125,7 @@ def topic_ends(judge: Node) -> list[TopicEnd]:
     """
     own = judge.get_name()
     return [
-        TopicEnd(role, topic, info.topic_type, _process(bytes(info.endpoint_gid)))
+        _TopicEnd(role, topic, info.topic_type, _process(bytes(info.endpoint_gid)))
         for topic, _ in judge.get_topic_names_and_types()
         if _is_own_work("publisher", topic)
         for role, infos in (
@@ -298,7 +298,6 @@ class Announcements:
             return frozenset(self._heard)
 
     def close(self) -> None:
-        """Stop listening."""
         self._end.close()
         self._thread.join()
         self._selector.close()

@@ -1,10 +1,6 @@
 """The judge's own nodes: the one that observes the subject, and decoys, which exist only for a subject to find.
 
-The observing node has its own ROS context and is spun by its own thread. The judge learns of a program's end through a
-pipe, but of the program's messages through threads of the middleware. So on a busy machine, the judge may learn of the
-end while such a thread, woken by a message, still waits for a processor. Therefore the judge waits until each thread
-that is awake has gone to sleep. A sleeping thread has no message left, because a message wakes its thread at once
-(futex(7), udp(7)).
+Each node has its own ROS context, and so its own DDS participant. The node that observes is spun by its own thread.
 """
 
 from __future__ import annotations
@@ -25,8 +21,8 @@ from rclpy.qos import QoSProfile
 
 from autograder.dds_discovery import receivers_wait
 from autograder.judge.bench.discovery import topic_endpoints
-from autograder.judge.bench.patience import Patience
 from autograder.judge.bench.ros_interfaces import interface
+from autograder.judge.machine_fitness import Patience
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
@@ -34,73 +30,13 @@ if TYPE_CHECKING:
     from autograder.judge.bench.discovery import Endpoint
 
 
-THREAD_POLL = 0.001
-"""Seconds between two checks of a thread."""
-SLEEP_ROUNDS = 2
-"""The number of rounds to wait. In the first round, a thread may finish its work and wake another thread. The second
-round waits for that thread.
-"""
-
-
-@dataclass(frozen=True)
-class _Thread:
-    """The state of a thread, as the kernel reports it (proc_pid_status(5)).
-
-    Attributes:
-        awake: True if the thread runs, or waits for a processor.
-        slept: The number of times that the thread has gone to sleep.
-    """
-
-    awake: bool
-    slept: int
-
-
-def await_turns(patience: Patience) -> bool:
-    """Wait until each thread of the middleware that is awake has slept once. Return False if the time is up first."""
-    return all(_await_turn(patience) for _ in range(SLEEP_ROUNDS))
-
-
-def _await_turn(patience: Patience) -> bool:
-    pause = threading.Event()
-    python = {thread.native_id for thread in threading.enumerate()}
-    tasks = (int(task.name) for task in Path("/proc/self/task").iterdir())
-    awake = {task: thread for task, thread in _thread_states(set(tasks) - python).items() if thread.awake}
-    while awake and patience.left > 0:
-        pause.wait(THREAD_POLL)
-        now = _thread_states(awake)
-        awake = {
-            task: thread
-            for task, thread in awake.items()
-            if task in now and now[task].awake and now[task].slept == thread.slept
-        }
-    return not awake
-
-
-def _thread_states(tasks: Iterable[int]) -> dict[int, _Thread]:
-    """Return the states of these threads, without those that have ended."""
-    found: dict[int, _Thread] = {}
-    for task in tasks:
-        try:
-            lines = Path(f"/proc/self/task/{task}/status").read_text().splitlines()
-        except OSError:  # the thread has ended meanwhile
-            continue
-        told = dict(line.split(":", 1) for line in lines)
-        found[task] = _Thread(told["State"].split()[0] in "RD", int(told.get("voluntary_ctxt_switches", 0)))
-    return found
-
-
 InvalidHandle = rclpy_implementation.InvalidHandle
-"""The errors that rclpy raises if an entity is destroyed while another thread uses it."""
-
+"""The error that rclpy raises if an entity is destroyed while another thread uses it."""
 
 TAKEN_IN = 5.0
 """Time limit in seconds for the judge to process what was sent to it."""
 SPIN_POLL = 0.05
 """Seconds between two checks whether the spinning thread still runs."""
-
-
-class JudgeFailed(RuntimeError):
-    """A callback of the judge itself raised an exception, so the subject could not be checked."""
 
 
 class _QuietNode(Node):
@@ -290,3 +226,63 @@ class _Decoy:
         self._destroy()
         self._context.try_shutdown()
         self._context.destroy()
+
+
+THREAD_POLL = 0.001
+"""Seconds between two checks of a thread."""
+SLEEP_ROUNDS = 2
+"""The number of rounds to wait. In the first round, a thread may finish its work and wake another thread. The second
+round waits for that thread.
+"""
+
+
+@dataclass(frozen=True)
+class _Thread:
+    """The state of a thread, as the kernel reports it (proc_pid_status(5)).
+
+    Attributes:
+        awake: True if the thread runs, or waits for a processor.
+        slept: The number of times that the thread has gone to sleep.
+    """
+
+    awake: bool
+    slept: int
+
+
+def await_turns(patience: Patience) -> bool:
+    """Wait until each thread of the middleware that is awake has slept once. Return False if the time is up first.
+
+    The judge learns of a program's end through a pipe, but of the program's messages through threads of the middleware.
+    So on a busy machine, the judge may learn of the end while such a thread, woken by a message, still waits for a
+    processor. A sleeping thread has no message left, because a message wakes its thread at once (futex(7), udp(7)).
+    """
+    return all(_await_turn(patience) for _ in range(SLEEP_ROUNDS))
+
+
+def _await_turn(patience: Patience) -> bool:
+    pause = threading.Event()
+    python = {thread.native_id for thread in threading.enumerate()}
+    tasks = (int(task.name) for task in Path("/proc/self/task").iterdir())
+    awake = {task: thread for task, thread in _thread_states(set(tasks) - python).items() if thread.awake}
+    while awake and patience.left > 0:
+        pause.wait(THREAD_POLL)
+        now = _thread_states(awake)
+        awake = {
+            task: thread
+            for task, thread in awake.items()
+            if task in now and now[task].awake and now[task].slept == thread.slept
+        }
+    return not awake
+
+
+def _thread_states(tasks: Iterable[int]) -> dict[int, _Thread]:
+    """Return the states of these threads, without those that have ended."""
+    found: dict[int, _Thread] = {}
+    for task in tasks:
+        try:
+            lines = Path(f"/proc/self/task/{task}/status").read_text().splitlines()
+        except OSError:  # the thread has ended meanwhile
+            continue
+        told = dict(line.split(":", 1) for line in lines)
+        found[task] = _Thread(told["State"].split()[0] in "RD", int(told.get("voluntary_ctxt_switches", 0)))
+    return found

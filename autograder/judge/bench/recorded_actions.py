@@ -96,8 +96,20 @@ class ScriptedActionServer:
         ]
         # By itself, rclpy answers a request as soon as its callback returns, so LateAnswers delays the answer.
         self._late = [
-            LateAnswers(goals, goal_answer_takes, sending=self._note_goal_answer),
-            LateAnswers(cancels, cancel_answer_takes, sending=self._note_cancel_answer),
+            LateAnswers(
+                goals,
+                goal_answer_takes,
+                sending=lambda answer: recorder.record(
+                    "goal_answered", action, accepted=bool(answer.accepted)
+                ),
+            ),
+            LateAnswers(
+                cancels,
+                cancel_answer_takes,
+                sending=lambda answer: recorder.record(
+                    "cancel_answered", action, accepted=bool(answer.goals_canceling)
+                ),
+            ),
         ]
         self._answer = patiently(results)
         results.send_response = self._answer_or_wait  # type: ignore[method-assign]
@@ -149,7 +161,6 @@ class ScriptedActionServer:
             self._answer(response, header)
 
     def close(self) -> None:
-        """Remove the action's services and topics."""
         for late in self._late:
             late.close()
         for service in self._services:
@@ -174,17 +185,11 @@ class ScriptedActionServer:
         self._recorder.record("goal", self._name, fields=to_data(request.goal))
         return response
 
-    def _note_goal_answer(self, response: Any) -> None:
-        self._recorder.record("goal_answered", self._name, accepted=bool(response.accepted))
-
-    def _note_cancel_answer(self, response: Any) -> None:
-        self._recorder.record("cancel_answered", self._name, accepted=bool(response.goals_canceling))
-
     def _take_cancel(self, request: Any, response: Any) -> Any:
         # An all-zero id and stamp mean "cancel every goal" (action_msgs/srv/CancelGoal).
-        asked = goal_text(request.goal_info.goal_id)
+        asked = _goal_text(request.goal_info.goal_id)
         every = asked == str(uuid.UUID(int=0))
-        known = self._goal_id is not None and (every or asked == goal_text(self._goal_id))
+        known = self._goal_id is not None and (every or asked == _goal_text(self._goal_id))
         accepted = self._accept_cancel and known and self._status in (
             GoalStatus.STATUS_EXECUTING, GoalStatus.STATUS_CANCELING)  # fmt: skip
         if accepted:
@@ -199,7 +204,7 @@ class ScriptedActionServer:
         return response
 
     def _take_result_request(self, request: Any, response: Any) -> Any:
-        known = self._goal_id is not None and goal_text(request.goal_id) == goal_text(self._goal_id)
+        known = self._goal_id is not None and _goal_text(request.goal_id) == _goal_text(self._goal_id)
         self._recorder.record("result_request", self._name, known=known)
         if known:
             self.say_status()
@@ -228,7 +233,7 @@ class ScriptedActionServer:
         self._statuses.publish(GoalStatusArray(status_list=[line]))
 
 
-def goal_text(goal_id: Any) -> str:
+def _goal_text(goal_id: Any) -> str:
     """Return a goal's id (``unique_identifier_msgs/msg/UUID``) as text."""
     return str(uuid.UUID(bytes=bytes(bytearray(int(b) & 0xFF for b in goal_id.uuid))))
 
@@ -281,7 +286,6 @@ class RecordedActionClient(Client):
         future.add_done_callback(lambda done: self._take_cancel_answer(goal, done.result()))
 
     def close(self) -> None:
-        """Remove the client's endpoints."""
         for client in (self._send, self._cancel, self._result):
             self._wire.node.destroy_client(client)
         self._wire.node.destroy_subscription(self._feedback)
@@ -304,8 +308,8 @@ class RecordedActionClient(Client):
         self._note("result_heard", number, status=int(response.status), fields=fields)
 
     def _take_cancel_answer(self, number: int, response: Any) -> None:
-        named = {goal_text(info.goal_id) for info in response.goals_canceling}
-        accepted = goal_text(self._goals[number]) in named
+        named = {_goal_text(info.goal_id) for info in response.goals_canceling}
+        accepted = _goal_text(self._goals[number]) in named
         code = int(response.return_code)
         self._note("cancel_answer", number, accepted=accepted, return_code=code)
 
@@ -314,8 +318,8 @@ class RecordedActionClient(Client):
         self._recorder.record(kind, self._name, goal=goal, arrived=time.time(), **data)
 
     def _hear(self, message: Any, info: Any) -> None:
-        known = [goal_text(goal) for goal in self._goals]
-        heard = goal_text(message.goal_id)
+        known = [_goal_text(goal) for goal in self._goals]
+        heard = _goal_text(message.goal_id)
         number = known.index(heard) if heard in known else -1
         # Record the time of sending (rmw_message_info_t), which does not depend on how busy the judge is.
         sent = info["source_timestamp"] / 1e9

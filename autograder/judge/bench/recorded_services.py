@@ -16,10 +16,184 @@ from autograder.judge.bench.subject_presence import GRAPH_POLL
 if TYPE_CHECKING:
     from rclpy.service import Service
 
-    Take = Callable[[Any, Any], Any]
-    """A service's callback: it takes a request and an empty response."""
     from autograder.judge.bench.judge_nodes import Wire
     from autograder.judge.bench.recorder import Recorder
+
+    Take = Callable[[Any, Any], Any]
+    """A service's callback: it takes a request and an empty response."""
+
+Answer = Callable[[Mapping[str, Any]], Mapping[str, Any]]
+"""A function of the request's fields that returns the response's fields."""
+
+
+class RecordedServer:
+    """A service that the judge offers until :meth:`close`. It can hold one answer back until :meth:`release`.
+
+    Attributes:
+        services: A tuple with the full name of the service.
+    """
+
+    def __init__(
+        self,
+        wire: Wire,
+        recorder: Recorder,
+        service: str,
+        type_name: str,
+        answer: Answer,
+        *,
+        at: str = "",
+        hold: int = 0,
+    ) -> None:
+        """Create the service.
+
+        Args:
+            wire: The judge's participant.
+            recorder: Records requests and responses.
+            service: The full name of the service as the evidence shows it.
+            type_name: The service type, such as ``"std_srvs/srv/Empty"``.
+            answer: Returns the response to a request.
+            at: The full name that the subject's client uses for the service, if this name is different.
+            hold: Which request, counted from 1, is answered only after :meth:`release`; 0 for none.
+        """
+        self._wire = wire
+        self._recorder = recorder
+        self._name = service
+        self.services = (at or service,)
+        self._answer = answer
+        self._hold, self._count = hold, 0
+        self._held: list[tuple[Any, Any]] = []
+        self._holding = threading.Lock()
+        made = threading.Event()
+        self._service = wire.node.create_service(
+            interface(type_name), at or service, once_it_is_set(made, self._serve)
+        )
+        self._send = patiently(self._service)
+        self._service.send_response = self._answer_or_hold  # type: ignore[method-assign]
+        made.set()
+
+    def _serve(self, request: Any, response: Any) -> Any:
+        fields = to_data(request)
+        self._recorder.record("request", self._name, fields=fields)
+        return filled(response, dict(self._answer(fields)))
+
+    def _answer_or_hold(self, response: Any, header: Any) -> None:
+        with self._holding:
+            self._count += 1
+            if self._count == self._hold:
+                self._held.append((response, header))
+                return
+        self._answer_now(response, header)
+
+    def _answer_now(self, response: Any, header: Any) -> None:
+        self._recorder.record("response", self._name, fields=to_data(response))
+        self._send(response, header)
+
+    def release(self) -> None:
+        """Send the answer that was held back, and hold back no later answer."""
+        with self._holding:
+            self._hold = 0
+            held, self._held = self._held, []
+        for response, header in held:
+            self._answer_now(response, header)
+
+    def close(self) -> None:
+        self._wire.node.destroy_service(self._service)
+
+
+ROOM_FOR_ALL = qos_profile_parameters
+"""A QoS profile for services with a queue of 1,000 (rclpy, ``qos.py``) instead of 10.
+
+If two servers share a name, more than ten answers may come at once. In a shorter queue, chance would decide which
+answers are lost.
+"""
+
+
+class Client(ABC):
+    """Base class of the judge's service client and action client, which waits for a server and counts servers.
+
+    Args:
+        wire: The judge's participant.
+        recorder: Records requests and answers.
+        name: The full name of the service or action as the evidence shows it.
+        service: The name that the subject uses for the service whose servers are counted.
+        server_is_gone: Returns True if waiting for a server has become useless, because the subject has ended.
+    """
+
+    def __init__(
+        self, wire: Wire, recorder: Recorder, name: str, service: str, server_is_gone: Callable[[], bool]
+    ) -> None:
+        self._wire = wire
+        self._recorder = recorder
+        self._name = name
+        self._service = service
+        self._server_is_gone = server_is_gone
+
+    def await_server(self, within: float) -> bool:
+        """Wait until a server is matched, and record the number of servers. Return True if one is matched."""
+        self._recorder.wait(lambda: self._ready() or self._server_is_gone(), within, poll=GRAPH_POLL)
+        self._note_servers()
+        return self._ready()
+
+    @abstractmethod
+    def _ready(self) -> bool:
+        """True if a server is matched with the client."""
+
+    def _note_servers(self) -> None:
+        count = self._wire.node.count_services(self._service)
+        self._recorder.record("servers", self._name, count=count)
+
+
+class RecordedCaller(Client):
+    """A service client that records events. It implements :class:`autograder.kit.counterparts.Caller`."""
+
+    def __init__(
+        self,
+        wire: Wire,
+        recorder: Recorder,
+        service: str,
+        type_name: str,
+        *,
+        at: str = "",
+        server_is_gone: Callable[[], bool],
+    ) -> None:
+        super().__init__(wire, recorder, service, at or service, server_is_gone)
+        self._type = interface(type_name)
+        self._calls = 0
+        self._client = wire.node.create_client(self._type, at or service, qos_profile=ROOM_FOR_ALL)
+
+    def _ready(self) -> bool:
+        return bool(self._client.service_is_ready())
+
+    def ask(self, *requests: Mapping[str, Any]) -> None:
+        """Send all requests without waiting for an answer between them."""
+        numbered = list(enumerate(requests, self._calls))
+        self._calls += len(numbered)
+        # Record all calls before the first is sent, because otherwise chance would decide whether an answer is recorded
+        # before a later call.
+        for number, fields in numbered:
+            self._recorder.record("asked", self._name, call=number, fields=dict(fields))
+        for number, fields in numbered:
+            future = self._client.call_async(filled(self._type.Request(), fields))
+            future.add_done_callback(lambda done, number=number: self._take(number, done.result()))
+
+    def await_answers(self, quiet: float) -> bool:
+        """Wait until every call is answered. Return False if nothing was recorded for ``quiet`` seconds before that."""
+        self._recorder.wait(
+            lambda: self._all_answered() or self._server_is_gone(), self._calls * quiet, quiet=quiet
+        )
+        if not self._all_answered():
+            return False
+        self._note_servers()
+        return True
+
+    def close(self) -> None:
+        self._wire.node.destroy_client(self._client)
+
+    def _all_answered(self) -> bool:
+        return len(self._recorder.part().of("answered", self._name)) >= self._calls
+
+    def _take(self, number: int, response: Any) -> None:
+        self._recorder.record("answered", self._name, call=number, fields=to_data(response))
 
 
 ATTEMPTS = 30
@@ -117,179 +291,3 @@ class LateAnswers:
             if not self._closed:
                 self._sending(response)
                 self._send_now(response, header)
-
-
-Answer = Callable[[Mapping[str, Any]], Mapping[str, Any]]
-"""A function of the request's fields that returns the response's fields."""
-
-
-class RecordedServer:
-    """A service that the judge offers until :meth:`close`. It can hold one answer back until :meth:`release`.
-
-    Attributes:
-        services: A tuple with the full name of the service.
-    """
-
-    def __init__(
-        self,
-        wire: Wire,
-        recorder: Recorder,
-        service: str,
-        type_name: str,
-        answer: Answer,
-        *,
-        at: str = "",
-        hold: int = 0,
-    ) -> None:
-        """Create the service.
-
-        Args:
-            wire: The judge's participant.
-            recorder: Records requests and responses.
-            service: The full name of the service as the evidence shows it.
-            type_name: The service type, such as ``"std_srvs/srv/Empty"``.
-            answer: Returns the response to a request.
-            at: The full name that the subject's client uses for the service, if this name is different.
-            hold: Which request, counted from 1, is answered only after :meth:`release`; 0 for none.
-        """
-        self._wire = wire
-        self._recorder = recorder
-        self._name = service
-        self.services = (at or service,)
-        self._answer = answer
-        self._hold, self._count = hold, 0
-        self._held: list[tuple[Any, Any]] = []
-        self._holding = threading.Lock()
-        made = threading.Event()
-        self._service = wire.node.create_service(
-            interface(type_name), at or service, once_it_is_set(made, self._serve)
-        )
-        self._send = patiently(self._service)
-        self._service.send_response = self._answer_or_hold  # type: ignore[method-assign]
-        made.set()
-
-    def _serve(self, request: Any, response: Any) -> Any:
-        fields = to_data(request)
-        self._recorder.record("request", self._name, fields=fields)
-        return filled(response, dict(self._answer(fields)))
-
-    def _answer_or_hold(self, response: Any, header: Any) -> None:
-        with self._holding:
-            self._count += 1
-            if self._count == self._hold:
-                self._held.append((response, header))
-                return
-        self._answer_now(response, header)
-
-    def _answer_now(self, response: Any, header: Any) -> None:
-        self._recorder.record("response", self._name, fields=to_data(response))
-        self._send(response, header)
-
-    def release(self) -> None:
-        """Send the answer that was held back, and hold back no later answer."""
-        with self._holding:
-            self._hold = 0
-            held, self._held = self._held, []
-        for response, header in held:
-            self._answer_now(response, header)
-
-    def close(self) -> None:
-        """Remove the service."""
-        self._wire.node.destroy_service(self._service)
-
-
-ROOM_FOR_ALL = qos_profile_parameters
-"""A QoS profile for services with a queue of 1,000 (rclpy, ``qos.py``) instead of 10.
-
-If two servers share a name, more than ten answers may come at once. In a shorter queue, chance would decide which
-answers are lost.
-"""
-
-
-class Client(ABC):
-    """Base class of the judge's service client and action client, which waits for a server and counts servers.
-
-    Args:
-        wire: The judge's participant.
-        recorder: Records requests and answers.
-        name: The full name of the service or action as the evidence shows it.
-        service: The name that the subject uses for the service whose servers are counted.
-        server_is_gone: Returns True if waiting for a server has become useless, because the subject has ended.
-    """
-
-    def __init__(
-        self, wire: Wire, recorder: Recorder, name: str, service: str, server_is_gone: Callable[[], bool]
-    ) -> None:
-        self._wire = wire
-        self._recorder = recorder
-        self._name = name
-        self._service = service
-        self._server_is_gone = server_is_gone
-
-    def await_server(self, within: float) -> bool:
-        """Wait until a server is matched, and record the number of servers. Return True if one is matched."""
-        self._recorder.wait(lambda: self._ready() or self._server_is_gone(), within, poll=GRAPH_POLL)
-        self._note_servers()
-        return self._ready()
-
-    @abstractmethod
-    def _ready(self) -> bool:
-        """True if a server is matched with the client."""
-
-    def _note_servers(self) -> None:
-        count = self._wire.node.count_services(self._service)
-        self._recorder.record("servers", self._name, count=count)
-
-
-class RecordedCaller(Client):
-    """A service client that records events. It implements :class:`autograder.kit.counterparts.Caller`."""
-
-    def __init__(
-        self,
-        wire: Wire,
-        recorder: Recorder,
-        service: str,
-        type_name: str,
-        *,
-        at: str = "",
-        server_is_gone: Callable[[], bool],
-    ) -> None:
-        super().__init__(wire, recorder, service, at or service, server_is_gone)
-        self._type = interface(type_name)
-        self._calls = 0
-        self._client = wire.node.create_client(self._type, at or service, qos_profile=ROOM_FOR_ALL)
-
-    def _ready(self) -> bool:
-        return bool(self._client.service_is_ready())
-
-    def ask(self, *requests: Mapping[str, Any]) -> None:
-        """Send all requests without waiting for an answer between them."""
-        numbered = list(enumerate(requests, self._calls))
-        self._calls += len(numbered)
-        # Record all calls before the first is sent, because otherwise chance would decide whether an answer is recorded
-        # before a later call.
-        for number, fields in numbered:
-            self._recorder.record("asked", self._name, call=number, fields=dict(fields))
-        for number, fields in numbered:
-            future = self._client.call_async(filled(self._type.Request(), fields))
-            future.add_done_callback(lambda done, number=number: self._take(number, done.result()))
-
-    def await_answers(self, quiet: float) -> bool:
-        """Wait until every call is answered. Return False if nothing was recorded for ``quiet`` seconds before that."""
-        self._recorder.wait(
-            lambda: self._all_answered() or self._server_is_gone(), self._calls * quiet, quiet=quiet
-        )
-        if not self._all_answered():
-            return False
-        self._note_servers()
-        return True
-
-    def close(self) -> None:
-        """Remove the client."""
-        self._wire.node.destroy_client(self._client)
-
-    def _all_answered(self) -> bool:
-        return len(self._recorder.part().of("answered", self._name)) >= self._calls
-
-    def _take(self, number: int, response: Any) -> None:
-        self._recorder.record("answered", self._name, call=number, fields=to_data(response))

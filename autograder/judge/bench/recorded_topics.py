@@ -31,7 +31,7 @@ _LOG_HISTORY = QoSProfile(
 )  # fmt: skip
 
 
-class RecordedEndpoint:
+class _RecordedEndpoint:
     """A publisher or subscription of the judge, which records matching endpoints and endpoints with incompatible QoS.
 
     Attributes:
@@ -57,7 +57,7 @@ class RecordedEndpoint:
         self._recorder.record("mismatch", self.topic, policy=policy)
 
 
-class RecordedSubscription(RecordedEndpoint):
+class RecordedSubscription(_RecordedEndpoint):
     """A subscription of the judge that records every message."""
 
     def __init__(
@@ -105,7 +105,7 @@ class RecordedSubscription(RecordedEndpoint):
         )
 
 
-class RecordedPublisher(RecordedEndpoint):
+class RecordedPublisher(_RecordedEndpoint):
     """A publisher with the course's QoS (reliable, depth 10) that records what it sends."""
 
     def __init__(self, wire: Wire, recorder: Recorder, topic: str, type_name: str, *, at: str = "") -> None:

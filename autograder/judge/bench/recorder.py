@@ -6,7 +6,7 @@ import threading
 import time
 from typing import TYPE_CHECKING, Any
 
-from autograder.judge.bench.patience import Patience
+from autograder.judge.machine_fitness import Patience
 from autograder.kit.evidence import REPORTS, Event, Part
 
 if TYPE_CHECKING:
@@ -156,7 +156,7 @@ class Recorder:
 
         Args:
             condition: Called in the waiting thread, without holding the recorder's lock.
-            within: The limit in seconds of patience (:mod:`autograder.judge.bench.patience`).
+            within: The limit in seconds of patience (:mod:`autograder.judge.machine_fitness`).
             poll: Seconds until the condition is checked again without an event. A few milliseconds if the condition
                 queries the graph, because changes of the graph are not events.
             quiet: Give up earlier if nothing was recorded for this many seconds of patience.

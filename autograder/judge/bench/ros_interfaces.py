@@ -88,9 +88,6 @@ def _element_type(message: Any, field: str) -> Any:
     return interface(f"{package}/msg/{name}")
 
 
-# --- type hashes ---------------------------------------------------------------------------------------------------
-
-
 def served_hashes(judge: Node, service: str) -> dict[str, str]:
     """Return the type hashes of a service's request and response, as the server announces them."""
     readers = judge.get_subscriptions_info_by_topic(_SIDES["request"].format(service=service), no_mangle=True)

@@ -9,7 +9,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from autograder.judge.bench import discovery
-from autograder.judge.bench.patience import Patience
+from autograder.judge.machine_fitness import Patience
+from autograder.kit.model import Pace
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -23,12 +24,16 @@ if TYPE_CHECKING:
     Counterparts = Mapping[str, RecordedSubscription | RecordedPublisher]
 
 
-class Settling:
+SETTLED = {Pace.FAST: 1.0, Pace.REAL_TIME: 3.0}
+"""If the graph has not changed for this many seconds, a command is assumed to have made all its endpoints. By pace."""
+
+
+class _Settling:
     """Tells when a command's nodes and endpoints have not changed for a while.
 
     Args:
         seconds: How long the nodes and endpoints must stay the same, in seconds that get longer on a busy machine
-            (:mod:`autograder.judge.bench.patience`). They have to get longer, because a program that has made its node
+            (:mod:`autograder.judge.machine_fitness`). They have to get longer, because a program that has made its node
             may have to wait for a processor before it can make its endpoints.
     """
 
@@ -75,7 +80,7 @@ class Presence:
         node: The judge's node.
         recorder: The record of the part.
         subject: The subject.
-        settled: A command is assumed to have made all its endpoints if the graph has not changed for this many seconds.
+        pace: The pace of the look.
         announced: Returns True if a process of the subject is known to have made a node.
     """
 
@@ -84,7 +89,7 @@ class Presence:
         node: Node,
         recorder: Recorder,
         subject: Subject,
-        settled: float,
+        pace: Pace,
         announced: Callable[[], bool],
     ) -> None:
         self.subscriptions: dict[str, RecordedSubscription] = {}
@@ -92,12 +97,11 @@ class Presence:
         self._node = node
         self._recorder = recorder
         self._subject = subject
-        self._settled = settled
+        self._pace = pace
         self._announced = announced
         self._again = MAX_RESTARTS
 
     def nodes(self) -> list[discovery.NodeName]:
-        """The subject's current nodes."""
         return discovery.subject_nodes(self._node, self._subject.keeper)
 
     def counterparts(self) -> list[discovery.NodeName]:
@@ -116,14 +120,12 @@ class Presence:
         self._recorder.wait(named, 1.0, poll=GRAPH_POLL)
         return found
 
-    # --- waiting -------------------------------------------------------------------------------------------
-
     def await_endpoint(self, role: str, name: str) -> bool:
         """Wait until the subject's endpoint is on the graph and, if an endpoint of the judge fits, matched with it."""
         self.await_interface(
-            lambda interface: name in interface.get(role, {}) or name in self._met().get(role, {})
+            lambda interface: name in interface.get(role, {}) or name in self._matched().get(role, {})
         )
-        self.note_whom_it_met()
+        self._note_matched_endpoints()
         if name not in self._recorder.part().endpoints(role):
             return False
         counterparts: dict[str, Counterparts] = {
@@ -134,7 +136,11 @@ class Presence:
         if counterpart is None or counterpart.type_name != self._recorder.part().endpoints(role)[name]:
             return True  # the judge has no endpoint that could match the subject's
         return self._recorder.wait(
-            lambda: counterpart.matched > 0 or self._subject.ended or self._mismatched(counterpart.topic),
+            lambda: (
+                counterpart.matched > 0
+                or self._subject.ended
+                or self._recorder.part().first("mismatch", counterpart.topic) is not None
+            ),
             MATCH,
         )
 
@@ -170,14 +176,14 @@ class Presence:
             The endpoints that the last query found. Exactly these are recorded, because a new query could find fewer:
                 the endpoints of a program disappear when it ends.
         """
-        settled = Settling(self._settled)
+        settled = _Settling(SETTLED[self._pace])
         interface: discovery.Interface = {}
 
         def over() -> bool:
             nonlocal interface
             marker = self._subject.marker
-            # Look for the marker topic (see graph.shows) before the survey. The subject makes it last, so if it is on
-            # the graph, the survey finds all endpoints.
+            # Look for the marker topic (see discovery.shows) before the survey. The subject makes it last. So if it is
+            # on the graph, the survey finds all endpoints.
             all_made = marker is not None and discovery.shows(self._node, marker)
             interface = discovery.survey(self._node)
             if there(interface) or self._subject.ended or all_made:
@@ -227,8 +233,6 @@ class Presence:
         if heard and not held:
             self._recorder.wait(over, patience.left, poll=GRAPH_POLL)
 
-    # --- writing down --------------------------------------------------------------------------------------
-
     def note_interface(self, interface: discovery.Interface | None = None) -> None:
         """Record the subject's endpoints if they have changed.
 
@@ -242,15 +246,18 @@ class Presence:
         if not surveys or surveys[-1].data != seen:
             self._recorder.record("interface", "graph", **seen)
 
-    def note_how_it_leaves(self) -> None:
-        """If all endpoints of a program have disappeared, the program is ending: wait for its end.
+    def note_last_state(self) -> None:
+        """Record the subject's endpoints before its run ends. If a program is ending by itself, wait for its end.
 
-        Without this wait, chance would decide whether the exit code and the last lines of output are recorded.
+        A program is ending if all its endpoints have disappeared. Without this wait, chance would decide whether the
+        exit code and the last lines of output are recorded.
         """
+        self.note_interface()
         surveys = self._recorder.part().of("interface", "graph")
         had_endpoints = [any(survey.data[role] for role in discovery.ROLES) for survey in surveys]
         if not self._subject.shares_participant and any(had_endpoints) and not had_endpoints[-1]:
             self._recorder.wait(lambda: self._subject.ended, MATCH)
+        self._note_matched_endpoints()
 
     def note_short_life(self) -> bool:
         """If a subject has ended and the graph never showed its node, record that the subject had announced a node.
@@ -265,15 +272,15 @@ class Presence:
             self._recorder.record("announced", "a node")
         return True
 
-    def note_whom_it_met(self) -> None:
+    def _note_matched_endpoints(self) -> None:
         """Record the subject's endpoints that were matched with the judge's, even if the graph never showed them."""
         known = self._recorder.part()
-        for role, ends in self._met().items():
+        for role, ends in self._matched().items():
             for name, type_name in ends.items():
                 if name not in known.endpoints(role):
                     self._recorder.record("interface", "topic", **{role: {name: type_name}})
 
-    def _met(self) -> discovery.Interface:
+    def _matched(self) -> discovery.Interface:
         """Return the subject's endpoints that were matched with one of the judge's."""
         part = self._recorder.part()
         sides: tuple[tuple[str, Counterparts, Counterparts], ...] = (
@@ -289,6 +296,3 @@ class Presence:
             }
             for role, ends, others in sides
         }
-
-    def _mismatched(self, name: str) -> bool:
-        return self._recorder.part().first("mismatch", name) is not None

@@ -20,8 +20,8 @@ from rclpy.qos import QoSProfile
 from rosgraph_msgs.msg import Clock
 
 from autograder.judge.bench import discovery
-from autograder.judge.bench.patience import Patience
 from autograder.judge.bench.subject_presence import MATCH, Presence
+from autograder.judge.machine_fitness import Patience
 from autograder.kit.model import STEP, Pace
 
 if TYPE_CHECKING:
@@ -82,7 +82,7 @@ class NodeClock:
         """Tell the node to follow simulated time, or real time again. Return True if the node has accepted this."""
         value = ParameterValue(type=ParameterType.PARAMETER_BOOL, bool_value=simulated)
         request = SetParameters.Request(parameters=[Parameter(name=_SIM_TIME, value=value)])
-        answer = ask(self._recorder, self._set, request, ANSWER_LIMIT)
+        answer = _ask(self._recorder, self._set, request, ANSWER_LIMIT)
         return answer is not None and bool(answer.results) and bool(answer.results[0].successful)
 
     def is_heard(self) -> bool:
@@ -91,17 +91,13 @@ class NodeClock:
             lambda: self._publisher.get_subscription_count() > 0, ANSWER_LIMIT, poll=0.002
         )
 
-    def is_rivalled(self) -> bool:
-        """Return True if another node publishes on /clock, too."""
-        return self._wire.node.count_publishers("/clock") > 1
-
     def show(self, now: float) -> bool:
         """Publish the time, in seconds. Return True if the node's executor has called the timers that are due."""
         message = Clock()
         message.clock.sec = int(now)
         message.clock.nanosec = round((now - int(now)) * 1e9)
         self._publisher.publish(message)
-        return ask(self._recorder, self._get, _QUESTION, ANSWER_LIMIT, turns=TURNS) is not None
+        return _ask(self._recorder, self._get, _QUESTION, ANSWER_LIMIT, turns=TURNS) is not None
 
     def lend(self, seconds: float, until: Callable[[], bool]) -> bool:
         """Make a node that runs in real time follow a simulated clock for some seconds, so that its timers fire sooner.
@@ -127,13 +123,12 @@ class NodeClock:
             self.follow(False)
 
     def close(self) -> None:
-        """Stop publishing and sending requests."""
         self._wire.node.destroy_publisher(self._publisher)
         self._wire.node.destroy_client(self._set)
         self._wire.node.destroy_client(self._get)
 
 
-def ask(recorder: Recorder, client: Any, request: Any, limit: float, *, turns: int = 1) -> Any:
+def _ask(recorder: Recorder, client: Any, request: Any, limit: float, *, turns: int = 1) -> Any:
     """Return the answer of a service of the subject; None if the subject's executor does not answer in time.
 
     Args:
@@ -165,7 +160,7 @@ def answers(wire: Wire, recorder: Recorder, node: NodeName, limit: float = PATIE
     """Return True if a node answers a request for a parameter in time. Every node that is spun can answer."""
     client = wire.node.create_client(GetParameters, f"{node.full}/get_parameters")
     try:
-        return ask(recorder, client, _QUESTION, limit) is not None
+        return _ask(recorder, client, _QUESTION, limit) is not None
     finally:
         wire.node.destroy_client(client)
 
@@ -220,13 +215,13 @@ class SimulatedClock(NodeClock):
             if not self.show(self._now):
                 self.doubtful = True
                 return False
-            # If another node moves the clock as well, simulated time proves nothing about the subject's rate.
             slow = time.monotonic() - began > SLOW_STEP
-            self.doubtful = self.doubtful or slow or self.is_rivalled()
+            # If another node moves the clock as well, simulated time proves nothing about the subject's rate.
+            is_rivaled = self._wire.node.count_publishers("/clock") > 1
+            self.doubtful = self.doubtful or slow or is_rivaled
         return True
 
     def close(self) -> None:
-        """Stop publishing and sending requests."""
         self._recorder.simulated_now = None
         super().close()
 

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from autograder.judge.ros_setup import lease
+from autograder.judge.ros_setup import lease_domain
 from environment.ros2_command.install import LAUNCH_FRONT
 
 if TYPE_CHECKING:
@@ -107,14 +107,14 @@ def prefix(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="session")
 def domain() -> Iterator[str]:
     """A DDS domain that nobody else on this machine uses."""
-    with lease() as number:
+    with lease_domain() as number:
         yield str(number)
 
 
 @pytest.fixture
 def other_domain() -> Iterator[str]:
     """Another one, on which there is nobody at all."""
-    with lease() as number:
+    with lease_domain() as number:
         yield str(number)
 
 

@@ -39,7 +39,7 @@ def bench_of(tmp_path: Path) -> BenchOf:
     def opened(text: str, reference: Reference) -> Iterator[TestBench]:
         program = tmp_path / "program.py"
         program.write_text(text)
-        with ros_setup.lease() as domain_id:
+        with ros_setup.lease_domain() as domain_id:
             subject = CommandSubject([sys.executable, str(program)])
             subject.begin(domain_id)
             with contextlib.closing(

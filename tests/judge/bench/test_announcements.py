@@ -28,7 +28,7 @@ MAKES_A_NODE = "import os, rclpy\nrclpy.init()\nrclpy.create_node('simple_node')
 
 @pytest.fixture
 def domain_id() -> Iterator[int]:
-    with ros_setup.lease() as leased:
+    with ros_setup.lease_domain() as leased:
         yield leased
 
 

@@ -9,7 +9,7 @@ import pytest
 
 from autograder.judge.bench import judge_nodes
 from autograder.judge.bench.judge_nodes import _Thread, await_turns
-from autograder.judge.bench.patience import Patience
+from autograder.judge.machine_fitness import Patience
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

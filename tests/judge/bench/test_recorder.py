@@ -8,9 +8,10 @@ from typing import Any
 
 import pytest
 
-from autograder.judge.bench import patience, recorder
-from autograder.judge.bench.patience import SLOWEST, Patience
+from autograder.judge import machine_fitness
+from autograder.judge.bench import recorder
 from autograder.judge.bench.recorder import Recorder
+from autograder.judge.machine_fitness import SLOWEST, Patience
 
 
 def test_events_keep_their_order_and_their_data_as_it_was() -> None:
@@ -72,7 +73,7 @@ def test_a_crowded_machine_gives_more_time_and_the_judges_own_pace_stays(
         made.append(Patience(seconds, **how))
         return made[-1]
 
-    monkeypatch.setattr(patience, "machine_slowness", lambda: SLOWEST)
+    monkeypatch.setattr(machine_fitness, "machine_slowness", lambda: SLOWEST)
     monkeypatch.setattr(recorder, "Patience", noted)
     Recorder().wait(lambda: True, within=5.0, quiet=1.0, wall=wall)
     assert [one.slowness() for one in made] == [slowness, slowness]

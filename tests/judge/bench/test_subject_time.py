@@ -75,7 +75,7 @@ def test_the_timers_of_a_step_are_called_before_the_next_one_where_a_question_ov
 ) -> None:
     monkeypatch.setattr(subject_time, "ANSWER_LIMIT", 30.0)
     fired: list[float] = []
-    with ros_setup.lease() as domain_id, Wire(domain_id) as wire, subject_node(domain_id) as node:
+    with ros_setup.lease_domain() as domain_id, Wire(domain_id) as wire, subject_node(domain_id) as node:
         executor = QuestionFirst(context=node.context)
         executor.watch(node)
 
@@ -97,7 +97,7 @@ def test_timers_fire_as_they_would_later_on_and_the_clock_is_given_back(
     subject_node: SubjectNode, spun: Spun
 ) -> None:
     fired: list[float] = []
-    with ros_setup.lease() as domain_id, Wire(domain_id) as wire, subject_node(domain_id) as node:
+    with ros_setup.lease_domain() as domain_id, Wire(domain_id) as wire, subject_node(domain_id) as node:
         node.create_timer(20.0, lambda: fired.append(node.get_clock().now().nanoseconds / 1e9))
         with spun(SingleThreadedExecutor(context=node.context), node):
             began = time.time()
@@ -113,7 +113,7 @@ def test_timers_fire_as_they_would_later_on_and_the_clock_is_given_back(
 def test_a_scenario_says_how_much_time_passes_at_once(subject_node: SubjectNode, spun: Spun) -> None:
     fired: list[float] = []
     with (
-        ros_setup.lease() as domain_id,
+        ros_setup.lease_domain() as domain_id,
         Wire(domain_id) as wire,
         subject_node(domain_id) as node,
         spun(SingleThreadedExecutor(context=node.context), node),
@@ -128,7 +128,7 @@ def test_a_scenario_says_how_much_time_passes_at_once(subject_node: SubjectNode,
 
 def test_who_is_not_spun_does_not_go_along(subject_node: SubjectNode) -> None:
     with (
-        ros_setup.lease() as domain_id,
+        ros_setup.lease_domain() as domain_id,
         Wire(domain_id) as wire,
         subject_node(domain_id),
         closing(NodeClock(wire, Recorder(), NodeName("subject", "/"))) as borrowed,

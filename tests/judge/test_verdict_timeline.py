@@ -12,6 +12,7 @@ from autograder.kit.runners import WorkspaceReport, workspace_report_line
 if TYPE_CHECKING:
     from autograder.verdict import Moment
 
+
 HELLO = {"data": "Hello, world! 0"}
 
 

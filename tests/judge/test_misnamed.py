@@ -18,6 +18,7 @@ from autograder.verdict import CriterionResult, State, Verdict
 if TYPE_CHECKING:
     from pathlib import Path
 
+
 STRING, OTHER = "std_msgs/msg/String", "std_msgs/msg/Int32"
 FAILED = Verdict(
     "an.exercise",

@@ -18,7 +18,7 @@ pytestmark = pytest.mark.ros
 
 
 def test_what_is_taken_away_while_it_is_used_ends_nothing() -> None:
-    with ros_setup.lease() as domain_id, Wire(domain_id) as wire:
+    with ros_setup.lease_domain() as domain_id, Wire(domain_id) as wire:
 
         def answer(_: Any, response: Any) -> Any:
             wire.node.destroy_service(service)
@@ -35,7 +35,7 @@ def test_what_is_taken_away_while_it_is_used_ends_nothing() -> None:
 
 
 def test_an_error_of_a_callback_is_the_judges_failure() -> None:
-    with ros_setup.lease() as domain_id, Wire(domain_id) as wire:
+    with ros_setup.lease_domain() as domain_id, Wire(domain_id) as wire:
         raised = threading.Event()
 
         def fail() -> None:
@@ -49,7 +49,7 @@ def test_an_error_of_a_callback_is_the_judges_failure() -> None:
 
 
 def test_its_turns_wait_for_no_event_that_nobody_asked_for() -> None:
-    with ros_setup.lease() as domain_id, Wire(domain_id) as wire:
+    with ros_setup.lease_domain() as domain_id, Wire(domain_id) as wire:
         wire.node.create_publisher(String, "spoken", 10)
         wire.node.create_subscription(String, "heard", lambda _: None, 10)
         assert list(wire.node.waitables) == []
@@ -59,7 +59,7 @@ MESSAGES = 5
 
 
 def test_all_that_was_sent_is_taken_in_also_by_a_judge_that_was_busy_meanwhile() -> None:
-    with ros_setup.lease() as domain_id, Wire(domain_id) as theirs, Wire(domain_id) as wire:
+    with ros_setup.lease_domain() as domain_id, Wire(domain_id) as theirs, Wire(domain_id) as wire:
         heard: list[str] = []
         met, held, free = threading.Event(), threading.Event(), threading.Event()
 
@@ -93,19 +93,19 @@ def test_all_that_was_sent_is_taken_in_also_by_a_judge_that_was_busy_meanwhile()
 
 
 def test_a_judge_that_has_failed_takes_nothing_in() -> None:
-    with ros_setup.lease() as domain_id, Wire(domain_id) as wire:
+    with ros_setup.lease_domain() as domain_id, Wire(domain_id) as wire:
         wire.executor.create_task(lambda: 1 / 0)
         wire._thread.join(timeout=180)
         assert not wire.take_in(lambda: 0)
 
 
 def test_a_wire_that_was_closed_takes_nothing_in() -> None:
-    with ros_setup.lease() as domain_id, Wire(domain_id) as wire:
+    with ros_setup.lease_domain() as domain_id, Wire(domain_id) as wire:
         pass
     assert not wire.take_in(lambda: 0)
 
 
 def test_a_flood_is_not_taken_in_for_ever(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(wire_module, "TAKEN_IN", 0.2)
-    with ros_setup.lease() as domain_id, Wire(domain_id) as wire:
+    with ros_setup.lease_domain() as domain_id, Wire(domain_id) as wire:
         assert not wire.take_in(itertools.count().__next__)

@@ -10,11 +10,13 @@ from autograder.judge.bench import discovery
 from autograder.judge.bench import subject_presence as presence_module
 from autograder.judge.bench.recorder import Recorder
 from autograder.judge.bench.subject_presence import GRAPH_POLL, MAX_RESTARTS, START_POLL, Presence
+from autograder.kit.model import Pace
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from autograder.judge.subject import Subject
+
 
 TOPIC, TYPE = "/chatter", "std_msgs/msg/String"
 
@@ -38,7 +40,7 @@ def _presence(
     recorder = Recorder()
     recorder.begin("a part", {})
     seen = cast("Subject", subject)
-    return Presence(cast("Any", None), recorder, seen, settled=1.0, announced=lambda: announced), recorder
+    return Presence(cast("Any", None), recorder, seen, Pace.FAST, announced=lambda: announced), recorder
 
 
 class _ASubject:

@@ -20,6 +20,7 @@ from autograder.verdict import not_checked
 if TYPE_CHECKING:
     from autograder.kit.model import Exercise
 
+
 FAST, REAL = Pace.FAST, Pace.REAL_TIME
 USUAL = exercises.get("lab_1_2.listener")
 

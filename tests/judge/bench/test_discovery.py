@@ -9,6 +9,7 @@ from autograder.judge.bench.discovery import NodeName, subject_nodes
 if TYPE_CHECKING:
     from rclpy.node import Node
 
+
 KEEPER = "_check_keeper_00ff"
 
 

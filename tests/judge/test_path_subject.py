@@ -17,7 +17,7 @@ from autograder.messages.json_lines import Lines
 from autograder.messages.judge_messages import Check, Collect, Constructed, Judged, Output, Sources
 from autograder.messages.workspace_messages import ProgramExited, Source
 
-sys.path.insert(0, str(Path(__file__).parents[2] / "workspaces"))
+sys.path.insert(0, str(Path(__file__).parents[1] / "workspaces"))
 from graded import graders_judge, judged
 
 if TYPE_CHECKING:

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
     from autograder.judge.check_process import Child
 
-sys.path.insert(0, str(Path(__file__).parents[2] / "notebook"))
+sys.path.insert(0, str(Path(__file__).parents[1] / "notebook"))
 from checked import _Changed
 
 pytestmark = pytest.mark.ros

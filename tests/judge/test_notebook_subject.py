@@ -7,7 +7,7 @@ from typing import Any, cast
 import pytest
 
 from autograder.judge.bench.recorder import Recorder
-from autograder.judge.notebook_subject import RemotePath
+from autograder.judge.notebook_subject import NotebookPath
 from autograder.kit.runners import WorkspaceReport, workspace_report_line
 from autograder.messages.judge_messages import Output
 
@@ -23,7 +23,7 @@ from autograder.messages.judge_messages import Output
     ids=["the sources are found", "a word of a program", "built", "failed to build"],
 )
 def test_the_report_of_a_build_ends_it(line: str, building: bool) -> None:
-    path = RemotePath(cast("Any", None))
+    path = NotebookPath(cast("Any", None))
     assert path.is_building
     path._take_of_run(Output(1, line), Recorder())
     assert path.is_building is building
