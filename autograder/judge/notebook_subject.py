@@ -100,7 +100,8 @@ class NotebookSubject:
         self._tell(judge_messages.Meet(fresh, sorted(there), sorted(gone), max(0.0, self._news_left)))
         self._answered.wait(max(0.0, self._news_left) + STOP_LIMIT)
         self._news_left -= time.monotonic() - asked_at
-        # A notebook that has disconnected cannot answer, so the run begins without an answer. It will get no points.
+        # A notebook that has disconnected cannot answer, so the run begins without an answer. The check then gives no
+        # points.
         return self._seen_as_told or self._gone.is_set()
 
     def start(self, recorder: Recorder, arguments: tuple[Any, ...], options: dict[str, Any]) -> None:

@@ -6,7 +6,6 @@ import contextlib
 import time
 import traceback
 from dataclasses import dataclass, replace
-from functools import partial
 from pathlib import Path
 from random import Random
 from typing import TYPE_CHECKING
@@ -119,25 +118,36 @@ def _check(
     # Hurry only if a student may be waiting, that is, in a check cell that no grader runs.
     waited_for = subject.in_a_notebook and not marks_crowded
     hurry = Hurry(is_building=lambda: subject.is_building) if waited_for else _no_hurry
+    names: Mapping[str, Mapping[str, str]] = {}
+    verdict: Verdict | None = None
+
+    def next_look(pace: Pace, before: Evidence | None = None) -> Seen:
+        try:
+            return look(
+                exercise,
+                subject,
+                reference,
+                pace,
+                seed=seed,
+                domain_id=domain_id,
+                before=before,
+                hurry=hurry,
+                names=names,
+            )
+        except OutOfTime:
+            raise _too_busy(verdict) from None
+
     subject.begin(domain_id)
-    look_at = partial(look, exercise, subject, reference, seed=seed, domain_id=domain_id, hurry=hurry)
-    try:
-        seen = look_at(Pace.FAST)
-    except OutOfTime:
-        raise TooBusy(TOO_BUSY) from None
+    seen = next_look(Pace.FAST)
     evidence = seen.evidence
     try:
         with limited():
             verdict = judge(exercise, evidence, seed)
-        names = {} if verdict.passed or exercise.runner else misnamed(evidence, verdict)
         # A wrong name should fail only one criterion. So the judge looks again and uses the subject's names, with which
         # it can decide the other criteria.
+        names = {} if verdict.passed or exercise.runner else misnamed(evidence, verdict)
         if names:
-            look_at = partial(look_at, names=names)
-            try:
-                seen = look_at(Pace.FAST)
-            except OutOfTime:
-                raise TooBusy(f"{TOO_BUSY} {_so_far(verdict)}".strip()) from None
+            seen = next_look(Pace.FAST)
             evidence = seen.evidence
             with limited():
                 verdict = judge(exercise, evidence, seed)
@@ -147,27 +157,27 @@ def _check(
         if again:
             if not marks_crowded:  # code of a submission must not learn the verdict
                 subject.tell_so_far(_so_far(verdict))
-            try:
-                with Crowding() as crowding:
-                    seen = look_at(Pace.REAL_TIME, before=evidence)
-            except OutOfTime:
-                raise TooBusy(f"{TOO_BUSY} {_so_far(verdict)}".strip()) from None
+            with Crowding() as crowding:
+                seen = next_look(Pace.REAL_TIME, evidence)
             evidence = replace(seen.evidence, before=evidence)
             with limited():
                 verdict = judge(exercise, evidence, seed)
-        if (seen.unmet or (again and crowding.too_busy)) and not verdict.passed:
-            with limited():
-                crowded = not is_certain(exercise, evidence)
-        if not verdict.passed and not (delivered and delivers()):
+        if not verdict.passed:
             with limited():
                 certain = is_certain(exercise, evidence)
-            if not certain:
+            crowded = not certain and (seen.unmet or (again and crowding.too_busy))
+            if not certain and not (delivered and delivers()):
                 raise NotDelivered(NOT_DELIVERED)
     except Undecided:
         verdict = undecidable(exercise, seed)
     if crowded and not marks_crowded:
-        raise TooBusy(f"{TOO_BUSY} {_so_far(verdict)}".strip())
+        raise _too_busy(verdict)
     return Checked(replace(verdict, seconds=round(time.monotonic() - began, 3)), evidence, crowded)
+
+
+def _too_busy(verdict: Verdict | None) -> TooBusy:
+    """Return the error that ends a check on a busy machine. It quotes the diagnosis so far, if there is one."""
+    return TooBusy(f"{TOO_BUSY} {_so_far(verdict) if verdict else ''}".strip())
 
 
 def _is_explained(
