@@ -183,7 +183,7 @@ class _Child:
         return self._process.pid
 
     def end(self) -> None:
-        """Wait two seconds for the judge to exit, which it does when its socket for orders is closed; then kill it."""
+        # The judge exits by itself when its socket for orders is closed.
         with contextlib.suppress(subprocess.TimeoutExpired):
             self._process.wait(timeout=2.0)
         signal_group(self._process.pid, signal.SIGKILL)

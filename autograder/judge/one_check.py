@@ -280,7 +280,7 @@ def _with_name(finding: Finding, wrong: Event | None) -> Finding:
 def diagnose(exercise: Exercise, evidence: Evidence) -> tuple[Diagnosis, str]:
     """Return the diagnosis of the first known mistake in the evidence, and the traceback that shows it, if any.
 
-    Other tracebacks are not returned. They may come from another run and a correct line, but a student would take them
+    Another traceback is not returned. It may come from another run and from a correct line, but a student would take it
     for the mistake.
     """
     found = _recognised(exercise, evidence)

@@ -100,7 +100,7 @@ class Subject(Protocol):
     def stack(self) -> str:
         """Return the stack of each thread, innermost call first, as faulthandler prints it; empty if unknown.
 
-        This may end the run, which then does not count as ended by itself.
+        A command is aborted, so that it prints its stacks. The run then does not count as ended by itself.
         """
 
     def stop(self) -> None:
@@ -158,7 +158,7 @@ class CommandBox(Protocol):
         """Move this process, the judge, into the sandbox's network. Call this once, before ROS is imported.
 
         Raises:
-            OSError: This machine does not allow it.
+            OSError: This machine does not allow a process to enter the sandbox's network.
         """
 
     def start_of(self, command: Sequence[str], environment: Mapping[str, str]) -> tuple[list[str], list[int]]:

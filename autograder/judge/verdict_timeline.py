@@ -210,7 +210,7 @@ def _first_unlike(events: Sequence[Event], part: Part, reference: Reference) -> 
 
 
 def _astray(part: Part, reference: Reference, title: str, start: float | None) -> Iterator[Moment]:
-    """Yield a moment for each missing endpoint, and for each unexpected endpoint of the same role."""
+    """Yield a moment for each missing endpoint, and for each unexpected endpoint with the role of a missing one."""
     for role, words in _ENDS.items():
         expected = set(reference.interface.get(role, {}))
         missing = expected - set(part.endpoints(role))
@@ -265,7 +265,7 @@ def _missed(part: Part, reference: Reference, title: str, start: float | None) -
 
 
 def _given_the_same(part: Part, known: Part) -> bool:
-    """Return True if the subject got the same inputs as the reference solution; inputs may be random.
+    """Return True if the subject got the inputs that the reference solution got. Random inputs may differ.
 
     If the subject ended early, only the inputs that it got before are compared.
     """

@@ -76,7 +76,7 @@ class TestBench:
         self._recorder = Recorder(hurry)
         self._participant: Wire | None = None
         self._decoys: DecoyNodes | None = None
-        # Announcements show that a program has made a node. They would not show this for a notebook, whose kernel
+        # Announcements show that a program has made a node. For a notebook they would show nothing, because its kernel
         # announces one participant for all runs.
         self._announcements = None if subject.shares_participant else Announcements(domain_id)
         self._older_processes: set[bytes] = set()

@@ -1,7 +1,7 @@
 """Finds the subject's nodes and endpoints: with queries of the ROS graph, and by announcements of DDS participants.
 
-The ROS graph shows everything that does not belong to the judge as the subject's. rclpy has no event for changes of the
-graph, so callers repeat the queries. A query takes well under a millisecond.
+Every node and endpoint on the ROS graph that is not the judge's counts as the subject's. rclpy has no event for changes
+of the graph, so callers repeat the queries. A query takes well under a millisecond.
 
 A DDS participant announces itself when it is created, and rmw_fastrtps creates it together with a process's first node.
 The graph shows the node only after several more messages. If a program ends before these messages, its announcement has

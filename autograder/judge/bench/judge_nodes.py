@@ -42,8 +42,8 @@ SPIN_POLL = 0.05
 class _QuietNode(Node):
     """A node whose endpoints report only the QoS events that were requested.
 
-    By default, rclpy gives each endpoint two events that only log a warning. They would cost time, because the executor
-    checks all events in each round, and a check in simulated time has some hundred rounds.
+    By default, rclpy gives each endpoint two events that only log a warning. These events would cost time, because the
+    executor checks all events in each round, and a check in simulated time has some hundred rounds.
     """
 
     def create_publisher(self, *arguments: Any, **options: Any) -> Any:

@@ -32,9 +32,9 @@ class _Settling:
     """Tells when a command's nodes and endpoints have not changed for a while.
 
     Args:
-        seconds: How long the nodes and endpoints must stay the same, in seconds that get longer on a busy machine
-            (:mod:`autograder.judge.machine_fitness`). They have to get longer, because a program that has made its node
-            may have to wait for a processor before it can make its endpoints.
+        seconds: How long the nodes and endpoints must not change. These seconds get longer on a busy machine
+            (:mod:`autograder.judge.machine_fitness`), because a program that has made its node may have to wait for a
+            processor before it can make its endpoints.
     """
 
     def __init__(self, seconds: float) -> None:
