@@ -118,14 +118,10 @@ class SubmissionEntry:
         return sum(self.penalties.values())
 
     @property
-    def _raw(self) -> float:
-        """The points before the late penalty is subtracted."""
-        return sum(cell.score for cells in self.cells.values() for cell in cells.values())
-
-    @property
     def taken_off(self) -> float:
         """The points that the late penalty subtracts: at most all points, because no score becomes negative."""
-        return min(self.penalty, max(0.0, self._raw))
+        points = sum(cell.score for cells in self.cells.values() for cell in cells.values())
+        return min(self.penalty, max(0.0, points))
 
     def why_late(self, zone: tzinfo) -> str:
         """Return the submission time and the due date as text, in a time zone; empty without a late penalty."""

@@ -206,11 +206,11 @@ def _sources_of(course_root: Path, wanted: Sequence[str]) -> Sources:
         made = {name: (known[name], source_notebook(known[name])) for name in wanted or known}
     except MasterError as error:
         raise GradingError(str(error)) from error
-    return {name: one for name, one in made.items() if wanted or _is_graded(one[1])}
-
-
-def _is_graded(notebook: NotebookNode) -> bool:
-    return any(cell.metadata.get("nbgrader", {}).get("grade") for cell in notebook.cells)
+    return {
+        name: (master, notebook)
+        for name, (master, notebook) in made.items()
+        if wanted or any(cell.metadata.get("nbgrader", {}).get("grade") for cell in notebook.cells)
+    }
 
 
 def _fill(path: Path, sources: Sources, config: str) -> None:
