@@ -21,8 +21,8 @@ from autograder.grading.collecting.downloaded_files import (
     read_list,
     without_sandbox,
 )
-from autograder.grading.collecting.file_owners import NamedSource, StudentOf, note_on, own_of
-from autograder.grading.collecting.file_to_grade import Looks, decide
+from autograder.grading.collecting.file_owners import NamedSource, StudentOf, note_on, paths_of_students
+from autograder.grading.collecting.file_to_grade import ClassFolders, decide
 from autograder.grading.collecting.inbox_lines import NO_LIST, AssignmentOf, entries_of, in_utc, lines_of
 from autograder.grading.collecting.submitted_file_names import check_names
 from autograder.grading.collecting.submitted_folder import Submitted
@@ -39,36 +39,6 @@ if TYPE_CHECKING:
 
     from autograder.grading.collecting.collected_files import Line, Place, Receiving
     from autograder.grading.collecting.lms_lists import ListEntry
-
-
-@dataclass(frozen=True)
-class CollectReport:
-    """The result of collecting.
-
-    Attributes:
-        path: The class.
-        outcomes: The lines of the files that this command named, and other lines that changed.
-        untimed: The students with work collected now whose time of handing in is unknown, by assignment.
-        missing: The students who have handed in nothing, by assignment.
-        waiting: The number of lines in the table that wait for a person.
-        notes: Sentences for the instructor, for example about unclear cells and empty downloads.
-    """
-
-    path: Path
-    outcomes: tuple[Line, ...] = ()
-    untimed: dict[str, tuple[str, ...]] = field(default_factory=dict)
-    missing: dict[str, tuple[str, ...]] = field(default_factory=dict)
-    waiting: int = 0
-    notes: tuple[str, ...] = ()
-
-    def having(self, state: LineState) -> tuple[Line, ...]:
-        """Return the lines with this state."""
-        return tuple(one for one in self.outcomes if one.state == state)
-
-    @property
-    def exit_code(self) -> int:
-        """The command's exit code: 2 if a person has to decide about one of the files; otherwise 0."""
-        return 2 if self.having(LineState.NOT_PLACED) else 0
 
 
 def collect(
@@ -111,155 +81,35 @@ def collect(
         return _Collecting(directory, options).run(sources)
 
 
-class _Collecting:
-    def __init__(self, directory: ClassDirectory, options: Delivery) -> None:
-        self._directory = directory
-        self._options = options
-        self._roster = read_roster(directory)
-        self._inbox = Inbox(directory.state)
-        self._submitted = Submitted(directory, self._inbox)
-        self._table = Table(directory)
-        self._notes: list[str] = []
-        self._entries: list[ListEntry] = []
-        self._rooms: dict[object, Room] = defaultdict(Room)
+@dataclass(frozen=True)
+class CollectReport:
+    """The result of collecting.
 
-    def run(self, sources: Sequence[Path]) -> CollectReport:
-        """Take files into the inbox, decide about all files in it, and update ``submitted`` and the table."""
-        edits, self._notes = self._table.read()
-        self._table.put_edits(edits)
-        self._submitted.take_in()
-        delivery = self._receive(sources)
-        before = {one.label for one in self._table.waiting()}
-        looks = Looks(self._directory, self._inbox, self._submitted)
-        lines = decide(lines_of(self._directory, self._inbox, self._roster, edits), looks)
-        results = self._submitted.bring(lines)
-        lines = [_hindered(one, results) for one in lines]
-        self._table.write(lines, edits)
-        return self._report(delivery, lines, results, before)
-
-    # -- taking in
-
-    def _receive(self, paths: Sequence[Path]) -> Delivery:
-        """Keep the files of this command in the inbox, as one delivery, and return the delivery."""
-        options = self._options
-        with self._inbox.receiving() as receiving, Archives(self._directory.state) as archives:
-            lists = [path for path in paths if path.suffix.lower() == ".csv" and path.is_file()]
-            own = own_of([path for path in paths if path not in lists], self._knowing())
-            if own:  # next to a student's own file, a list may come from a student, too, so it is not read as a list
-                own, lists = own.union(lists), []
-            arrivals = [self._list(file, receiving) for path in lists for file in archives.files_of(path)]
-            student_of = self._knowing()
-            for path in (path for path in paths if path not in lists):
-                files = tuple(archives.files_of(path, is_opened=path not in own))
-                source = NamedSource(path, files, path in own)
-                arrivals += self._source(source, student_of, receiving, archives)
-                note = note_on(source, student_of, options.form or options.names)
-                self._notes += [note] if note else []
-            if why := without_sandbox():
-                self._notes.append(
-                    f"archives and lists were read without a sandbox, only with limits on memory and time: {why}"
-                )
-            unique = {(one.label, one.key): one for one in arrivals}
-            ordered = tuple(one for _, one in sorted(unique.items()))
-            receiving.delivery = replace(options, arrivals=ordered)
-        return receiving.delivery
-
-    def _knowing(self) -> StudentOf:
-        """Return a ``StudentOf`` that knows students.csv, the lists in the inbox, and the lists of this command."""
-        known = [entry for entries in entries_of(self._inbox).values() for entry in entries]
-        is_notebook = AssignmentOf(self._directory).is_notebook
-        options = self._options
-        return StudentOf(self._roster, is_notebook, options.form, options.names, [*known, *self._entries])
-
-    def _list(self, file: File, receiving: Receiving) -> Arrival:
-        arrival, data = _taken(file, receiving)
-        entries = None if arrival.refused else read_list(arrival.name, data)
-        if entries is None:
-            return replace(arrival, refused=arrival.refused or NO_LIST)
-        self._entries += entries
-        return replace(arrival, is_list=True)
-
-    def _source(
-        self, source: NamedSource, student_of: StudentOf, receiving: Receiving, archives: Archives
-    ) -> Iterator[Arrival]:
-        for file in source.files:
-            if source.is_list(file.arrival, self._options.form):
-                yield self._list(file, receiving)
-                continue
-            arrival, data = _taken(file, receiving)
-            arrival = replace(arrival, levels=source.levels, is_own=source.is_own)
-            if not is_archive(arrival.name, data):
-                yield arrival
-                continue
-            yield replace(arrival, is_archive=True)
-            owners = student_of.owners(arrival.parts, source.levels, is_alone=source.is_own)
-            whose = tuple(one.id for members in owners.members for one in members) or arrival.parts[:2]
-            for inner in archives.within(arrival, data, self._rooms[whose]):
-                yield _taken(inner, receiving)[0]
-
-    # -- the result
-
-    def _report(
-        self,
-        delivery: Delivery,
-        lines: Sequence[Line],
-        results: Mapping[Place, tuple[LineState, str]],
-        before: Collection[str],
-    ) -> CollectReport:
-        zone, keys = self._directory.time_zone, {one.key for one in delivery.arrivals}
-        counting = [one for one in lines if one.state == LineState.PLACED]
-        outcomes = []
-        for one in lines:
-            if one.state == LineState.PLACED:
-                state, reason = results[one.place]
-                one = replace(one, state=state, reason=reason)
-            waits = one.state == LineState.NOT_PLACED and (not keys or f"{one.label} {one.key}" not in before)
-            if one.key in keys or one.state == LineState.PLACED or waits:
-                outcomes.append(replace(one, when=one.when and one.when.astimezone(zone)))
-        here = {one.assignment for one in counting if one.key in keys or not keys}
-        work = {(one.student, one.assignment) for one in self._directory.submissions()[0]}
-        not_missing = work | self._roster.excused
-        missing = {
-            name: tuple(sorted(id_ for id_ in self._roster.students if (id_, name) not in not_missing))
-            for name in sorted(here)
-        }
-        untimed: dict[str, list[str]] = defaultdict(list)
-        for one in sorted(counting, key=lambda one: one.student):
-            if one.when is None and one.key in keys and one.student not in untimed[one.assignment]:
-                untimed[one.assignment].append(one.student)
-        notes = [*self._notes, *self._directory.named_cells.notes]
-        notes += self._roster.excused_from_nothing(self._directory.assignments(), self._roster.students)
-        if not self._roster.students:
-            notes.append(
-                "the class has no students.csv, so students' folders have the names that the LMS uses"
-            )
-        return CollectReport(
-            self._directory.path,
-            tuple(sorted(outcomes, key=lambda one: one.label)),
-            {name: tuple(students) for name, students in untimed.items() if students},
-            {name: students for name, students in missing.items() if students},
-            sum(one.state == LineState.NOT_PLACED for one in lines),
-            tuple(notes),
-        )
-
-
-def _hindered(one: Line, results: Mapping[Place, tuple[LineState, str]]) -> Line:
-    """Return the line, changed to ``NOT_PLACED`` if the file could not be written into ``submitted``."""
-    state, reason = results.get(one.place, (LineState.PLACED, ""))
-    is_hindered = one.state == LineState.PLACED and state == LineState.NOT_PLACED
-    return replace(one, state=state, reason=reason) if is_hindered else one
-
-
-def _taken(file: File, receiving: Receiving) -> tuple[Arrival, bytes]:
-    """Store the bytes of a file in the inbox, and return the file's arrival and the bytes.
-
-    If the file cannot be read, the arrival contains the reason, and the bytes are empty.
+    Attributes:
+        path: The class directory.
+        outcomes: The lines of this command's files, of all files that are graded, and of files that wait for a person:
+            only those that did not wait before, or all if the command named no file.
+        untimed: The students with work collected now whose time of handing in is unknown, by assignment.
+        missing: The students who have handed in nothing, by assignment.
+        waiting: The number of lines in the table that wait for a person.
+        notes: Sentences for the instructor, for example about unclear cells and empty downloads.
     """
-    try:
-        data = file.read()
-    except NotTaken as error:
-        return replace(file.arrival, refused=str(error)), b""
-    return replace(file.arrival, content=receiving.keep(data)), data
+
+    path: Path
+    outcomes: tuple[Line, ...] = ()
+    untimed: dict[str, tuple[str, ...]] = field(default_factory=dict)
+    missing: dict[str, tuple[str, ...]] = field(default_factory=dict)
+    waiting: int = 0
+    notes: tuple[str, ...] = ()
+
+    def having(self, state: LineState) -> tuple[Line, ...]:
+        """Return the lines with this state."""
+        return tuple(one for one in self.outcomes if one.state == state)
+
+    @property
+    def exit_code(self) -> int:
+        """2 if a person has to decide about one of the files; otherwise 0."""
+        return 2 if self.having(LineState.NOT_PLACED) else 0
 
 
 def show(report: CollectReport, console: Console | None = None) -> None:
@@ -315,3 +165,149 @@ def _lines(report: CollectReport) -> Iterator[str]:
         )
     if counts[LineState.PLACED]:
         yield f"Then         {course_command('grade', report.path)}"
+
+
+class _Collecting:
+    def __init__(self, directory: ClassDirectory, options: Delivery) -> None:
+        self._directory = directory
+        self._options = options
+        self._roster = read_roster(directory)
+        self._inbox = Inbox(directory.state)
+        self._submitted = Submitted(directory, self._inbox)
+        self._table = Table(directory)
+        self._notes: list[str] = []
+        self._entries: list[ListEntry] = []
+        self._rooms: dict[object, Room] = defaultdict(Room)
+
+    def run(self, sources: Sequence[Path]) -> CollectReport:
+        """Take files into the inbox, decide about all files in it, and update ``submitted`` and the table."""
+        edits, self._notes = self._table.take_edits()
+        self._submitted.take_in()
+        delivery = self._receive(sources)
+        before = {one.label for one in self._table.waiting()}
+        folders = ClassFolders(self._directory, self._inbox, self._submitted)
+        lines = decide(lines_of(self._directory, self._inbox, self._roster, edits), folders)
+        results = self._submitted.bring(lines)
+        # ``bring`` returns no result for a line that was not to be placed.
+        not_placed = {place: why for place, (state, why) in results.items() if state == LineState.NOT_PLACED}
+        lines = [
+            replace(one, state=LineState.NOT_PLACED, reason=not_placed[one.place])
+            if one.state == LineState.PLACED and one.place in not_placed
+            else one
+            for one in lines
+        ]
+        self._table.write(lines, edits)
+        return self._report(delivery, lines, results, before)
+
+    def _receive(self, paths: Sequence[Path]) -> Delivery:
+        """Keep the files of this command in the inbox, as one delivery, and return the delivery."""
+        options = self._options
+        with self._inbox.receiving() as receiving, Archives(self._directory.state) as archives:
+            lists = [path for path in paths if path.suffix.lower() == ".csv" and path.is_file()]
+            own = paths_of_students([path for path in paths if path not in lists], self._knowing())
+            if own:  # next to a student's own file, a list may come from a student, too, so it is not read as a list
+                own, lists = own.union(lists), []
+            arrivals = [self._list(file, receiving) for path in lists for file in archives.files_of(path)]
+            student_of = self._knowing()
+            for path in (path for path in paths if path not in lists):
+                files = tuple(archives.files_of(path, is_opened=path not in own))
+                source = NamedSource(path, files, path in own)
+                arrivals += self._source(source, student_of, receiving, archives)
+                note = note_on(source, student_of, options.form or options.names)
+                self._notes += [note] if note else []
+            if why := without_sandbox():
+                self._notes.append(
+                    f"archives and lists were read without a sandbox, only with limits on memory and time: {why}"
+                )
+            unique = {(one.label, one.key): one for one in arrivals}
+            ordered = tuple(one for _, one in sorted(unique.items()))
+            receiving.delivery = replace(options, arrivals=ordered)
+        return receiving.delivery
+
+    def _knowing(self) -> StudentOf:
+        """Return a ``StudentOf`` that knows students.csv, the lists in the inbox, and the lists of this command."""
+        known = [entry for entries in entries_of(self._inbox).values() for entry in entries]
+        is_notebook = AssignmentOf(self._directory).is_notebook
+        options = self._options
+        return StudentOf(self._roster, is_notebook, options.form, options.names, [*known, *self._entries])
+
+    def _list(self, file: File, receiving: Receiving) -> Arrival:
+        arrival, data = _taken(file, receiving)
+        entries = None if arrival.refused else read_list(arrival.name, data)
+        if entries is None:
+            return replace(arrival, refused=arrival.refused or NO_LIST)
+        self._entries += entries
+        return replace(arrival, is_list=True)
+
+    def _source(
+        self, source: NamedSource, student_of: StudentOf, receiving: Receiving, archives: Archives
+    ) -> Iterator[Arrival]:
+        for file in source.files:
+            if source.is_list(file.arrival, self._options.form):
+                yield self._list(file, receiving)
+                continue
+            arrival, data = _taken(file, receiving)
+            arrival = replace(arrival, levels=source.levels, is_own=source.is_own)
+            if not is_archive(arrival.name, data):
+                yield arrival
+                continue
+            yield replace(arrival, is_archive=True)
+            owners = student_of.owners(arrival.parts, source.levels, is_alone=source.is_own)
+            whose = tuple(one.id for members in owners.members for one in members) or arrival.parts[:2]
+            for inner in archives.within(arrival, data, self._rooms[whose]):
+                yield _taken(inner, receiving)[0]
+
+    def _report(
+        self,
+        delivery: Delivery,
+        lines: Sequence[Line],
+        results: Mapping[Place, tuple[LineState, str]],
+        before: Collection[str],
+    ) -> CollectReport:
+        zone, keys = self._directory.time_zone, {one.key for one in delivery.arrivals}
+        counting = [one for one in lines if one.state == LineState.PLACED]
+        outcomes = []
+        for one in lines:
+            if one.state == LineState.PLACED:
+                state, reason = results[one.place]
+                one = replace(one, state=state, reason=reason)
+            waits = one.state == LineState.NOT_PLACED and (not keys or f"{one.label} {one.key}" not in before)
+            if one.key in keys or one.state == LineState.PLACED or waits:
+                outcomes.append(replace(one, when=one.when and one.when.astimezone(zone)))
+        here = {one.assignment for one in counting if one.key in keys or not keys}
+        work = {(one.student, one.assignment) for one in self._directory.submissions()[0]}
+        not_missing = work | self._roster.excused
+        missing = {
+            name: tuple(sorted(id_ for id_ in self._roster.students if (id_, name) not in not_missing))
+            for name in sorted(here)
+        }
+        untimed: dict[str, list[str]] = defaultdict(list)
+        for one in sorted(counting, key=lambda one: one.student):
+            if one.when is None and one.key in keys and one.student not in untimed[one.assignment]:
+                untimed[one.assignment].append(one.student)
+        notes = [*self._notes, *self._directory.named_cells.notes]
+        notes += self._roster.excused_from_nothing(self._directory.assignments(), self._roster.students)
+        if not self._roster.students:
+            notes.append(
+                "the class has no students.csv, so students' folders have the names that the LMS uses"
+            )
+        return CollectReport(
+            self._directory.path,
+            tuple(sorted(outcomes, key=lambda one: one.label)),
+            {name: tuple(students) for name, students in untimed.items() if students},
+            {name: students for name, students in missing.items() if students},
+            sum(one.state == LineState.NOT_PLACED for one in lines),
+            tuple(notes),
+        )
+
+
+def _taken(file: File, receiving: Receiving) -> tuple[Arrival, bytes]:
+    """Store the bytes of a file in the inbox, and return the file's arrival and the bytes.
+
+    If the file cannot be read, the arrival contains the reason, and the bytes are empty.
+    """
+    try:
+        data = file.read()
+    except NotTaken as error:
+        return replace(file.arrival, refused=str(error)), b""
+    return replace(file.arrival, content=receiving.keep(data)), data

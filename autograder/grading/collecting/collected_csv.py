@@ -37,17 +37,17 @@ NAME = "collected.csv"
 COLUMNS = (
     "use", "counts", "student", "assignment", "notebook", "handed_in", "system", "number", "name", "file", "reason",
 )  # fmt: skip
-EDITABLE = ("use", "student", "assignment", "notebook", "handed_in")
-WAITS = "waits"
+_EDITABLE = ("use", "student", "assignment", "notebook", "handed_in")
+_WAITS = "waits"
 _WORDS = {
     LineState.PLACED: "yes",
     LineState.UNCHANGED: "the same",
     LineState.EARLIER: "earlier",
     LineState.BESIDE: "beside",
-    LineState.NOT_PLACED: WAITS,
+    LineState.NOT_PLACED: _WAITS,
     LineState.LEFT_OUT: "no",
 }
-_FIRST = (WAITS, "yes")
+_FIRST = (_WAITS, "yes")
 _YES = frozenset(["yes", "y", "ja", "j", "x", "1", "true", "wahr", "oui", "si", "sí"])
 _NO = frozenset(["no", "n", "nein", "0", "false", "falsch", "non"])
 _KEY = re2.compile(r"#[0-9a-f]{10}$")
@@ -76,14 +76,10 @@ class Waiting:
     line: int
 
     @property
-    def cell(self) -> str:
-        """Return, in parentheses, the line and the column of ``collected.csv`` that a person has to edit."""
-        return f" ({NAME}, line {self.line}, cell {cell_in(self.reason) or 'use'})"
-
-    @property
     def sentence(self) -> str:
-        """Return a sentence that says why the file waits for a person, and what to edit in ``collected.csv``."""
-        return f"{self.student}{': ' if self.student else ''}{self.reason}{self.cell}"
+        """Return a sentence that says why the file waits for a person, and which cell of the table to edit."""
+        cell = f"({NAME}, line {self.line}, cell {cell_in(self.reason) or 'use'})"
+        return f"{self.student}{': ' if self.student else ''}{self.reason} {cell}"
 
 
 class Table:
@@ -100,23 +96,6 @@ class Table:
         self._zone = directory.time_zone
         self._locale = _locale_of(self._zone.key)
 
-    def edits(self) -> dict[str, Edit]:
-        """Return what people had written into the table when ``collect`` last read it, by the key of the line."""
-        try:
-            return msgspec.json.decode(self._edits_file.read_bytes(), type=dict[str, Edit])
-        except (OSError, msgspec.MsgspecError):
-            return {}
-
-    def put_edits(self, edits: Mapping[str, Edit]) -> None:
-        """Store the cells of the table that people have edited.
-
-        Raises:
-            OSError: The file could not be written.
-        """
-        kept = {key: edit for key, edit in sorted(edits.items()) if edit != Edit()}
-        if kept != self.edits():
-            write_whole(self._edits_file, msgspec.json.encode(kept))
-
     @property
     def is_edited(self) -> bool:
         """Return True if the table was changed after ``collect`` wrote it."""
@@ -125,9 +104,29 @@ class Table:
         except OSError:
             return False
 
-    def read(self) -> tuple[dict[str, Edit], list[str]]:
-        """Return all that people have written, now or earlier, and a sentence about each unclear line or cell."""
-        edits = self.edits()
+    def take_edits(self) -> tuple[dict[str, Edit], list[str]]:
+        """Read what people have written into the table, and store it for later commands.
+
+        Returns:
+            All edits, from now and from earlier commands, by the key of the line; and a sentence about each unclear
+            line or cell.
+
+        Raises:
+            OSError: The edits could not be stored.
+        """
+        try:
+            before = msgspec.json.decode(self._edits_file.read_bytes(), type=dict[str, Edit])
+        except (OSError, msgspec.MsgspecError):
+            before = {}
+        edits, notes = self._read(before)
+        kept = {key: edit for key, edit in sorted(edits.items()) if edit != Edit()}
+        if kept != before:
+            write_whole(self._edits_file, msgspec.json.encode(kept))
+        return edits, notes
+
+    def _read(self, earlier: Mapping[str, Edit]) -> tuple[dict[str, Edit], list[str]]:
+        """Return the edits, in the table or earlier, and a sentence about each unclear line or cell."""
+        edits = dict(earlier)
         try:
             data = self.path.read_bytes()
         except OSError:
@@ -163,7 +162,7 @@ class Table:
     def _read_line(
         self, key: str, row: Mapping[str, str], before: Mapping[str, str], edit: Edit, notes: list[str]
     ) -> Edit:
-        for column in EDITABLE:
+        for column in _EDITABLE:
             written, was = row[column].strip(), before[column].strip()
             value, old = self._value(column, written), self._value(column, was)
             if value is None:
@@ -260,7 +259,7 @@ class Table:
         return _rows(self._read_copy(self._newest), whole=True)[0] or []
 
     def earlier(self) -> Counter[tuple[str, str]]:
-        """Return how many earlier attempts each student handed in for each assignment."""
+        """Return the numbers of earlier attempts, by student and assignment."""
         return Counter(
             (student, row["assignment"])
             for row in self.lines()
@@ -273,17 +272,15 @@ class Table:
         return [
             Waiting(row["file"], row["reason"], row["student"], row["assignment"], number)
             for number, row in enumerate(self.lines(), 2)
-            if row["counts"] == WAITS
+            if row["counts"] == _WAITS
         ]
 
 
 def _rows(data: bytes, *, whole: bool = False) -> tuple[list[dict[str, str]] | None, int]:
-    """Return the lines of a table as dictionaries, and the number of the table.
+    """Return the lines of a table, which any spreadsheet program may have saved, and the number of the table.
 
-    Any spreadsheet program may have saved the table.
-
-    The cell ``file`` is shortened to the key of the line, unless ``whole`` is true. If no line names the columns, None
-    is returned instead of lines.
+    Each line is a dictionary by column. Its cell ``file`` is shortened to the key of the line, unless ``whole`` is
+    true. If the first line does not name the columns, None is returned instead of lines.
     """
     header, *lines = csv_rows(data)[0] or [[]]
     stamp = _STAMP.search(" ".join(header))

@@ -30,9 +30,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
 
-_TARS = (".tar", ".tgz", ".tar.gz", ".tar.bz2", ".tar.xz")
-_LEFT_BY_PROGRAMS = ("__MACOSX", ".git", ".ipynb_checkpoints", "__pycache__", ".DS_Store")
-"""Files that operating systems and editors leave next to a student's work."""
 EMPTY = "contains no file, or only files that programs leave there"
 """The reason why an archive or folder was not taken, if it contains nothing to take."""
 LONGEST_NAME = 1_000
@@ -42,6 +39,7 @@ LONGEST_LINE = 50_000
 """The maximum length in bytes of the line of JSON about a file. It is several times :data:`LONGEST_NAME`, because the
 line has up to three names, and escapes make a name longer.
 """
+_TARS = (".tar", ".tgz", ".tar.gz", ".tar.bz2", ".tar.xz")
 
 
 def is_archive(name: str, data: bytes) -> bool:
@@ -51,53 +49,45 @@ def is_archive(name: str, data: bytes) -> bool:
     return ".zip" in lower or lower.endswith(_TARS) or (plain and data.startswith(b"PK\x03\x04"))
 
 
+_LEFT_BY_PROGRAMS = ("__MACOSX", ".git", ".ipynb_checkpoints", "__pycache__", ".DS_Store")
+"""Files that operating systems and editors leave next to a student's work."""
+
+
 def is_left_by_a_program(name: str) -> bool:
     """Return True for the name of a file or folder that a program made, not the student, such as ``.git``."""
     return name in _LEFT_BY_PROGRAMS or name.startswith("._")
 
 
-class _Entry(NamedTuple):
-    name: str
-    size: int
-    is_ordinary: bool
-    open: Callable[[], IO[bytes]]
+_SAMPLES = {
+    "a.csv": b"identifier,grade,full name,last modified (submission)\nParticipant 1,,Ada,3 October 2025\n",
+    GRADESCOPE: b"submission_1:\n  :created_at: 2025-10-03\n  :submitters:\n  - :name: Ada\n",
+}
+"""One small list of each format. Reading them once loads everything that a desk otherwise loads at its first use."""
 
 
-def _entries(file: IO[bytes]) -> list[_Entry]:
-    """Return the files that an archive lists."""
-    if tarfile.is_tarfile(file):
-        file.seek(0)
-        tar = tarfile.open(fileobj=file)  # noqa: SIM115  (its files are read from it)
-        return [
-            _Entry(one.name, one.size, one.isreg(), partial(_opened, tar, one))
-            for one in tar
-            if not one.isdir()
-        ]
-    archive = zipfile.ZipFile(file)
-    return [
-        _Entry(_name_of(one), one.file_size, _is_ordinary(one), partial(archive.open, one))
-        for one in archive.infolist()
-        if not one.is_dir()
-    ]
+def prepare() -> None:
+    """Load everything that a desk needs, because a desk itself cannot open files."""
+    for name, data in _SAMPLES.items():
+        msgspec.json.encode(parse_list(name, data))
+    "".encode("cp437")
 
 
-def _opened(tar: tarfile.TarFile, one: tarfile.TarInfo) -> IO[bytes]:
-    return tar.extractfile(one) or io.BytesIO()
+def run(call: Mapping[str, Any], descriptors: Sequence[int]) -> None:
+    """Read one file and write the answer.
+
+    Args:
+        call: For an archive, the ``limits`` for :class:`_Unpacking`; for a list, the ``name`` of its file.
+        descriptors: The file, and an empty file for the answer.
+    """
+    source, answer = descriptors
+    file = open(source, "rb", closefd=False)  # noqa: SIM115  (a descriptor, until the process ends)
+    if "limits" in call:
+        _Unpacking(answer, *call["limits"]).unpack([], file)
+    else:
+        _write(answer, msgspec.json.encode(parse_list(call["name"], file.read())))
 
 
-def _name_of(one: zipfile.ZipInfo) -> str:
-    """Return the name of a file in a zip. Try UTF-8 even without the flag for UTF-8, which many programs do not set."""
-    try:
-        return one.filename if one.flag_bits & 0x800 else one.filename.encode("cp437").decode("utf-8")
-    except UnicodeError:
-        return one.filename
-
-
-def _is_ordinary(one: zipfile.ZipInfo) -> bool:
-    return stat.S_IFMT(one.external_attr >> 16) in (0, stat.S_IFREG)
-
-
-class Unpacking:
+class _Unpacking:
     """Unpacks an archive, and the archives in it. The limits hold for all of them together.
 
     Args:
@@ -165,7 +155,49 @@ class Unpacking:
         """Write a file, or the reason why it is not taken."""
         line = json.dumps({"names": names, "size": len(data), "reason": reason}, ensure_ascii=False)
         # A name in a tar may be in any encoding; its unknown bytes are lone surrogates, which the reader would refuse.
-        write(self._answer, line.encode("utf-8", "replace") + b"\n" + data)
+        _write(self._answer, line.encode("utf-8", "replace") + b"\n" + data)
+
+
+class _Entry(NamedTuple):
+    name: str
+    size: int
+    is_ordinary: bool
+    open: Callable[[], IO[bytes]]
+
+
+def _entries(file: IO[bytes]) -> list[_Entry]:
+    """Return the files that an archive lists."""
+    if tarfile.is_tarfile(file):
+        file.seek(0)
+        tar = tarfile.open(fileobj=file)  # noqa: SIM115  (its files are read from it)
+        return [
+            _Entry(one.name, one.size, one.isreg(), partial(_opened, tar, one))
+            for one in tar
+            if not one.isdir()
+        ]
+    archive = zipfile.ZipFile(file)
+    return [
+        _Entry(
+            _name_of(one),
+            one.file_size,
+            stat.S_IFMT(one.external_attr >> 16) in (0, stat.S_IFREG),
+            partial(archive.open, one),
+        )
+        for one in archive.infolist()
+        if not one.is_dir()
+    ]
+
+
+def _opened(tar: tarfile.TarFile, one: tarfile.TarInfo) -> IO[bytes]:
+    return tar.extractfile(one) or io.BytesIO()
+
+
+def _name_of(one: zipfile.ZipInfo) -> str:
+    """Return the name of a file in a zip. Try UTF-8 even without the flag for UTF-8, which many programs do not set."""
+    try:
+        return one.filename if one.flag_bits & 0x800 else one.filename.encode("cp437").decode("utf-8")
+    except UnicodeError:
+        return one.filename
 
 
 def _told(error: Exception) -> str:
@@ -173,7 +205,7 @@ def _told(error: Exception) -> str:
     return str(error)[:LONGEST_NAME] or type(error).__name__
 
 
-def write(answer: int, data: bytes) -> None:
+def _write(answer: int, data: bytes) -> None:
     """Write an answer. If writing fails, end the process with the error's number."""
     left = memoryview(data)
     while left:
@@ -181,32 +213,3 @@ def write(answer: int, data: bytes) -> None:
             left = left[os.write(answer, left) :]
         except OSError as error:
             os._exit(error.errno or 1)
-
-
-_SAMPLES = {
-    "a.csv": b"identifier,grade,full name,last modified (submission)\nParticipant 1,,Ada,3 October 2025\n",
-    GRADESCOPE: b"submission_1:\n  :created_at: 2025-10-03\n  :submitters:\n  - :name: Ada\n",
-}
-"""One small list of each format. Reading them once loads everything that a desk otherwise loads at its first use."""
-
-
-def prepare() -> None:
-    """Load everything that a desk needs, because a desk itself cannot open files."""
-    for name, data in _SAMPLES.items():
-        msgspec.json.encode(parse_list(name, data))
-    "".encode("cp437")
-
-
-def run(call: Mapping[str, Any], descriptors: Sequence[int]) -> None:
-    """Read one file and write the answer.
-
-    Args:
-        call: For an archive, the ``limits`` for :class:`Unpacking`; for a list, the ``name`` of its file.
-        descriptors: The file, and an empty file for the answer.
-    """
-    source, answer = descriptors
-    file = open(source, "rb", closefd=False)  # noqa: SIM115  (a descriptor, until the process ends)
-    if "limits" in call:
-        Unpacking(answer, *call["limits"]).unpack([], file)
-    else:
-        write(answer, msgspec.json.encode(parse_list(call["name"], file.read())))

@@ -41,8 +41,6 @@ if TYPE_CHECKING:
 desk = KeptDesk("autograder.grading.collecting.download_desk_process", attempts=1)
 _CPU_SECONDS = 200
 """The limit in seconds of the processor time for one archive, or one list."""
-_LARGEST_LIST = 50_000_000
-"""The limit in bytes of the answer about a list."""
 
 
 def without_sandbox() -> str:
@@ -50,20 +48,8 @@ def without_sandbox() -> str:
     return why_impossible() if desk.is_unboxed else ""
 
 
-def unpack(source: int, answer: int, limits: tuple[int, int, int, int], most: int) -> int:
-    """Unpack an archive; see :class:`autograder.grading.collecting.download_desk_process.Unpacking`.
-
-    Args:
-        source: The descriptor of the archive.
-        answer: The descriptor of an empty file.
-        limits: The limits of :class:`autograder.grading.collecting.download_desk_process.Unpacking`.
-        most: The limit in bytes of the answer.
-
-    Returns:
-        The exit code: the number of the error if the answer could not be written; negative or 1 if a limit was
-        exceeded.
-    """
-    return _ask(source, answer, most, limits=limits)
+_LARGEST_LIST = 50_000_000
+"""The limit in bytes of the answer about a list."""
 
 
 @functools.lru_cache(maxsize=16)  # one command needs each list several times
@@ -82,23 +68,6 @@ def read_list(name: str, data: bytes) -> list[ListEntry] | None:
         return msgspec.json.decode(document, type=list[ListEntry] | None)
     except msgspec.MsgspecError:
         return None
-
-
-def _ask(source: int, answer: int, most: int, **call: object) -> int:
-    try:
-        return desk.ask(source, answer, most, _CPU_SECONDS, call)
-    except ChannelClosed:  # the system has killed the desk, usually because memory is short
-        return -signal.SIGKILL
-
-
-MOST_FILES = 20_000
-"""The maximum number of files in one student's folder. Files are counted by the first three folders of their paths, so
-that a huge repository of one student does not affect other students.
-"""
-_DEEPEST = 3
-"""The maximum number of archives inside each other, counting the one that the student handed in."""
-_DEEPEST_FOLDER = 100
-"""The maximum number of folders inside each other: ``os.walk`` fails at some hundreds."""
 
 
 class NotTaken(ValueError):
@@ -128,13 +97,14 @@ class Room:
     unpacked: int = 1_000_000_000
 
 
-@dataclass(frozen=True)
-class _Unpacked:
-    """A line of the desk's answer, as :mod:`autograder.grading.collecting.download_desk_process` describes it."""
-
-    names: tuple[str, ...]
-    size: int
-    reason: str = ""
+MOST_FILES = 20_000
+"""The maximum number of files in one student's folder. Files are counted by the first three folders of their paths, so
+that a huge repository of one student does not affect other students.
+"""
+_DEEPEST = 3
+"""The maximum number of archives inside each other, counting the one that the student handed in."""
+_DEEPEST_FOLDER = 100
+"""The maximum number of folders inside each other: ``os.walk`` fails at some hundreds."""
 
 
 class Archives:
@@ -155,7 +125,9 @@ class Archives:
         self._stack.close()
 
     def files_of(self, source: Path, *, is_opened: bool = True) -> Iterator[File]:
-        """Yield the files in an archive or folder, or the file itself. An unreadable file raises only when it is read.
+        """Yield the files in an archive or folder, or the file itself.
+
+        An unreadable file is yielded, too: its function ``read`` raises the error.
 
         Args:
             source: A file or folder that the instructor named, which may be a link. But links inside the folder are not
@@ -203,12 +175,44 @@ class Archives:
                 yield File(replace(arrival, inner=inner, content=""), read)
 
 
+def _of_folder(source: Path) -> Iterator[File]:
+    for folder, folders, names in os.walk(source):
+        here = tuple(map(name_as_text, Path(folder).relative_to(source.parent).parts))
+        folders[:] = sorted(name for name in folders if not is_left_by_a_program(name))
+        for name in sorted(names):
+            path = Path(folder) / name
+            if is_left_by_a_program(name):
+                continue
+            yield File(Arrival("", (*here, name_as_text(name))), functools.partial(_read_file, path))
+        for name in folders:
+            if (Path(folder) / name).is_symlink():
+                yield File(Arrival("", (*here, name_as_text(name))), _refusing("it is a link"))
+        if folders and len(here) > _DEEPEST_FOLDER:
+            folders.clear()
+            reason = f"folders are nested more than {_DEEPEST_FOLDER} deep; the deeper folders were not read"
+            yield File(Arrival("", here), _refusing(reason))
+
+
+def _read_file(path: Path) -> bytes:
+    try:
+        return read_bytes(path)
+    except UnreadableSubmission as error:
+        raise NotTaken(str(error)) from error
+
+
+def _refusing(reason: str) -> Callable[[], bytes]:
+    def read() -> bytes:
+        raise NotTaken(reason)
+
+    return read
+
+
 def _unpacked(
     archive: int, room: Room, depth: int, out: IO[bytes]
 ) -> Iterator[tuple[tuple[str, ...], Callable[[], bytes]]]:
     """Unpack an archive. Yield, for each file, the names that lead to it and a function that reads it."""
     most = max(room.unpacked, 0) + max(room.files + 1, 1) * LONGEST_LINE
-    code = unpack(archive, out.fileno(), (depth, room.files, room.unpacked, MAX_BYTES), most)
+    code = _ask(archive, out.fileno(), most, limits=(depth, room.files, room.unpacked, MAX_BYTES))
     if code in (errno.ENOSPC, errno.EDQUOT):
         raise OSError(code, os.strerror(code))
     if code:
@@ -219,6 +223,15 @@ def _unpacked(
         room.unpacked -= line.size
         read = functools.partial(os.pread, out.fileno(), line.size, begin)
         yield line.names, _refusing(line.reason) if line.reason else read
+
+
+@dataclass(frozen=True)
+class _Unpacked:
+    """A line of the desk's answer, as :mod:`autograder.grading.collecting.download_desk_process` describes it."""
+
+    names: tuple[str, ...]
+    size: int
+    reason: str = ""
 
 
 def _lines(out: IO[bytes]) -> Iterator[tuple[_Unpacked, int]]:
@@ -239,38 +252,25 @@ def _lines(out: IO[bytes]) -> Iterator[tuple[_Unpacked, int]]:
 
 
 def _path(name: str) -> tuple[str, ...]:
-    """Return the path of a file in an archive as a tuple of names, without ``..``. No file is written to this path."""
+    """Return the path of a file in an archive as a tuple of names, without ``..``. This path is never written to."""
     parts = name[:LONGEST_NAME].replace("\\", "/").split("/")
     return tuple(part for part in parts if part not in ("", ".", "..")) or (name[:LONGEST_NAME],)
 
 
-def _of_folder(source: Path) -> Iterator[File]:
-    for folder, folders, names in os.walk(source):
-        here = tuple(map(name_as_text, Path(folder).relative_to(source.parent).parts))
-        folders[:] = sorted(name for name in folders if not is_left_by_a_program(name))
-        for name in sorted(names):
-            path = Path(folder) / name
-            if is_left_by_a_program(name):
-                continue
-            yield File(Arrival("", (*here, name_as_text(name))), functools.partial(_read_file, path))
-        for name in folders:
-            if (Path(folder) / name).is_symlink():
-                yield File(Arrival("", (*here, name_as_text(name))), _refusing("it is a link"))
-        if folders and len(here) > _DEEPEST_FOLDER:
-            folders.clear()
-            reason = f"folders are nested more than {_DEEPEST_FOLDER} deep; the deeper folders were not read"
-            yield File(Arrival("", here), _refusing(reason))
+def _ask(source: int, answer: int, most: int, **call: object) -> int:
+    """Let the desk read a file and write an answer, as :func:`.download_desk_process.run` does it.
 
+    Args:
+        source: The descriptor of the file.
+        answer: The descriptor of an empty file.
+        most: The limit in bytes of the answer.
+        call: What the desk has to do.
 
-def _refusing(reason: str) -> Callable[[], bytes]:
-    def read() -> bytes:
-        raise NotTaken(reason)
-
-    return read
-
-
-def _read_file(path: Path) -> bytes:
+    Returns:
+        The exit code: the number of the error if the answer could not be written; negative or 1 if a limit was
+        exceeded.
+    """
     try:
-        return read_bytes(path)
-    except UnreadableSubmission as error:
-        raise NotTaken(str(error)) from error
+        return desk.ask(source, answer, most, _CPU_SECONDS, call)
+    except ChannelClosed:  # the system has killed the desk, usually because memory is short
+        return -signal.SIGKILL

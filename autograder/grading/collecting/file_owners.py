@@ -27,10 +27,10 @@ from autograder.grading.collecting.download_desk_process import EMPTY
 from autograder.grading.collecting.lms_lists import GRADESCOPE
 from autograder.grading.collecting.submitted_file_names import (
     TOLD_APART,
-    numbers_in,
-    plain,
-    read_at,
+    canvas_numbers,
+    read_lms_name,
     read_names,
+    read_plain_name,
 )
 from autograder.grading.table.roster import Identity, Roster, Student
 from autograder.safe_files import name_as_text
@@ -125,9 +125,11 @@ class StudentOf:
         forms = [self._form] if self._form else TOLD_APART
         names = [*parts[:-1], PurePath(parts[-1]).stem if is_alone else ""]
         for place in range(min(levels, len(parts))):
-            if ways := [way for form in forms if (way := read_at(parts, place, form, self._is_notebook))]:
+            if ways := [
+                way for form in forms if (way := read_lms_name(parts, place, form, self._is_notebook))
+            ]:
                 return self._undisputed(self._agreed(ways), parts[place])
-            if owners := self.find(plain(names[place], parts[-1])):
+            if owners := self._find(read_plain_name(names[place], parts[-1])):
                 return owners
         return Owners(None)
 
@@ -135,7 +137,11 @@ class StudentOf:
         """Return the ids of the students that a person wrote into a cell, or what is wrong with the cell."""
         ids = []
         for one in filter(None, map(str.strip, cell.replace(",", ";").split(";"))):
-            found = self._roster.find(Identity(login=one, name=one)) or self._without_zeros(one)
+            found = self._roster.find(Identity(login=one, name=one))
+            if not found:  # a spreadsheet may have dropped the leading zeros of an id, or added a decimal
+                number = one.removesuffix(",0").removesuffix(".0").lstrip("0")
+                students = self._roster.students.values()
+                found = tuple(student for student in students if number and student.id.lstrip("0") == number)
             if len(found) != 1 and self._roster.students:
                 return (), f"students.csv has no student {one}: correct the id under student"
             ids.append(found[0].id if found else one)
@@ -143,29 +149,17 @@ class StudentOf:
                 return (), f"{ids[-1]} cannot be a student's id: {reason}: correct the id under student"
         return tuple(ids), ""
 
-    def _without_zeros(self, written: str) -> tuple[Student, ...]:
-        """Return the students whose id equals this number after a spreadsheet has dropped leading zeros."""
-        plain = written.removesuffix(",0").removesuffix(".0").lstrip("0")
-        return tuple(one for one in self._roster.students.values() if plain and one.id.lstrip("0") == plain)
-
-    def has_form(self, path: Path) -> bool:
-        """Return True if a file or folder has a name that an LMS gives to the work of one student."""
-        owners = self._of_name(path)
-        if owners.found is None:
-            return bool(owners.members)
-        # A user name on GitHub looks like any other name.
-        return owners.found.identity.lms not in ("", "github")
-
-    def is_called(self, path: Path) -> bool:
+    def is_listed(self, path: Path) -> bool:
         """Return True if a file or folder has the name of a student in the list of students."""
-        owners = self._of_name(path)
+        owners = self.owners_by_name(path)
         return bool(self._roster.students and owners.found and owners.members)
 
-    def _of_name(self, path: Path) -> Owners:
+    def owners_by_name(self, path: Path) -> Owners:
+        """Return the students of a file or folder that the instructor named, by its own name alone."""
         name = name_as_text(path.absolute().name)
         return self.owners((name, "") if path.is_dir() else (name,), 1, is_alone=True)
 
-    def find(self, way: Found) -> Owners | None:
+    def _find(self, way: Found) -> Owners | None:
         """Return the students who may be meant, by the first reading of the name that identifies any student."""
         readings = way.readings if self._roster.students and way.readings else (way.identity,)
         for identity in readings:
@@ -175,7 +169,7 @@ class StudentOf:
         return None
 
     def _agreed(self, ways: Sequence[Found]) -> Owners:
-        read = [self.find(way) or Owners(way) for way in ways]
+        read = [self._find(way) or Owners(way) for way in ways]
         meant = [(one.members, one.members and way.when) for one, way in zip(read, ways, strict=True)]
         if all(one == meant[0] for one in meant):
             return read[0]
@@ -185,7 +179,7 @@ class StudentOf:
         """Return ``owners``; but if the name has Canvas numbers of several students, any of these may be meant."""
         if owners.found is None or owners.found.identity.lms != "canvas" or not owners.members:
             return owners
-        others = map(self._of, (Identity("canvas", number) for number in numbers_in(name)))
+        others = map(self._of, (Identity("canvas", number) for number in canvas_numbers(name)))
         known = [students for members, is_sure in others if is_sure for students in members]
         meant = _distinct((*owners.members, *known))
         return replace(owners, members=(meant,)) if len(meant) > 1 else owners
@@ -329,18 +323,26 @@ class NamedSource:
         return is_said and (form == "gradescope" or bool(above and _EXPORT.match(above[-1])))
 
 
-def own_of(paths: Sequence[Path], student_of: StudentOf) -> set[Path]:
+def paths_of_students(paths: Sequence[Path], student_of: StudentOf) -> set[Path]:
     """Return the paths of a command that are each the work of one student."""
-    formed = set(filter(student_of.has_form, paths))
+    formed = {path for path in paths if _has_lms_name(student_of.owners_by_name(path))}
     downloads = {path for path in paths if _DOWNLOAD.match(name_as_text(path.name))}
     others = set(paths) - formed
     if sum(path.is_dir() for path in others) > 1 or any(
-        _is_loose(path) or student_of.is_called(path) for path in others - downloads
+        _is_loose(path) or student_of.is_listed(path) for path in others - downloads
     ):
         return set(paths)
     # A name of a known download means a download. But next to one student's work, a student may have chosen this name,
     # too.
     return formed if formed - downloads else set()
+
+
+def _has_lms_name(owners: Owners) -> bool:
+    """Return True if a name has the form that an LMS gives to the work of one student."""
+    if owners.found is None:
+        return bool(owners.members)
+    # A user name on GitHub looks like any other name.
+    return owners.found.identity.lms not in ("", "github")
 
 
 def note_on(source: NamedSource, student_of: StudentOf, form: str) -> str:
@@ -352,7 +354,7 @@ def note_on(source: NamedSource, student_of: StudentOf, form: str) -> str:
             f"{source.path} was taken for a download, in which names identify the students: if one student sent "
             "the file, rename it to the student's id"
         )
-    if source.is_own and not _is_loose(source.path) and not student_of.is_called(source.path):
+    if source.is_own and not _is_loose(source.path) and not student_of.is_listed(source.path):
         return (
             f"{source.path} was taken for one student's work because of its name or the other paths of the command: if "
             "it is a download or a list, rename it to submissions.zip or list.csv, and collect it in a separate command"

@@ -24,7 +24,208 @@ if TYPE_CHECKING:
     from autograder.grading.collecting.submitted_folder import Submitted
 
 
-def has_work(directory: ClassDirectory, assignment: str, notebook: str, data: bytes) -> bool:
+_Why = tuple[Line, LineState, str]
+
+
+@dataclass(frozen=True)
+class ClassFolders:
+    """The folders of a class whose contents decide which of a student's files is graded.
+
+    Attributes:
+        directory: The class, with the notebooks that were handed out.
+        inbox: The inbox, with the bytes of the files.
+        submitted: The folder ``submitted``, with the files that are graded so far.
+    """
+
+    directory: ClassDirectory
+    inbox: Inbox
+    submitted: Submitted
+
+
+def decide(lines: Iterable[Line], folders: ClassFolders) -> list[Line]:
+    """Return the lines with a state and a reason. The work of a group becomes one line for each student."""
+    decided: list[Line] = []
+    soft: list[Line] = []
+    groups: dict[Place, list[Line]] = defaultdict(list)
+    for line in sorted(lines, key=lambda one: (one.key, one.assignment)):
+        if line.use == "no":
+            decided.append(replace(line, state=LineState.LEFT_OUT, reason="no is written under use"))
+        elif line.is_soft:
+            soft.append(line)
+        elif line.reason:
+            decided.append(replace(line, reason=_with_cell(line.reason)))
+        else:
+            for student in line.students:
+                own = replace(line, students=(student,))
+                groups[own.place].append(own)
+    for place, group in groups.items():
+        decided += [
+            replace(line, state=state, reason=reason)
+            for line, state, reason in _of_group(place, group, folders)
+        ]
+    handed_in = {
+        (one.student, one.assignment) for one in decided if one.state in (LineState.PLACED, LineState.EARLIER)
+    }
+    handed_in |= {(student, "") for student, _ in handed_in}
+    for line in soft:
+        # A file that is not a notebook waits for a person only if its student has handed in no notebook.
+        is_beside = line.lms == "list" or (line.student and (line.student, line.assignment) in handed_in)
+        decided.append(
+            replace(line, state=LineState.BESIDE)
+            if is_beside
+            else replace(line, reason=_with_cell(line.reason))
+        )
+    return decided
+
+
+def _with_cell(reason: str) -> str:
+    """Return the reason. If it does not name a cell to edit, add how to leave the file out."""
+    return reason if cell_in(reason) else f"{reason.rstrip('.')}; to leave the file out, write no under use"
+
+
+_CELL = re2.compile(r"(?:under|the cell) (use|student|assignment|notebook|handed_in)\b")
+
+
+def cell_in(reason: str) -> str:
+    """Return the first column of the table that a reason names; empty if it names none."""
+    found = _CELL.search(reason)
+    return found[1] if found else ""
+
+
+def _of_group(place: Place, group: list[Line], folders: ClassFolders) -> Iterator[_Why]:
+    """Yield the state and the reason of each file that a student handed in for one notebook."""
+    by_hand = [one for one in group if one.is_by_hand]
+    present = [one for one in by_hand if folders.submitted.content(place) == one.content]
+    chosen = present or [one for one in group if one.use == "yes"]
+    if chosen:
+        best, others = _best(place, chosen, folders)
+        yield from others
+        if best:
+            # If a person corrected the file in ``submitted``, the student's own time of handing in still applies.
+            times = [one.when for one in group if one.when and present]
+            yield replace(best, when=best.when or max(times, default=None)), LineState.PLACED, ""
+        why = (
+            "was put into the folder submitted by hand, and is graded"
+            if present
+            else "is graded, because yes is written under use"
+        )
+        for one in group:
+            if one not in chosen:
+                same = best and one.content == best.content
+                yield (
+                    one,
+                    *((LineState.UNCHANGED, "") if same else (LineState.EARLIER, f"{chosen[0].label} {why}")),
+                )
+        return
+    for one in by_hand:
+        yield (
+            one,
+            LineState.EARLIER,
+            "the file was in submitted before: write yes under use to put it there again",
+        )
+    pool = [one for one in group if not one.is_by_hand]
+    for sift in (_ambiguous_names, _unreadable):
+        doubts = sift(place, pool, folders)
+        yield from ((one, LineState.NOT_PLACED, reason) for one, reason in doubts)
+        doubtful = {one.key for one, _ in doubts}
+        pool = [one for one in pool if one.key not in doubtful]
+    if pool:
+        best, others = _best(place, pool, folders)
+        yield from others
+        if best:
+            yield best, LineState.PLACED, ""
+
+
+_ONE_NUMBER = ("canvas", "moodle", "brightspace")
+"""The LMSs in which users may change their names, but have the same number in all files of a download."""
+
+
+def _ambiguous_names(place: Place, pool: Sequence[Line], _: ClassFolders) -> list[tuple[Line, str]]:
+    """Return the files that are linked to a student only by a name, if several people have this name.
+
+    Several people have the name if the LMS gives it several numbers. In Canvas, a person has the same number in every
+    download, so the numbers of all downloads are compared. In other systems, only the numbers in one download are
+    compared.
+    """
+    numbers: dict[str, set[str]] = defaultdict(set)
+    of_systems = [one for one in pool if one.lms in _ONE_NUMBER]
+    for one in of_systems:
+        for download in ("canvas",) if one.lms == "canvas" else one.came_in:
+            numbers[download].add(one.number)
+    several = next((sorted(found) for found in numbers.values() if len(found) > 1), [])
+    reason = (
+        f"several people in the LMS have the name of {place[0]}; their numbers are {', '.join(several)}: write the id "
+        "under student, or no under use"
+    )
+    return [(one, reason) for one in of_systems if several and not one.is_sure]
+
+
+def _unreadable(place: Place, pool: Sequence[Line], folders: ClassFolders) -> list[tuple[Line, str]]:
+    """Return the unreadable files, which must not replace readable work; none if all files are unreadable."""
+    if len({one.content for one in pool}) < 2:
+        return []
+    reasons = [(one, reason) for one in pool if (reason := why_unreadable(folders.inbox.read(one.content)))]
+    what_to_do = (
+        f"Another file of {place[0]} is graded: ask for this file again if it is newer, or write no under use"
+    )
+    return [(one, f"{reason} {what_to_do}") for one, reason in reasons] if len(reasons) < len(pool) else []
+
+
+def _best(place: Place, files: Sequence[Line], folders: ClassFolders) -> tuple[Line | None, list[_Why]]:
+    """Return the file to grade, or None if a person has to choose; and the decisions about the other files.
+
+    The file with the newest time of handing in is graded. If the times are equal or unknown, a file with answers is
+    preferred to a file without answers. Next, in one download, a file with the notebook's exact name is preferred; and
+    last, the file with the highest number from the system. If several different files are left, the file that is
+    already in ``submitted`` is graded again.
+    """
+    is_several = len({one.content for one in files}) > 1
+    work = {
+        one.key: not is_several
+        or _has_work(folders.directory, one.assignment, one.notebook, folders.inbox.read(one.content))
+        for one in files
+    }
+    best = _top(
+        [one for one in files if one.when] or files, lambda one: one.when.timestamp() if one.when else 0
+    )
+    best = _top(best, lambda one: work[one.key])
+    named = [one for one in best if one.is_named]
+    if named and all(any(one.came_in & other.came_in for one in named) for other in best):
+        best = named
+    if len({one.lms for one in best}) == 1:  # attempt numbers of different LMSs cannot be compared
+        best = _top(best, lambda one: one.order)
+    best = _top(best, lambda one: bool(one.lms)) if len({one.content for one in best}) == 1 else best
+    there = folders.submitted.content(place)
+    first = next((one for one in best if one.content == there), best[0])
+    if any(one.content != first.content for one in best) and first.content != there:
+        reason = (
+            f"{place[0]} has several different files for {place[1]}, and it is unknown which file is the newest: "
+            "write yes under use for the file to grade, or the times under handed_in"
+        )
+        return None, [(one, LineState.NOT_PLACED, reason) for one in files]
+    others: list[_Why] = []
+    for one in files:
+        is_older = work[one.key] < work[first.key] or (one.lms == first.lms and 0 < one.order < first.order)
+        if one.content == first.content:
+            others += [(one, LineState.UNCHANGED, "")] if one is not first else []
+        elif one in best:
+            what_to_do = "write yes under use to have this file graded, or no"
+            reason = (
+                f"it is unknown whether this file is newer than {first.label}, which is graded: {what_to_do}"
+            )
+            others.append((one, LineState.NOT_PLACED, reason))
+        elif first.when and not one.when and not is_older:
+            at = f"{first.label}, handed in {in_zone(first.when, folders.directory.time_zone)}"
+            reason = (
+                f"it is unknown whether this file is newer than {at}: write the file's time under handed_in"
+            )
+            others.append((one, LineState.NOT_PLACED, reason))
+        else:
+            others.append((one, LineState.EARLIER, f"{first.label} {_why_it_counts(first, one, work)}"))
+    return first, others
+
+
+def _has_work(directory: ClassDirectory, assignment: str, notebook: str, data: bytes) -> bool:
     """Return True if a notebook has an answer, or an added cell, that was not handed out.
 
     The student's notebook is compared with those in ``release`` and in ``source``, because ``release`` may be older. If
@@ -49,205 +250,6 @@ def has_work(directory: ClassDirectory, assignment: str, notebook: str, data: by
     given = {"", *(cell.source.strip() for cell in (*source, *released))}
     unchanged = {grade_id(cell) for cell in source if not is_answer(cell)} - {""}
     return any(cell.source.strip() not in given for cell in cells if cell.grade_id not in unchanged)
-
-
-_Why = tuple[Line, LineState, str]
-_ONE_NUMBER = ("canvas", "moodle", "brightspace")
-"""The LMSs in which users may change their names, but have the same number in all files of a download."""
-_CELL = re2.compile(r"(?:under|the cell) (use|student|assignment|notebook|handed_in)\b")
-
-
-@dataclass(frozen=True)
-class Looks:
-    """The folders of a class whose contents decide which of a student's files is graded.
-
-    Attributes:
-        directory: The class, with the notebooks that were handed out.
-        inbox: The inbox, with the bytes of the files.
-        submitted: The folder ``submitted``, with the files that are graded so far.
-    """
-
-    directory: ClassDirectory
-    inbox: Inbox
-    submitted: Submitted
-
-
-def decide(lines: Iterable[Line], looks: Looks) -> list[Line]:
-    """Return the lines with a state and a reason. The work of a group becomes one line for each student."""
-    decided: list[Line] = []
-    soft: list[Line] = []
-    groups: dict[Place, list[Line]] = defaultdict(list)
-    for line in sorted(lines, key=lambda one: (one.key, one.assignment)):
-        if line.use == "no":
-            decided.append(replace(line, state=LineState.LEFT_OUT, reason="no is written under use"))
-        elif line.is_soft:
-            soft.append(line)
-        elif line.reason:
-            decided.append(replace(line, reason=_with_cell(line.reason)))
-        else:
-            for student in line.students:
-                own = replace(line, students=(student,))
-                groups[own.place].append(own)
-    for place, group in groups.items():
-        decided += [
-            replace(line, state=state, reason=reason)
-            for line, state, reason in _of_group(place, group, looks)
-        ]
-    came = {
-        (one.student, one.assignment) for one in decided if one.state in (LineState.PLACED, LineState.EARLIER)
-    }
-    came |= {(student, "") for student, _ in came}
-    return decided + [_beside(line, came) for line in soft]
-
-
-def _beside(line: Line, came: set[tuple[str, str]]) -> Line:
-    """Return the line of a file that is not a notebook.
-
-    The line waits for a person only if its student has handed in no notebook.
-    """
-    if line.lms == "list" or (line.student and (line.student, line.assignment) in came):
-        return replace(line, state=LineState.BESIDE)
-    return replace(line, reason=_with_cell(line.reason))
-
-
-def _with_cell(reason: str) -> str:
-    """Return the reason. If it does not name a cell to edit, add how to leave the file out."""
-    return reason if cell_in(reason) else f"{reason.rstrip('.')}; to leave the file out, write no under use"
-
-
-def cell_in(reason: str) -> str:
-    """Return the first column of the table that a reason names; empty if it names none."""
-    found = _CELL.search(reason)
-    return found[1] if found else ""
-
-
-def _of_group(place: Place, group: list[Line], looks: Looks) -> Iterator[_Why]:
-    """Yield the state and the reason of each file that a student handed in for one notebook."""
-    by_hand = [one for one in group if one.is_by_hand]
-    lying = [one for one in by_hand if looks.submitted.content(place) == one.content]
-    chosen = lying or [one for one in group if one.use == "yes"]
-    if chosen:
-        best, others = _best(place, chosen, looks)
-        yield from others
-        if best:
-            # If a person corrected the file in ``submitted``, the student's own time of handing in still applies.
-            times = [one.when for one in group if one.when and lying]
-            yield replace(best, when=best.when or max(times, default=None)), LineState.PLACED, ""
-        why = (
-            "was put into the folder submitted by hand, and is graded"
-            if lying
-            else "is graded, because yes is written under use"
-        )
-        for one in group:
-            if one not in chosen:
-                same = best and one.content == best.content
-                yield (
-                    one,
-                    *((LineState.UNCHANGED, "") if same else (LineState.EARLIER, f"{chosen[0].label} {why}")),
-                )
-        return
-    for one in by_hand:
-        yield (
-            one,
-            LineState.EARLIER,
-            "the file was in submitted before: write yes under use to put it there again",
-        )
-    pool = [one for one in group if not one.is_by_hand]
-    for sift in (_people, _unreadable):
-        doubts = sift(place, pool, looks)
-        yield from ((one, LineState.NOT_PLACED, reason) for one, reason in doubts)
-        doubtful = {one.key for one, _ in doubts}
-        pool = [one for one in pool if one.key not in doubtful]
-    if pool:
-        best, others = _best(place, pool, looks)
-        yield from others
-        if best:
-            yield best, LineState.PLACED, ""
-
-
-def _people(place: Place, pool: Sequence[Line], _: Looks) -> list[tuple[Line, str]]:
-    """Return the files that are linked to a student only by a name, if several people have this name.
-
-    Several people have the name if the LMS gives it several numbers. In Canvas, a person has the same number in every
-    download, so the numbers of all downloads are compared. In other systems, only the numbers in one download are
-    compared.
-    """
-    numbers: dict[str, set[str]] = defaultdict(set)
-    of_systems = [one for one in pool if one.lms in _ONE_NUMBER]
-    for one in of_systems:
-        for download in ("canvas",) if one.lms == "canvas" else one.came_in:
-            numbers[download].add(one.number)
-    several = next((sorted(found) for found in numbers.values() if len(found) > 1), [])
-    reason = (
-        f"several people in the LMS have the name of {place[0]}; their numbers are {', '.join(several)}: write the id "
-        "under student, or no under use"
-    )
-    return [(one, reason) for one in of_systems if several and not one.is_sure]
-
-
-def _unreadable(place: Place, pool: Sequence[Line], looks: Looks) -> list[tuple[Line, str]]:
-    """Return the unreadable files, which must not replace readable work; none if all files are unreadable."""
-    if len({one.content for one in pool}) < 2:
-        return []
-    reasons = [(one, reason) for one in pool if (reason := why_unreadable(looks.inbox.read(one.content)))]
-    what_to_do = (
-        f"Another file of {place[0]} is graded: ask for this file again if it is newer, or write no under use"
-    )
-    return [(one, f"{reason} {what_to_do}") for one, reason in reasons] if len(reasons) < len(pool) else []
-
-
-def _best(place: Place, files: Sequence[Line], looks: Looks) -> tuple[Line | None, list[_Why]]:
-    """Return the file to grade, or None if a person has to choose; and the decisions about the other files.
-
-    The file with the newest time of handing in is graded. If the times are equal or unknown, a file with answers is
-    preferred to a file without answers. Next, in one download, a file with the notebook's exact name is preferred; and
-    last, the file with the highest number from the system. If several different files are left, the file that is
-    already in ``submitted`` is graded again.
-    """
-    is_several = len({one.content for one in files}) > 1
-    work = {
-        one.key: not is_several
-        or has_work(looks.directory, one.assignment, one.notebook, looks.inbox.read(one.content))
-        for one in files
-    }
-    best = _top(
-        [one for one in files if one.when] or files, lambda one: one.when.timestamp() if one.when else 0
-    )
-    best = _top(best, lambda one: work[one.key])
-    named = [one for one in best if one.is_named]
-    if named and all(any(one.came_in & other.came_in for one in named) for other in best):
-        best = named
-    if len({one.lms for one in best}) == 1:  # attempt numbers of different LMSs cannot be compared
-        best = _top(best, lambda one: one.order)
-    best = _top(best, lambda one: bool(one.lms)) if len({one.content for one in best}) == 1 else best
-    there = looks.submitted.content(place)
-    first = next((one for one in best if one.content == there), best[0])
-    if any(one.content != first.content for one in best) and first.content != there:
-        reason = (
-            f"{place[0]} has several different files for {place[1]}, and it is unknown which file is the newest: "
-            "write yes under use for the file to grade, or the times under handed_in"
-        )
-        return None, [(one, LineState.NOT_PLACED, reason) for one in files]
-    others: list[_Why] = []
-    for one in files:
-        is_older = work[one.key] < work[first.key] or (one.lms == first.lms and 0 < one.order < first.order)
-        if one.content == first.content:
-            others += [(one, LineState.UNCHANGED, "")] if one is not first else []
-        elif one in best:
-            what_to_do = "write yes under use to have this file graded, or no"
-            reason = (
-                f"it is unknown whether this file is newer than {first.label}, which is graded: {what_to_do}"
-            )
-            others.append((one, LineState.NOT_PLACED, reason))
-        elif first.when and not one.when and not is_older:
-            at = f"{first.label}, handed in {in_zone(first.when, looks.directory.time_zone)}"
-            reason = (
-                f"it is unknown whether this file is newer than {at}: write the file's time under handed_in"
-            )
-            others.append((one, LineState.NOT_PLACED, reason))
-        else:
-            others.append((one, LineState.EARLIER, f"{first.label} {_why_it_counts(first, one, work)}"))
-    return first, others
 
 
 def _top(files: Sequence[Line], rank: Callable[[Line], float]) -> list[Line]:

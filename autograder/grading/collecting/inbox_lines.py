@@ -30,149 +30,6 @@ if TYPE_CHECKING:
     from autograder.grading.table.roster import Roster
 
 
-_UNDER = "under assignment in collected.csv"
-
-
-class NoTarget(ValueError):
-    """The notebook of a file is unclear, or the file is not to be collected now, for the reason in the message.
-
-    Args:
-        message: The reason, and what to type.
-        is_left_out: True if the file need not be collected: the instructor asked for another assignment, or the class
-            has no assignment with the file's cells.
-    """
-
-    def __init__(self, message: str, *, is_left_out: bool = False) -> None:
-        super().__init__(message)
-        self.is_left_out = is_left_out
-
-
-def is_notebook(name: str, data: bytes) -> bool:
-    """Return True if a file is a notebook, judged by its name or its content."""
-    head = data[:1000].lstrip(b"\xef\xbb\xbf \t\r\n")
-    held = head[:1] == b"{" and b'"nbformat"' in data and (b'"cells"' in data or b'"worksheets"' in data)
-    return held or name.lower().endswith(SUFFIX)
-
-
-def stem_of(name: str) -> str:
-    """Return the name of a file without ``.ipynb``, and without what programs add to a copy, such as `` (1)``."""
-    end = name.lower().find(SUFFIX)
-    return base_of(name[:end] if end > 0 else name.rpartition(".")[0] or name)
-
-
-class AssignmentOf:
-    """Finds out which notebook of a class a collected file is, by the name and the cells of the file.
-
-    Args:
-        directory: The class.
-    """
-
-    def __init__(self, directory: ClassDirectory) -> None:
-        self._directory = directory
-
-    def is_notebook(self, file: str) -> bool:
-        """Return True if a file with this name is a notebook of the class."""
-        return stem_of(file).casefold() in self._notebooks
-
-    def notebooks(self, assignment: str) -> list[str]:
-        """Return the notebooks of an assignment; none if the class has no assignment with this name."""
-        return [
-            notebook for several in self._notebooks.values() for of, notebook in several if of == assignment
-        ]
-
-    def named(self, name: str, asked: str) -> str:
-        """Return ``asked`` or, if that is empty, the assignment in a file's name; empty if there is none."""
-        stem = base_of(name.partition(".")[0])
-        assignments = {assignment for assignment, _ in self._notebooks.get(stem.casefold(), ())}
-        return asked or (assignments.pop() if len(assignments) == 1 else "")
-
-    def target(self, name: str, data: bytes, asked: str) -> tuple[Target, bool]:
-        """Return the assignment and the notebook of a file, and whether the file has the notebook's name.
-
-        Args:
-            name: The name that the student gave the file.
-            data: The content of the file.
-            asked: The assignment that the instructor named; empty to find it.
-
-        Raises:
-            NoTarget: The notebook is unclear, or the cells belong to several assignments, or they do not belong to the
-                assignment in the file's name or to ``asked``.
-        """
-        named = self._notebooks.get(stem_of(name).casefold(), [])
-        cells = _cells(data)
-        names = {cell.grade_id for cell in cells} - {""}
-        mixed = self._directory.named_cells.assignments(cells)
-        if len(mixed) > 1 and asked not in mixed:
-            raise NoTarget(
-                f"the file has cells of {' and of '.join(mixed)}: ask the student for a notebook for each, or write "
-                f"the name of one of these assignments {_UNDER}"
-            )
-        held = self._directory.named_cells.closest(names, asked if asked in mixed else "")
-        meant = [target for target in named if not held or target in held] or held
-        here = [target for target in meant if asked in ("", target[0])]
-        if meant and not here:
-            other = meant[0][0]
-            why = f"the file is the notebook of {other}, not of {asked}"
-            raise NoTarget(
-                f"{why}; to collect the file for {other}, write {other} {_UNDER}", is_left_out=True
-            )
-        if named and not asked and not set(named) & set(meant):
-            says, other = " or ".join(assignment for assignment, _ in named), held[0][0]
-            raise NoTarget(
-                f"the file's name is that of {says}, but the cells are those of {other}: ask the student for the right "
-                f"notebook, or write {other} {_UNDER}"
-            )
-        if asked and not here:
-            here = [(asked, one) for one in self._directory.notebooks(asked)]
-        if len(here) != 1:
-            # The file has named cells, but none from this class: it is another notebook of the course, such as its
-            # summary.
-            raise NoTarget(self._unclear(meant, asked), is_left_out=not meant and bool(names))
-        return here[0], here[0] in named
-
-    def _unclear(self, meant: list[Target], asked: str) -> str:
-        """Return a message with the notebooks or assignments that are possible."""
-        assignments = sorted({asked} if asked else {assignment for assignment, _ in meant})
-        if len(assignments) == 1:
-            names = ", ".join(self._directory.notebooks(assignments[0]))
-            which = (
-                f"which notebook of {assignments[0]} the file is ({names}): write the notebook under notebook in "
-                "collected.csv"
-            )
-        else:
-            known = ", ".join(assignments or self._directory.assignments())
-            which = f"which assignment the file is for ({known}): write the assignment {_UNDER}"
-        return f"it is not clear {which}"
-
-    @functools.cached_property
-    def _notebooks(self) -> dict[str, list[Target]]:
-        """Pairs of an assignment and a notebook, by the name of the notebook, which several assignments may use."""
-        found: dict[str, list[Target]] = defaultdict(list)
-        for assignment in self._directory.assignments():
-            for name in self._directory.notebooks(assignment):
-                found[name.casefold()].append((assignment, name))
-        return dict(found)
-
-
-def _cells(data: bytes) -> Sequence[SubmittedCell]:
-    """Return a notebook's cells; none if it cannot be read."""
-    try:
-        return read_notebook(data)[0]
-    except UnreadableSubmission:
-        return ()
-
-
-PAGES = ("index.html", "grades.csv", GRADESCOPE)
-"""The names of files that an LMS adds to a download."""
-NO_LIST = (
-    "the file is too large, or not a known list. Known lists are Moodle's grading worksheet, Canvas's gradebook or "
-    "submissions, GitHub Classroom's grades and Gradescope's scores. Write times into the column handed_in of "
-    "collected.csv, and a list of your students into students.csv of the class"
-)
-"""The reason why a list cannot be used."""
-_OTHER_ARCHIVES = (".rar", ".7z", ".gz", ".bz2", ".xz", ".zst")
-
-
 @dataclass(frozen=True)
 class Edit:
     """What a person has written into a line of ``collected.csv``. An empty field changes nothing.
@@ -268,8 +125,20 @@ class _Reading:
         line = Line(arrival.key, arrival.label, arrival.content, use=edit.use, rank=rank)
         if arrival.is_list:
             return replace(line, reason="the file was read as a list", is_soft=True, lms="list")
-        by_hand = self.delivery.form == BY_HAND
-        line = _by_hand(line, arrival) if by_hand else self._collected(line, arrival, edit, given)
+        if self.delivery.form == BY_HAND:
+            # A person put the file into ``submitted``, where its path names the student and the notebook.
+            student, assignment, name = arrival.parts
+            line = replace(
+                line,
+                students=(student,),
+                assignment=assignment,
+                notebook=name.removesuffix(SUFFIX),
+                lms=BY_HAND,
+                file=arrival.path,
+                is_sure=True,
+            )
+        else:
+            line = self._collected(line, arrival, edit, given)
         return replace(line, when=datetime.fromisoformat(edit.handed_in)) if edit.handed_in else line
 
     def _collected(self, line: Line, arrival: Arrival, edit: Edit, given: Edit) -> Line:
@@ -307,7 +176,7 @@ class _Reading:
         if arrival.is_archive:
             return replace(line, reason=reason)
         data = self.inbox.read(arrival.content)
-        if not is_notebook(arrival.name, data):
+        if not _is_notebook(arrival.name, data):
             return _no_notebook(line, arrival)
         if reason:
             return replace(line, reason=reason)
@@ -315,14 +184,14 @@ class _Reading:
             return self._as_written(line, name, edit, asked)
         try:
             (assignment, notebook), is_named = self.assignments.target(name, data, asked)
-        except NoTarget as error:
+        except _NoTarget as error:
             return replace(line, reason=str(error), is_soft=error.is_left_out)
         return replace(line, assignment=assignment, notebook=notebook, is_named=is_named)
 
     def _as_written(self, line: Line, name: str, edit: Edit, asked: str) -> Line:
         """Return the line completed with the notebook that a person wrote."""
         several = self.assignments.notebooks(asked)
-        only = several[0] if len(several) == 1 else stem_of(name)
+        only = several[0] if len(several) == 1 else _stem_of(name)
         notebook = edit.notebook or only
         if notebook in several:
             return replace(line, assignment=asked, notebook=notebook)
@@ -334,9 +203,14 @@ class _Reading:
         return replace(line, assignment=asked if several else "", reason=reason)
 
 
+_LMS_PAGES = ("index.html", "grades.csv", GRADESCOPE)
+"""The names of files that an LMS adds to a download."""
+_OTHER_ARCHIVES = (".rar", ".7z", ".gz", ".bz2", ".xz", ".zst")
+
+
 def _no_notebook(line: Line, arrival: Arrival) -> Line:
     """Return the line for a file that is not a notebook, such as a picture, or a page of the LMS."""
-    if arrival.name in PAGES and not arrival.inner and not line.students:
+    if arrival.name in _LMS_PAGES and not arrival.inner and not line.students:
         return replace(line, assignment="", reason="the file is a page of the LMS", is_soft=True, lms="list")
     if arrival.name.lower().endswith(_OTHER_ARCHIVES):
         what = "archives of this kind are not opened: unpack the file into a folder named"
@@ -344,18 +218,13 @@ def _no_notebook(line: Line, arrival: Arrival) -> Line:
     return replace(line, reason="it is not a notebook", is_soft=True)
 
 
-def _by_hand(line: Line, arrival: Arrival) -> Line:
-    """Return the line of a file that a person put into ``submitted``. Its path names the student and the notebook."""
-    student, assignment, name = arrival.parts
-    return replace(
-        line,
-        students=(student,),
-        assignment=assignment,
-        notebook=name.removesuffix(SUFFIX),
-        lms=BY_HAND,
-        file=arrival.path,
-        is_sure=True,
-    )
+def _merged(several: Iterable[Line]) -> Line:
+    """Return one line for a file that came several times, with the most certain facts and the latest time."""
+    lines = sorted(several, key=lambda one: (bool(one.reason), one.is_soft, one.rank, one.label))
+    best = lines[0]
+    when = max((one.when for one in lines if one.when), default=None)
+    came_in = frozenset().union(*(one.came_in for one in lines))
+    return replace(best, when=when, came_in=came_in)
 
 
 def in_utc(when: datetime | None, zone: tzinfo) -> datetime | None:
@@ -369,6 +238,14 @@ def in_utc(when: datetime | None, zone: tzinfo) -> datetime | None:
     return found if 1 < found.year < 9999 else None
 
 
+NO_LIST = (
+    "the file is too large, or not a known list. Known lists are Moodle's grading worksheet, Canvas's gradebook or "
+    "submissions, GitHub Classroom's grades and Gradescope's scores. Write times into the column handed_in of "
+    "collected.csv, and a list of your students into students.csv of the class"
+)
+"""The reason why a list cannot be used."""
+
+
 def entries_of(inbox: Inbox) -> dict[str, list[ListEntry]]:
     """Return the entries of all lists in the inbox, by delivery."""
     found: dict[str, list[ListEntry]] = defaultdict(list)
@@ -378,10 +255,133 @@ def entries_of(inbox: Inbox) -> dict[str, list[ListEntry]]:
     return found
 
 
-def _merged(several: Iterable[Line]) -> Line:
-    """Return one line for a file that came several times, with the most certain facts and the latest time."""
-    lines = sorted(several, key=lambda one: (bool(one.reason), one.is_soft, one.rank, one.label))
-    best = lines[0]
-    when = max((one.when for one in lines if one.when), default=None)
-    came_in = frozenset().union(*(one.came_in for one in lines))
-    return replace(best, when=when, came_in=came_in)
+class AssignmentOf:
+    """Finds out which notebook of a class a collected file is, by the name and the cells of the file.
+
+    Args:
+        directory: The class.
+    """
+
+    def __init__(self, directory: ClassDirectory) -> None:
+        self._directory = directory
+
+    def is_notebook(self, file: str) -> bool:
+        """Return True if a file with this name is a notebook of the class."""
+        return _stem_of(file).casefold() in self._notebooks
+
+    def notebooks(self, assignment: str) -> list[str]:
+        """Return the notebooks of an assignment; none if the class has no assignment with this name."""
+        return [
+            notebook for several in self._notebooks.values() for of, notebook in several if of == assignment
+        ]
+
+    def named(self, name: str, asked: str) -> str:
+        """Return ``asked`` or, if that is empty, the assignment in a file's name; empty if there is none."""
+        stem = base_of(name.partition(".")[0])
+        assignments = {assignment for assignment, _ in self._notebooks.get(stem.casefold(), ())}
+        return asked or (assignments.pop() if len(assignments) == 1 else "")
+
+    def target(self, name: str, data: bytes, asked: str) -> tuple[Target, bool]:
+        """Return the assignment and the notebook of a file, and whether the file has the notebook's name.
+
+        Args:
+            name: The name that the student gave the file.
+            data: The content of the file.
+            asked: The assignment that the instructor named; empty to find it.
+
+        Raises:
+            _NoTarget: The notebook is unclear, or the cells belong to several assignments, or they do not belong to the
+                assignment in the file's name or to ``asked``.
+        """
+        named = self._notebooks.get(_stem_of(name).casefold(), [])
+        cells = _cells(data)
+        names = {cell.grade_id for cell in cells} - {""}
+        mixed = self._directory.named_cells.assignments(cells)
+        if len(mixed) > 1 and asked not in mixed:
+            raise _NoTarget(
+                f"the file has cells of {' and of '.join(mixed)}: ask the student for a notebook for each, or write "
+                f"the name of one of these assignments {_UNDER}"
+            )
+        held = self._directory.named_cells.closest(names, asked if asked in mixed else "")
+        meant = [target for target in named if not held or target in held] or held
+        here = [target for target in meant if asked in ("", target[0])]
+        if meant and not here:
+            other = meant[0][0]
+            why = f"the file is the notebook of {other}, not of {asked}"
+            raise _NoTarget(
+                f"{why}; to collect the file for {other}, write {other} {_UNDER}", is_left_out=True
+            )
+        if named and not asked and not set(named) & set(meant):
+            says, other = " or ".join(assignment for assignment, _ in named), held[0][0]
+            raise _NoTarget(
+                f"the file's name is that of {says}, but the cells are those of {other}: ask the student for the right "
+                f"notebook, or write {other} {_UNDER}"
+            )
+        if asked and not here:
+            here = [(asked, one) for one in self._directory.notebooks(asked)]
+        if len(here) != 1:
+            # The file has named cells, but none from this class: it is another notebook of the course, such as its
+            # summary.
+            raise _NoTarget(self._unclear(meant, asked), is_left_out=not meant and bool(names))
+        return here[0], here[0] in named
+
+    def _unclear(self, meant: list[Target], asked: str) -> str:
+        """Return a message with the notebooks or assignments that are possible."""
+        assignments = sorted({asked} if asked else {assignment for assignment, _ in meant})
+        if len(assignments) == 1:
+            names = ", ".join(self._directory.notebooks(assignments[0]))
+            which = (
+                f"which notebook of {assignments[0]} the file is ({names}): write the notebook under notebook in "
+                "collected.csv"
+            )
+        else:
+            known = ", ".join(assignments or self._directory.assignments())
+            which = f"which assignment the file is for ({known}): write the assignment {_UNDER}"
+        return f"it is not clear {which}"
+
+    @functools.cached_property
+    def _notebooks(self) -> dict[str, list[Target]]:
+        """Pairs of an assignment and a notebook, by the name of the notebook, which several assignments may use."""
+        found: dict[str, list[Target]] = defaultdict(list)
+        for assignment in self._directory.assignments():
+            for name in self._directory.notebooks(assignment):
+                found[name.casefold()].append((assignment, name))
+        return dict(found)
+
+
+_UNDER = "under assignment in collected.csv"
+
+
+class _NoTarget(ValueError):
+    """The notebook of a file is unclear, or the file is not to be collected now, for the reason in the message.
+
+    Args:
+        message: The reason, and what to type.
+        is_left_out: True if the file need not be collected: the instructor asked for another assignment, or the class
+            has no assignment with the file's cells.
+    """
+
+    def __init__(self, message: str, *, is_left_out: bool = False) -> None:
+        super().__init__(message)
+        self.is_left_out = is_left_out
+
+
+def _is_notebook(name: str, data: bytes) -> bool:
+    """Return True if a file is a notebook, judged by its name or its content."""
+    head = data[:1000].lstrip(b"\xef\xbb\xbf \t\r\n")
+    held = head[:1] == b"{" and b'"nbformat"' in data and (b'"cells"' in data or b'"worksheets"' in data)
+    return held or name.lower().endswith(SUFFIX)
+
+
+def _stem_of(name: str) -> str:
+    """Return the name of a file without ``.ipynb``, and without what programs add to a copy, such as `` (1)``."""
+    end = name.lower().find(SUFFIX)
+    return base_of(name[:end] if end > 0 else name.rpartition(".")[0] or name)
+
+
+def _cells(data: bytes) -> Sequence[SubmittedCell]:
+    """Return a notebook's cells; none if it cannot be read."""
+    try:
+        return read_notebook(data)[0]
+    except UnreadableSubmission:
+        return ()

@@ -129,11 +129,8 @@ LIST_FORMS = (
         "sakai", ("student id", "student name"), logins=("student id",), names=("student name",), points=EACH
     ),
 )
-
-
 GRADESCOPE = "submission_metadata.yml"
 """The list that Gradescope puts into its export."""
-_NUMBER = re2.compile(r"(\d+)(?:\.\w+)?$")
 
 
 @dataclass(frozen=True)
@@ -163,16 +160,14 @@ def parse_list(name: str, data: bytes) -> list[ListEntry] | None:
     if name == GRADESCOPE:
         return _of_gradescope(data)
     header, *rows = csv_rows(data)[0] or [[]]
-    columns = {column.strip().lower() for column in header}
-    form = next((one for one in LIST_FORMS if (one.number or one.time) and set(one.has) <= columns), None)
-    records = [
-        dict(zip((one.strip().lower() for one in header), map(_cell, row), strict=False)) for row in rows
-    ]
+    columns = [column.strip().lower() for column in header]
+    forms = (one for one in LIST_FORMS if one.number or one.time)
+    form = next((one for one in forms if set(one.has) <= set(columns)), None)
+    records = [dict(zip(columns, (original(cell.strip()) for cell in row), strict=False)) for row in rows]
     return None if form is None else list(_entries(form, records))
 
 
-def _cell(cell: str) -> str:
-    return original(cell.strip())
+_NUMBER = re2.compile(r"(\d+)(?:\.\w+)?$")
 
 
 def _entries(form: ListForm, records: list[dict[str, str]]) -> Iterator[ListEntry]:

@@ -22,7 +22,7 @@ from autograder.grading.table.roster import Identity
 from autograder.safe_files import name_as_text
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 
     _Who = Callable[[Mapping[str, str]], tuple[Identity, tuple[Identity, ...]]]
     """A function that gets the groups of a pattern. It returns the student; and if the name can be read in several
@@ -30,15 +30,6 @@ if TYPE_CHECKING:
     """
     _Reader = Callable[[Sequence[str], int], "Found | None"]
     """A function that returns the facts in the name at one index of a path; None if it has another form."""
-    from collections.abc import Callable, Collection, Iterator, Sequence
-
-
-_MOST_MARKS = 10
-"""The maximum number of hyphens or underscores at which a name is divided; real names have fewer."""
-# Browsers, Canvas and Drive add one of these marks to a name that already exists, and file managers add one to the name
-# of a copy.
-_COPY_OF = "Copy of "
-_MARKED = re2.compile(rf"(?s)^(?:{_COPY_OF})*(?P<base>.+?)(?: ?\(\d{{1,6}}\)|-\d{{1,6}}| - [Cc]opy)*$")
 
 
 @dataclass(frozen=True)
@@ -65,13 +56,15 @@ class Found:
     assignment: str = ""
 
 
-def read_at(parts: Sequence[str], place: int, form: str, is_notebook: Callable[[str], bool]) -> Found | None:
+def read_lms_name(
+    parts: Sequence[str], place: int, form: str, is_notebook: Callable[[str], bool]
+) -> Found | None:
     """Return the facts in one name of a path, if it has the form of this LMS; None if it has another form.
 
     Args:
         parts: The folders of the path and the file, without ``..``. Accents are in composed form (Unicode NFC).
         place: The index of the name in the path.
-        form: A key of :data:`NAME_FORMS`.
+        form: A key of :data:`_READERS`.
         is_notebook: Returns True for the name of a notebook of the class; needed for forms that resemble other names.
     """
     is_folder = place < len(parts) - 1
@@ -91,17 +84,141 @@ def read_at(parts: Sequence[str], place: int, form: str, is_notebook: Callable[[
     return found
 
 
+def read_plain_name(name: str, file: str) -> Found:
+    """Return the facts in a name that is a student's id or name, or a user name on GitHub."""
+    return Found(
+        Identity(), file, readings=(Identity(login=name, name=name), Identity("github", number=name))
+    )
+
+
+# Browsers, Canvas and Drive add one of these marks to a name that already exists, and file managers add one to the name
+# of a copy.
+_COPY_OF = "Copy of "
+_MARKED = re2.compile(rf"(?s)^(?:{_COPY_OF})*(?P<base>.+?)(?: ?\(\d{{1,6}}\)|-\d{{1,6}}| - [Cc]opy)*$")
+
+
 def base_of(stem: str) -> str:
     """Return a name without what programs add to the name of a copy, such as `` (1)`` or ``Copy of``."""
     found = _MARKED.match(name_as_text(stem))
     return found["base"] if found else name_as_text(stem)
 
 
-def plain(name: str, file: str) -> Found:
-    """Return the facts in a name that is a student's id or name, or a user name on GitHub."""
+def canvas_numbers(name: str) -> list[str]:
+    """Return all numbers in a Canvas name that may be the student's; names of users and files may have numbers, too."""
+    pieces = name.split("_")[1:-1]
+    return [one for one, file in itertools.pairwise(pieces) if f"{one}{file}".isdecimal() and len(file) >= 3]
+
+
+_PATTERN_WORDS = (
+    "id",
+    "email",
+    "login",
+    "number",
+    "name",
+    "first",
+    "last",
+    "assignment",
+    "time",
+    "file",
+    "any",
+)
+_NOT_WHO = {"any", "assignment", "time", "file"}
+_MOST_WAYS = 100
+"""The maximum number of ways to divide a name that are tried; real names need a few."""
+_WORD = re2.compile(r"\{([^{}]*)\}")
+
+
+def check_names(pattern: str, columns: Collection[str]) -> None:
+    """Check a pattern given with ``--names``.
+
+    Args:
+        pattern: The pattern to check.
+        columns: The columns of ``students.csv`` that the pattern may contain.
+
+    Raises:
+        GradingError: The pattern contains an unknown word, a word twice, or no word that identifies a student.
+    """
+    words = [word for word in _WORD.findall(pattern) if word != "any"]
+    says_who = set(words) & {*_PATTERN_WORDS[:7], *columns}
+    if set(words) - {*_PATTERN_WORDS, *columns} or len(set(words)) < len(words) or not says_who:
+        known = ", ".join(f"{{{word}}}" for word in (*_PATTERN_WORDS, *columns))
+        raise GradingError(
+            f"--names {pattern!r} cannot be used. Use each of {known} at most once, and at least one that "
+            "identifies the student. For example: '{id}-{last}_{assignment}'."
+        )
+
+
+def read_names(pattern: str) -> Callable[[Sequence[str], int], Found | None]:
+    """Return a function that reads a path according to a pattern.
+
+    The pattern has to fit from the top of the path, or to identify the student by one of the path's first ``levels``
+    names, because a student may have chosen any name below these.
+
+    A pattern without a slash describes a single name: a file without its suffix, or a folder around it. A pattern
+    with slashes describes names that follow each other in a path. ``{any}`` stands for any text. A word that is not
+    in :data:`_PATTERN_WORDS` stands for a column of ``students.csv``.
+    """
+    words = _WORD.findall(pattern)
+    literals = [unicodedata.normalize("NFC", one).casefold() for one in _WORD.split(pattern)[::2]]
+    number = pattern.count("/") + 1
+    says_who = (place for place, name in enumerate(pattern.split("/")) if set(_WORD.findall(name)) - _NOT_WHO)
+    who = next(says_who, 0)
+
+    def read(parts: Sequence[str], levels: int) -> Found | None:
+        for place in range(min(len(parts) - number + 1, max(levels - who, 1))):
+            *above, last = parts[place : place + number]
+            bare = last.rpartition(".")[0] if place + number == len(parts) else ""
+            texts = ("/".join([*above, name]) for name in (bare, last) if name)
+            ways = (list(itertools.islice(_ways(text, literals, words), _MOST_WAYS)) for text in texts)
+            if divided := next(filter(None, ways), None):
+                # Use the longest possible time, because in 2025-10-03_140506_lab the day alone would be a time, too.
+                divided.sort(
+                    key=lambda way: -len(way.get("time", "")) if read_time(way.get("time", "")) else 0
+                )
+                # Return all ways to divide the name, because ben_b_7 may belong to ben or to ben_b.
+                found = [_found(way, parts[-1]) for way in divided]
+                return replace(found[0], readings=tuple(dict.fromkeys(one.identity for one in found)))
+        return None
+
+    return read
+
+
+def _ways(text: str, literals: Sequence[str], words: Sequence[str]) -> Iterator[dict[str, str]]:
+    """Yield all ways to divide a text into the words between these literals."""
+    folded, first = text.casefold(), literals[0]
+    if len(folded) != len(text) or not folded.startswith(first):
+        return
+    text, folded = text[len(first) :], folded[len(first) :]
+    if not words:
+        if not text:
+            yield {}
+        return
+    for end in range(words[0] != "any", len(text) + 1):
+        if "/" in text[:end]:
+            return
+        if folded.startswith(literals[1], end):
+            for way in _ways(text[end:], literals[1:], words[1:]):
+                yield {words[0]: text[:end], **way}
+
+
+def _found(said: dict[str, str], file: str) -> Found:
+    word = {name: value.strip() for name, value in said.items()}
+    login = word.get("id") or word.get("email") or word.get("login") or word.get("number") or ""
+    name = word.get("name") or f"{word.get('first', '')} {word.get('last', '')}".strip()
+    column = next((one for one in word if one not in _PATTERN_WORDS), "")
+    number = word.get(column, "")
+    identity = Identity(column, number, login, name)
     return Found(
-        Identity(), file, readings=(Identity(login=name, name=name), Identity("github", number=name))
+        identity,
+        word.get("file") or file,
+        when=read_time(word.get("time", "")),
+        assignment=base_of(word.get("assignment", "")),
     )
+
+
+_LANGUAGES = ("en", "de", "fr", "es", "it", "nl", "pt", "sv", "da", "nb", "fi", "pl", "cs", "tr")
+_NO_MARKS = str.maketrans(dict.fromkeys(",.:"))
+_IN_NUMBERS = ("%Y-%m-%d-%H-%M-%S", "%Y-%m-%d %H:%M:%S %z")
 
 
 def read_time(text: str) -> datetime | None:
@@ -152,52 +269,6 @@ def _months() -> dict[str, int]:
     return {name: numbers.pop() for name, numbers in meant.items() if len(numbers) == 1}
 
 
-_LANGUAGES = ("en", "de", "fr", "es", "it", "nl", "pt", "sv", "da", "nb", "fi", "pl", "cs", "tr")
-_NO_MARKS = str.maketrans(dict.fromkeys(",.:"))
-_IN_NUMBERS = ("%Y-%m-%d-%H-%M-%S", "%Y-%m-%d %H:%M:%S %z")
-
-
-def _ends(text: str, mark: str) -> list[str]:
-    """Return the ends of a text after its last few marks, such as hyphens: for ``a-b-c``, ``b-c`` and ``c``."""
-    pieces = text.rsplit(mark, _MOST_MARKS)[1:]
-    return [end for start in range(len(pieces)) if (end := mark.join(pieces[start:]).strip())]
-
-
-def _moodle(found: Mapping[str, str]) -> tuple[Identity, tuple[Identity, ...]]:
-    # For group work, or if a group is selected, the name of the group comes first, as in Group A-Ada Lovelace.
-    names = [found["name"], *_ends(found["name"], "-")]
-    readings = tuple(Identity("moodle", found["number"], name=name) for name in names)
-    return readings[0], readings
-
-
-def _plainly(lms: str) -> _Who:
-    """Return a reader for names whose groups ``number``, ``login`` and ``name`` need no further interpretation."""
-    return lambda found: (
-        Identity(lms, **{one: found.get(one) or "" for one in ("number", "login", "name")}),
-        (),
-    )
-
-
-def _at_its_end(lms: str) -> _Who:
-    """Return a reader for names that end with a mark and a user name, which may itself contain the mark."""
-
-    def who(found: Mapping[str, str]) -> tuple[Identity, tuple[Identity, ...]]:
-        whole = f"{found['item']}_{found['login']}"
-        named = {end: whole.removesuffix(end).replace("_", " ").strip() for end in _ends(whole, "_")}
-        readings = tuple(
-            Identity(lms, login=login, name=name if lms == "ilias" else "") for login, name in named.items()
-        )
-        return readings[-1], readings
-
-    return who
-
-
-def numbers_in(name: str) -> list[str]:
-    """Return all numbers in a Canvas name that may be the student's; names of users and files may have numbers, too."""
-    pieces = name.split("_")[1:-1]
-    return [one for one, file in itertools.pairwise(pieces) if f"{one}{file}".isdecimal() and len(file) >= 3]
-
-
 def _in_one_part(pattern: str, who: _Who, *, says_file: bool = False) -> _Reader:
     """Return a reader for names in which one folder, or the file, contains all facts.
 
@@ -222,6 +293,45 @@ def _in_one_part(pattern: str, who: _Who, *, says_file: bool = False) -> _Reader
         return Found(identity, file, read_time(time), order, late, readings)
 
     return read
+
+
+def _plainly(lms: str) -> _Who:
+    """Return a reader for names whose groups ``number``, ``login`` and ``name`` need no further interpretation."""
+    return lambda found: (
+        Identity(lms, **{one: found.get(one) or "" for one in ("number", "login", "name")}),
+        (),
+    )
+
+
+def _moodle(found: Mapping[str, str]) -> tuple[Identity, tuple[Identity, ...]]:
+    # For group work, or if a group is selected, the name of the group comes first, as in Group A-Ada Lovelace.
+    names = [found["name"], *_ends(found["name"], "-")]
+    readings = tuple(Identity("moodle", found["number"], name=name) for name in names)
+    return readings[0], readings
+
+
+def _at_its_end(lms: str) -> _Who:
+    """Return a reader for names that end with a mark and a user name, which may itself contain the mark."""
+
+    def who(found: Mapping[str, str]) -> tuple[Identity, tuple[Identity, ...]]:
+        whole = f"{found['item']}_{found['login']}"
+        named = {end: whole.removesuffix(end).replace("_", " ").strip() for end in _ends(whole, "_")}
+        readings = tuple(
+            Identity(lms, login=login, name=name if lms == "ilias" else "") for login, name in named.items()
+        )
+        return readings[-1], readings
+
+    return who
+
+
+_MOST_MARKS = 10
+"""The maximum number of hyphens or underscores at which a name is divided; real names have fewer."""
+
+
+def _ends(text: str, mark: str) -> list[str]:
+    """Return the ends of a text after its last few marks, such as hyphens: for ``a-b-c``, ``b-c`` and ``c``."""
+    pieces = text.rsplit(mark, _MOST_MARKS)[1:]
+    return [end for start in range(len(pieces)) if (end := mark.join(pieces[start:]).strip())]
 
 
 _READERS = {
@@ -266,115 +376,7 @@ _READERS = {
     # assignment_123_export/submission_456/lab_1_2.ipynb
     "gradescope": _in_one_part(r"^submission_(?P<number>\d+)$", _plainly("gradescope"), says_file=True),
 }
-NAME_FORMS = tuple(_READERS)
-TOLD_APART = tuple(form for form in NAME_FORMS if form != "ilias")
+TOLD_APART = tuple(form for form in _READERS if form != "ilias")
 """The forms that can be recognized from the names alone. A name from ILIAS resembles many others, so that form is used
 only if the instructor names the system.
 """
-
-
-PATTERN_WORDS = (
-    "id",
-    "email",
-    "login",
-    "number",
-    "name",
-    "first",
-    "last",
-    "assignment",
-    "time",
-    "file",
-    "any",
-)
-_NOT_WHO = {"any", "assignment", "time", "file"}
-_MOST_WAYS = 100
-"""The maximum number of ways to divide a name that are tried; real names need a few."""
-_WORD = re2.compile(r"\{([^{}]*)\}")
-
-
-def check_names(pattern: str, columns: Collection[str]) -> None:
-    """Check a pattern given with ``--names``.
-
-    Args:
-        pattern: The pattern to check.
-        columns: The columns of ``students.csv`` that the pattern may contain.
-
-    Raises:
-        GradingError: The pattern contains an unknown word, a word twice, or no word that identifies a student.
-    """
-    words = [word for word in _WORD.findall(pattern) if word != "any"]
-    says_who = set(words) & {*PATTERN_WORDS[:7], *columns}
-    if set(words) - {*PATTERN_WORDS, *columns} or len(set(words)) < len(words) or not says_who:
-        known = ", ".join(f"{{{word}}}" for word in (*PATTERN_WORDS, *columns))
-        raise GradingError(
-            f"--names {pattern!r} cannot be used. Use each of {known} at most once, and at least one that "
-            "identifies the student. For example: '{id}-{last}_{assignment}'."
-        )
-
-
-def read_names(pattern: str) -> Callable[[Sequence[str], int], Found | None]:
-    """Return a function that reads a path according to a pattern.
-
-    The pattern has to fit from the top of the path, or to identify the student by one of the path's first ``levels``
-    names, because a student may have chosen any name below these.
-
-    A pattern without a slash describes a single name: a file without its suffix, or a folder around it. A pattern
-    with slashes describes names that follow each other in a path. ``{any}`` stands for any text. A word that is not
-    in :data:`PATTERN_WORDS` stands for a column of ``students.csv``.
-    """
-    words = _WORD.findall(pattern)
-    literals = [unicodedata.normalize("NFC", one).casefold() for one in _WORD.split(pattern)[::2]]
-    number = pattern.count("/") + 1
-    says_who = (place for place, name in enumerate(pattern.split("/")) if set(_WORD.findall(name)) - _NOT_WHO)
-    who = next(says_who, 0)
-
-    def read(parts: Sequence[str], levels: int) -> Found | None:
-        for place in range(min(len(parts) - number + 1, max(levels - who, 1))):
-            *above, last = parts[place : place + number]
-            bare = last.rpartition(".")[0] if place + number == len(parts) else ""
-            texts = ("/".join([*above, name]) for name in (bare, last) if name)
-            ways = (list(itertools.islice(_ways(text, literals, words), _MOST_WAYS)) for text in texts)
-            if divided := next(filter(None, ways), None):
-                # Use the longest possible time, because in 2025-10-03_140506_lab the day alone would be a time, too.
-                divided.sort(
-                    key=lambda way: -len(way.get("time", "")) if read_time(way.get("time", "")) else 0
-                )
-                # Return all ways to divide the name, because ben_b_7 may belong to ben or to ben_b.
-                found = [_found(way, parts[-1]) for way in divided]
-                return replace(found[0], readings=tuple(dict.fromkeys(one.identity for one in found)))
-        return None
-
-    return read
-
-
-def _ways(text: str, literals: Sequence[str], words: Sequence[str]) -> Iterator[dict[str, str]]:
-    """Yield all ways to divide a text into the words between these literals."""
-    folded, first = text.casefold(), literals[0]
-    if len(folded) != len(text) or not folded.startswith(first):
-        return
-    text, folded = text[len(first) :], folded[len(first) :]
-    if not words:
-        if not text:
-            yield {}
-        return
-    for end in range(words[0] != "any", len(text) + 1):
-        if "/" in text[:end]:
-            return
-        if folded.startswith(literals[1], end):
-            for way in _ways(text[end:], literals[1:], words[1:]):
-                yield {words[0]: text[:end], **way}
-
-
-def _found(said: dict[str, str], file: str) -> Found:
-    word = {name: value.strip() for name, value in said.items()}
-    login = word.get("id") or word.get("email") or word.get("login") or word.get("number") or ""
-    name = word.get("name") or f"{word.get('first', '')} {word.get('last', '')}".strip()
-    column = next((one for one in word if one not in PATTERN_WORDS), "")
-    number = word.get(column, "")
-    identity = Identity(column, number, login, name)
-    return Found(
-        identity,
-        word.get("file") or file,
-        when=read_time(word.get("time", "")),
-        assignment=base_of(word.get("assignment", "")),
-    )

@@ -48,7 +48,7 @@ class Submitted:
         self._inbox = inbox
         self._records = CollectedRecords(directory.state)
 
-    def path(self, place: Place) -> Path:
+    def _path(self, place: Place) -> Path:
         """Return the path of a notebook in ``submitted``."""
         student, assignment, notebook = place
         return self._directory.path / "submitted" / student / assignment / f"{notebook}{SUFFIX}"
@@ -56,7 +56,7 @@ class Submitted:
     def content(self, place: Place) -> str:
         """Return the hash of a notebook in ``submitted``; empty if it does not exist or cannot be read."""
         try:
-            data = _existing_file(self.path(place))
+            data = _existing_file(self._path(place))
         except UnreadableSubmission:
             return ""
         return hashlib.sha256(data).hexdigest() if data is not None else ""
@@ -78,7 +78,7 @@ class Submitted:
                 is_ours = content in history.written(notebook) and content in self._inbox
                 if content and not is_ours and delivery.id not in self._inbox.deliveries:
                     with self._inbox.receiving() as receiving:
-                        receiving.keep(read_bytes(self.path(place)))
+                        receiving.keep(read_bytes(self._path(place)))
                         receiving.delivery = delivery
 
     def bring(self, lines: Iterable[Line]) -> dict[Place, tuple[LineState, str]]:
@@ -116,7 +116,7 @@ class Submitted:
         for notebook in sorted({*wanted, *old.now, *names}):
             place, line = (student, assignment, notebook), wanted.get(notebook)
             try:
-                there = _existing_file(self.path(place))
+                there = _existing_file(self._path(place))
             except UnreadableSubmission as error:
                 now |= {notebook: old.now[notebook]} if notebook in old.now else {}
                 if line:
@@ -143,10 +143,10 @@ class Submitted:
             self._records.put(assignment, student, replace(history, replaced=passing))
         for place, line, content in changes:
             if line is None:
-                self.path(place).unlink()
+                self._path(place).unlink()
                 yield place, LineState.EARLIER, ""
             else:
-                write_whole(self.path(place), self._inbox.read(line.content))
+                write_whole(self._path(place), self._inbox.read(line.content))
                 yield place, LineState.PLACED, "instead of an earlier file" if content else ""
         if history != old and (now or old != History({})):
             self._records.put(assignment, student, history)

@@ -19,7 +19,7 @@ import xlsxwriter
 
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.collecting.collected_files import CollectedRecords
-from autograder.grading.collecting.submitted_file_names import read_at
+from autograder.grading.collecting.submitted_file_names import read_lms_name
 from autograder.grading.grading_errors import GradingError, check_known, clear_place_errors, course_command
 from autograder.grading.reporting import lms_gradebooks
 from autograder.grading.reporting.lms_gradebooks import LAYOUTS, gradebook, known_there
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Exported:
+class _Exported:
     """The files that an export wrote.
 
     Attributes:
@@ -57,7 +57,7 @@ def export(
     absent_zero: bool = False,
     columns: Mapping[str, str] | None = None,
     sections: Sequence[str] = (),
-) -> Exported:
+) -> _Exported:
     """Write points and feedback in the format of an LMS.
 
     Args:
@@ -115,7 +115,7 @@ def export(
             f"{', '.join(table.stale[:5])}{' …' if len(table.stale) > 5 else ''}. "
             f"Grade first: {course_command('grade', path)}"
         )
-    return Exported(tuple(written), tuple(notices))
+    return _Exported(tuple(written), tuple(notices))
 
 
 def _assignments(table: ClassTable, wanted: Sequence[str]) -> list[str]:
@@ -139,7 +139,7 @@ def _files(
     elif to == "xlsx":
         yield (
             "grades.xlsx",
-            class_xlsx(table, assignments),
+            _class_xlsx(table, assignments),
             "one sheet that lists the students, and one that lists their results in the exercises",
         )
     elif to in LAYOUTS:
@@ -147,10 +147,10 @@ def _files(
         yield f"{to}.csv", text.encode(), LAYOUTS[to].purpose
     else:
         notices.append(f"{to.upper()} cannot import points from a file, so only feedback pages are written")
-    for assignment in assignments if to in UPLOAD_PAGES else ():
-        data, unknown = feedback_zip(directory, table, records, assignment, to)
+    for assignment in assignments if to in _UPLOAD_PAGES else ():
+        data, unknown = _feedback_zip(directory, table, records, assignment, to)
         if data:
-            purpose = f"{to.capitalize()}: the assignment {assignment}, {UPLOAD_PAGES[to]}"
+            purpose = f"{to.capitalize()}: the assignment {assignment}, {_UPLOAD_PAGES[to]}"
             yield f"feedback-{to}-{assignment}.zip", data, purpose
         if unknown:
             notices.append(
@@ -159,13 +159,13 @@ def _files(
             )
 
 
-Cells = list[str | float]
+_Cells = list[str | float]
 
 
-def student_rows(table: ClassTable, assignments: Sequence[str]) -> list[Cells]:
+def _student_rows(table: ClassTable, assignments: Sequence[str]) -> list[_Cells]:
     """Return a line with the column names, then a line for each student."""
     who = ["student", "first_name", "last_name", "email"]
-    rows: list[Cells] = [
+    rows: list[_Cells] = [
         [*who, *assignments, "total", "max", "late_penalty", "waits_for_a_person", "excused", "dropped"]
     ]
     for student in map(table.roster.students.__getitem__, table.students):
@@ -190,12 +190,12 @@ def student_rows(table: ClassTable, assignments: Sequence[str]) -> list[Cells]:
 
 def class_csv(table: ClassTable, assignments: Sequence[str]) -> bytes:
     """Return the students' lines as CSV, with the mark (BOM) by which Excel recognizes UTF-8."""
-    return csv_text(student_rows(table, assignments)).encode("utf-8-sig")
+    return csv_text(_student_rows(table, assignments)).encode("utf-8-sig")
 
 
-def class_xlsx(table: ClassTable, assignments: Sequence[str]) -> bytes:
+def _class_xlsx(table: ClassTable, assignments: Sequence[str]) -> bytes:
     """Return a workbook with two sheets: a line for each student, and a line for each result in an exercise."""
-    exercises: list[Cells] = [list(COLUMNS)]
+    exercises: list[_Cells] = [list(COLUMNS)]
     exercises += [list(csv_cells(row)) for row in table.rows if row.assignment in assignments]
     data = io.BytesIO()
     # A text from a student or an LMS must never become a formula, a link or a number.
@@ -207,7 +207,7 @@ def class_xlsx(table: ClassTable, assignments: Sequence[str]) -> bytes:
     }
     with xlsxwriter.Workbook(data, options) as book:
         bold = book.add_format({"bold": True})
-        for name, rows in (("students", student_rows(table, assignments)), ("exercises", exercises)):
+        for name, rows in (("students", _student_rows(table, assignments)), ("exercises", exercises)):
             sheet = book.add_worksheet(name)
             for place, row in enumerate(rows):
                 sheet.write_row(place, 0, row, None if place else bold)
@@ -216,7 +216,7 @@ def class_xlsx(table: ClassTable, assignments: Sequence[str]) -> bytes:
     return data.getvalue()
 
 
-UPLOAD_PAGES = {
+_UPLOAD_PAGES = {
     "moodle": "Upload multiple feedback files in a zip",
     "canvas": "Upload submissions",
     "brightspace": "Add Feedback Files",
@@ -229,7 +229,7 @@ _WITHIN = {"sakai": "Feedback Attachment(s)/"}
 _MADE = (2000, 1, 1, 0, 0, 0)
 
 
-def feedback_zip(
+def _feedback_zip(
     directory: ClassDirectory, table: ClassTable, records: CollectedRecords, assignment: str, lms: str
 ) -> tuple[bytes, list[str]]:
     """Return the feedback pages of one assignment as a zip, and the students whose page could not be included.
@@ -239,7 +239,7 @@ def feedback_zip(
         table: The table of the class.
         records: The records of what was collected.
         assignment: The assignment's name.
-        lms: A key of :data:`UPLOAD_PAGES`.
+        lms: A key of :data:`_UPLOAD_PAGES`.
 
     Returns:
         The zip, empty if it would contain no page; and the students who have a page but whose name in that LMS is
@@ -276,7 +276,7 @@ def _called(file: str, lms: str, page: PurePath, *, is_one: bool) -> str:
     place, found = next(
         (place, found)
         for place in range(len(parts))
-        if (found := read_at(parts, place, lms, lambda _: False))
+        if (found := read_lms_name(parts, place, lms, lambda _: False))
     )
     above, given = "".join(f"{one}/" for one in parts[:place]), parts[place]
     if lms == "canvas":

@@ -103,7 +103,7 @@ def test_every_line_that_waits_says_which_cell_to_edit(
     texts = {"": work(klass), "nameless": nameless(klass, 1)}
     report = week(klass, tmp_path, texts.get(text, text), name)
     (line,) = waiting(klass)
-    assert line.cell == f" (collected.csv, line 2, cell {column})"
+    assert line.sentence.endswith(f" (collected.csv, line 2, cell {column})")
     assert f"under {column}" in report.having(LineState.NOT_PLACED)[0].reason
 
 

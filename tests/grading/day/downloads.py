@@ -7,7 +7,7 @@ import unicodedata
 import zipfile
 from typing import TYPE_CHECKING
 
-from autograder.grading.collecting.submitted_file_names import read_at
+from autograder.grading.collecting.submitted_file_names import read_lms_name
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -38,7 +38,7 @@ BOMB = b" " * 60_000_000
 def read_path(parts: Sequence[str], form: str, is_notebook: Callable[[str], bool]) -> Found | None:
     """The facts in a path of the form of one system, by its topmost name of that form."""
     parts = [unicodedata.normalize("NFC", part) for part in parts]
-    ways = (read_at(parts, place, form, is_notebook) for place in range(len(parts)))
+    ways = (read_lms_name(parts, place, form, is_notebook) for place in range(len(parts)))
     return next((way for way in ways if way is not None), None)
 
 
