@@ -18,14 +18,28 @@ if TYPE_CHECKING:
     from autograder.grading.table.rows import Row
 
 
-BANDS = 10
 _ABSENT = (NOT_SUBMITTED, EXCUSED)
-_FEWEST = 3
-"""The minimum number of students for a meaningful correlation."""
+
+
+def handed_in(table: ClassTable) -> list[str]:
+    """Return the ids of the students with at least one submission."""
+    return [
+        student
+        for student in table.students
+        if any(row.state not in _ABSENT and row.exercise != LATE for row in table.of(student))
+    ]
+
+
+def totals(table: ClassTable) -> list[float]:
+    """Return the total points of each student who has points."""
+    return [points for student in handed_in(table) if (points := table.score(student)) is not None]
+
+
+_BANDS = 10
 
 
 @dataclass(frozen=True)
-class Band:
+class _Band:
     """One of ten equal ranges of points, with the students in it.
 
     Attributes:
@@ -39,8 +53,21 @@ class Band:
     students: tuple[str, ...]
 
 
+def bands(table: ClassTable) -> list[_Band]:
+    """Return the distribution of total points in ten bands, without students who have no points."""
+    found: dict[int, list[str]] = defaultdict(list)
+    for student in handed_in(table):
+        if (points := table.score(student)) is None:
+            continue
+        most = sum(row.max_score for row in table.of(student))
+        share = points / most if most else 0.0
+        found[max(0, min(_BANDS - 1, int(share * _BANDS + 1e-9)))].append(student)
+    width = 100 // _BANDS
+    return [_Band(place * width, (place + 1) * width, tuple(found[place])) for place in range(_BANDS)]
+
+
 @dataclass(frozen=True)
-class CriterionFigures:
+class _CriterionFigures:
     """How many submissions meet one criterion.
 
     Attributes:
@@ -55,7 +82,7 @@ class CriterionFigures:
 
 
 @dataclass(frozen=True)
-class ItemFigures:
+class _ItemFigures:
     """The statistics of one exercise, over the students who handed it in.
 
     Attributes:
@@ -79,11 +106,73 @@ class ItemFigures:
     none: int
     difficulty: float
     discrimination: float | None
-    criteria: tuple[CriterionFigures, ...] = ()
+    criteria: tuple[_CriterionFigures, ...] = ()
+
+
+def items(table: ClassTable, store: ClassStore) -> list[_ItemFigures]:
+    """Return the statistics of each exercise.
+
+    Args:
+        table: The table of the class.
+        store: The store of the class, which contains the judge's verdicts.
+    """
+    criteria = _criteria(table, store)
+    found = []
+    for key, name in columns(table.rows).items():
+        rows = [row for row in table.rows if _key(row) == key and not row.is_blank]
+        if not rows:
+            continue
+        scores, most = [row.score for row in rows], rows[0].max_score
+        mean = statistics.fmean(scores)
+        others = [sum(row.score for row in table.of(one.student) if _key(row) != key) for one in rows]
+        found.append(
+            _ItemFigures(
+                name,
+                most,
+                len(rows),
+                mean,
+                sum(score >= most for score in scores),
+                sum(score <= 0 for score in scores),
+                mean / most if most else 0.0,
+                _correlation(scores, others),
+                tuple(criteria.get(key, ())),
+            )
+        )
+    return found
+
+
+def _key(row: Row) -> tuple[str, str]:
+    return row.assignment, row.exercise
+
+
+_FEWEST = 3
+"""The minimum number of students for a meaningful correlation."""
+
+
+def _correlation(ours: Sequence[float], others: Sequence[float]) -> float | None:
+    if len(ours) < _FEWEST or len(set(ours)) == 1 or len(set(others)) == 1:
+        return None
+    return statistics.correlation(ours, others)
+
+
+def _criteria(table: ClassTable, store: ClassStore) -> dict[tuple[str, str], list[_CriterionFigures]]:
+    """Return, for each exercise, how many of the graded submissions meet each criterion."""
+    counted = {(row.student, row.assignment) for row in table.rows if row.state in ("passed", "failed")}
+    seen: dict[tuple[str, str], dict[str, _CriterionFigures]] = defaultdict(dict)
+    for student, assignment in sorted(counted):
+        for execution in store.results(student, assignment).values():
+            for verdict in execution.verdicts.values():
+                of_exercise = seen[assignment, verdict.exercise]
+                for criterion in verdict.criteria:
+                    known = of_exercise.get(criterion.name, _CriterionFigures(criterion.title, 0, 0))
+                    of_exercise[criterion.name] = replace(
+                        known, passed=known.passed + criterion.passed, of=known.of + 1
+                    )
+    return {key: list(figures.values()) for key, figures in seen.items()}
 
 
 @dataclass(frozen=True)
-class MistakeFigures:
+class _MistakeFigures:
     """A mistake that was recognized, with the students who made it.
 
     Attributes:
@@ -99,6 +188,22 @@ class MistakeFigures:
     key: str
     reason: str
     students: tuple[str, ...]
+
+
+def mistakes(table: ClassTable) -> list[_MistakeFigures]:
+    """Return the recognized mistakes with the students who made them, the most common mistake first."""
+    found: dict[tuple[str, str, str], list[Row]] = defaultdict(list)
+    for row in table.rows:
+        if row.diagnosis:
+            found[row.assignment, row.exercise, row.diagnosis].append(row)
+    names = columns(table.rows)
+    figures = [
+        _MistakeFigures(
+            assignment, names[assignment, exercise], key, rows[0].reason, tuple(row.student for row in rows)
+        )
+        for (assignment, exercise, key), rows in found.items()
+    ]
+    return sorted(figures, key=lambda one: (-len(one.students), one.exercise, one.key))
 
 
 @dataclass(frozen=True)
@@ -142,104 +247,3 @@ def progress(student: str, attempts: Iterable[Attempt]) -> list[AttemptProgress]
             most = sum(row.max_score for row in same[-1].rows)
             shown.append(AttemptProgress(student, assignment, works, first, last, most))
     return shown
-
-
-def bands(table: ClassTable) -> list[Band]:
-    """Return the distribution of total points in ten bands, without students who have no points."""
-    found: dict[int, list[str]] = defaultdict(list)
-    for student in handed_in(table):
-        if (points := table.score(student)) is None:
-            continue
-        most = sum(row.max_score for row in table.of(student))
-        share = points / most if most else 0.0
-        found[max(0, min(BANDS - 1, int(share * BANDS + 1e-9)))].append(student)
-    width = 100 // BANDS
-    return [Band(place * width, (place + 1) * width, tuple(found[place])) for place in range(BANDS)]
-
-
-def handed_in(table: ClassTable) -> list[str]:
-    """Return the ids of the students with at least one submission."""
-    return [
-        student
-        for student in table.students
-        if any(row.state not in _ABSENT and row.exercise != LATE for row in table.of(student))
-    ]
-
-
-def totals(table: ClassTable) -> list[float]:
-    """Return the total points of each student who has points."""
-    return [points for student in handed_in(table) if (points := table.score(student)) is not None]
-
-
-def items(table: ClassTable, store: ClassStore) -> list[ItemFigures]:
-    """Return the statistics of each exercise.
-
-    Args:
-        table: The table of the class.
-        store: The store of the class, which contains the judge's verdicts.
-    """
-    criteria = _criteria(table, store)
-    found = []
-    for key, name in columns(table.rows).items():
-        rows = [row for row in table.rows if _key(row) == key and not row.is_blank]
-        if not rows:
-            continue
-        scores, most = [row.score for row in rows], rows[0].max_score
-        mean = statistics.fmean(scores)
-        others = [sum(row.score for row in table.of(one.student) if _key(row) != key) for one in rows]
-        found.append(
-            ItemFigures(
-                name,
-                most,
-                len(rows),
-                mean,
-                sum(score >= most for score in scores),
-                sum(score <= 0 for score in scores),
-                mean / most if most else 0.0,
-                _correlation(scores, others),
-                tuple(criteria.get(key, ())),
-            )
-        )
-    return found
-
-
-def _key(row: Row) -> tuple[str, str]:
-    return row.assignment, row.exercise
-
-
-def mistakes(table: ClassTable) -> list[MistakeFigures]:
-    """Return the recognized mistakes with the students who made them, the most common mistake first."""
-    found: dict[tuple[str, str, str], list[Row]] = defaultdict(list)
-    for row in table.rows:
-        if row.diagnosis:
-            found[row.assignment, row.exercise, row.diagnosis].append(row)
-    names = columns(table.rows)
-    figures = [
-        MistakeFigures(
-            assignment, names[assignment, exercise], key, rows[0].reason, tuple(row.student for row in rows)
-        )
-        for (assignment, exercise, key), rows in found.items()
-    ]
-    return sorted(figures, key=lambda one: (-len(one.students), one.exercise, one.key))
-
-
-def _correlation(ours: Sequence[float], others: Sequence[float]) -> float | None:
-    if len(ours) < _FEWEST or len(set(ours)) == 1 or len(set(others)) == 1:
-        return None
-    return statistics.correlation(ours, others)
-
-
-def _criteria(table: ClassTable, store: ClassStore) -> dict[tuple[str, str], list[CriterionFigures]]:
-    """Return, for each exercise, how many of the graded submissions meet each criterion."""
-    counted = {(row.student, row.assignment) for row in table.rows if row.state in ("passed", "failed")}
-    seen: dict[tuple[str, str], dict[str, CriterionFigures]] = defaultdict(dict)
-    for student, assignment in sorted(counted):
-        for execution in store.results(student, assignment).values():
-            for verdict in execution.verdicts.values():
-                of_exercise = seen[assignment, verdict.exercise]
-                for criterion in verdict.criteria:
-                    known = of_exercise.get(criterion.name, CriterionFigures(criterion.title, 0, 0))
-                    of_exercise[criterion.name] = replace(
-                        known, passed=known.passed + criterion.passed, of=known.of + 1
-                    )
-    return {key: list(figures.values()) for key, figures in seen.items()}

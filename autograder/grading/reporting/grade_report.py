@@ -41,7 +41,7 @@ if TYPE_CHECKING:
     from autograder.grading.table.class_table import ClassTable, Difference
 
 
-FORM = 2
+_FORM = 2
 """The version of the JSON format. It increases when a field is renamed or removed."""
 
 
@@ -102,7 +102,7 @@ def report_json(report: GradeReport) -> bytes:
     """Return the report as one line of JSON."""
     return msgspec.json.encode(
         {
-            "form": FORM,
+            "form": _FORM,
             "class": str(report.path),
             "exit_code": report.exit_code,
             "note": report.note,
@@ -134,7 +134,7 @@ def table_json(page: Path, table: ClassTable) -> bytes:
     """Return a class's table of results and the path of the report page as one line of JSON."""
     return msgspec.json.encode(
         {
-            "form": FORM,
+            "form": _FORM,
             "page": str(page),
             "submissions": _submissions(table.rows),
             "waiting": [{"file": one.label, "reason": one.sentence} for one in table.unplaced],
@@ -255,7 +255,7 @@ def tables(rows: Sequence[Row], console: Console, *, diagnoses: bool) -> Iterato
     grid = _Grid.of(rows, diagnoses=diagnoses)
     left = list(grid.names)
     # rich is slow at measuring many cells, so measure only the widest cell of each column.
-    widest = grid.of_the_widest()
+    widest = grid._of_the_widest()
     no_column = _needs(widest.table([]), console)
     widths = {key: _needs(widest.table([key]), console) - no_column for key in left}
     without_total, with_total = _needs(grid.table([]), console), _needs(grid.table([], is_last=True), console)
@@ -299,7 +299,7 @@ class _Grid:
         results = {(row.student, row.assignment, row.exercise): row for row in rows}
         return cls(columns(rows), students, results, diagnoses)
 
-    def of_the_widest(self) -> Self:
+    def _of_the_widest(self) -> Self:
         """Return a grid with one row, which consists of the widest cell of each column."""
         student = next(iter(self.students))
         by_width = sorted(self.results.values(), key=lambda row: cell_len(_cell(row, self.diagnoses).plain))
@@ -325,21 +325,17 @@ class _Grid:
         for student, own in self.students.items():
             cells = [_cell(self.results.get((student, *key)), self.diagnoses) for key in keys]
             if late:
-                cells.append(_taken_off(own))
+                points = sum(row.score for row in own if row.exercise == LATE)
+                cells.append(Text(f"{points:g}" if points else "", style="red"))
             if dropped:
                 names = [row.assignment for row in own if row.exercise == DROPPED]
                 cells.append(Text("\n".join(names), style="dim"))
             if is_last:
-                points, most = total(own), sum(row.max_score for row in own)
-                cells.append(Text("–" if points is None else f"{points:g}/{most:g}"))
+                score, most = total(own), sum(row.max_score for row in own)
+                cells.append(Text("–" if score is None else f"{score:g}/{most:g}"))
             name = f"{student}\n{own[0].name}" if own[0].name else student
             shown.add_row(Text("\n".join(map(printable, name.split("\n")))), *cells)
         return shown
-
-
-def _taken_off(rows: Sequence[Row]) -> Text:
-    points = sum(row.score for row in rows if row.exercise == LATE)
-    return Text(f"{points:g}" if points else "", style="red")
 
 
 def _diagnoses(rows: Sequence[Row]) -> Table:

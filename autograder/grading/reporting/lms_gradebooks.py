@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class GradebookLayout:
+class _GradebookLayout:
     """The format of the gradebook file of one LMS.
 
     Attributes:
@@ -56,40 +56,33 @@ class GradebookLayout:
 
 
 LAYOUTS = {
-    "canvas": GradebookLayout(
+    "canvas": _GradebookLayout(
         "Canvas: Grades, Import",
         {"Student": "name", "ID": "there", "SIS User ID": "", "SIS Login ID": "id", "Section": "section"},
         possible="    Points Possible",
         excused="EX",
     ),
-    "moodle": GradebookLayout(
+    "moodle": _GradebookLayout(
         "Moodle: Grades, Import, CSV file; map Email address and the assignments",
         {"First name": "first", "Last name": "last", "ID number": "id", "Email address": "email"},
     ),
-    "blackboard": GradebookLayout(
+    "blackboard": _GradebookLayout(
         "Blackboard: Grade Center > Work Offline > Upload",
         {"Last Name": "last", "First Name": "first", "Username": "user"},
         points="{name} [Total Pts: {most:g} Score]",
     ),
-    "brightspace": GradebookLayout(
+    "brightspace": _GradebookLayout(
         "Brightspace: Grades > Enter Grades > Import",
         {"OrgDefinedId": "#id"},
         points="{name} Points Grade",
         end={"End-of-Line Indicator": "#"},
     ),
-    "sakai": GradebookLayout(
+    "sakai": _GradebookLayout(
         "Sakai: Gradebook > Import Grades",
         {"Student ID": "user", "Student Name": "name"},
         points="{name} [{most:g}]",
     ),
 }
-
-
-def known_there(records: CollectedRecords, assignment: str, student: str, lms: str) -> Line | None:
-    """Return the line of ``collected.csv`` with a student's names in this LMS; None if the work came from elsewhere."""
-    history = records.get(assignment, student)
-    found = [one for one in history.now.values() if one.lms == lms] if history else []
-    return found[-1] if found else None
 
 
 def gradebook(lms: str, table: ClassTable, records: CollectedRecords, assignments: Sequence[str]) -> str:
@@ -139,6 +132,13 @@ def _facts(
         "user": there or id_,
         "#id": f"#{id_}",
     }
+
+
+def known_there(records: CollectedRecords, assignment: str, student: str, lms: str) -> Line | None:
+    """Return the line of ``collected.csv`` with a student's names in this LMS; None if the work came from elsewhere."""
+    history = records.get(assignment, student)
+    found = [one for one in history.now.values() if one.lms == lms] if history else []
+    return found[-1] if found else None
 
 
 def filled_in(
@@ -238,10 +238,6 @@ def filled_in(
     return f"{mark}{out.getvalue()}".encode(), notices
 
 
-_KINDS = ("number", "login", "name")
-"""The kinds of values that may identify a student, the most certain first."""
-
-
 def _column(header: Sequence[str], kind: ListForm, assignment: str, called: str) -> int:
     """Return the index of an assignment's column. Canvas adds a number to the name of a column: ``lab_1_2 (815)``.
 
@@ -267,6 +263,10 @@ def _without_number(name: str) -> str:
 def _letters(name: str) -> str:
     """Return the letters and digits of a name, by which the names of an assignment and of a column are compared."""
     return re2.sub(r"[\W_]+", "", _without_number(name)).casefold()
+
+
+_KINDS = ("number", "login", "name")
+"""The kinds of values that may identify a student, the most certain first."""
 
 
 def _who(table: ClassTable, kind: ListForm, values: Sequence[str]) -> tuple[Student, int] | None:

@@ -15,8 +15,8 @@ from autograder.grading.collecting.collected_csv import Table
 from autograder.grading.grading_errors import GradingError, clear_disk_errors, clear_place_errors
 from autograder.grading.reporting import class_statistics as figures
 from autograder.grading.returning.page_exporter import POLICY
-from autograder.grading.table.class_table import ClassTable, by_exercise, read_table
-from autograder.grading.table.rows import DROPPED, EXCUSED, columns, remarks_on
+from autograder.grading.table.class_table import ClassTable, read_table
+from autograder.grading.table.rows import DROPPED, EXCUSED, NO_EXERCISE, columns, remarks_on
 from autograder.safe_files import write_whole
 
 if TYPE_CHECKING:
@@ -76,7 +76,7 @@ def write_report(
 def _page(
     directory: ClassDirectory, store: ClassStore, table: ClassTable, *, names: bool, folder: Path
 ) -> str:
-    environment = page_templates("autograder.grading.report_page")
+    environment = page_templates("autograder.grading.reporting")
     people = _people(directory, table, names=names, folder=folder)
     there = figures.handed_in(table)
     totals = figures.totals(table)
@@ -90,7 +90,14 @@ def _page(
         there=there,
         absent=[student for student in table.students if student not in there],
         exercises=columns(table.rows),
-        rows={student: by_exercise(table.of(student)) for student in table.students},
+        rows={
+            student: {
+                (row.assignment, row.exercise): row
+                for row in table.of(student)
+                if row.exercise not in NO_EXERCISE
+            }
+            for student in table.students
+        },
         dropped=_dropped(table),
         cell=_cell,
         mean=statistics.fmean(totals) if totals else None,

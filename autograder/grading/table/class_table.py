@@ -13,7 +13,7 @@ from autograder.grading.grading_errors import GradingError, MasterUnusable
 from autograder.grading.rebuilding.source_points import read_released
 from autograder.grading.rebuilding.submission_fingerprints import Fingerprints
 from autograder.grading.table.roster import Roster, Student, read_roster
-from autograder.grading.table.rows import DROPPED, EXCUSED, NO_EXERCISE, NOT_SUBMITTED, Row, total
+from autograder.grading.table.rows import DROPPED, EXCUSED, NOT_SUBMITTED, Row, total
 from autograder.grading.table.weighted_rows import read_what_counts, true_rows
 
 if TYPE_CHECKING:
@@ -177,11 +177,6 @@ def read_table(directory: ClassDirectory, sections: Sequence[str] = ()) -> Class
     return replace(shown, notices=tuple(whole.excused_from_nothing(directory.assignments(), shown.students)))
 
 
-def by_exercise(rows: list[Row]) -> dict[tuple[str, str], Row]:
-    """Return rows of one student by assignment and exercise. Late penalties and dropped assignments are left out."""
-    return {(row.assignment, row.exercise): row for row in rows if row.exercise not in NO_EXERCISE}
-
-
 @dataclass(frozen=True)
 class Difference:
     """A change of a student's points or diagnosis in one exercise.
@@ -217,7 +212,7 @@ class Difference:
         return f"{self.student}  {self.exercise}  {points}{words}{f', {self.note}' if self.note else ''}"
 
 
-def differences(before: Iterable[Row], after: Iterable[Row]) -> list[Difference]:
+def _differences(before: Iterable[Row], after: Iterable[Row]) -> list[Difference]:
     """Return the differences between the rows of two tables, sorted by student, assignment and exercise."""
     earlier = {(row.student, row.assignment, row.exercise): row for row in before}
     later = {(row.student, row.assignment, row.exercise): row for row in after}
@@ -264,4 +259,4 @@ def compare(store: ClassStore, before: str = "", after: str = "") -> tuple[str, 
                 f"Run {name} does not exist. The runs are: {', '.join(names[-10:]) or 'none'}."
             )
         tables.append(rows)
-    return before, after, differences(*tables)
+    return before, after, _differences(*tables)

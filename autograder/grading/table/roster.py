@@ -54,10 +54,6 @@ _MOST_NAMED = 5
 _NOBODY = ("points possible", "student, test")
 
 
-class RosterError(GradingError):
-    """``students.csv`` cannot be used, for the reason in the message."""
-
-
 @dataclass(frozen=True)
 class Student:
     """A student of the class.
@@ -151,12 +147,12 @@ class Roster:
         """Return the ids of the students in some sections.
 
         Raises:
-            RosterError: A section has no students.
+            GradingError: A section has no students.
         """
         known = {one.section for one in self.students.values()} - {""}
         for section in sections:
             if section not in known:
-                raise RosterError(
+                raise GradingError(
                     f"No student is in a section named {section}. The sections in {NAME} are: "
                     f"{', '.join(sorted(known)) or 'nothing'}."
                 )
@@ -205,7 +201,7 @@ def read_roster(directory: ClassDirectory) -> Roster:
     """Return the students from ``students.csv`` and from the gradebook. Values in ``students.csv`` take precedence.
 
     Raises:
-        RosterError: The file cannot be used.
+        GradingError: The file cannot be used.
     """
     students = {student.id: student for student in _in_gradebook(directory.gradebook_url)}
     for student in read_students_csv(directory):
@@ -223,7 +219,7 @@ def read_students_csv(directory: ClassDirectory) -> list[Student]:
     """Return the students from ``students.csv``; none if the file does not exist.
 
     Raises:
-        RosterError: The file cannot be read, the column ``id`` or an id is missing, or an id occurs twice or is
+        GradingError: The file cannot be read, the column ``id`` or an id is missing, or an id occurs twice or is
             invalid.
     """
     path = directory.path / NAME
@@ -232,7 +228,7 @@ def read_students_csv(directory: ClassDirectory) -> list[Student]:
     except FileNotFoundError:
         return []
     except OSError as error:
-        raise RosterError(f"{path} cannot be read: {error}.") from error
+        raise GradingError(f"{path} cannot be read: {error}.") from error
     columns = [name.strip().lower() for name in header]
     lines = [
         dict(
@@ -246,7 +242,7 @@ def read_students_csv(directory: ClassDirectory) -> list[Student]:
     if form is not None:
         lines = [_as_ours(line, form) for line in lines]
     elif "id" not in columns:
-        raise RosterError(
+        raise GradingError(
             f"{path} has no column named id. Its first line has to contain the names of the columns: id and, if you "
             f"have them, {', '.join((*_OWN[1:], *LMS))}. You can also use Canvas's gradebook, Moodle's "
             "participants or Gradescope's roster without changes."
@@ -261,7 +257,7 @@ def read_students_csv(directory: ClassDirectory) -> list[Student]:
         if name in found:
             reason = f"the id {name} also stands in an earlier line"
         if reason:
-            raise RosterError(f"{path}, line {line}: {reason}.")
+            raise GradingError(f"{path}, line {line}: {reason}.")
         lms = {column: value for column, value in values.items() if value and column not in _OWN}
         first, last, email = (values.get(column, "") for column in ("first_name", "last_name", "email"))
         excused = values.get("excused", "").replace(",", " ").replace(";", " ").split()
@@ -287,7 +283,7 @@ def enter_roster(directory: ClassDirectory) -> None:
     """Enter the students from ``students.csv`` into the gradebook, without changing other students there.
 
     Raises:
-        RosterError: The file cannot be used.
+        GradingError: The file cannot be used.
     """
     students = read_students_csv(directory)
     if not students:

@@ -58,7 +58,7 @@ def csv_rows(data: bytes) -> tuple[list[list[str]], str]:
 
 def original(cell: str) -> str:
     """Return the text of a cell, without an apostrophe that :func:`defused` has put in front of it."""
-    return cell[1:] if cell[:1] == "'" and cell[1:2] in _FORMULA and cell[1:] else cell
+    return cell[1:] if cell[:1] == "'" and cell[1:2] in _FORMULA else cell
 
 
 def defused(cell: str) -> str:
@@ -74,9 +74,7 @@ def defused(cell: str) -> str:
     """
     kinds = ((character, unicodedata.category(character)) for character in cell)
     cell = "".join(" " if kind in _SPACES else character for character, kind in kinds if kind != "Cf")
-    return "".join(f"'{part}" if _is_formula(part) else part for part in _SEPARATOR.split(cell))
-
-
-def _is_formula(text: str) -> bool:
-    folded = unicodedata.normalize("NFKC", text).lstrip()
-    return folded[:1] in _FORMULA and folded != ""
+    return "".join(
+        f"'{part}" if unicodedata.normalize("NFKC", part).lstrip()[:1] in _FORMULA else part
+        for part in _SEPARATOR.split(cell)
+    )

@@ -37,16 +37,6 @@ if TYPE_CHECKING:
     """The judge's results for each submission, by student and assignment."""
 
 
-NAME = "class.toml"
-
-
-class _File(msgspec.Struct, forbid_unknown_fields=True):
-    leave_out: list[str] = []
-    points: dict[str, float] = {}
-    weights: dict[str, float] = {}
-    drop_lowest: Annotated[int, msgspec.Meta(ge=0)] = 0
-
-
 @dataclass(frozen=True)
 class WhatCounts:
     """The weights for a class's table. They may change at any time, because the gradebook's points are without weights.
@@ -117,6 +107,13 @@ def _scaled(row: Row, factor: float) -> Row:
     )
 
 
+class _File(msgspec.Struct, forbid_unknown_fields=True):
+    leave_out: list[str] = []
+    points: dict[str, float] = {}
+    weights: dict[str, float] = {}
+    drop_lowest: Annotated[int, msgspec.Meta(ge=0)] = 0
+
+
 def read_what_counts(directory: ClassDirectory, cells: Mapping[str, Sequence[GradedCell]]) -> WhatCounts:
     """Return the settings from ``class.toml``. If the file does not exist, nothing is weighted or left out.
 
@@ -127,7 +124,7 @@ def read_what_counts(directory: ClassDirectory, cells: Mapping[str, Sequence[Gra
     Raises:
         GradingError: The file cannot be used. The message says what to write.
     """
-    path = directory.path / NAME
+    path = directory.path / "class.toml"
     if not path.exists():
         return WhatCounts()
     try:
@@ -205,6 +202,10 @@ def true_rows(
     return found
 
 
+_IS_GRADED = ("passed", "failed", WAITS, BY_HAND)
+"""The states of a cell after a finished run. A cell in another state cannot wait for a person."""
+
+
 def _rows_of(
     blank: Row,
     cells: Sequence[GradedCell],
@@ -228,26 +229,20 @@ def _rows_of(
             row = replace(row, state=NOT_GRADED if is_there else NOT_SUBMITTED)
         else:
             row = replace(row, state=_state(cell, kept))
-        found.append(row if kept is None else _with_points(row, kept))
+        if kept is not None:
+            row = replace(
+                row,
+                score=kept.score,
+                judged=kept.judged,
+                by_hand=kept.by_hand,
+                extra=kept.extra,
+                waits=kept.waits and row.state in _IS_GRADED,
+            )
+        found.append(row)
     if entry and entry.taken_off:
         why = entry.why_late(zone)
         found.append(replace(blank, exercise=LATE, score=-entry.taken_off, state=LATE, reason=why))
     return found
-
-
-def _with_points(row: Row, kept: CellEntry) -> Row:
-    return replace(
-        row,
-        score=kept.score,
-        judged=kept.judged,
-        by_hand=kept.by_hand,
-        extra=kept.extra,
-        waits=kept.waits and row.state in _IS_GRADED,
-    )
-
-
-_IS_GRADED = ("passed", "failed", WAITS, BY_HAND)
-"""The states of a cell after a finished run. A cell in another state cannot wait for a person."""
 
 
 def _state(cell: GradedCell, kept: CellEntry) -> str:

@@ -27,7 +27,6 @@ from autograder.grading.collecting.collect import collect
 from autograder.grading.collecting.collected_csv import Table
 from autograder.grading.collecting.collected_files import Inbox, LineState
 from autograder.grading.grading_errors import GradingError
-from autograder.grading.table.roster import RosterError
 
 if TYPE_CHECKING:
     from tiny_class import FakeEngine, TinyClass
@@ -496,7 +495,7 @@ def test_a_student_id_cannot_lead_out(tiny: TinyClass, tmp_path: Path) -> None:
         (tiny.path / "students.csv").write_text(f"id\n{name}\n")
         if name == "..":
             archive = write_zip(tmp_path / "m.zip", {".._1_assignsubmission_file_lab_1_2.ipynb": work(tiny)})
-        with pytest.raises(RosterError, match="line 2"):
+        with pytest.raises(GradingError, match="line 2"):
             collect(tiny.path, [archive])
 
 
@@ -529,7 +528,7 @@ def test_a_roster_that_cannot_be_used_says_why(
     tiny: TinyClass, tmp_path: Path, text: str, words: str
 ) -> None:
     (tiny.path / "students.csv").write_text(text)
-    with pytest.raises(RosterError, match=words):
+    with pytest.raises(GradingError, match=words):
         collect(tiny.path, [write_zip(tmp_path / "m.zip", {})])
 
 

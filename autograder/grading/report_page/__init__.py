@@ -1,1 +1,0 @@
-"""Makes the report page: one HTML page for the instructor about the whole class."""
