@@ -1,1 +1,1 @@
-"""Shows the result of a grading run to the instructor: as a table in the terminal, as JSON, and as a CSV file."""
+"""Shows results to the instructor: in the terminal, as JSON, as a page, and as files for another system."""

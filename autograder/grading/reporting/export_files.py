@@ -21,8 +21,7 @@ from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.collecting.collected_files import CollectedRecords
 from autograder.grading.collecting.submitted_file_names import read_lms_name
 from autograder.grading.grading_errors import GradingError, check_known, clear_place_errors, course_command
-from autograder.grading.reporting import lms_gradebooks
-from autograder.grading.reporting.lms_gradebooks import LAYOUTS, gradebook, known_there
+from autograder.grading.reporting.lms_gradebooks import LAYOUTS, fill_list, gradebook, line_from_lms
 from autograder.grading.table.class_table import ClassTable, read_table
 from autograder.grading.table.rows import COLUMNS, DROPPED, LATE, csv_cells
 from autograder.grading.table.spreadsheet_csv import blank, csv_text
@@ -90,7 +89,7 @@ def export(
         if into:
             check_known(list(columns or ()), wanted, "assignment")
             wanted = list(columns or ()) or wanted
-            filled, notices = lms_gradebooks.filled_in(into, to, table, wanted, columns or {})
+            filled, notices = fill_list(into, to, table, wanted, columns or {})
             purpose = f"{to.capitalize()}: your exported list, now with the points of {', '.join(wanted)}"
         parts = [(into.name, filled, purpose)] if into else _files(directory, table, to, wanted, notices)
         for name, data, purpose in parts:
@@ -252,21 +251,24 @@ def _feedback_zip(
             pages = sorted((directory.path / "feedback" / student / assignment).glob("*.html"))
             if not pages:
                 continue
-            there = known_there(records, assignment, student, lms)
+            there = line_from_lms(records, assignment, student, lms)
             if there is None:
                 unknown.append(student)
                 continue
             for page in pages:
                 if lms == "moodle":
-                    called = _moodle(table.roster.students[student].name or student, there.number, page.name)
+                    name = table.roster.students[student].name or student
+                    plain = "".join(" " if character in "_/\\" else character for character in name)
+                    folder = f"{unicodedata.normalize('NFC', plain)}_{there.number}_assignsubmission_file"
+                    called = f"{folder}/{page.name}"
                 else:
-                    called = _called(there.file, lms, page, is_one=len(pages) == 1)
+                    called = _page_name(there.file, lms, page, is_one=len(pages) == 1)
                 # The zip contains no time of this machine, so the same class gives the same zip.
                 archive.writestr(zipfile.ZipInfo(called, _MADE), page.read_bytes(), zipfile.ZIP_DEFLATED)
     return (data.getvalue() if archive.namelist() else b""), unknown
 
 
-def _called(file: str, lms: str, page: PurePath, *, is_one: bool) -> str:
+def _page_name(file: str, lms: str, page: PurePath, *, is_one: bool) -> str:
     """Return the name of a page in the zip, derived from the name that the LMS gave to the student's file or folder.
 
     If the student handed in a zip that was unpacked, use the folder's name, because the student chose the names in the
@@ -283,8 +285,3 @@ def _called(file: str, lms: str, page: PurePath, *, is_one: bool) -> str:
         return f"{PurePosixPath(given).stem}{'' if is_one else f'_{page.stem}'}.html"
     head = f"{given}/" if place < len(parts) - 1 else given.removesuffix(found.file)
     return f"{above}{head}{_WITHIN.get(lms, '')}{page.name}"
-
-
-def _moodle(name: str, number: str, page: str) -> str:
-    plain = "".join(" " if character in "_/\\" else character for character in name)
-    return f"{unicodedata.normalize('NFC', plain)}_{number}_assignsubmission_file/{page}"

@@ -255,7 +255,7 @@ def tables(rows: Sequence[Row], console: Console, *, diagnoses: bool) -> Iterato
     grid = _Grid.of(rows, diagnoses=diagnoses)
     left = list(grid.names)
     # rich is slow at measuring many cells, so measure only the widest cell of each column.
-    widest = grid._of_the_widest()
+    widest = _with_widest_cells(grid)
     no_column = _needs(widest.table([]), console)
     widths = {key: _needs(widest.table([key]), console) - no_column for key in left}
     without_total, with_total = _needs(grid.table([]), console), _needs(grid.table([], is_last=True), console)
@@ -299,14 +299,6 @@ class _Grid:
         results = {(row.student, row.assignment, row.exercise): row for row in rows}
         return cls(columns(rows), students, results, diagnoses)
 
-    def _of_the_widest(self) -> Self:
-        """Return a grid with one row, which consists of the widest cell of each column."""
-        student = next(iter(self.students))
-        by_width = sorted(self.results.values(), key=lambda row: cell_len(_cell(row, self.diagnoses).plain))
-        # The rows are sorted by width, and a dict keeps the last value for each key: the widest cell of each column.
-        results = {(student, row.assignment, row.exercise): row for row in by_width}
-        return replace(self, students={student: self.students[student]}, results=results)
-
     def table(self, keys: Sequence[tuple[str, str]], *, is_last: bool = False) -> Table:
         """Return a table of some columns; the last table also has columns for late penalty, dropped work and total."""
         there = {exercise for _, _, exercise in self.results} if is_last else set()
@@ -336,6 +328,15 @@ class _Grid:
             name = f"{student}\n{own[0].name}" if own[0].name else student
             shown.add_row(Text("\n".join(map(printable, name.split("\n")))), *cells)
         return shown
+
+
+def _with_widest_cells(grid: _Grid) -> _Grid:
+    """Return a grid with one row, which consists of the widest cell of each column."""
+    student = next(iter(grid.students))
+    by_width = sorted(grid.results.values(), key=lambda row: cell_len(_cell(row, grid.diagnoses).plain))
+    # The rows are sorted by width, and a dict keeps the last value for each key: the widest cell of each column.
+    results = {(student, row.assignment, row.exercise): row for row in by_width}
+    return replace(grid, students={student: grid.students[student]}, results=results)
 
 
 def _diagnoses(rows: Sequence[Row]) -> Table:

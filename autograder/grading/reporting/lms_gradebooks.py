@@ -25,7 +25,7 @@ from autograder.grading.table.roster import Identity
 from autograder.grading.table.spreadsheet_csv import blank, csv_rows, csv_text, original
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
     from pathlib import Path
 
     from autograder.grading.collecting.collected_files import CollectedRecords, Line
@@ -118,7 +118,7 @@ def _facts(
     """Return the possible contents of a student's cells, by key. ``there`` and ``user`` come from the LMS."""
     student = table.roster.students[id_]
     own = student.lms.get(lms, "")
-    collected = (known_there(records, name, id_, lms) for name in assignments)
+    collected = (line_from_lms(records, name, id_, lms) for name in assignments)
     there = own or next((one.number or one.name for one in collected if one), "")
     return {
         "": "",
@@ -134,14 +134,14 @@ def _facts(
     }
 
 
-def known_there(records: CollectedRecords, assignment: str, student: str, lms: str) -> Line | None:
+def line_from_lms(records: CollectedRecords, assignment: str, student: str, lms: str) -> Line | None:
     """Return the line of ``collected.csv`` with a student's names in this LMS; None if the work came from elsewhere."""
     history = records.get(assignment, student)
     found = [one for one in history.now.values() if one.lms == lms] if history else []
     return found[-1] if found else None
 
 
-def filled_in(
+def fill_list(
     into: Path, lms: str, table: ClassTable, assignments: Sequence[str], columns: Mapping[str, str]
 ) -> tuple[bytes, list[str]]:
     """Fill points into a list that an LMS exported, and leave everything else in the list unchanged.
@@ -169,51 +169,14 @@ def filled_in(
         raise GradingError(f"{into} cannot be read: {error}") from error
     rows, delimiter = csv_rows(data)
     header = [name.strip() for name in rows[0]] if rows else []
-    lower = [name.lower() for name in header]
-    kinds = [one for one in LIST_FORMS if one.points]
-    kind = next((one for one in kinds if set(one.has) <= set(lower)), None)
-    if kind is None:
-        gradebooks = ", ".join(one.lms.capitalize() for one in kinds if one.points == EACH)
-        raise GradingError(
-            f"The list is neither Moodle's grading worksheet nor a gradebook that {gradebooks} has exported. Download "
-            "it from the LMS again."
-        )
-    if kind.lms != lms:
-        raise GradingError(
-            f"The list comes from {kind.lms.capitalize()}, but --to names {lms}: type --to {kind.lms}"
-        )
-    if kind.points != EACH and len(assignments) != 1:
-        raise GradingError(
-            f"Say which assignment goes into {into}: --assignment NAME ({', '.join(assignments)})."
-        )
-    if kind.points != EACH:
-        places = {name: lower.index(kind.points) for name in assignments}
-    else:
-        places = {name: _column(header, kind, name, columns.get(name, name)) for name in assignments}
-        if len(set(places.values())) < len(places):
-            raise GradingError("Two assignments have the same column: give each its own --column.")
-    names = (*kind.sure, *kind.names)
-    strangers = []
-    meant: dict[str, list[tuple[int, str, list[str]]]] = {}
-    for row in rows[1:]:
-        if not any(row[:1]) or row[0].strip().startswith(("Points Possible", "Student, Test")):
-            continue
-        # Some spreadsheet programs omit empty cells at the end of a line.
-        row += [""] * (len(header) - len(row))
-        values = [
-            original(row[lower.index(name)].strip()).removeprefix("#") for name in names if name in lower
-        ]
-        called = values[-1] if values else row[0]
-        if (found := _who(table, kind, values)) is None:
-            strangers.append(called)
-        else:
-            student, weakness = found
-            meant.setdefault(student.id, []).append((weakness, called, row))
+    form = _form_of(header, lms)
+    places = _point_columns(into, header, form, assignments, columns)
+    lines, strangers = _lines_by_student(rows[1:], header, form, table)
     doubtful: list[str] = []
-    for student_id, lines in meant.items():
-        (weakness, _, row), *others = sorted(lines)
+    for student_id, of_student in lines.items():
+        (weakness, _, row), *others = sorted(of_student)
         is_certain = all(other > weakness for other, _, _ in others)
-        doubtful += [called for _, called, _ in (others if is_certain else lines)]
+        doubtful += [called for _, called, _ in (others if is_certain else of_student)]
         if not is_certain:
             continue
         for name, place in places.items():
@@ -227,7 +190,7 @@ def filled_in(
             f"no student in the class is called {', '.join(strangers)}: their lines stay as they were"
         )
     if doubtful:
-        sure = " or ".join(name for name in header if name.lower() in kind.sure)
+        sure = " or ".join(name for name in header if name.lower() in form.sure)
         notices.append(
             f"{', '.join(doubtful)}: another line may be the same student's, so these lines stay as they were. Write "
             f"what the list has under {sure} for each of these students into the column {lms} of students.csv"
@@ -238,13 +201,87 @@ def filled_in(
     return f"{mark}{out.getvalue()}".encode(), notices
 
 
-def _column(header: Sequence[str], kind: ListForm, assignment: str, called: str) -> int:
+def _form_of(header: Sequence[str], lms: str) -> ListForm:
+    """Return the form of a list with these columns.
+
+    Raises:
+        GradingError: The list has no place for points, or it comes from another system than ``lms``.
+    """
+    lower = {name.lower() for name in header}
+    forms = [one for one in LIST_FORMS if one.points]
+    form = next((one for one in forms if set(one.has) <= lower), None)
+    if form is None:
+        gradebooks = ", ".join(one.lms.capitalize() for one in forms if one.points == EACH)
+        raise GradingError(
+            f"The list is neither Moodle's grading worksheet nor a gradebook that {gradebooks} has exported. Download "
+            "it from the LMS again."
+        )
+    if form.lms != lms:
+        raise GradingError(
+            f"The list comes from {form.lms.capitalize()}, but --to names {lms}: type --to {form.lms}"
+        )
+    return form
+
+
+def _point_columns(
+    into: Path,
+    header: Sequence[str],
+    form: ListForm,
+    assignments: Sequence[str],
+    columns: Mapping[str, str],
+) -> dict[str, int]:
+    """Return the index of the column for points, by assignment.
+
+    Raises:
+        GradingError: An assignment has no column of its own.
+    """
+    if form.points != EACH:
+        if len(assignments) != 1:
+            raise GradingError(
+                f"Say which assignment goes into {into}: --assignment NAME ({', '.join(assignments)})."
+            )
+        return {assignments[0]: [name.lower() for name in header].index(form.points)}
+    places = {name: _column(header, form, name, columns.get(name, name)) for name in assignments}
+    if len(set(places.values())) < len(places):
+        raise GradingError("Two assignments have the same column: give each its own --column.")
+    return places
+
+
+def _lines_by_student(
+    rows: Iterable[list[str]], header: Sequence[str], form: ListForm, table: ClassTable
+) -> tuple[dict[str, list[tuple[int, str, list[str]]]], list[str]]:
+    """Find the student of each line of a list, and add the empty cells that the line lacks at its end.
+
+    Returns:
+        The lines that match each student, by the student's id: the rank of the match, the name in the line, and its
+        cells; and the names in the lines that match no student.
+    """
+    lower = [name.lower() for name in header]
+    places = [lower.index(name) for name in (*form.sure, *form.names) if name in lower]
+    found: dict[str, list[tuple[int, str, list[str]]]] = {}
+    strangers = []
+    for row in rows:
+        if not any(row[:1]) or row[0].strip().startswith(("Points Possible", "Student, Test")):
+            continue
+        # Some spreadsheet programs omit empty cells at the end of a line.
+        row += [""] * (len(header) - len(row))
+        values = [original(row[place].strip()).removeprefix("#") for place in places]
+        called = values[-1] if values else row[0]
+        if match := _who(table, form, values):
+            student, weakness = match
+            found.setdefault(student.id, []).append((weakness, called, row))
+        else:
+            strangers.append(called)
+    return found, strangers
+
+
+def _column(header: Sequence[str], form: ListForm, assignment: str, called: str) -> int:
     """Return the index of an assignment's column. Canvas adds a number to the name of a column: ``lab_1_2 (815)``.
 
     Raises:
         GradingError: The list has no such column, or the column names the student.
     """
-    known = {*kind.has, *kind.sure, *kind.names} - {kind.points}
+    known = {*form.has, *form.sure, *form.names} - {form.points}
     names = [name for name in header if name.lower() not in known]
     if column := next((name for name in names if called in (name, _without_number(name))), None):
         return header.index(column)
@@ -269,15 +306,15 @@ _KINDS = ("number", "login", "name")
 """The kinds of values that may identify a student, the most certain first."""
 
 
-def _who(table: ClassTable, kind: ListForm, values: Sequence[str]) -> tuple[Student, int] | None:
+def _who(table: ClassTable, form: ListForm, values: Sequence[str]) -> tuple[Student, int] | None:
     """Return the student of a line, and the rank of the matching value; a lower rank is a more certain match."""
     columns: list[tuple[str, tuple[str, ...]]] = [(value, _KINDS) for value in values]
-    if kind.is_numbered:
+    if form.is_numbered:
         # A number of the LMS may be another student's id in the class, so the number is compared with ids last.
         columns = [(values[0], _KINDS[:1]), *columns[1:], (values[0], _KINDS[1:])]
     for place, (value, kinds) in enumerate(columns):
         for way in kinds if value else ():
-            found = table.roster.find(Identity(kind.lms, **{way: value}))
+            found = table.roster.find(Identity(form.lms, **{way: value}))
             if len(found) == 1:
                 return found[0], place
     return None
