@@ -45,7 +45,7 @@ NIGHTLY = (
     "tests/grading/classes/test_class_lock.py::test_the_command_of_nbgrader_does_nothing_while_a_batch_runs",
     "tests/grading/classes/test_class_lock.py::test_two_batches_at_once_on_two_classes",
     "tests/grading/classes/test_new_class.py::test_its_gradebook_has_the_version_that_nbgraders_own_would_have",
-    "tests/grading/reporting/test_spreadsheet.py::test_plain_nbgrader_export_is_defused_too",
+    "tests/grading/table/test_spreadsheet_csv.py::test_plain_nbgrader_export_is_defused_too",
     "tests/masters/test_equals_nbgrader.py::test_the_command_gives_the_same_bytes",
     # A class once more by stock nbgrader, and by each student's Validate: the class itself is graded in both tiers.
     "tests/grading/classes/test_sample_class.py::test_plain_nbgrader_gives_the_same_points",

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import pytest
 from downloads import ROSTER, write_zip, zipped
 from test_collect import lies, placed, why, work
-from test_lms_file_names import add_assignment
 from test_real_forms import METADATA, STEALS, gradescope_export
+from test_submitted_file_names import add_assignment
 
 from autograder.boxes import reading_desks
 from autograder.grading.collecting.collect import collect

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import pytest
 from downloads import write_zip, zipped
 from test_collect import placed, why, work
-from test_collected_table import edit
+from test_collected_csv import edit
 from tiny_class import LISTENER, TALKER
 
 from autograder.grading.collecting import downloaded_files

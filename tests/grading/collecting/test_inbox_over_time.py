@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, NoReturn
 import pytest
 from downloads import ROSTER, write_zip
 from test_collect import lies, placed, stamp, why, work
-from test_collected_table import edit, read, save
+from test_collected_csv import edit, read, save
 from test_where_it_goes import other_lab, outcome
 from tiny_class import LISTENER, TALKER
 

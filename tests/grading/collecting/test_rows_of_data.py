@@ -13,7 +13,7 @@ from zoneinfo import ZoneInfo
 import pytest
 from downloads import ROSTER, write_zip
 from test_collect import placed, stamp, why, work
-from test_collected_table import edit
+from test_collected_csv import edit
 
 from autograder.grading.collecting.collect import collect
 from autograder.grading.collecting.submitted_file_names import read_time

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import pytest
 from downloads import ROSTER, write_zip
 from test_collect import work
-from test_collected_table import edit
+from test_collected_csv import edit
 from test_where_it_goes import other_lab
 
 from autograder.grading.classes.class_directory import ClassDirectory

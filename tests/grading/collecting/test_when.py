@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from click.testing import CliRunner
 from downloads import write_zip
 from test_collect import lies, stamp, why, work
-from test_collected_table import edit
+from test_collected_csv import edit
 from test_where_it_goes import MOODLE, gathered
 
 from autograder.cli import cli

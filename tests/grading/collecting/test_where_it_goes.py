@@ -15,8 +15,8 @@ import pytest
 from click.testing import CliRunner
 from downloads import write_zip, zipped
 from test_collect import kept, lies, stamp, why, work
-from test_collected_table import edit
-from test_lms_file_names import add_assignment
+from test_collected_csv import edit
+from test_submitted_file_names import add_assignment
 from tiny_class import TinyClass
 
 from autograder.cli import cli
