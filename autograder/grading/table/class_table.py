@@ -1,4 +1,4 @@
-"""Reads the current table of results of a class, without grading any submission, and compares such tables."""
+"""Reads the table of results of a class, without grading any submission, and compares the results of two runs."""
 
 from __future__ import annotations
 

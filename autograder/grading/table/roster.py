@@ -15,43 +15,12 @@ from autograder.grading.table.spreadsheet_csv import csv_rows, original
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
 
+
 NAME = "students.csv"
 LMS = ("canvas", "moodle", "blackboard", "brightspace", "github", "gradescope", "sakai", "ilias")
 """Learning management systems. ``students.csv`` may have a column for each system, with the students' ids or user names
 in the system.
 """
-_OWN = ("id", "first_name", "last_name", "email", "section", "excused")
-
-
-_EXPORTED = (
-    # For each list from an LMS: the columns that identify the list; and for each column of students.csv, the columns
-    # of the list that may contain the value.
-    (
-        ("student", "id", "section"),  # Canvas: Grades, Export
-        {"id": ("sis login id", "sis user id", "id"), "full_name": ("student",), "canvas": ("id",)},
-    ),
-    (
-        ("first name", "email address"),  # Moodle: Participants, Download
-        {
-            "id": ("id number", "username", "email address"),
-            "first_name": ("first name",),
-            "last_name": ("last name", "surname"),
-            "email": ("email address",),
-        },
-    ),
-    (
-        ("sid", "email"),  # Gradescope: Roster, Download
-        {
-            "id": ("sid", "email"),
-            "first_name": ("first name",),
-            "last_name": ("last name",),
-            "full_name": ("name", "full name"),
-            "email": ("email",),
-        },
-    ),
-)
-_MOST_NAMED = 5
-_NOBODY = ("points possible", "student, test")
 
 
 @dataclass(frozen=True)
@@ -102,6 +71,9 @@ class Identity:
 
     def __str__(self) -> str:
         return self.name or self.login or self.number
+
+
+_MOST_NAMED = 5
 
 
 class Roster:
@@ -215,6 +187,76 @@ def read_roster(directory: ClassDirectory) -> Roster:
     return Roster(students.values())
 
 
+def _in_gradebook(url: str) -> list[Student]:
+    with opened(url) as book:
+        if not has_tables(book):
+            return []
+        rows = book.execute(sql("SELECT id, first_name, last_name, email FROM student")).all()
+    return [Student(row.id, row.first_name or "", row.last_name or "", row.email or "") for row in rows]
+
+
+def enter_roster(directory: ClassDirectory) -> None:
+    """Enter the students from ``students.csv`` into the gradebook, without changing other students there.
+
+    Raises:
+        GradingError: The file cannot be used.
+    """
+    students = read_students_csv(directory)
+    if not students:
+        return
+    with opened(directory.gradebook_url) as book:
+        if not has_tables(book):
+            return  # a later step will report that the gradebook is not usable
+        known = set(book.execute(sql("SELECT id FROM student")).scalars())
+        for student in students:
+            values = {
+                "id": student.id,
+                "first": student.first_name or None,
+                "last": student.last_name or None,
+                "email": student.email or None,
+            }
+            if student.id not in known:
+                book.execute(sql("INSERT INTO student (id) VALUES (:id)"), {"id": student.id})
+            book.execute(
+                sql(
+                    "UPDATE student SET first_name = COALESCE(:first, first_name),"
+                    " last_name = COALESCE(:last, last_name), email = COALESCE(:email, email) WHERE id = :id"
+                ),
+                values,
+            )
+
+
+_OWN = ("id", "first_name", "last_name", "email", "section", "excused")
+_EXPORTED = (
+    # For each list from an LMS: the columns that identify the list; and for each column of students.csv, the columns
+    # of the list that may contain the value.
+    (
+        ("student", "id", "section"),  # Canvas: Grades, Export
+        {"id": ("sis login id", "sis user id", "id"), "full_name": ("student",), "canvas": ("id",)},
+    ),
+    (
+        ("first name", "email address"),  # Moodle: Participants, Download
+        {
+            "id": ("id number", "username", "email address"),
+            "first_name": ("first name",),
+            "last_name": ("last name", "surname"),
+            "email": ("email address",),
+        },
+    ),
+    (
+        ("sid", "email"),  # Gradescope: Roster, Download
+        {
+            "id": ("sid", "email"),
+            "first_name": ("first name",),
+            "last_name": ("last name",),
+            "full_name": ("name", "full name"),
+            "email": ("email",),
+        },
+    ),
+)
+_NOBODY = ("points possible", "student, test")
+
+
 def read_students_csv(directory: ClassDirectory) -> list[Student]:
     """Return the students from ``students.csv``; none if the file does not exist.
 
@@ -277,45 +319,6 @@ def _as_ours(line: Mapping[str, str], form: Mapping[str, tuple[str, ...]]) -> di
         values |= {"first_name": first.strip(), "last_name": last.strip()}
     own = {name: line[name] for name in (*LMS, "section", "excused") if line.get(name)}
     return {**values, **own}
-
-
-def enter_roster(directory: ClassDirectory) -> None:
-    """Enter the students from ``students.csv`` into the gradebook, without changing other students there.
-
-    Raises:
-        GradingError: The file cannot be used.
-    """
-    students = read_students_csv(directory)
-    if not students:
-        return
-    with opened(directory.gradebook_url) as book:
-        if not has_tables(book):
-            return  # a later step will report that the gradebook is not usable
-        known = set(book.execute(sql("SELECT id FROM student")).scalars())
-        for student in students:
-            values = {
-                "id": student.id,
-                "first": student.first_name or None,
-                "last": student.last_name or None,
-                "email": student.email or None,
-            }
-            if student.id not in known:
-                book.execute(sql("INSERT INTO student (id) VALUES (:id)"), {"id": student.id})
-            book.execute(
-                sql(
-                    "UPDATE student SET first_name = COALESCE(:first, first_name),"
-                    " last_name = COALESCE(:last, last_name), email = COALESCE(:email, email) WHERE id = :id"
-                ),
-                values,
-            )
-
-
-def _in_gradebook(url: str) -> list[Student]:
-    with opened(url) as book:
-        if not has_tables(book):
-            return []
-        rows = book.execute(sql("SELECT id, first_name, last_name, email FROM student")).all()
-    return [Student(row.id, row.first_name or "", row.last_name or "", row.email or "") for row in rows]
 
 
 def _folded(text: str) -> str:

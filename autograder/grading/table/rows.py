@@ -36,31 +36,7 @@ LATE = "late"
 DROPPED = "dropped"
 """The value of ``exercise`` in a row that subtracts the points of a dropped assignment."""
 NO_EXERCISE = (LATE, DROPPED)
-COLUMNS = (
-    "student",
-    "assignment",
-    "exercise",
-    "score",
-    "max",
-    "state",
-    "diagnosis",
-    "reason",
-    "judge",
-    "by_hand",
-    "extra",
-    "waits_for_a_person",
-    "name",
-)
-
-
-_LONGEST_REMARKS = 600
 _NOTHING_JUDGED = (NOT_SUBMITTED, NOT_GRADED, EXCUSED, State.NOT_CHECKED)
-
-
-def total(rows: Iterable[Row]) -> float | None:
-    """Return the sum of the points in some rows; None if no row has points yet."""
-    scores = [score for row in rows if (score := row.shown_score) is not None]
-    return round(sum(scores), 4) if scores else None
 
 
 @dataclass(frozen=True)
@@ -125,18 +101,6 @@ class Row:
         return "?" if self.waits else "*" if self.by_hand is not None or self.extra else ""
 
 
-def columns(rows: Iterable[Row]) -> dict[tuple[str, str], str]:
-    """Return the heading of each exercise's column, by assignment and exercise.
-
-    If several assignments have a cell with the same name, the heading begins with the assignment's name.
-    """
-    keys = list(
-        dict.fromkeys((row.assignment, row.exercise) for row in rows if row.exercise not in NO_EXERCISE)
-    )
-    often = Counter(exercise for _, exercise in keys)
-    return {key: key[1] if often[key[1]] == 1 else ".".join(key) for key in keys}
-
-
 def rows_of(task: Task, execution: Execution) -> list[Row]:
     """Return a row for each check of an executed notebook."""
     found = []
@@ -161,12 +125,50 @@ def rows_of(task: Task, execution: Execution) -> list[Row]:
     return found
 
 
+def total(rows: Iterable[Row]) -> float | None:
+    """Return the sum of the points in some rows; None if no row has points yet."""
+    scores = [score for row in rows if (score := row.shown_score) is not None]
+    return round(sum(scores), 4) if scores else None
+
+
+def columns(rows: Iterable[Row]) -> dict[tuple[str, str], str]:
+    """Return the heading of each exercise's column, by assignment and exercise.
+
+    If several assignments have a cell with the same name, the heading begins with the assignment's name.
+    """
+    keys = list(
+        dict.fromkeys((row.assignment, row.exercise) for row in rows if row.exercise not in NO_EXERCISE)
+    )
+    often = Counter(exercise for _, exercise in keys)
+    return {key: key[1] if often[key[1]] == 1 else ".".join(key) for key in keys}
+
+
+_LONGEST_REMARKS = 600
+
+
 def remarks_on(rows: Iterable[Row]) -> dict[tuple[str, str], str]:
     """Return the remarks on each submission in one line, by student and assignment."""
     found: dict[tuple[str, str], dict[str, None]] = {}
     for row in rows:
         found.setdefault((row.student, row.assignment), {}).update(dict.fromkeys(row.remarks))
     return {key: one_line(" ".join(remarks), _LONGEST_REMARKS) for key, remarks in found.items() if remarks}
+
+
+COLUMNS = (
+    "student",
+    "assignment",
+    "exercise",
+    "score",
+    "max",
+    "state",
+    "diagnosis",
+    "reason",
+    "judge",
+    "by_hand",
+    "extra",
+    "waits_for_a_person",
+    "name",
+)
 
 
 def write_csv(path: Path, rows: Iterable[Row]) -> None:
