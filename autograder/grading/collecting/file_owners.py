@@ -43,7 +43,7 @@ if TYPE_CHECKING:
     from autograder.grading.collecting.collected_files import Arrival
     from autograder.grading.collecting.downloaded_files import File
     from autograder.grading.collecting.lms_lists import ListEntry
-    from autograder.grading.collecting.submitted_file_names import Found
+    from autograder.grading.collecting.submitted_file_names import NameFacts
 
 
 _WRITE_IT = "write the id under student in collected.csv"
@@ -67,7 +67,7 @@ class Owners:
         is_sure: True if a number of the LMS identifies the students, and not just a name that students may choose.
     """
 
-    found: Found | None
+    found: NameFacts | None
     members: tuple[tuple[Student, ...], ...] = ()
     is_sure: bool = False
 
@@ -102,7 +102,9 @@ class StudentOf:
         self._entries = list(entries)
         self._timed = (_times(own), _times(others))
         self._by_number = {(one.lms, one.number): one for one in self._entries if one.number}
-        self._of = functools.cache(self._who)  # cached, because many files have the same folder in their path
+        self._identified = functools.cache(
+            self._identify
+        )  # cached, because many files have the same folder in their path
 
     def owners(self, parts: Sequence[str], levels: int, *, is_alone: bool = False) -> Owners:
         """Return the students of a file, by the topmost name in its path that identifies any student.
@@ -119,7 +121,7 @@ class StudentOf:
         parts = [unicodedata.normalize("NFC", part) for part in parts]
         if self._names is not None:
             found = self._names(parts, levels)
-            hits = [self._of(one)[0] for one in found.readings] if found else []
+            hits = [self._identified(one)[0] for one in found.readings] if found else []
             meant = _distinct(students for members in hits for students in members)
             return Owners(found, (meant,) if meant else ())
         forms = [self._form] if self._form else TOLD_APART
@@ -159,16 +161,16 @@ class StudentOf:
         name = name_as_text(path.absolute().name)
         return self.owners((name, "") if path.is_dir() else (name,), 1, is_alone=True)
 
-    def _find(self, way: Found) -> Owners | None:
+    def _find(self, way: NameFacts) -> Owners | None:
         """Return the students who may be meant, by the first reading of the name that identifies any student."""
         readings = way.readings if self._roster.students and way.readings else (way.identity,)
         for identity in readings:
-            members, is_sure = self._of(identity)
+            members, is_sure = self._identified(identity)
             if members:
                 return Owners(replace(way, identity=identity), members, is_sure)
         return None
 
-    def _agreed(self, ways: Sequence[Found]) -> Owners:
+    def _agreed(self, ways: Sequence[NameFacts]) -> Owners:
         read = [self._find(way) or Owners(way) for way in ways]
         meant = [(one.members, one.members and way.when) for one, way in zip(read, ways, strict=True)]
         if all(one == meant[0] for one in meant):
@@ -179,16 +181,16 @@ class StudentOf:
         """Return ``owners``; but if the name has Canvas numbers of several students, any of these may be meant."""
         if owners.found is None or owners.found.identity.lms != "canvas" or not owners.members:
             return owners
-        others = map(self._of, (Identity("canvas", number) for number in canvas_numbers(name)))
+        others = map(self._identified, (Identity("canvas", number) for number in canvas_numbers(name)))
         known = [students for members, is_sure in others if is_sure for students in members]
         meant = _distinct((*owners.members, *known))
         return replace(owners, members=(meant,)) if len(meant) > 1 else owners
 
-    def _who(self, identity: Identity) -> tuple[tuple[tuple[Student, ...], ...], bool]:
+    def _identify(self, identity: Identity) -> tuple[tuple[tuple[Student, ...], ...], bool]:
         """Return, for each member of a group, the students who may be meant; and whether a number identifies them."""
         known = self._by_number.get((identity.lms, identity.number or identity.login))
         if known is not None:
-            hits = [hit for names in known.members if (hit := self._first(names))]
+            hits = [hit for names in known.members if (hit := self._first_known(names))]
             hits = [hit for hit in hits if hit[1] or not self._is_another(hit[0], identity)]
             if hits and len(hits) == len(known.members):
                 return tuple((student,) for student, _ in hits), all(is_sure for _, is_sure in hits)
@@ -217,7 +219,7 @@ class StudentOf:
 
     @functools.cached_property
     def _numbers(self) -> dict[tuple[str, str], set[str]]:
-        """Return, for each LMS and student, the numbers or user names that certainly belong to the student."""
+        """The numbers or user names that certainly belong to a student, by LMS and student."""
         numbers: dict[tuple[str, str], set[str]] = defaultdict(set)
         for student in self._roster.students.values():
             for lms, number in student.lms.items():
@@ -225,12 +227,12 @@ class StudentOf:
                 if lms not in _BY_NUMBER or (number.isdigit() and lms != "gradescope"):
                     numbers[lms, student.id].add(number.casefold())
         for entry in (one for one in self._entries if one.number and one.lms in _LISTED):
-            for hit in map(self._first, entry.members):
+            for hit in map(self._first_known, entry.members):
                 if hit and hit[1]:
                     numbers[entry.lms, hit[0].id].add(entry.number.casefold())
         return numbers
 
-    def _first(self, names: Iterable[Identity]) -> tuple[Student, bool] | None:
+    def _first_known(self, names: Iterable[Identity]) -> tuple[Student, bool] | None:
         """Return the student whom the first unambiguous identity means, and whether it has a user name or address."""
         hits = ((self._roster.find(name), bool(name.login)) for name in names)
         return next(((found[0], is_sure) for found, is_sure in hits if len(found) == 1), None)
@@ -304,7 +306,7 @@ class NamedSource:
 
     @functools.cached_property
     def levels(self) -> int:
-        """Return how many names at the top of each path may identify a student, because no student has chosen them."""
+        """The number of names, from the top of each path, that may identify a student: no student has chosen them."""
         if self.is_own:
             return 1
         above = 1 if self.path.is_dir() else 0  # the name of the folder itself, which identifies no student

@@ -24,16 +24,16 @@ from autograder.safe_files import name_as_text
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 
-    _Who = Callable[[Mapping[str, str]], tuple[Identity, tuple[Identity, ...]]]
+    _IdentityReader = Callable[[Mapping[str, str]], tuple[Identity, tuple[Identity, ...]]]
     """A function that gets the groups of a pattern. It returns the student; and if the name can be read in several
     ways, the student according to each way.
     """
-    _Reader = Callable[[Sequence[str], int], "Found | None"]
+    _Reader = Callable[[Sequence[str], int], "NameFacts | None"]
     """A function that returns the facts in the name at one index of a path; None if it has another form."""
 
 
 @dataclass(frozen=True)
-class Found:
+class NameFacts:
     """The facts in the path of a file.
 
     Attributes:
@@ -58,7 +58,7 @@ class Found:
 
 def read_lms_name(
     parts: Sequence[str], place: int, form: str, is_notebook: Callable[[str], bool]
-) -> Found | None:
+) -> NameFacts | None:
     """Return the facts in one name of a path, if it has the form of this LMS; None if it has another form.
 
     Args:
@@ -84,9 +84,9 @@ def read_lms_name(
     return found
 
 
-def read_plain_name(name: str, file: str) -> Found:
+def read_plain_name(name: str, file: str) -> NameFacts:
     """Return the facts in a name that is a student's id or name, or a user name on GitHub."""
-    return Found(
+    return NameFacts(
         Identity(), file, readings=(Identity(login=name, name=name), Identity("github", number=name))
     )
 
@@ -139,8 +139,8 @@ def check_names(pattern: str, columns: Collection[str]) -> None:
         GradingError: The pattern contains an unknown word, a word twice, or no word that identifies a student.
     """
     words = [word for word in _WORD.findall(pattern) if word != "any"]
-    says_who = set(words) & {*_PATTERN_WORDS[:7], *columns}
-    if set(words) - {*_PATTERN_WORDS, *columns} or len(set(words)) < len(words) or not says_who:
+    identifying = set(words) & {*_PATTERN_WORDS[:7], *columns}
+    if set(words) - {*_PATTERN_WORDS, *columns} or len(set(words)) < len(words) or not identifying:
         known = ", ".join(f"{{{word}}}" for word in (*_PATTERN_WORDS, *columns))
         raise GradingError(
             f"--names {pattern!r} cannot be used. Use each of {known} at most once, and at least one that "
@@ -148,7 +148,7 @@ def check_names(pattern: str, columns: Collection[str]) -> None:
         )
 
 
-def read_names(pattern: str) -> Callable[[Sequence[str], int], Found | None]:
+def read_names(pattern: str) -> Callable[[Sequence[str], int], NameFacts | None]:
     """Return a function that reads a path according to a pattern.
 
     The pattern has to fit from the top of the path, or to identify the student by one of the path's first ``levels``
@@ -161,10 +161,12 @@ def read_names(pattern: str) -> Callable[[Sequence[str], int], Found | None]:
     words = _WORD.findall(pattern)
     literals = [unicodedata.normalize("NFC", one).casefold() for one in _WORD.split(pattern)[::2]]
     number = pattern.count("/") + 1
-    says_who = (place for place, name in enumerate(pattern.split("/")) if set(_WORD.findall(name)) - _NOT_WHO)
-    who = next(says_who, 0)
+    identifying = (
+        place for place, name in enumerate(pattern.split("/")) if set(_WORD.findall(name)) - _NOT_WHO
+    )
+    who = next(identifying, 0)
 
-    def read(parts: Sequence[str], levels: int) -> Found | None:
+    def read(parts: Sequence[str], levels: int) -> NameFacts | None:
         for place in range(min(len(parts) - number + 1, max(levels - who, 1))):
             *above, last = parts[place : place + number]
             bare = last.rpartition(".")[0] if place + number == len(parts) else ""
@@ -201,14 +203,14 @@ def _ways(text: str, literals: Sequence[str], words: Sequence[str]) -> Iterator[
                 yield {words[0]: text[:end], **way}
 
 
-def _found(said: dict[str, str], file: str) -> Found:
+def _found(said: dict[str, str], file: str) -> NameFacts:
     word = {name: value.strip() for name, value in said.items()}
     login = word.get("id") or word.get("email") or word.get("login") or word.get("number") or ""
     name = word.get("name") or f"{word.get('first', '')} {word.get('last', '')}".strip()
     column = next((one for one in word if one not in _PATTERN_WORDS), "")
     number = word.get(column, "")
     identity = Identity(column, number, login, name)
-    return Found(
+    return NameFacts(
         identity,
         word.get("file") or file,
         when=read_time(word.get("time", "")),
@@ -269,33 +271,34 @@ def _months() -> dict[str, int]:
     return {name: numbers.pop() for name, numbers in meant.items() if len(numbers) == 1}
 
 
-def _in_one_part(pattern: str, who: _Who, *, says_file: bool = False) -> _Reader:
+def _name_reader(pattern: str, identity_of: _IdentityReader, *, is_file_named: bool = False) -> _Reader:
     """Return a reader for names in which one folder, or the file, contains all facts.
 
     Args:
         pattern: The pattern of the name. Its groups ``file``, ``when``, ``order`` and ``late`` are the fields of
-            :class:`Found`.
-        who: Returns the student from the groups; and if the name can be read in several ways, the student by each way.
-        says_file: True if only the name of a folder has no group ``file``.
+            :class:`NameFacts`.
+        identity_of: Returns the student from the groups of the pattern; and if the name can be read in several ways,
+            the student according to each way.
+        is_file_named: True if the name of a file, unlike that of a folder, has to contain the group ``file``.
     """
     expression = re2.compile(f"(?s){pattern}")  # (?s) because a name may contain line breaks
 
-    def read(parts: Sequence[str], place: int) -> Found | None:
+    def read(parts: Sequence[str], place: int) -> NameFacts | None:
         match = expression.match(parts[place])
         found = match.groupdict() if match else {}
         is_file = place == len(parts) - 1
-        if not match or (says_file and is_file and found.get("file") is None):
+        if not match or (is_file_named and is_file and found.get("file") is None):
             return None
-        identity, readings = who(found)
+        identity, readings = identity_of(found)
         file, time = found.get("file") if is_file else parts[-1], found.get("when") or ""
         order, late = int(found.get("order") or 0), bool(found.get("late"))
         file = parts[place] if file is None else file
-        return Found(identity, file, read_time(time), order, late, readings)
+        return NameFacts(identity, file, read_time(time), order, late, readings)
 
     return read
 
 
-def _plainly(lms: str) -> _Who:
+def _plain_fields(lms: str) -> _IdentityReader:
     """Return a reader for names whose groups ``number``, ``login`` and ``name`` need no further interpretation."""
     return lambda found: (
         Identity(lms, **{one: found.get(one) or "" for one in ("number", "login", "name")}),
@@ -310,7 +313,7 @@ def _moodle(found: Mapping[str, str]) -> tuple[Identity, tuple[Identity, ...]]:
     return readings[0], readings
 
 
-def _at_its_end(lms: str) -> _Who:
+def _login_at_the_end(lms: str) -> _IdentityReader:
     """Return a reader for names that end with a mark and a user name, which may itself contain the mark."""
 
     def who(found: Mapping[str, str]) -> tuple[Identity, tuple[Identity, ...]]:
@@ -337,44 +340,46 @@ def _ends(text: str, mark: str) -> list[str]:
 _READERS = {
     # Ada Lovelace_12345_assignsubmission_file_lab_1_2.ipynb. Since Moodle 4.1 (before that, if folders were chosen)
     # this is the name of a folder.
-    "moodle": _in_one_part(
+    "moodle": _name_reader(
         r"^(?P<name>[^_]+)_(?P<number>\d+)_assignsubmission_(?:file|onlinetext)_?(?P<file>.*)$", _moodle
     ),
     # lab_1_2_adal_attempt_2025-10-03-14-05-06_lab_1_2.ipynb. If .txt follows the time instead of a file's name, the
     # file contains what the student typed. The first "attempt" in the name is Blackboard's, because the student chose
     # only the file's name.
-    "blackboard": _in_one_part(
+    "blackboard": _name_reader(
         r"^(?P<item>.+?)_(?P<login>[^_]+)_attempt_(?P<when>\d{4}(?:-\d\d){5})(?:_(?P<file>.+)|\.txt)$",
-        _at_its_end("blackboard"),
+        _login_at_the_end("blackboard"),
     ),
     # 12345-67890 - Ada Lovelace - Oct 3, 2025 205 PM is the name of a folder. The name of a file also has " -
     # lab_1_2.ipynb" at the end. The form of the date depends on the language of the course: for example, 3 October,
     # 2025 1405.
-    "brightspace": _in_one_part(
+    "brightspace": _name_reader(
         r"^(?P<number>\d+)-\d+ ?- ?(?P<name>.+?) ?- ?"
         r"(?P<when>(?:[^\d\s,.-]+\.? \d\d?|\d\d?\.? (?:de )?[^\d\s,.-]+\.?),? (?:de )?\d{4} "
         r"\d\d?[:.h]?\d\d(?: ?[AaPp]\.?[Mm]\.?)?)"
         r"(?: ?- ?(?P<file>.+))?$",
-        _plainly("brightspace"),
-        says_file=True,
+        _plain_fields("brightspace"),
+        is_file_named=True,
     ),
     # lovelaceada_LATE_123_456_lab_1_2-1.ipynb: first the number of the student, then that of the file. The name may be
     # empty, for example for a user named 🙂, because Canvas keeps only the word characters of a name
     # (github.com/instructure/canvas-lms, content_zipper.rb).
-    "canvas": _in_one_part(
+    "canvas": _name_reader(
         r"^(?P<login>[\pL\pM\pN_-]*?)_(?i:(?P<late>LATE)_)?(?P<number>\d+)_(?P<order>\d+)_(?P<file>.+)$",
-        _plainly("canvas"),
+        _plain_fields("canvas"),
     ),
     # Lab 1.2/Lovelace, Ada(ada)/Submission attachment(s)/lab_1_2.ipynb
-    "sakai": _in_one_part(
-        r"^(?P<name>[^,()]+, [^()]*)\((?P<login>[^()]+)\)$", _plainly("sakai"), says_file=True
+    "sakai": _name_reader(
+        r"^(?P<name>[^,()]+, [^()]*)\((?P<login>[^()]+)\)$", _plain_fields("sakai"), is_file_named=True
     ),
     # Lab 1.2/Lovelace_Ada_ada_12345/lab_1_2.ipynb (from memory)
-    "ilias": _in_one_part(
-        r"^(?P<item>[^_]+_.+?)_(?P<login>[^_]+)_\d+$", _at_its_end("ilias"), says_file=True
+    "ilias": _name_reader(
+        r"^(?P<item>[^_]+_.+?)_(?P<login>[^_]+)_\d+$", _login_at_the_end("ilias"), is_file_named=True
     ),
     # assignment_123_export/submission_456/lab_1_2.ipynb
-    "gradescope": _in_one_part(r"^submission_(?P<number>\d+)$", _plainly("gradescope"), says_file=True),
+    "gradescope": _name_reader(
+        r"^submission_(?P<number>\d+)$", _plain_fields("gradescope"), is_file_named=True
+    ),
 }
 TOLD_APART = tuple(form for form in _READERS if form != "ilias")
 """The forms that can be recognized from the names alone. A name from ILIAS resembles many others, so that form is used

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
     from pathlib import Path
 
-    from autograder.grading.collecting.submitted_file_names import Found
+    from autograder.grading.collecting.submitted_file_names import NameFacts
 
 ROSTER = """\
 id,first_name,last_name,email,canvas,github
@@ -35,7 +35,7 @@ BOMB = b" " * 60_000_000
 """What unpacks to more than a notebook may have."""
 
 
-def read_path(parts: Sequence[str], form: str, is_notebook: Callable[[str], bool]) -> Found | None:
+def read_path(parts: Sequence[str], form: str, is_notebook: Callable[[str], bool]) -> NameFacts | None:
     """The facts in a path of the form of one system, by its topmost name of that form."""
     parts = [unicodedata.normalize("NFC", part) for part in parts]
     ways = (read_lms_name(parts, place, form, is_notebook) for place in range(len(parts)))
