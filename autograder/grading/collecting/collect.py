@@ -21,7 +21,7 @@ from autograder.grading.collecting.downloaded_files import (
     read_list,
     without_sandbox,
 )
-from autograder.grading.collecting.file_owners import NamedSource, StudentOf, note_on, paths_of_students
+from autograder.grading.collecting.file_owners import NamedSource, StudentOf
 from autograder.grading.collecting.file_to_grade import ClassFolders, decide
 from autograder.grading.collecting.inbox_lines import NO_LIST, AssignmentOf, entries_of, in_utc, lines_of
 from autograder.grading.collecting.submitted_file_names import check_names
@@ -204,7 +204,7 @@ class _Collecting:
         options = self._options
         with self._inbox.receiving() as receiving, Archives(self._directory.state) as archives:
             lists = [path for path in paths if path.suffix.lower() == ".csv" and path.is_file()]
-            own = paths_of_students([path for path in paths if path not in lists], self._knowing())
+            own = self._knowing().paths_of_students([path for path in paths if path not in lists])
             if own:  # next to a student's own file, a list may come from a student, too, so it is not read as a list
                 own, lists = own.union(lists), []
             arrivals = [self._list(file, receiving) for path in lists for file in archives.files_of(path)]
@@ -213,7 +213,7 @@ class _Collecting:
                 files = tuple(archives.files_of(path, is_opened=path not in own))
                 source = NamedSource(path, files, path in own)
                 arrivals += self._source(source, student_of, receiving, archives)
-                note = note_on(source, student_of, options.form or options.names)
+                note = student_of.note_on(source, options.form or options.names)
                 self._notes += [note] if note else []
             if why := without_sandbox():
                 self._notes.append(

@@ -151,12 +151,50 @@ class StudentOf:
                 return (), f"{ids[-1]} cannot be a student's id: {reason}: correct the id under student"
         return tuple(ids), ""
 
-    def is_listed(self, path: Path) -> bool:
+    def paths_of_students(self, paths: Sequence[Path]) -> set[Path]:
+        """Return the paths of a command that are each the work of one student."""
+        formed = set(filter(self._has_lms_name, paths))
+        downloads = {path for path in paths if _DOWNLOAD.match(name_as_text(path.name))}
+        others = set(paths) - formed
+        if sum(path.is_dir() for path in others) > 1 or any(
+            _is_loose(path) or self._is_listed(path) for path in others - downloads
+        ):
+            return set(paths)
+        # A name of a known download means a download. But next to one student's work, a student may have chosen this
+        # name, too.
+        return formed if formed - downloads else set()
+
+    def note_on(self, source: NamedSource, form: str) -> str:
+        """Return a sentence about how a path was interpreted, if its name leaves that open; otherwise an empty text."""
+        if not source.files:
+            return f"{source.path} {EMPTY}"
+        if not source.is_own and not form:
+            return (
+                f"{source.path} was taken for a download, in which names identify the students: if one student sent "
+                "the file, rename it to the student's id"
+            )
+        if source.is_own and not _is_loose(source.path) and not self._is_listed(source.path):
+            return (
+                f"{source.path} was taken for one student's work because of its name or the other paths of the "
+                "command: if it is a download or a list, rename it to submissions.zip or list.csv, and collect it in "
+                "a separate command"
+            )
+        return ""
+
+    def _has_lms_name(self, path: Path) -> bool:
+        """Return True if a file or folder has a name that an LMS gives to the work of one student."""
+        owners = self._owners_by_name(path)
+        if owners.found is None:
+            return bool(owners.members)
+        # A user name on GitHub looks like any other name.
+        return owners.found.identity.lms not in ("", "github")
+
+    def _is_listed(self, path: Path) -> bool:
         """Return True if a file or folder has the name of a student in the list of students."""
-        owners = self.owners_by_name(path)
+        owners = self._owners_by_name(path)
         return bool(self._roster.students and owners.found and owners.members)
 
-    def owners_by_name(self, path: Path) -> Owners:
+    def _owners_by_name(self, path: Path) -> Owners:
         """Return the students of a file or folder that the instructor named, by its own name alone."""
         name = name_as_text(path.absolute().name)
         return self.owners((name, "") if path.is_dir() else (name,), 1, is_alone=True)
@@ -271,6 +309,16 @@ class StudentOf:
         return next(iter(times)) if len(times) == 1 else None
 
 
+# These are downloads, although their names look like names of files in Canvas:
+# gradebook_ROS_101_2_2025-10-03-14-05-06.zip, as Blackboard makes it, and lab_1_2_submissions.zip.
+_DOWNLOAD = re2.compile(r"^(?:gradebook_.*_\d{4}(?:-\d\d){5}(?: ?\(\d+\))?|\D+_\d_\d_[^_]+)\.zip$")
+
+
+def _is_loose(path: Path) -> bool:
+    """Return True if a path is a file that is neither a download nor a list."""
+    return path.is_file() and path.suffix.lower() not in (".zip", ".csv")
+
+
 def _distinct(several: Iterable[Iterable[Student]]) -> tuple[Student, ...]:
     return tuple({one.id: one for students in several for one in students}.values())
 
@@ -285,9 +333,6 @@ def _times(entries: Iterable[ListEntry]) -> dict[tuple[str, str], set[datetime]]
 
 _EXPORT = re2.compile(r"^assignment_\d+_export(?: ?\(\d+\)|-\d+)?$")
 _SUBMISSION = re2.compile(r"^submission_\d+$")
-# These are downloads, although their names look like names of files in Canvas:
-# gradebook_ROS_101_2_2025-10-03-14-05-06.zip, as Blackboard makes it, and lab_1_2_submissions.zip.
-_DOWNLOAD = re2.compile(r"^(?:gradebook_.*_\d{4}(?:-\d\d){5}(?: ?\(\d+\))?|\D+_\d_\d_[^_]+)\.zip$")
 
 
 @dataclass(frozen=True)
@@ -323,47 +368,3 @@ class NamedSource:
             and not any(map(_SUBMISSION.match, above))
         )
         return is_said and (form == "gradescope" or bool(above and _EXPORT.match(above[-1])))
-
-
-def paths_of_students(paths: Sequence[Path], student_of: StudentOf) -> set[Path]:
-    """Return the paths of a command that are each the work of one student."""
-    formed = {path for path in paths if _has_lms_name(student_of.owners_by_name(path))}
-    downloads = {path for path in paths if _DOWNLOAD.match(name_as_text(path.name))}
-    others = set(paths) - formed
-    if sum(path.is_dir() for path in others) > 1 or any(
-        _is_loose(path) or student_of.is_listed(path) for path in others - downloads
-    ):
-        return set(paths)
-    # A name of a known download means a download. But next to one student's work, a student may have chosen this name,
-    # too.
-    return formed if formed - downloads else set()
-
-
-def _has_lms_name(owners: Owners) -> bool:
-    """Return True if a name has the form that an LMS gives to the work of one student."""
-    if owners.found is None:
-        return bool(owners.members)
-    # A user name on GitHub looks like any other name.
-    return owners.found.identity.lms not in ("", "github")
-
-
-def note_on(source: NamedSource, student_of: StudentOf, form: str) -> str:
-    """Return a sentence about how a path was interpreted, if its name leaves that open; otherwise an empty text."""
-    if not source.files:
-        return f"{source.path} {EMPTY}"
-    if not source.is_own and not form:
-        return (
-            f"{source.path} was taken for a download, in which names identify the students: if one student sent "
-            "the file, rename it to the student's id"
-        )
-    if source.is_own and not _is_loose(source.path) and not student_of.is_listed(source.path):
-        return (
-            f"{source.path} was taken for one student's work because of its name or the other paths of the command: if "
-            "it is a download or a list, rename it to submissions.zip or list.csv, and collect it in a separate command"
-        )
-    return ""
-
-
-def _is_loose(path: Path) -> bool:
-    """Return True if a path is a file that is neither a download nor a list."""
-    return path.is_file() and path.suffix.lower() not in (".zip", ".csv")
