@@ -188,7 +188,6 @@ class _Collecting:
         folders = ClassFolders(self._directory, self._inbox, self._submitted)
         lines = decide(lines_of(self._directory, self._inbox, self._roster, edits), folders)
         results = self._submitted.bring(lines)
-        # ``bring`` returns no result for a line that was not to be placed.
         not_placed = {place: why for place, (state, why) in results.items() if state == LineState.NOT_PLACED}
         lines = [
             replace(one, state=LineState.NOT_PLACED, reason=not_placed[one.place])

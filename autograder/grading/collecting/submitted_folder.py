@@ -85,7 +85,7 @@ class Submitted:
         """Write each notebook to grade into ``submitted``, and remove notebooks that are no longer to be graded.
 
         Returns:
-            What happened to each notebook, with the reason: ``PLACED`` (written), ``UNCHANGED`` (already there),
+            The change of each notebook, with its reason: ``PLACED`` (written), ``UNCHANGED`` (already there),
             ``EARLIER`` (removed) or ``NOT_PLACED`` (could not be written).
 
         Raises:
@@ -99,10 +99,10 @@ class Submitted:
             elif one.state == LineState.LEFT_OUT and all(one.place):
                 refused.add((one.place, one.content))
         keys = {*wanted, *self._records.all(), *(place[:2] for place, _ in refused)}
-        results = (self._bring(*key, wanted[key], refused) for key in sorted(keys))
+        results = (self._bring_submission(*key, wanted[key], refused) for key in sorted(keys))
         return {place: (state, why) for several in results for place, state, why in several}
 
-    def _bring(
+    def _bring_submission(
         self,
         student: str,
         assignment: str,
