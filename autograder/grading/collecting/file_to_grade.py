@@ -46,7 +46,7 @@ def decide(lines: Iterable[Line], folders: ClassFolders) -> list[Line]:
     """Return the lines with a state and a reason. The work of a group becomes one line for each student."""
     decided: list[Line] = []
     soft: list[Line] = []
-    groups: dict[Place, list[Line]] = defaultdict(list)
+    by_place: dict[Place, list[Line]] = defaultdict(list)
     for line in sorted(lines, key=lambda one: (one.key, one.assignment)):
         if line.use == "no":
             decided.append(replace(line, state=LineState.LEFT_OUT, reason="no is written under use"))
@@ -57,11 +57,11 @@ def decide(lines: Iterable[Line], folders: ClassFolders) -> list[Line]:
         else:
             for student in line.students:
                 own = replace(line, students=(student,))
-                groups[own.place].append(own)
-    for place, group in groups.items():
+                by_place[own.place].append(own)
+    for place, files in by_place.items():
         decided += [
             replace(line, state=state, reason=reason)
-            for line, state, reason in _of_group(place, group, folders)
+            for line, state, reason in _of_notebook(place, files, folders)
         ]
     handed_in = {
         (one.student, one.assignment) for one in decided if one.state in (LineState.PLACED, LineState.EARLIER)
@@ -92,24 +92,24 @@ def cell_in(reason: str) -> str:
     return found[1] if found else ""
 
 
-def _of_group(place: Place, group: list[Line], folders: ClassFolders) -> Iterator[_Why]:
+def _of_notebook(place: Place, files: list[Line], folders: ClassFolders) -> Iterator[_Why]:
     """Yield the state and the reason of each file that a student handed in for one notebook."""
-    by_hand = [one for one in group if one.is_by_hand]
+    by_hand = [one for one in files if one.is_by_hand]
     present = [one for one in by_hand if folders.submitted.content(place) == one.content]
-    chosen = present or [one for one in group if one.use == "yes"]
+    chosen = present or [one for one in files if one.use == "yes"]
     if chosen:
         best, others = _best(place, chosen, folders)
         yield from others
         if best:
             # If a person corrected the file in ``submitted``, the student's own time of handing in still applies.
-            times = [one.when for one in group if one.when and present]
+            times = [one.when for one in files if one.when and present]
             yield replace(best, when=best.when or max(times, default=None)), LineState.PLACED, ""
         why = (
             "was put into the folder submitted by hand, and is graded"
             if present
             else "is graded, because yes is written under use"
         )
-        for one in group:
+        for one in files:
             if one not in chosen:
                 same = best and one.content == best.content
                 yield (
@@ -123,7 +123,7 @@ def _of_group(place: Place, group: list[Line], folders: ClassFolders) -> Iterato
             LineState.EARLIER,
             "the file was in submitted before: write yes under use to put it there again",
         )
-    pool = [one for one in group if not one.is_by_hand]
+    pool = [one for one in files if not one.is_by_hand]
     for sift in (_ambiguous_names, _unreadable):
         doubts = sift(place, pool, folders)
         yield from ((one, LineState.NOT_PLACED, reason) for one, reason in doubts)

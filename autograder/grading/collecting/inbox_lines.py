@@ -113,14 +113,21 @@ class _Reading:
                 opened[place] = edit if is_open else None
                 if is_open:
                     continue
-            given = opened.get(place, Edit()) if arrival.inner else Edit()
-            if given is not None:
-                yield self._line(arrival, edit, given)
+            of_archive = opened.get(place, Edit()) if arrival.inner else Edit()
+            if of_archive is not None:
+                yield self._line(arrival, edit, of_archive)
 
     def _owners(self, arrival: Arrival) -> Owners:
         return self.student_of.owners(arrival.parts, arrival.levels, is_alone=arrival.is_own)
 
-    def _line(self, arrival: Arrival, edit: Edit, given: Edit) -> Line:
+    def _line(self, arrival: Arrival, edit: Edit, of_archive: Edit) -> Line:
+        """Return the line of a file.
+
+        Args:
+            arrival: The file.
+            edit: What a person wrote into the line of the file.
+            of_archive: What a person wrote into the line of the student's archive that contains the file.
+        """
         rank = bool(self.delivery.assignment) - bool(self.delivery.form or self.delivery.names)
         line = Line(arrival.key, arrival.label, arrival.content, use=edit.use, rank=rank)
         if arrival.is_list:
@@ -138,13 +145,14 @@ class _Reading:
                 is_sure=True,
             )
         else:
-            line = self._collected(line, arrival, edit, given)
+            line = self._collected(line, arrival, edit, of_archive)
         return replace(line, when=datetime.fromisoformat(edit.handed_in)) if edit.handed_in else line
 
-    def _collected(self, line: Line, arrival: Arrival, edit: Edit, given: Edit) -> Line:
+    def _collected(self, line: Line, arrival: Arrival, edit: Edit, of_archive: Edit) -> Line:
+        """Return the line of a file that came from a system, completed with its students, notebook and time."""
         owners = self._owners(arrival)
-        asked = edit.assignment or given.assignment or self.delivery.assignment
-        if written := edit.student or given.student:
+        asked = edit.assignment or of_archive.assignment or self.delivery.assignment
+        if written := edit.student or of_archive.student:
             ids, reason = self.student_of.written(written)
         else:
             reason = self.student_of.reason_against(owners)
