@@ -4,9 +4,9 @@
 
     cells, left_out = read_notebook(read_bytes(path))
 
-Even if a file takes over its desk, it can only change what is read from this one file, because the document that the
-desk returns is checked (:func:`autograder.grading.running.admission.admitted_notebook`). If the document is impossible,
-or the desk fails on the file, the file counts as unreadable.
+Even if a file takes over its desk, it can only change what is read from this one file, because the desk's document is
+checked: it must be one that a desk could have made from a notebook. If the document is impossible, or the desk fails on
+the file, the file counts as unreadable.
 """
 
 from __future__ import annotations
@@ -14,11 +14,21 @@ from __future__ import annotations
 import signal
 from typing import TYPE_CHECKING
 
+import msgspec
+
 from autograder.boxes.box_connection import ChannelClosed
 from autograder.boxes.reading_desks import KeptDesk, answer_in, in_memory
+from autograder.execution.cell_outputs import IMAGES
 from autograder.grading.grading_errors import GradingError
-from autograder.grading.rebuilding.submitted_notebook import Unreadable, UnreadableSubmission
-from autograder.grading.running.worker_messages import LARGEST_DOCUMENT, Forged, admitted_notebook
+from autograder.grading.rebuilding.notebook_parsing import BASE64
+from autograder.grading.rebuilding.submitted_notebook import (
+    MAX_BYTES,
+    MAX_CHARACTERS,
+    ReadNotebook,
+    Unreadable,
+    UnreadableSubmission,
+)
+from autograder.grading.running.worker_messages import printable
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -29,6 +39,10 @@ if TYPE_CHECKING:
 
 CPU_SECONDS = 20
 """The maximum processor time of a desk process, in seconds. A file of 50 MB takes two seconds."""
+_LARGEST_DOCUMENT = MAX_BYTES + 14_000_000
+"""The maximum size of a desk's document, in bytes. It is larger than the limit for a student's file, because the
+document is JSON, in which a character of text takes up to 6 bytes. A picture is equally long in both.
+"""
 _SAMPLE = b'{"nbformat": 4, "metadata": {}, "cells": [{"cell_type": "code", "source": "x"}]}'
 _AS_SAVED = "Save the notebook in JupyterLab and hand in that file."
 _TOO_LONG = f"Reading the file takes far more time than reading a notebook. {_AS_SAVED}"
@@ -63,24 +77,31 @@ def document_of(desk: Desk | KeptDesk, data: bytes) -> bytes:
         ChannelClosed: No answer came, for a reason other than the file.
     """
     with in_memory(data) as source, in_memory() as answer:
-        code = desk.ask(source, answer, LARGEST_DOCUMENT + 1, CPU_SECONDS)
+        code = desk.ask(source, answer, _LARGEST_DOCUMENT + 1, CPU_SECONDS)
         if code:
             raise UnreadableSubmission(_TOO_LONG if code == -signal.SIGXCPU else _NOT_READ)
-        return answer_in(answer, LARGEST_DOCUMENT + 1)
+        return answer_in(answer, _LARGEST_DOCUMENT + 1)
 
 
 def checked(document: bytes) -> tuple[Sequence[SubmittedCell], int]:
     """Check a desk's document, and return its cells and the number of invalid cells that the desk left out.
 
     Raises:
-        UnreadableSubmission: The file is not a notebook, or the document is impossible.
+        UnreadableSubmission: The file is not a notebook, or no unmodified desk would make this document.
     """
+    if len(document) > _LARGEST_DOCUMENT:
+        raise UnreadableSubmission(_NOT_READ)
     try:
-        read = admitted_notebook(document)
-    except Forged as error:
+        read = msgspec.json.decode(document, type=ReadNotebook | Unreadable)
+    except (msgspec.MsgspecError, RecursionError, UnicodeError) as error:
         raise UnreadableSubmission(_NOT_READ) from error
     if isinstance(read, Unreadable):
-        raise UnreadableSubmission(read.reason)
+        raise UnreadableSubmission(printable(read.reason))
+    pictures = (picture for cell in read.cells for picture in cell.pictures)
+    if sum(len(cell.source) for cell in read.cells) > MAX_CHARACTERS or not all(
+        kind in IMAGES and BASE64.fullmatch(data) for _, kind, data in pictures
+    ):
+        raise UnreadableSubmission(_NOT_READ)
     return read.cells, read.left_out
 
 

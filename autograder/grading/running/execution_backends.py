@@ -39,52 +39,54 @@ if TYPE_CHECKING:
     """
 
 
-NOTE = (
-    "Graded without a sandbox: the submissions ran with all rights of the person who graded them, "
-    "and could have changed any grade."
-)
-"""A warning that the report and every feedback page show if a class was graded without a sandbox."""
+@contextlib.contextmanager
+def local(directory: ClassDirectory, jobs: int | None, judge: str) -> Iterator[Execute]:
+    """Yield a function that executes tasks on this machine.
 
-
-class SandboxMissing(GradingError):
-    """Submissions cannot be boxed on this machine, and the user has not asked to grade without boxes."""
-
-
-_off: set[Path] = set()
-"""The folders of the classes that this process grades without boxes. Folders are stored, and not ``ClassDirectory``
-objects, because several such objects may represent one class.
-"""
-
-
-def switch_off(path: Path) -> None:
-    """Let this process grade the class in the folder ``path`` without boxes, as ``--unsafe-no-sandbox`` does."""
-    _off.add(path.resolve())
-
-
-def switched_off(directory: ClassDirectory) -> bool:
-    """Return True if this class is graded without boxes, because of its configuration or :func:`switch_off`."""
-    configured = directory.config.WireExecute.get("unsafe_no_sandbox", False)
-    return bool(configured) or directory.path.resolve() in _off
-
-
-def require(directory: ClassDirectory) -> None:
-    """Check that submissions of this class can be boxed, or that the user allowed grading without boxes.
+    Args:
+        directory: The class.
+        jobs: The number of notebooks to execute at the same time; None for as many as processors and memory allow.
+        judge: The Python class that makes a judge, as ``module:class``; empty for the real judge.
 
     Raises:
-        SandboxMissing: Submissions cannot be boxed, and the user did not allow grading without boxes. The message says
-            what to do.
+        SandboxMissing: Submissions cannot be boxed on this machine. The message says what to do.
     """
-    if switched_off(directory):
-        return
-    from autograder.boxes.sandbox import why_impossible
+    require(directory)
+    boxed = not switched_off(directory)
 
-    why = why_impossible()
-    if why:
-        raise SandboxMissing(
-            f"Submissions cannot be isolated from your files and from each other here: {why}. To grade "
-            "them nevertheless, trusting every submission: --unsafe-no-sandbox, or "
-            "c.WireExecute.unsafe_no_sandbox = True in nbgrader_config.py."
-        )
+    def execute(tasks: Iterable[Task], on_start: Callable[[Task], None]) -> Generator[Done, None, None]:
+        return execute_all(tasks, scratch.path, jobs, on_start=on_start, judge=judge or JUDGE, boxed=boxed)
+
+    with HeldFolder(directory.scratch_prefix) as scratch:
+        yield execute
+
+
+@contextlib.contextmanager
+def cluster(
+    directory: ClassDirectory, scheduler: str, judge: str, tell: Callable[[str], None]
+) -> Iterator[Execute]:
+    """Yield a function that executes tasks on the workers of a Dask cluster.
+
+    Args:
+        directory: The class.
+        scheduler: The scheduler's address.
+        judge: The Python class that makes a judge, as ``module:class``; empty for the real judge.
+        tell: Called with a sentence for the instructor.
+
+    Raises:
+        GradingError: The cluster cannot be used. The message says why.
+    """
+    boxed = not switched_off(directory)
+    with connected(scheduler, judge=judge or JUDGE, boxed=boxed, tell=tell) as pool:
+        yield functools.partial(dispatch, pool)
+
+
+def remove_leftovers(directory: ClassDirectory) -> None:
+    """Remove temporary files that a killed batch left behind.
+
+    Call this only while holding the lock of the class, so that no other process uses the files.
+    """
+    sweep(directory.scratch_prefix)
 
 
 _PER_CORE = 4
@@ -94,21 +96,6 @@ most of its time waiting: for a timer, for ROS discovery, or for a program to st
 BOX_BYTES = Limits().beside_bytes + 150_000_000
 """The memory in bytes that is reserved for each notebook with its sandbox and judge."""
 _RESERVE_BYTES = 1_000_000_000
-
-
-def cores() -> int:
-    """Return the number of processors that this process may use."""
-    return len(os.sched_getaffinity(0))
-
-
-def at_once(processors: int, free_bytes: int) -> int:
-    """Return the default number of notebooks to execute at once: as many as fit into memory with ``BOX_BYTES`` each.
-
-    Memory for the grader itself and for one build per processor is subtracted first. The result is at most
-    ``_PER_CORE`` for each processor. A notebook that needs more than ``BOX_BYTES`` is later executed again, alone.
-    """
-    room = free_bytes - _RESERVE_BYTES - processors * BUILD_LIMITS.beside_bytes
-    return max(1, min(processors * _PER_CORE, room // BOX_BYTES))
 
 
 def execute_all(
@@ -135,6 +122,46 @@ def execute_all(
     with this_machine(scratch, slots, boxed=boxed) as machine:
         dispatcher = Dispatcher(machine, "", judge=judge, boxed=boxed, tell=lambda _: None)
         yield from dispatch(dispatcher, tasks, on_start)
+
+
+def at_once(processors: int, free_bytes: int) -> int:
+    """Return the default number of notebooks to execute at once: as many as fit into memory with ``BOX_BYTES`` each.
+
+    Memory for the grader itself and for one build per processor is subtracted first. The result is at most
+    ``_PER_CORE`` for each processor. A notebook that needs more than ``BOX_BYTES`` is later executed again, alone.
+    """
+    room = free_bytes - _RESERVE_BYTES - processors * BUILD_LIMITS.beside_bytes
+    return max(1, min(processors * _PER_CORE, room // BOX_BYTES))
+
+
+def cores() -> int:
+    """Return the number of processors that this process may use."""
+    return len(os.sched_getaffinity(0))
+
+
+@contextlib.contextmanager
+def connected(
+    address: str, *, judge: str, boxed: bool, tell: Callable[[str], None] = lambda _: None
+) -> Iterator[Dispatcher]:
+    """Connect to a Dask cluster, and yield a dispatcher that gives tasks to its workers.
+
+    At the end of the ``with`` block, the tasks that are not finished are canceled within seconds.
+
+    Args:
+        address: The scheduler's address, such as ``tcp://host:8786`` or ``tls://host:8786``.
+        judge: The Python class that makes a judge, as ``module:class``.
+        boxed: True to execute tasks in boxes. Workers that cannot make boxes are then rejected.
+        tell: Called with a sentence for the instructor.
+
+    Raises:
+        GradingError: Dask is not installed.
+        SchedulerGone: No scheduler answers at this address.
+        NoWorkers: The scheduler has no workers, or none of them can execute tasks.
+    """
+    with client_of(address) as link:
+        pool = Dispatcher(link, address, judge=judge, boxed=boxed, tell=tell)
+        pool.await_workers()
+        yield pool
 
 
 def dispatch(
@@ -172,9 +199,6 @@ def dispatch(
         thread.join()
 
 
-_ADDRESS = re.compile(r"(tcp|tls)://[^\s/]+:\d{1,5}")
-
-
 def check_dask() -> None:
     """Check that Dask is installed.
 
@@ -186,6 +210,9 @@ def check_dask() -> None:
             "Grading on a cluster needs Dask, which is not installed here. "
             f"Type: {installing('cluster', clone='--with cluster')}"
         )
+
+
+_ADDRESS = re.compile(r"(tcp|tls)://[^\s/]+:\d{1,5}")
 
 
 def check_address(address: str) -> None:
@@ -201,81 +228,49 @@ def check_address(address: str) -> None:
         )
 
 
-@contextlib.contextmanager
-def connected(
-    address: str, *, judge: str, boxed: bool, tell: Callable[[str], None] = lambda _: None
-) -> Iterator[Dispatcher]:
-    """Connect to a Dask cluster, and yield a dispatcher that gives tasks to its workers.
-
-    At the end of the ``with`` block, the tasks that are not finished are canceled within seconds.
-
-    Args:
-        address: The scheduler's address, such as ``tcp://host:8786`` or ``tls://host:8786``.
-        judge: The Python class that makes a judge, as ``module:class``.
-        boxed: True to execute tasks in boxes. Workers that cannot make boxes are then rejected.
-        tell: Called with a sentence for the instructor.
-
-    Raises:
-        GradingError: Dask is not installed.
-        SchedulerGone: No scheduler answers at this address.
-        NoWorkers: The scheduler has no workers, or none of them can execute tasks.
-    """
-    with client_of(address) as link:
-        pool = Dispatcher(link, address, judge=judge, boxed=boxed, tell=tell)
-        pool.await_workers()
-        yield pool
+NOTE = (
+    "Graded without a sandbox: the submissions ran with all rights of the person who graded them, "
+    "and could have changed any grade."
+)
+"""A warning that the report and every feedback page show if a class was graded without a sandbox."""
 
 
-def remove_leftovers(directory: ClassDirectory) -> None:
-    """Remove temporary files that a killed batch left behind.
-
-    Call this only while holding the lock of the class, so that no other process uses the files.
-    """
-    sweep(directory.scratch_prefix)
+class SandboxMissing(GradingError):
+    """Submissions cannot be boxed on this machine, and the user has not asked to grade without boxes."""
 
 
-@contextlib.contextmanager
-def local(directory: ClassDirectory, jobs: int | None, judge: str) -> Iterator[Execute]:
-    """Yield a function that executes tasks on this machine.
+_off: set[Path] = set()
+"""The folders of the classes that this process grades without boxes. Folders are stored, and not ``ClassDirectory``
+objects, because several such objects may represent one class.
+"""
 
-    Args:
-        directory: The class.
-        jobs: The number of notebooks to execute at the same time; None for as many as processors and memory allow.
-        judge: The Python class that makes a judge, as ``module:class``; empty for the real judge.
+
+def require(directory: ClassDirectory) -> None:
+    """Check that submissions of this class can be boxed, or that the user allowed grading without boxes.
 
     Raises:
-        SandboxMissing: Submissions cannot be boxed on this machine. The message says what to do.
+        SandboxMissing: Submissions cannot be boxed, and the user did not allow grading without boxes. The message says
+            what to do.
     """
-    pass  # MERGED
+    if switched_off(directory):
+        return
+    from autograder.boxes.sandbox import why_impossible
 
-    require(directory)
-    boxed = not switched_off(directory)
+    why = why_impossible()
+    if why:
+        raise SandboxMissing(
+            f"Submissions cannot be isolated from your files and from each other here: {why}. To grade "
+            "them nevertheless, trusting every submission: --unsafe-no-sandbox, or "
+            "c.WireExecute.unsafe_no_sandbox = True in nbgrader_config.py."
+        )
 
-    def execute(tasks: Iterable[Task], on_start: Callable[[Task], None]) -> Generator[Done, None, None]:
-        return execute_all(tasks, scratch.path, jobs, on_start=on_start, judge=judge or JUDGE, boxed=boxed)
 
-    with HeldFolder(directory.scratch_prefix) as scratch:
-        yield execute
+def switched_off(directory: ClassDirectory) -> bool:
+    """Return True if this class is graded without boxes, because of its configuration or :func:`switch_off`."""
+    configured = directory.config.WireExecute.get("unsafe_no_sandbox", False)
+    return bool(configured) or directory.path.resolve() in _off
 
 
-@contextlib.contextmanager
-def cluster(
-    directory: ClassDirectory, scheduler: str, judge: str, tell: Callable[[str], None]
-) -> Iterator[Execute]:
-    """Yield a function that executes tasks on the workers of a Dask cluster.
-
-    Args:
-        directory: The class.
-        scheduler: The scheduler's address.
-        judge: The Python class that makes a judge, as ``module:class``; empty for the real judge.
-        tell: Called with a sentence for the instructor.
-
-    Raises:
-        GradingError: The cluster cannot be used. The message says why.
-    """
-    pass  # MERGED
-    pass  # MERGED
-
-    boxed = not switched_off(directory)
-    with connected(scheduler, judge=judge or JUDGE, boxed=boxed, tell=tell) as pool:
-        yield functools.partial(dispatch, pool)
+def switch_off(path: Path) -> None:
+    """Let this process grade the class in the folder ``path`` without boxes, as ``--unsafe-no-sandbox`` does."""
+    _off.add(path.resolve())

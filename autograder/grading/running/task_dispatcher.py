@@ -3,7 +3,7 @@
 A worker is a machine with a number of slots, each of which executes one task at a time. This machine counts as one
 worker. A task runs again if its worker ended. It also runs again, but alone on a worker, if the result is not reliable:
 the grader itself failed, or other tasks may have used up the memory or processor time that this task needed. Every
-answer is checked by :func:`autograder.grading.running.admission.admitted` before it is used.
+answer is checked before it is used (:func:`autograder.grading.running.worker_messages.admitted`).
 """
 
 from __future__ import annotations
@@ -197,7 +197,9 @@ class Dispatcher:
                 return_until = None
             elif return_until is None:
                 return_until = time.monotonic() + self._return_seconds
-            self._take_in(self._link.hear(self._seconds_to_wait(return_until)))
+            deadlines = [flight.deadline for flight in self._flights.values()]
+            deadlines += [] if return_until is None else [return_until]
+            self._take_in(self._link.hear(min(deadlines) - time.monotonic() if deadlines else None))
             now = time.monotonic()
             if return_until is not None and now >= return_until and not self._workers:
                 raise NoWorkers(f"{self._nobody()} What was graded so far is kept.")
@@ -254,28 +256,27 @@ class Dispatcher:
         job.attempts += 1
         job.tried.add(address)
         self._number += 1
-        self._flights[self._number] = _Flight(job, address, time.monotonic() + _most_seconds(job.task))
+        # Wait for twice the limit, because the time limits of cells get longer while the machine is overloaded.
+        deadline = time.monotonic() + 2 * job.task.limits.longest + _EXTRA_SECONDS
+        self._flights[self._number] = _Flight(job, address, deadline)
         worker.flights.add(self._number)
-        order = self._order(job.task.beside_others(worker.slots > 1 and not job.alone))
-        self._link.say(Give(self._number, address, order))
-
-    def _seconds_to_wait(self, return_until: float | None) -> float | None:
-        deadlines = [flight.deadline for flight in self._flights.values()]
-        if return_until is not None:
-            deadlines.append(return_until)
-        return min(deadlines) - time.monotonic() if deadlines else None
-
-    def _order(self, task: Task) -> bytes:
         # The student's name is removed, because a worker does not need it.
-        nameless = msgspec.json.encode(replace(task, student=""))
-        return msgspec.json.encode(Order(msgspec.Raw(nameless), self._judge))
+        task = replace(job.task.beside_others(worker.slots > 1 and not job.alone), student="")
+        order = Order(msgspec.Raw(msgspec.json.encode(task)), self._judge)
+        self._link.say(Give(self._number, address, msgspec.json.encode(order)))
 
     def _take_in(self, news: News | None) -> None:
         match news:
             case Joined(address, name, data):
                 self._consider(address, name, data)
             case Unfit(address, name, reason):
-                self._refuse(address, name, _could_not_be_asked(reason))
+                why = f"the worker could not be asked for its offer ({reason})"
+                if "No module named" in reason:
+                    why = (
+                        f"the worker does not have the autograder ({reason}). Start it with `{COMMAND} worker`, "
+                        "or with the Python of the course's .venv"
+                    )
+                self._refuse(address, name, why)
             case Left(address, reason):
                 self._forget(address, reason or "the worker ended while it ran this submission")
             case Answered(number, data) if number in self._flights:
@@ -341,10 +342,7 @@ class Dispatcher:
         # after the other, so a worker without a fault would seem to fail again and again.
         if not flight.job.alone:
             worker.troubles = worker.troubles + 1 if execution.trouble else 0
-        if self._comes_again(flight.job, execution):
-            self._do_alone(flight, execution)
-        else:
-            self._done.append(Done(flight.job.task, execution))
+        self._take_result(flight, execution)
         if worker.troubles >= _MOST_TROUBLES and len(self._workers) > 1:
             # For example, a worker with a full disk would fail on each notebook at once, and then get the next one.
             self._turn_out(
@@ -352,15 +350,14 @@ class Dispatcher:
                 f"the worker failed on {worker.troubles} notebooks in a row: {execution.trouble}",
             )
 
-    def _comes_again(self, job: _Job, execution: Execution) -> bool:
-        """Return True if the task must run again: the result is not reliable, or another worker may succeed."""
-        if not job.alone:
-            return execution.says_nothing
-        others_may_do = job.attempts < ATTEMPTS and not job.tried >= self._workers.keys()
-        return bool(execution.trouble) and others_may_do
-
-    def _do_alone(self, flight: _Flight, execution: Execution) -> None:
+    def _take_result(self, flight: _Flight, execution: Execution) -> None:
+        """Let the task run again, alone, if its result is not reliable or another worker may succeed; else keep it."""
         job = flight.job
+        another_may_do = job.attempts < ATTEMPTS and not job.tried >= self._workers.keys()
+        again = bool(execution.trouble) and another_may_do if job.alone else execution.says_nothing
+        if not again:
+            self._done.append(Done(job.task, execution))
+            return
         if not execution.trouble:  # the worker did not fail, so this attempt does not count
             job.attempts -= 1
             job.tried.discard(flight.worker)
@@ -416,17 +413,3 @@ class Dispatcher:
             )
         reasons = "\n".join(f"  {reason}" for reason in self._refused.values())
         return f"No worker of the Dask scheduler at {self._address} can be given work:\n{reasons}"
-
-
-def _most_seconds(task: Task) -> float:
-    # Wait for twice the limit, because the time limits of cells get longer while the machine is overloaded.
-    return 2 * task.limits.longest + _EXTRA_SECONDS
-
-
-def _could_not_be_asked(reason: str) -> str:
-    if "No module named" in reason:
-        return (
-            f"the worker does not have the autograder ({reason}). Start it with `{COMMAND} worker`, "
-            "or with the Python of the course's .venv"
-        )
-    return f"the worker could not be asked for its offer ({reason})"

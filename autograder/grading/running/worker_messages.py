@@ -1,8 +1,11 @@
-"""Commands and messages between the dispatcher and its workers, and the checks of untrusted answers.
+"""Commands and messages between the dispatcher and its workers, and the check of a worker's answer.
 
-Commands and messages are sent as lines of JSON, to and from the executor process of this machine or the client process
-of a cluster. The client process only passes orders and answers on as bytes, without decoding them. An answer is
-untrusted, because the process that wrote it has read or executed a student's file; so is the answer of a desk.
+They are sent as lines of JSON, to and from the executor process of this machine or the client process of a cluster. The
+client process only passes orders and answers on as bytes, without decoding them.
+
+A student's program may have taken over the worker that executed it. So the dispatcher checks each answer before it uses
+the answer (:func:`admitted`): it must have the form of an execution of the task, and no check in it may give more than
+the check's maximum points. Everything that a browser would run is removed from the outputs.
 """
 
 from __future__ import annotations
@@ -12,20 +15,12 @@ from typing import TYPE_CHECKING
 
 import msgspec
 
-from autograder.execution.cell_outputs import IMAGES, NotebookOutputs
+from autograder.execution.cell_outputs import NotebookOutputs
 from autograder.execution.executed_cells import Execution
-from autograder.grading.rebuilding.notebook_parsing import BASE64
-from autograder.grading.rebuilding.submitted_notebook import (
-    MAX_BYTES,
-    MAX_CHARACTERS,
-    ReadNotebook,
-    Unreadable,
-)
 from autograder.verdict import State
 
 if TYPE_CHECKING:
-    from autograder.boxes.run_limits import Limits
-    from autograder.execution.executed_cells import CellCheck, CellRun
+    from autograder.execution.executed_cells import CellCheck
     from autograder.grading.grading_task import Task
     from autograder.verdict import Verdict
 
@@ -147,18 +142,13 @@ LARGEST_ANSWER = 16_000_000
 evidence takes a third more.
 """
 
-
 LARGEST_OFFER = 4_000
-LARGEST_DOCUMENT = MAX_BYTES + 14_000_000
-"""The maximum size of a desk's document, in bytes. It is larger than the limit for a student's file, because the
-document is JSON, in which a character of text takes up to 6 bytes. A picture is equally long in both.
-"""
 _MOST_SLOTS = 1_000
 _LONGEST_WORDS = 1_000
 
 
 class Forged(ValueError):
-    """A worker or desk gave an answer that an unmodified one would never give, for the reason in the message."""
+    """A worker gave an answer that an unmodified worker would never give, for the reason in the message."""
 
 
 def admitted_offer(data: bytes) -> Offer:
@@ -176,28 +166,6 @@ def admitted_offer(data: bytes) -> Offer:
     if not 1 <= offer.slots <= _MOST_SLOTS:
         raise Forged(f"the worker offers to execute {offer.slots} notebooks at the same time")
     return offer
-
-
-def admitted_notebook(data: bytes) -> ReadNotebook | Unreadable:
-    """Decode and check a desk's document, and return it.
-
-    Raises:
-        Forged: The data is not a document that a desk could have made from a notebook.
-    """
-    if len(data) > LARGEST_DOCUMENT:
-        raise Forged(f"the desk's document has {len(data)} bytes")
-    try:
-        document = msgspec.json.decode(data, type=ReadNotebook | Unreadable)
-    except (msgspec.MsgspecError, RecursionError, UnicodeError) as error:
-        raise Forged(f"the desk's document is not valid: {error}") from error
-    if isinstance(document, Unreadable):
-        return Unreadable(printable(document.reason))
-    if sum(len(cell.source) for cell in document.cells) > MAX_CHARACTERS:
-        raise Forged("the desk's document has too many characters")
-    for _, kind, picture in (one for cell in document.cells for one in cell.pictures):
-        if kind not in IMAGES or not BASE64.fullmatch(picture):
-            raise Forged("the desk's document has a picture that is not a bitmap")
-    return document
 
 
 def admitted(data: bytes, task: Task) -> Execution:
@@ -221,7 +189,16 @@ def admitted(data: bytes, task: Task) -> Execution:
         raise Forged("the answer names a cell that does not exist")
     for index, check in checks.items():
         _look_at(execution.verdicts[index], check)
-    cells = _harmless(execution.cells, task.limits)
+    # Cut and clean the outputs again: the worker should have done so, but is not trusted.
+    outputs = NotebookOutputs(
+        len(execution.cells), task.limits.cell_output_bytes, task.limits.notebook_output_bytes
+    )
+    for index, cell in enumerate(execution.cells):
+        outputs.put(index, cell.outputs)
+    cells = tuple(
+        replace(cell, outputs=outputs.of(index), error=cell.error[:500])
+        for index, cell in enumerate(execution.cells)
+    )
     return replace(execution, cells=cells, trouble=printable(execution.trouble))
 
 
@@ -239,13 +216,3 @@ def _look_at(verdict: Verdict, check: CellCheck) -> None:
         )
     if verdict.state is State.NOT_CHECKED and verdict.score:
         raise Forged("the answer gives points for an exercise that could not be checked")
-
-
-def _harmless(cells: tuple[CellRun, ...], limits: Limits) -> tuple[CellRun, ...]:
-    """Cut and clean the outputs of the cells again: the worker should have done so, but is not trusted."""
-    outputs = NotebookOutputs(len(cells), limits.cell_output_bytes, limits.notebook_output_bytes)
-    for index, cell in enumerate(cells):
-        outputs.put(index, cell.outputs)
-    return tuple(
-        replace(cell, outputs=outputs.of(index), error=cell.error[:500]) for index, cell in enumerate(cells)
-    )

@@ -222,7 +222,7 @@ def test_forgers_use_up_no_attempt_of_a_notebook(tasks: list[Task]) -> None:
 
 
 def test_a_worker_that_falls_silent_is_turned_out(tasks: list[Task], monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(dispatcher_module, "_most_seconds", lambda _: 0.05)
+    monkeypatch.setattr(dispatcher_module, "_EXTRA_SECONDS", 0.05 - 2 * tasks[0].limits.longest)
     link = FakeLink(joined("good"), joined("mute"), Asked())
     told: list[str] = []
     link.answer = lambda give, task: None if give.worker == "mute" else honest(give, task)
