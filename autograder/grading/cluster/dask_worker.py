@@ -31,60 +31,12 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 
-_changing = threading.Lock()
-_scratch: HeldFolder | None = None
-_executor: Executor | None = None
-
-
-def execute(data: bytes) -> bytes:
-    """Execute an order, and return the execution as JSON.
-
-    Args:
-        data: An :class:`autograder.grading.running.worker_messages.Order` as JSON.
-    """
-    global _scratch, _executor
-    worker = get_worker()
-    with _changing:
-        if _executor is None:
-            _scratch = HeldFolder("autograder-worker-")
-            _executor = Executor(_scratch.path)
-            worker.loop.add_callback(worker.plugin_add, plugin=_Watch(), name="autograder")
-        executor = _executor
-    return executor.execute(str(worker.get_current_task()), data)
-
-
-class _Watch(WorkerPlugin):
-    """Ends the processes of canceled orders, which Dask itself would let run on."""
-
-    def transition(self, key: Any, start: str, finish: str, **_: Any) -> None:
-        """End an order if it was canceled. Dask calls this when a task of the worker changes its state."""
-        if start == "executing" and finish == "released" and _executor is not None:
-            _executor.cancel(key)
-
-    def teardown(self, worker: Worker) -> None:  # noqa: ARG002  (Dask's signature)
-        """End the processes of all orders. Dask calls this when the worker ends."""
-        if _executor is not None:
-            _executor.stop()
-        if _scratch is not None:
-            _scratch.remove()
-
-
 _CONNECT_SECONDS = 30
 _GOODBYE_SECONDS = 2.0
-
 _SETTINGS = {
     "distributed.worker.profile.enabled": False,
     "distributed.admin.system-monitor.gil.enabled": False,
 }
-
-
-def offer(slots: int) -> Offer:
-    """Return this machine's offer to a cluster: the course version, and whether the machine can make boxes.
-
-    Args:
-        slots: The number of notebooks to execute at the same time.
-    """
-    return Offer(course_version(), slots, why_impossible())
 
 
 def start_worker(
@@ -153,3 +105,50 @@ async def _work(address: str, name: str, slots: int, folder: str, tell: Callable
         await worker.close(timeout=_GOODBYE_SECONDS, executor_wait=False)
     if ended_by_scheduler:
         tell(f"{name} ends: the scheduler at {address} has ended, or has told the worker to end.")
+
+
+def offer(slots: int) -> Offer:
+    """Return this machine's offer to a cluster: the course version, and whether the machine can make boxes.
+
+    Args:
+        slots: The number of notebooks to execute at the same time.
+    """
+    return Offer(course_version(), slots, why_impossible())
+
+
+_changing = threading.Lock()
+_scratch: HeldFolder | None = None
+_executor: Executor | None = None
+
+
+def execute(data: bytes) -> bytes:
+    """Execute an order, and return the execution as JSON.
+
+    Args:
+        data: An :class:`autograder.grading.running.worker_messages.Order` as JSON.
+    """
+    global _scratch, _executor
+    worker = get_worker()
+    with _changing:
+        if _executor is None:
+            _scratch = HeldFolder("autograder-worker-")
+            _executor = Executor(_scratch.path)
+            worker.loop.add_callback(worker.plugin_add, plugin=_Watch(), name="autograder")
+        executor = _executor
+    return executor.execute(str(worker.get_current_task()), data)
+
+
+class _Watch(WorkerPlugin):
+    """Ends the processes of canceled orders, which Dask itself would let run on."""
+
+    def transition(self, key: Any, start: str, finish: str, **_: Any) -> None:
+        """End an order if it was canceled. Dask calls this when a task of the worker changes its state."""
+        if start == "executing" and finish == "released" and _executor is not None:
+            _executor.cancel(key)
+
+    def teardown(self, worker: Worker) -> None:  # noqa: ARG002  (Dask's signature)
+        """End the processes of all orders. Dask calls this when the worker ends."""
+        if _executor is not None:
+            _executor.stop()
+        if _scratch is not None:
+            _scratch.remove()

@@ -220,9 +220,15 @@ class BatchProgress:
         if self._failed:
             words.append(f"{self._failed} not checked")
         if self._is_late():
-            words += self._slowest()
+            # Copy the dictionary, because other threads add and remove notebooks.
+            label, since = min(self._running.copy().items(), key=lambda one: one[1])
+            seconds = self._clock() - since
+            words.append(f"{label} for {_duration(seconds)} now")
+            if self._longest is not None and seconds < self._longest:
+                words.append(f"it is stopped in {_duration(self._longest - seconds)} at the latest")
         elif self._done:
-            words.append(_rate(1 / self._each()))
+            rate = 1 / self._each()
+            words.append(f"{rate:.1f}/s" if rate >= 1 else f"{60 * rate:.1f}/min")
             words.append(f"about {_duration(self._last + self._rest_of_all() - self._clock())} left")
         return words
 
@@ -236,19 +242,6 @@ class BatchProgress:
     def _is_late(self) -> bool:
         """Return True if the estimated time has passed and a notebook is still running."""
         return bool(self._running and self._done) and self._clock() > self._last + self._rest_of_all()
-
-    def _slowest(self) -> list[str]:
-        # Copy the dictionary, because other threads add and remove notebooks.
-        label, since = min(self._running.copy().items(), key=lambda one: one[1])
-        seconds = self._clock() - since
-        words = [f"{label} for {_duration(seconds)} now"]
-        if self._longest is not None and seconds < self._longest:
-            words.append(f"it is stopped in {_duration(self._longest - seconds)} at the latest")
-        return words
-
-
-def _rate(per_second: float) -> str:
-    return f"{per_second:.1f}/s" if per_second >= 1 else f"{60 * per_second:.1f}/min"
 
 
 def _duration(seconds: float) -> str:

@@ -26,7 +26,7 @@ from environment.python_child import python_child
 if TYPE_CHECKING:
     from pathlib import Path
 
-GOODBYE_SECONDS = 2.0
+_GOODBYE_SECONDS = 2.0
 """Seconds after which a process that was asked to end is killed, so that Ctrl-C takes less than three seconds."""
 _STARTS = 3
 """The maximum number of starts in a row of an executor process that ends without having sent a message."""
@@ -104,7 +104,7 @@ class ProcessLink:
     def _end(self) -> None:
         """Ask the process to end and to clean up, and kill it if it takes too long."""
         self._lines.finish()
-        end_soon(self._process, GOODBYE_SECONDS)
+        end_soon(self._process, _GOODBYE_SECONDS)
         self._lines.close()
         if self._scratch is not None and self._process.returncode != 0:
             end_processes_in(self._scratch)  # the process may have left processes of submissions
@@ -123,18 +123,12 @@ class ProcessLink:
             except (msgspec.MsgspecError, ValueError, MemoryError) as error:
                 reason = f"the process sent an invalid message: {error}"
             with self._changing:
-                if self._stopped or said_nothing >= _STARTS or not self._starts_again(reason):
+                if self._stopped or said_nothing >= _STARTS or self._scratch is None:
                     self._news.put(Broken(reason))
                     return
-
-    def _starts_again(self, reason: str) -> bool:
-        """Start the process again and return True, or return False if it is not a process that is started again."""
-        if self._scratch is None:
-            return False
-        self._end()
-        self._news.put(Left(ADDRESS, reason))
-        self._start()
-        return True
+                self._end()
+                self._news.put(Left(ADDRESS, reason))
+                self._start()
 
     def _last_words(self) -> str:
         with contextlib.suppress(ValueError, OSError):

@@ -43,102 +43,6 @@ if TYPE_CHECKING:
     from autograder.verdict import Verdict
 
 
-_BUILDS, _PROGRAMS = "builds", "bin"
-
-
-@dataclass(frozen=True)
-class Arrangement:
-    """The paths of one notebook's sockets and folders.
-
-    Attributes:
-        folder: A folder that only this notebook uses.
-        boxed: True if the notebook runs in boxes.
-        runners: The exercises whose subjects the grader itself builds and starts.
-    """
-
-    folder: Path
-    boxed: bool
-    runners: frozenset[str]
-
-    @property
-    def judges_folder(self) -> Path:
-        """The folder with the judge's socket, which the judge's box sees but the student's box must not see."""
-        return self.folder / "jobs"
-
-    @property
-    def judges_socket(self) -> Path:
-        """The path of the judge's socket, which is the same inside and outside the judge's box."""
-        return self.judges_folder / "sock"
-
-    def variables(self) -> Mapping[str, str]:
-        """Return environment variables that let ``colcon build`` in the notebook's box use the grader's builds."""
-        if not self.boxed:
-            return {}
-        path = f"{SHARED_FOLDER / _PROGRAMS}{os.pathsep}{os.environ.get('PATH', os.defpath)}"
-        return {"PATH": path, students_builds.GRADERS: str(SHARED_FOLDER / _BUILDS)}
-
-
-def arrange(task: Task, folder: Path) -> Arrangement:
-    """Make the folder for the judge's socket, and find the exercises whose subjects are programs.
-
-    Call this before the boxes of the notebook are made.
-
-    Args:
-        task: The notebook.
-        folder: A folder that only this notebook uses. Its path must be short, because it will contain a Unix socket.
-    """
-    checks = [cell.check.exercise for cell in task.cells if cell.check and not cell.check.asserts]
-    runners = {name: exercises.get(name).runner for name in checks if name in exercises.all_ids()}
-    arrangement = Arrangement(
-        folder, task.boxed, frozenset(name for name, runner in runners.items() if runner)
-    )
-    arrangement.judges_folder.mkdir()
-    return arrangement
-
-
-def served(
-    arrangement: Arrangement, place: BoxedPlace | UnboxedPlace, addresses: Addresses
-) -> WorkspaceService:
-    """Return the workspace service of a notebook, for use in a ``with`` block that lasts as long as the notebook runs.
-
-    Args:
-        arrangement: The result of :func:`arrange`.
-        place: The boxes of the notebook.
-        addresses: The addresses of the fork servers.
-    """
-    folder = arrangement.folder / "work-of-jobs"
-    folder.mkdir()
-    jobs: BoxedJobs | PlainJobs
-    builds, ahead = build_cache.graders_root(), None
-    if isinstance(place, BoxedPlace):
-        jobs = BoxedJobs(addresses.supervisors, place.programs, folder, addresses.programs)
-        ros = boxed_ros_environment()
-        _furnish(place.shared)
-        if arrangement.runners:
-            build_ahead(builds, jobs)
-        builds, ahead = folder / "builds", builds
-        builds.mkdir(mode=0o700)
-        sockets = ServiceSockets(arrangement.judges_socket, place.shared / _BUILDS)
-    else:
-        jobs = PlainJobs(kernel_environment(folder / "home", {}), handed_in=True)
-        ros = ros_environment()
-        sockets = ServiceSockets(arrangement.judges_socket, None)
-    # PYTHONUNBUFFERED: output comes without delay. PYTHONFAULTHANDLER: a program that hangs can print the stacks of its
-    # threads.
-    variables = {**ros, "PYTHONUNBUFFERED": "1", "PYTHONFAULTHANDLER": "1"}
-    return WorkspaceService(sockets, jobs, builds, variables, folder, ahead)
-
-
-def _furnish(shared: Path) -> None:
-    """Write a replacement for the colcon command into ``shared``, a folder that the student's box can read."""
-    programs = shared / _PROGRAMS
-    programs.mkdir()
-    colcon = programs / "colcon"
-    stand_in = python_child("-m", "autograder.workspaces.builds.students_builds").command
-    colcon.write_text(f'#!/bin/sh\nexec {shlex.join(stand_in)} "$@"\n')
-    colcon.chmod(0o755)
-
-
 MOST_EVIDENCE = 4_000_000
 """The maximum size in bytes of the evidence of one notebook, enough for ten checks. If the evidence of a further check
 would exceed this size, it is not kept.
@@ -183,34 +87,34 @@ def _execute(
         raise NoSandbox("this task must run in a box, but no box can be made here")
     boxed = task.boxed
     kind: type[BoxedPlace] | type[UnboxedPlace] = BoxedPlace if boxed else UnboxedPlace
-    arrangement = arrange(task, folder)
+    paths = _make_paths(task, folder)
     place = kind(
         addresses,
         folder,
         task.files,
-        {**_ros_variables(stack, boxed=boxed), **arrangement.variables()},
+        {**_ros_variables(stack, boxed=boxed), **paths.variables()},
         SOCKET_VARIABLE,
         JudgeSetting(
             controlled_judge.environment(boxed=boxed),
-            [*controlled_judge.readable(), arrangement.judges_folder],
+            [*controlled_judge.readable(), paths.judges_folder],
         ),
         task.limits,
-        programs=bool(arrangement.runners),
+        programs=bool(paths.runners),
     )
     stack.enter_context(place)
     began(place)
-    stack.enter_context(served(arrangement, place, addresses))
+    stack.enter_context(_workspace_service(paths, place, addresses))
 
     def made(of_programs: bool) -> Any:
         start = functools.partial(place.start_judge, of_programs=of_programs)
         process = judge(place.judge_socket, seed=task.seed, start=start)
-        process.workspaces = str(arrangement.judges_socket)
+        process.workspaces = str(paths.judges_socket)
         process.keeps_evidence = True
         process.is_boxed = boxed
         return process
 
     first = next((cell.check.exercise for cell in task.cells if cell.check and not cell.check.asserts), "")
-    judges = _Judges(made, arrangement.runners, first)
+    judges = _Judges(made, paths.runners, first)
     execution = run_notebook(
         task.cells,
         judge=judges,
@@ -218,18 +122,31 @@ def _execute(
         folder=folder,
         limits=task.limits,
         guard=place.guard,
-        patient=patiently,
+        patient=_patiently,
     )
     short_of_memory = place.guard.reason() is Ended.OUT_OF_MEMORY
     crowded_out = task.limits.beside and (
-        short_of_memory or judges.crowded or a_check_was_stopped(task.cells, execution)
+        short_of_memory or judges.crowded or _a_check_was_stopped(task.cells, execution)
     )
     return replace(
         execution, crowded_out=crowded_out, cpu_seconds=place.guard.cpu_seconds, evidence=judges.evidence
     )
 
 
-def a_check_was_stopped(cells: Sequence[Cell], execution: Execution) -> bool:
+def _ros_variables(stack: contextlib.ExitStack, *, boxed: bool) -> Mapping[str, str]:
+    """Return environment variables that make ROS use loopback, the notebook's own domain, and plain logs on stdout."""
+    if boxed:
+        # No other nodes are on this network, so any domain is free.
+        return {**boxed_ros_environment(), "ROS_DOMAIN_ID": "0"}
+    return {**ros_environment(), "ROS_DOMAIN_ID": str(stack.enter_context(lease_domain()))}
+
+
+def _imported(name: str) -> Any:
+    module, _, attribute = name.partition(":")
+    return getattr(importlib.import_module(module), attribute)
+
+
+def _a_check_was_stopped(cells: Sequence[Cell], execution: Execution) -> bool:
     """Return True if a check by the judge reached the time limit of its cell.
 
     Usually this means that the machine is busy, because the judge has a shorter limit for each of its waits.
@@ -239,7 +156,7 @@ def a_check_was_stopped(cells: Sequence[Cell], execution: Execution) -> bool:
     return any(made and run.ended is Ended.TIMED_OUT for made, run in runs)
 
 
-def patiently(seconds: float) -> Left:
+def _patiently(seconds: float) -> Left:
     """Return a function that returns the seconds left of a limit, which gets longer on an overloaded machine."""
     patience = Patience(seconds)
     return lambda: patience.left
@@ -298,14 +215,95 @@ class _Judges:
         return verdict
 
 
-def _ros_variables(stack: contextlib.ExitStack, *, boxed: bool) -> Mapping[str, str]:
-    """Return environment variables that make ROS use loopback, the notebook's own domain, and plain logs on stdout."""
-    if boxed:
-        # No other nodes are on this network, so any domain is free.
-        return {**boxed_ros_environment(), "ROS_DOMAIN_ID": "0"}
-    return {**ros_environment(), "ROS_DOMAIN_ID": str(stack.enter_context(lease_domain()))}
+_BUILDS, _PROGRAMS = "builds", "bin"
 
 
-def _imported(name: str) -> Any:
-    module, _, attribute = name.partition(":")
-    return getattr(importlib.import_module(module), attribute)
+@dataclass(frozen=True)
+class _Paths:
+    """The paths of one notebook's sockets and folders.
+
+    Attributes:
+        folder: A folder that only this notebook uses.
+        boxed: True if the notebook runs in boxes.
+        runners: The exercises whose subjects the grader itself builds and starts.
+    """
+
+    folder: Path
+    boxed: bool
+    runners: frozenset[str]
+
+    @property
+    def judges_folder(self) -> Path:
+        """The folder with the judge's socket, which the judge's box sees but the student's box must not see."""
+        return self.folder / "jobs"
+
+    @property
+    def judges_socket(self) -> Path:
+        """The path of the judge's socket, which is the same inside and outside the judge's box."""
+        return self.judges_folder / "sock"
+
+    def variables(self) -> Mapping[str, str]:
+        """Return environment variables that let ``colcon build`` in the notebook's box use the grader's builds."""
+        if not self.boxed:
+            return {}
+        path = f"{SHARED_FOLDER / _PROGRAMS}{os.pathsep}{os.environ.get('PATH', os.defpath)}"
+        return {"PATH": path, students_builds.GRADERS: str(SHARED_FOLDER / _BUILDS)}
+
+
+def _make_paths(task: Task, folder: Path) -> _Paths:
+    """Make the folder for the judge's socket, and find the exercises whose subjects are programs.
+
+    Call this before the boxes of the notebook are made.
+
+    Args:
+        task: The notebook.
+        folder: A folder that only this notebook uses. Its path must be short, because it will contain a Unix socket.
+    """
+    checks = [cell.check.exercise for cell in task.cells if cell.check and not cell.check.asserts]
+    runners = {name: exercises.get(name).runner for name in checks if name in exercises.all_ids()}
+    paths = _Paths(folder, task.boxed, frozenset(name for name, runner in runners.items() if runner))
+    paths.judges_folder.mkdir()
+    return paths
+
+
+def _workspace_service(
+    paths: _Paths, place: BoxedPlace | UnboxedPlace, addresses: Addresses
+) -> WorkspaceService:
+    """Return the workspace service of a notebook, for use in a ``with`` block that lasts as long as the notebook runs.
+
+    Args:
+        paths: The result of :func:`_make_paths`.
+        place: The boxes of the notebook.
+        addresses: The addresses of the fork servers.
+    """
+    folder = paths.folder / "work-of-jobs"
+    folder.mkdir()
+    jobs: BoxedJobs | PlainJobs
+    builds, ahead = build_cache.graders_root(), None
+    if isinstance(place, BoxedPlace):
+        jobs = BoxedJobs(addresses.supervisors, place.programs, folder, addresses.programs)
+        ros = boxed_ros_environment()
+        _furnish(place.shared)
+        if paths.runners:
+            build_ahead(builds, jobs)
+        builds, ahead = folder / "builds", builds
+        builds.mkdir(mode=0o700)
+        sockets = ServiceSockets(paths.judges_socket, place.shared / _BUILDS)
+    else:
+        jobs = PlainJobs(kernel_environment(folder / "home", {}), handed_in=True)
+        ros = ros_environment()
+        sockets = ServiceSockets(paths.judges_socket, None)
+    # PYTHONUNBUFFERED: output comes without delay. PYTHONFAULTHANDLER: a program that hangs can print the stacks of its
+    # threads.
+    variables = {**ros, "PYTHONUNBUFFERED": "1", "PYTHONFAULTHANDLER": "1"}
+    return WorkspaceService(sockets, jobs, builds, variables, folder, ahead)
+
+
+def _furnish(shared: Path) -> None:
+    """Write a replacement for the colcon command into ``shared``, a folder that the student's box can read."""
+    programs = shared / _PROGRAMS
+    programs.mkdir()
+    colcon = programs / "colcon"
+    stand_in = python_child("-m", "autograder.workspaces.builds.students_builds").command
+    colcon.write_text(f'#!/bin/sh\nexec {shlex.join(stand_in)} "$@"\n')
+    colcon.chmod(0o755)

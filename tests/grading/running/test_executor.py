@@ -23,7 +23,7 @@ from autograder.execution.executed_cells import Cell, CellCheck, CellRun, Execut
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.grading_task import Task
 from autograder.grading.running import execution_backends
-from autograder.grading.running.task_execution import a_check_was_stopped
+from autograder.grading.running.task_execution import _a_check_was_stopped
 from autograder.grading.running.worker_messages import ADDRESS, Give, Order
 
 if TYPE_CHECKING:
@@ -77,7 +77,7 @@ def test_a_check_of_the_judge_that_was_stopped_says_nothing_while_others_ran_bes
     check: CellCheck | None, ended: Ended, stopped: bool
 ) -> None:
     execution = Execution((CellRun(Ended.DONE), CellRun(ended)))
-    assert a_check_was_stopped([Cell("x = 1"), Cell("check(x)", check=check)], execution) is stopped
+    assert _a_check_was_stopped([Cell("x = 1"), Cell("check(x)", check=check)], execution) is stopped
 
 
 @pytest.mark.parametrize(("said", "times"), [("6", 1), ("crowded 6", 2)])
