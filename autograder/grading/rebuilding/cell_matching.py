@@ -76,15 +76,7 @@ def match(master: Sequence[Known], submitted: Sequence[SubmittedCell]) -> Matche
         master: The cells of the master, in order.
         submitted: The submitted cells.
     """
-    matching = _Matching(master, submitted)
-    matching.by_id()
-    matching.by_text()
-    matching.by_given_part()
-    elsewhere = matching.elsewhere()
-    taken = {place for places in matching.places.values() for place in places}
-    return Matches(
-        matching.places, frozenset(matching.unmarked), elsewhere, frozenset(matching.written - taken)
-    )
+    return _Matching(master, submitted).matches()
 
 
 def normalized(text: str) -> str:
@@ -97,23 +89,32 @@ class _Matching:
         self._master = {cell.name: cell for cell in master if cell.name}
         self._submitted = submitted
         handed_out = {"", *(normalized(text) for cell in master for text in cell.texts)}
-        self.written = {
+        self._written = {
             place for place, cell in enumerate(submitted) if normalized(cell.source) not in handed_out
         }
         """The indexes of the cells that contain a student's text."""
-        self.unmarked: set[int] = set()
-        self.places: dict[str, list[int]] = {}
+        self._unmarked: set[int] = set()
+        self._places: dict[str, list[int]] = {}
         for place, cell in enumerate(submitted):
             if cell.grade_id in self._master:
-                self.places.setdefault(cell.grade_id, []).append(place)
+                self._places.setdefault(cell.grade_id, []).append(place)
 
-    def by_id(self) -> None:
+    def matches(self) -> Matches:
+        """Match the cells in several ways, from the surest to the least sure."""
+        self._match_ids()
+        self._match_texts()
+        self._match_given_parts()
+        elsewhere = self._elsewhere()
+        taken = {place for places in self._places.values() for place in places}
+        return Matches(self._places, frozenset(self._unmarked), elsewhere, frozenset(self._written - taken))
+
+    def _match_ids(self) -> None:
         """Match cells by their ids, if no grade_id has matched them."""
         names = {cell.identifier: cell.name for cell in self._missing() if cell.identifier}
         for place, cell in self._left():
             self._take(names.get(cell.identifier, ""), place)
 
-    def by_text(self) -> None:
+    def _match_texts(self) -> None:
         """Match cells by equal text. If several cells have the same text, match them in their order."""
         names: dict[str, list[str]] = {}
         for missing in self._missing():
@@ -121,9 +122,9 @@ class _Matching:
                 names.setdefault(text, []).append(missing.name)
         for place, cell in self._left():
             same = names.get(normalized(cell.source), [])
-            self._take(next((name for name in same if name not in self.places), ""), place)
+            self._take(next((name for name in same if name not in self._places), ""), place)
 
-    def by_given_part(self) -> None:
+    def _match_given_parts(self) -> None:
         """Match an answer that defines no names, such as a text, with a cell that contains the question above it."""
         for missing in self._missing():
             if not missing.is_answer or _defines(missing) or not self._is_telling(missing):
@@ -132,7 +133,7 @@ class _Matching:
                 if cell.kind is missing.kind and _has_lines(cell.source, missing.given):
                     self._take(missing.name, place)
 
-    def elsewhere(self) -> dict[str, list[int]]:
+    def _elsewhere(self) -> dict[str, list[int]]:
         """Return, for each answer cell without a match, the submitted cells that define the same names.
 
         A given cell in which a student wrote the answer is found, too: with the answer, the cell no longer matches the
@@ -141,7 +142,7 @@ class _Matching:
         code = {
             place: cell.source
             for place, cell in enumerate(self._submitted)
-            if cell.kind is CellType.CODE and place in self.written
+            if cell.kind is CellType.CODE and place in self._written
         }
         left = [place for place, _ in self._left() if place in code]
         found = {}
@@ -152,22 +153,22 @@ class _Matching:
                 if places:
                     found[missing.name] = places
         merged = {place for places in found.values() for place in places}
-        for name in [name for name in self.places if not self._master[name].is_answer]:
-            self.places[name] = [place for place in self.places[name] if place not in merged]
-            if not self.places[name]:
-                del self.places[name]
+        for name in [name for name in self._places if not self._master[name].is_answer]:
+            self._places[name] = [place for place in self._places[name] if place not in merged]
+            if not self._places[name]:
+                del self._places[name]
         return found
 
     def _take(self, name: str, place: int) -> None:
-        if name and name not in self.places:
-            self.places[name] = [place]
-            self.unmarked.add(place)
+        if name and name not in self._places:
+            self._places[name] = [place]
+            self._unmarked.add(place)
 
     def _missing(self) -> list[Known]:
-        return [cell for name, cell in self._master.items() if name not in self.places]
+        return [cell for name, cell in self._master.items() if name not in self._places]
 
     def _left(self) -> list[tuple[int, SubmittedCell]]:
-        taken = {place for places in self.places.values() for place in places}
+        taken = {place for places in self._places.values() for place in places}
         return [(place, cell) for place, cell in enumerate(self._submitted) if place not in taken]
 
     def _is_telling(self, missing: Known) -> bool:

@@ -1,7 +1,10 @@
 """Parses a notebook into typed cells with limited sizes, and drops everything else, such as outputs.
 
-This module is also the program of the desk, which is a process in a box that parses the file of one student, and does
-nothing else.
+The class's source notebooks may be parsed in any process. But a student's file is parsed only in a desk, so call
+:func:`autograder.grading.rebuilding.submission_desk.read_notebook` for it. The desk is a process in a box that parses
+the file of one student, and does nothing else. A fork server (:mod:`autograder.boxes.fork_server`) forks it with the
+system call filter for readers, and it calls :func:`prepare` and :func:`run`. If a student has crafted a file that keeps
+a parser busy or uses up memory, the limits of this process end it.
 """
 
 from __future__ import annotations
@@ -88,19 +91,17 @@ def _decoded(data: bytes) -> Any:
 def _raw_cells(notebook: Mapping[str, Any]) -> list[Any]:
     if notebook["nbformat"] == 3 and isinstance(notebook.get("worksheets"), list):
         sheets = [sheet.get("cells") for sheet in notebook["worksheets"] if isinstance(sheet, Mapping)]
-        return [_from_version_3(cell) for cells in sheets if isinstance(cells, list) for cell in cells]
+        cells = [cell for cells in sheets if isinstance(cells, list) for cell in cells]
+        return [
+            {**cell, "source": cell.get("input", cell.get("source"))} if isinstance(cell, Mapping) else cell
+            for cell in cells
+        ]
     cells = notebook.get("cells")
     if notebook["nbformat"] != 4 or not isinstance(cells, list):
         raise UnreadableSubmission(
             f"This is not a notebook of format 4 (the file says format {str(notebook['nbformat'])[:20]})."
         )
     return cells
-
-
-def _from_version_3(cell: Any) -> Any:
-    if not isinstance(cell, Mapping):
-        return cell
-    return {**cell, "source": cell.get("input", cell.get("source"))}
 
 
 def _cell(cell: Any) -> SubmittedCell | None:
@@ -145,7 +146,7 @@ def _text(value: str) -> str:
     return value.encode("utf-8", "replace").decode("utf-8")
 
 
-SAMPLE = (
+_SAMPLE = (
     b'\xef\xbb\xbf{"nbformat": 4, "metadata": {}, "cells": [{"cell_type": "markdown", "source": ["\\ud800"], '
     b'"metadata": {"nbgrader": {"grade_id": "a", "grade": true}}, "attachments": {"a.png": {"image/png": "aa=="}}}]}'
 )
@@ -157,7 +158,7 @@ def prepare() -> None:
     """Load everything that a desk needs, because the desk itself cannot open files."""
     # No garbage collection: a desk process frees nothing before it ends, so searches for garbage only take time.
     gc.disable()
-    for data in (SAMPLE, b"[", b"\xff"):
+    for data in (_SAMPLE, b"[", b"\xff"):
         answer_to(data)
 
 

@@ -26,50 +26,6 @@ if TYPE_CHECKING:
     from autograder.grading.rebuilding.submitted_notebook import SubmittedCell
 
 
-MOST_CHARACTERS = 10_000_000
-"""The maximum length of all bitmaps attached to a notebook, in base64 characters; a screenshot has about a million."""
-_SHOWN = re2.compile(r"\(attachment:([\w.%+-]+)\)")
-
-
-class ShownPictures:
-    """Finds the pictures that text cells show: attached by the student, or otherwise from the master.
-
-    Args:
-        given: For each cell of the master, its text as students receive it, and its attachments. An attachment that
-            none of these texts shows belongs to a solution, and is left out.
-    """
-
-    def __init__(self, given: Iterable[tuple[str, Mapping[str, Mapping[str, str]]]]) -> None:
-        self._pictures: dict[str, Mapping[str, str]] = {}
-        self._left: Counter[str] = Counter()
-        self._characters = MOST_CHARACTERS
-        for text, attached in given:
-            for name in attached.keys() & set(_SHOWN.findall(text)):
-                self._pictures[name] = attached[name]
-                self._left[name] += 1
-
-    def of(self, text: str, own: Mapping[str, Mapping[str, str]]) -> NotebookNode:
-        """Return the pictures that a text shows.
-
-        A picture of the master is returned only as often as the master shows it, so that many copies of a cell do not
-        make a page too large.
-
-        Args:
-            text: The text of a cell.
-            own: The pictures that the student attached to the cell.
-        """
-        found: dict[str, Mapping[str, str]] = {}
-        for name in dict.fromkeys(_SHOWN.findall(text)):
-            size = sum(map(len, own.get(name, {}).values()))
-            if 0 < size <= self._characters:
-                self._characters -= size
-                found[name] = own[name]
-            elif self._left[name] > 0:
-                self._left[name] -= 1
-                found[name] = self._pictures[name]
-        return nbformat_nodes.copied(NotebookNode(found))
-
-
 _START = ""
 _HIDDEN = re.compile(r"(BEGIN|END) (HIDDEN TESTS|MARK SCHEME)")
 _ELSEWHERE = (
@@ -160,13 +116,20 @@ class _Sorting:
 
     def remarks(self) -> list[str]:
         """Return sentences about the differences from the master that the student should know."""
-        found = [*self._on_lost_marks(), *self._on_missing_cells()]
+        found = []
+        in_their_place = self._chosen.keys() & self._matches.elsewhere.keys()
+        unmarked = self._matches.unmarked
+        if count := len(unmarked) + len(in_their_place):
+            found.append(
+                f"{counted(count, 'cell')} had lost the metadata by which nbgrader knows a cell: some editors and "
+                "programs drop it. The grader recognized the cells by their ids or their text."
+            )
+        found += self._on_missing_cells()
         for name, places in self._places.items():
             found += self._remarks_on(name, places)
         order = sorted(self._chosen, key=lambda name: self._chosen[name])
         if order != [name for name in self._master if name in self._chosen]:
             found.append("Cells of the notebook had changed places. They were put back into their order.")
-        unmarked = self._matches.unmarked
         strangers = {
             cell.grade_id
             for place, cell in enumerate(self._submitted)
@@ -183,14 +146,6 @@ class _Sorting:
                 "cells that you added."
             )
         return found
-
-    def _on_lost_marks(self) -> Iterator[str]:
-        in_their_place = self._chosen.keys() & self._matches.elsewhere.keys()
-        if count := len(self._matches.unmarked) + len(in_their_place):
-            yield (
-                f"{counted(count, 'cell')} had lost the metadata by which nbgrader knows a cell: some editors and "
-                "programs drop it. The grader recognized the cells by their ids or their text."
-            )
 
     def _on_missing_cells(self) -> Iterator[str]:
         missing = [name for name in self._master if name not in self._chosen]
@@ -233,14 +188,10 @@ class _Sorting:
         """
         stub = self._master[name].source.strip()
         answered = [place for place in places if self._submitted[place].source.strip() != stub] or places
-        check = self._place_of_next_check(name)
-        return ([place for place in answered if place < check] or answered)[-1]
-
-    def _place_of_next_check(self, name: str) -> int:
-        """Return the index, in the submission, of the first check that follows the named cell in the master."""
         behind = itertools.dropwhile(lambda other: other != name, self._master)
         checks = (self._places[one] for one in behind if is_check(self._master[one]) and one in self._places)
-        return max(next(checks, [len(self._submitted)]))
+        check = max(next(checks, [len(self._submitted)]))
+        return ([place for place in answered if place < check] or answered)[-1]
 
     def _anchor(self, place: int) -> str:
         """Return the name of the cell at an index of the submission, or of the nearest named cell before it."""
@@ -291,21 +242,92 @@ class _Sorting:
 
     def _filled(self, name: str, cell: NotebookNode) -> NotebookNode:
         filled = nbformat_nodes.copied(cell)
-        if is_answer(cell):
-            filled.pop("attachments", None)
-        if is_answer(cell) and name in self._chosen:
+        if not is_answer(cell):
+            return filled
+        filled.pop("attachments", None)
+        graded_by_hand = cell.metadata.nbgrader.get("grade", False)
+        if name in self._chosen:
             answer = self._submitted[self._chosen[name]]
             filled.update(source=answer.source, attachments=_attachments(answer))
-        elif is_answer(cell) and self._may_be_answered_elsewhere(name):
+        elif name in self._elsewhere or (graded_by_hand and self._matches.own):
             # The missing answer cell gets a note that sends a person to the other cells. The stub would overwrite the
             # student's definitions in these cells.
             filled["source"] = _ELSEWHERE if cell.cell_type == CellType.MARKDOWN else f"# {_ELSEWHERE}"
         return filled
 
-    def _may_be_answered_elsewhere(self, name: str) -> bool:
-        """Return True if a person has to look for the answer of a missing cell in other cells."""
-        by_a_person = self._master[name].metadata.nbgrader.get("grade", False) and bool(self._matches.own)
-        return name in self._elsewhere or by_a_person
+
+def _finished(master: NotebookNode, cells: list[NotebookNode], remarks: list[str]) -> NotebookNode:
+    if remarks:
+        lines = ["**Remarks of the grader**", "", *(f"- {_escaped(remark)}" for remark in remarks)]
+        cells = [nbformat_nodes.cell(CellType.MARKDOWN, "\n".join(lines)), *cells]
+    pictures = _ShownPictures(
+        (_handed_out(cell)[1], cell.get("attachments", {}))
+        for cell in master.cells
+        if not is_the_masters(cell)
+    )
+    for index, cell in enumerate(cells):
+        # `cell["id"]` is faster than `cell.id`, because for an attribute a NotebookNode first searches its class.
+        # The id is made from the cell's index and name, and is not a random id, so that each run gives the same file.
+        cell["id"] = re.sub(r"[^A-Za-z0-9_-]", "-", f"{index}-{grade_id(cell) or 'own'}")[:64]
+        attached = cell.pop("attachments", {})
+        shown = attached if is_the_masters(cell) else pictures.of(cell["source"], attached)
+        if cell["cell_type"] == CellType.MARKDOWN and shown:
+            cell["attachments"] = shown
+        if cell["cell_type"] == CellType.CODE:
+            cell["outputs"] = []
+            cell["execution_count"] = None
+    return nbformat_nodes.notebook(
+        cells,
+        {
+            "kernelspec": {"name": "python3", "display_name": "Python 3 (ipykernel)", "language": "python"},
+            "language_info": {"name": "python", "pygments_lexer": "ipython3", "file_extension": ".py"},
+            "autograder": {"remarks": remarks},
+        },
+    )
+
+
+_MOST_CHARACTERS = 10_000_000
+"""The maximum length of all bitmaps attached to a notebook, in base64 characters; a screenshot has about a million."""
+_SHOWN = re2.compile(r"\(attachment:([\w.%+-]+)\)")
+
+
+class _ShownPictures:
+    """Finds the pictures that text cells show: attached by the student, or otherwise from the master.
+
+    Args:
+        given: For each cell of the master, its text as students receive it, and its attachments. An attachment that
+            none of these texts shows belongs to a solution, and is left out.
+    """
+
+    def __init__(self, given: Iterable[tuple[str, Mapping[str, Mapping[str, str]]]]) -> None:
+        self._pictures: dict[str, Mapping[str, str]] = {}
+        self._left: Counter[str] = Counter()
+        self._characters = _MOST_CHARACTERS
+        for text, attached in given:
+            for name in attached.keys() & set(_SHOWN.findall(text)):
+                self._pictures[name] = attached[name]
+                self._left[name] += 1
+
+    def of(self, text: str, own: Mapping[str, Mapping[str, str]]) -> NotebookNode:
+        """Return the pictures that a text shows.
+
+        A picture of the master is returned only as often as the master shows it, so that many copies of a cell do not
+        make a page too large.
+
+        Args:
+            text: The text of a cell.
+            own: The pictures that the student attached to the cell.
+        """
+        found: dict[str, Mapping[str, str]] = {}
+        for name in dict.fromkeys(_SHOWN.findall(text)):
+            size = sum(map(len, own.get(name, {}).values()))
+            if 0 < size <= self._characters:
+                self._characters -= size
+                found[name] = own[name]
+            elif self._left[name] > 0:
+                self._left[name] -= 1
+                found[name] = self._pictures[name]
+        return nbformat_nodes.copied(NotebookNode(found))
 
 
 def grade_id(cell: NotebookNode) -> str:
@@ -324,6 +346,12 @@ def is_check(cell: NotebookNode) -> bool:
     return marked and not is_answer(cell) and cell.cell_type == CellType.CODE
 
 
+def is_the_masters(cell: NotebookNode) -> bool:
+    """Return True if a cell of a rebuilt notebook was copied from the master unchanged."""
+    marks = cell.get("metadata", {}).get("nbgrader", {})
+    return bool(marks.get("locked")) and not marks.get("solution")
+
+
 def _known(cell: NotebookNode) -> Known:
     return Known(
         name=grade_id(cell),
@@ -336,53 +364,14 @@ def _known(cell: NotebookNode) -> Known:
 
 
 def _handed_out(cell: NotebookNode) -> tuple[str, str]:
-    """Return the full text of a master's cell, and its text as students receive it."""
-    return cell.source, _without_hidden(cell.source)
-
-
-def is_the_masters(cell: NotebookNode) -> bool:
-    """Return True if a cell of a rebuilt notebook was copied from the master unchanged."""
-    marks = cell.get("metadata", {}).get("nbgrader", {})
-    return bool(marks.get("locked")) and not marks.get("solution")
-
-
-def _without_hidden(source: str) -> str:
-    """Return the text of a master's cell without hidden tests and the mark scheme."""
+    """Return the full text of a master's cell, and its text for students: no hidden tests and no mark scheme."""
     kept, hidden = [], False
-    for line in source.splitlines():
+    for line in cell.source.splitlines():
         if _HIDDEN.search(line):
             hidden = "BEGIN" in line
         elif not hidden:
             kept.append(line)
-    return "\n".join(kept)
-
-
-def _finished(master: NotebookNode, cells: list[NotebookNode], remarks: list[str]) -> NotebookNode:
-    if remarks:
-        cells = [_remarks_cell(remarks), *cells]
-    pictures = ShownPictures(
-        (_handed_out(cell)[1], cell.get("attachments", {}))
-        for cell in master.cells
-        if not is_the_masters(cell)
-    )
-    for index, cell in enumerate(cells):
-        # `cell["id"]` is faster than `cell.id`, because for an attribute a NotebookNode first searches its class.
-        cell["id"] = _cell_id(cell, index)
-        attached = cell.pop("attachments", {})
-        shown = attached if is_the_masters(cell) else pictures.of(cell["source"], attached)
-        if cell["cell_type"] == CellType.MARKDOWN and shown:
-            cell["attachments"] = shown
-        if cell["cell_type"] == CellType.CODE:
-            cell["outputs"] = []
-            cell["execution_count"] = None
-    return nbformat_nodes.notebook(
-        cells,
-        {
-            "kernelspec": {"name": "python3", "display_name": "Python 3 (ipykernel)", "language": "python"},
-            "language_info": {"name": "python", "pygments_lexer": "ipython3", "file_extension": ".py"},
-            "autograder": {"remarks": remarks},
-        },
-    )
+    return cell.source, "\n".join(kept)
 
 
 def _extra(cell: SubmittedCell) -> NotebookNode:
@@ -393,11 +382,6 @@ def _extra(cell: SubmittedCell) -> NotebookNode:
 
 def _attachments(cell: SubmittedCell) -> dict[str, dict[str, str]]:
     return {name: {kind: data} for name, kind, data in cell.pictures}
-
-
-def _remarks_cell(remarks: list[str]) -> NotebookNode:
-    lines = ["**Remarks of the grader**", ""] + [f"- {_escaped(remark)}" for remark in remarks]
-    return nbformat_nodes.cell(CellType.MARKDOWN, "\n".join(lines))
 
 
 def _escaped(text: str) -> str:
@@ -422,8 +406,3 @@ def _listed(names: Sequence[str]) -> str:
 
 def _quoted(name: str) -> str:
     return "`" + re.sub(r"[^\w.\-]", "?", name)[:80] + "`"
-
-
-def _cell_id(cell: NotebookNode, index: int) -> str:
-    """Return an id made from the cell's index and name, and not a random id, so that each run gives the same file."""
-    return re.sub(r"[^A-Za-z0-9_-]", "-", f"{index}-{grade_id(cell) or 'own'}")[:64]

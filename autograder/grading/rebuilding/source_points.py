@@ -111,19 +111,11 @@ def _read(directory: ClassDirectory, assignment: str) -> list[GradedCell]:
             elif is_grade(cell) or is_task(cell):
                 points = float(cell.metadata.nbgrader["points"])
                 found.append(GradedCell(notebook, name, name, points, by_judge=False))
-    _check_names(directory, assignment, [cell.exercise for cell in found])
-    return found
-
-
-def _check_names(directory: ClassDirectory, assignment: str, names: list[str]) -> None:
-    """Check that no two graded cells of an assignment have the same name in the table of points.
-
-    Raises:
-        MasterUnusable: Two cells have the same name.
-    """
+    names = [cell.exercise for cell in found]
     twice = next((name for name in names if [*names, *NO_EXERCISE].count(name) > 1), "")
     if twice:
         raise MasterUnusable(
             f"{directory.path / 'source' / assignment}: two lines in the table of points would have the name "
             f"{twice!r}. Give one of the cells another name (grade_id)."
         )
+    return found

@@ -161,13 +161,13 @@ def _check(path: Path, status: os.stat_result) -> None:
             raise NotAFile(f"{_shown(path.name)} is {name}; hand in the notebook itself.")
     if not stat.S_ISREG(status.st_mode):
         raise NotAFile(f"{_shown(path.name)} is not a file; hand in the notebook itself.")
-    if status.st_nlink > 1 and _is_somebody_elses(path, status):
+    if status.st_nlink > 1 and _is_another_students(path, status):
         raise NotAFile(
             f"{_shown(path.name)} is another student's file under a second name (a hard link); hand in your own."
         )
 
 
-def _is_somebody_elses(path: Path, status: os.stat_result) -> bool:
+def _is_another_students(path: Path, status: os.stat_result) -> bool:
     """Return True if a file with several names (hard links) belongs to another student or to the class.
 
     The file belongs to the student whose folder has the oldest change time, which only the system can set. So a student

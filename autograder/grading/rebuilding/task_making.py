@@ -38,47 +38,6 @@ if TYPE_CHECKING:
 LEFT_OUT = "[a demonstration of the notebook: left out while grading]"
 
 
-def is_demonstration(cell: NotebookNode) -> bool:
-    """Return True if a cell comes from the master, and the master marks it as a demonstration.
-
-    Args:
-        cell: A cell of a rebuilt notebook. In such a notebook, only cells from the master have nbgrader's metadata.
-    """
-    given = cell.cell_type == CellType.CODE and is_the_masters(cell) and not _marks(cell).get("grade")
-    return given and CellRole.DEMONSTRATION in cell.metadata.get("tags", ())
-
-
-def demonstrations_of(notebook: NotebookNode) -> frozenset[int]:
-    """Return the indexes of the cells on which no grade depends.
-
-    Args:
-        notebook: A rebuilt notebook.
-    """
-    earning = [place for place, cell in enumerate(notebook.cells) if _marks(cell).get("grade")]
-    last = max(earning, default=len(notebook.cells))
-    return frozenset(
-        place
-        for place, cell in enumerate(notebook.cells)
-        if is_demonstration(cell) or (place > last and _is_file_or_terminal(cell))
-    )
-
-
-def _marks(cell: NotebookNode) -> dict[str, Any]:
-    marks: dict[str, Any] = cell.metadata.get("nbgrader", {})
-    return marks
-
-
-def _is_file_or_terminal(cell: NotebookNode) -> bool:
-    magic = cell.source.partition("\n")[0].partition(" ")[0].strip()
-    is_own = cell.cell_type == CellType.CODE and bool(_marks(cell))
-    return is_own and magic in ("%%bash", "%%writefile", "%%program")
-
-
-def are_run(directory: ClassDirectory) -> bool:
-    """Return True if demonstrations are run in this class (option ``demonstrations`` in its configuration)."""
-    return bool(directory.config.WireExecute.get("demonstrations", False))
-
-
 def tasks_of(directory: ClassDirectory, submission: Submission) -> list[Task]:
     """Return the tasks of a submission, one for each notebook of the assignment.
 
@@ -99,8 +58,11 @@ def task_of(directory: ClassDirectory, submission: Submission, notebook: str) ->
     master = directory.master(assignment, notebook)
     rebuilt, problem = _rebuilt(directory, submission, notebook, master)
     prose = [cell.source for cell in master.cells if cell.cell_type == CellType.MARKDOWN]
-    cells = cells_of(rebuilt, demonstrations=are_run(directory), prose=prose)
+    cells = cells_of(rebuilt, demonstrations=_runs_demonstrations(directory), prose=prose)
     work = hashlib.sha256(msgspec.json.encode(cells)).hexdigest()
+    pictures = [
+        cell["attachments"] for cell in rebuilt.cells if "attachments" in cell and not is_the_masters(cell)
+    ]
     task = Task(
         student=student,
         assignment=assignment,
@@ -112,7 +74,7 @@ def task_of(directory: ClassDirectory, submission: Submission, notebook: str) ->
         files=directory.files(assignment),
         problem=problem,
         remarks=() if problem else tuple(rebuilt.metadata["autograder"]["remarks"]),
-        pictures=_hash_of_pictures(rebuilt),
+        pictures=hashlib.sha256(msgspec.json.encode(pictures)).hexdigest() if pictures else "",
         boxed=not execution_backends.switched_off(directory),
     )
     return task, rebuilt
@@ -133,13 +95,6 @@ def _rebuilt(
         return rebuild_unreadable(master, str(error)), str(error)
     others = [one for one in directory.named_cells.assignments(cells) if one != submission.assignment]
     return rebuild(master, cells, left_out, others), ""
-
-
-def _hash_of_pictures(rebuilt: NotebookNode) -> str:
-    own = [
-        cell["attachments"] for cell in rebuilt.cells if "attachments" in cell and not is_the_masters(cell)
-    ]
-    return hashlib.sha256(msgspec.json.encode(own)).hexdigest() if own else ""
 
 
 def cells_of(
@@ -174,3 +129,44 @@ def cells_of(
         )
         for place, cell in enumerate(notebook.cells)
     )
+
+
+def _runs_demonstrations(directory: ClassDirectory) -> bool:
+    """Return True if demonstrations are run in this class (option ``demonstrations`` in its configuration)."""
+    return bool(directory.config.WireExecute.get("demonstrations", False))
+
+
+def demonstrations_of(notebook: NotebookNode) -> frozenset[int]:
+    """Return the indexes of the cells on which no grade depends.
+
+    Args:
+        notebook: A rebuilt notebook.
+    """
+    earning = [place for place, cell in enumerate(notebook.cells) if _marks(cell).get("grade")]
+    last = max(earning, default=len(notebook.cells))
+
+    def writes_or_runs(cell: NotebookNode) -> bool:
+        magic = cell.source.partition("\n")[0].partition(" ")[0].strip()
+        is_named = cell.cell_type == CellType.CODE and bool(_marks(cell))
+        return is_named and magic in ("%%bash", "%%writefile", "%%program")
+
+    return frozenset(
+        place
+        for place, cell in enumerate(notebook.cells)
+        if is_demonstration(cell) or (place > last and writes_or_runs(cell))
+    )
+
+
+def is_demonstration(cell: NotebookNode) -> bool:
+    """Return True if a cell comes from the master, and the master marks it as a demonstration.
+
+    Args:
+        cell: A cell of a rebuilt notebook. In such a notebook, only cells from the master have nbgrader's metadata.
+    """
+    given = cell.cell_type == CellType.CODE and is_the_masters(cell) and not _marks(cell).get("grade")
+    return given and CellRole.DEMONSTRATION in cell.metadata.get("tags", ())
+
+
+def _marks(cell: NotebookNode) -> dict[str, Any]:
+    marks: dict[str, Any] = cell.metadata.get("nbgrader", {})
+    return marks
