@@ -21,15 +21,10 @@ from rich.console import Console
 
 from autograder.grading.batch_work import AskedFor, Work, find_work, without_grade, would_change
 from autograder.grading.class_store import ClassStore
+from autograder.grading.classes import gradebook_reading
 from autograder.grading.classes.class_checks import changed_master_warnings, check_configuration, limits_of
-from autograder.grading.classes.class_directory import ClassDirectory, RefusedFile, Submission
-from autograder.grading.classes.gradebook_reading import (
-    SubmissionEntry,
-    gradebook_file,
-    read_due_dates,
-    read_entries,
-    read_entry,
-)
+from autograder.grading.classes.class_directory import ClassDirectory, Submission
+from autograder.grading.classes.gradebook_reading import SubmissionEntry
 from autograder.grading.classes.submission_times import handed_in_at
 from autograder.grading.collecting.submitted_folder import misplaced_files, rename_decomposed_folders
 from autograder.grading.grading_errors import MasterUnusable, is_disk_full
@@ -51,11 +46,8 @@ if TYPE_CHECKING:
     from datetime import datetime
 
     from autograder.execution.executed_cells import Execution
-    from autograder.grading.class_records import Entered
-    from autograder.grading.classes.gradebook_reading import Entries
     from autograder.grading.classes.result_writer import Writer
     from autograder.grading.grading_task import Task
-    from autograder.grading.rebuilding.source_points import GradedCell
     from autograder.grading.running.execution_backends import Execute
     from autograder.grading.table.class_table import Difference
     from autograder.grading.table.roster import Roster
@@ -106,10 +98,8 @@ def grade(
     if scheduler is None:
         backend = execution_backends.local(directory, jobs, judge)
     else:
-        from autograder.grading.running.execution_backends import check_address, check_dask
-
-        check_dask()
-        check_address(scheduler)
+        execution_backends.check_dask()
+        execution_backends.check_address(scheduler)
         tell = functools.partial(plain_line, console)
         backend = execution_backends.cluster(directory, scheduler, judge, tell)
     with directory.lock(), contextlib.ExitStack() as stack:
@@ -147,20 +137,15 @@ class _Batch:
         self._dry_run = dry_run
         self._directory = directory
         self._store = store
-        self._entered: dict[tuple[str, str], Entered] = {}
         self._console = console
         self._fingerprints = Fingerprints(directory)
         self._released = released = read_released(directory, store, self._fingerprints)
-        self._cells: dict[str, tuple[GradedCell, ...]] = released.cells
+        self._cells = released.cells
         self._what_counts = read_what_counts(directory, released.cells)
         if not released.cells and released.unusable:
             raise MasterUnusable(next(iter(released.unusable.values())))
-        self._works: list[Work] = []
-        self._others: list[Work] = []
-        self._refused: list[RefusedFile] = []
         self._problems: list[str] = []
         self._notices: list[str] = []
-        self._entries: Entries = {}
         self._timings = Timings()
         self._feedback = feedback
         self._began = time.monotonic()
@@ -204,7 +189,7 @@ class _Batch:
 
     def plan(self, again: bool) -> None:
         """Find out which submissions already have their grades in the gradebook, and which have to be graded."""
-        self._entries = read_entries(self._directory.gradebook_url)
+        self._entries = gradebook_reading.read_entries(self._directory.gradebook_url)
         self._entered = self._store.entered()
         for work in self._others:
             self._settle(work)
@@ -268,7 +253,7 @@ class _Batch:
         """Return the report on the chosen submissions, and write ``grades.csv``, which contains the whole class."""
         url = self._directory.gradebook_url
         works = {work.key: work for work in (*self._works, *self._others)}
-        entries = read_entries(url)
+        entries = gradebook_reading.read_entries(url)
         # For a submission that this run did not grade, use the diagnoses from the run that entered its points.
         judged = {key: one.rows for key, one in self._entered.items()}
         judged |= {key: work.rows for key, work in works.items() if work.rows is not None}
@@ -305,7 +290,7 @@ class _Batch:
             seconds=seconds,
             timings=self._timings,
             note=execution_backends.NOTE if execution_backends.switched_off(self._directory) else "",
-            gradebook=gradebook_file(url),
+            gradebook=gradebook_reading.gradebook_file(url),
             due=self._due_dates(url),
         )
 
@@ -314,7 +299,7 @@ class _Batch:
         zone, asked = self._directory.time_zone, self._asked.assignments or self._cells
         return {
             name: due.replace(tzinfo=UTC).astimezone(zone)
-            for name, due in sorted(read_due_dates(url).items())
+            for name, due in sorted(gradebook_reading.read_due_dates(url).items())
             if name in asked
         }
 
@@ -400,7 +385,7 @@ class _Batch:
             work.rows = rows
             work.written = True
             self._written += 1
-            self._make_pages(work, read_entry(self._directory.gradebook_url, *work.key))
+            self._make_pages(work, gradebook_reading.read_entry(self._directory.gradebook_url, *work.key))
         work.results.clear()
 
     def _keep_time(self, work: Work) -> SubmissionEntry:
@@ -412,7 +397,7 @@ class _Batch:
             return entry
         with self._timings.measure("gradebook"):
             self._writer.enter_time(work.submission, at if moved else None)
-        return read_entry(self._directory.gradebook_url, *work.key)
+        return gradebook_reading.read_entry(self._directory.gradebook_url, *work.key)
 
     def _make_pages(self, work: Work, entry: SubmissionEntry) -> None:
         """Make the feedback pages of a submission, unless it has pages that show what the gradebook contains."""

@@ -91,9 +91,10 @@ def _decoded(data: bytes) -> Any:
 def _raw_cells(notebook: Mapping[str, Any]) -> list[Any]:
     if notebook["nbformat"] == 3 and isinstance(notebook.get("worksheets"), list):
         sheets = [sheet.get("cells") for sheet in notebook["worksheets"] if isinstance(sheet, Mapping)]
-        cells = [cell for cells in sheets if isinstance(cells, list) for cell in cells]
         return [
             {**cell, "source": cell.get("input", cell.get("source"))} if isinstance(cell, Mapping) else cell
+            for cells in sheets
+            if isinstance(cells, list)
             for cell in cells
         ]
     cells = notebook.get("cells")
