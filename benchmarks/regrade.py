@@ -67,7 +67,7 @@ def _cpu() -> float:
 
 
 def _fill(path: Path) -> None:
-    with mock.patch.object(execution_backends, "local", _nobody):
+    with mock.patch.object(execution_backends, "on_this_machine", _nobody):
         batch.grade(path, console=Console(file=io.StringIO()))
 
 

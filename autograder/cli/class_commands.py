@@ -221,7 +221,7 @@ def grade(
     if scheduler is None:
         need_ros()
     if unsafe_no_sandbox:
-        execution_backends.switch_off(folder)
+        execution_backends.switch_sandbox_off(folder)
     try:
         with grading_errors():
             report = batch.grade(

@@ -96,12 +96,12 @@ def grade(
     directory = ClassDirectory(Path(path))
     check_configuration(directory)
     if scheduler is None:
-        backend = execution_backends.local(directory, jobs, judge)
+        backend = execution_backends.on_this_machine(directory, jobs, judge)
     else:
         execution_backends.check_dask()
         execution_backends.check_address(scheduler)
         tell = functools.partial(plain_line, console)
-        backend = execution_backends.cluster(directory, scheduler, judge, tell)
+        backend = execution_backends.on_cluster(directory, scheduler, judge, tell)
     with directory.lock(), contextlib.ExitStack() as stack:
         execution_backends.remove_leftovers(directory)
         roster = read_roster(directory)
@@ -289,7 +289,9 @@ class _Batch:
             written=self._written,
             seconds=seconds,
             timings=self._timings,
-            note=execution_backends.NOTE if execution_backends.switched_off(self._directory) else "",
+            note=execution_backends.UNBOXED_NOTE
+            if execution_backends.is_sandbox_off(self._directory)
+            else "",
             gradebook=gradebook_reading.gradebook_file(url),
             due=self._due_dates(url),
         )

@@ -99,7 +99,7 @@ def tiny(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> TinyClass:
     """
     fake = EngineWithAsserts()
     monkeypatch.setattr(execution_backends, "execute_all", fake.execute_all)
-    monkeypatch.setattr(execution_backends, "require", lambda _: None)
+    monkeypatch.setattr(execution_backends, "require_sandbox", lambda _: None)
     tiny = TinyClass(make_tiny_class(tmp_path / "made"))
     penalty(tiny)
     due(tiny, DUE)

@@ -47,7 +47,7 @@ def _graded(to_be_copied: TinyClass) -> Path:
     engine = FakeEngine()
     engine.evidence[ID] = evidence()
     with engine.at_work(), pytest.MonkeyPatch.context() as patch:
-        patch.setattr(execution_backends, "require", lambda _: None)
+        patch.setattr(execution_backends, "require_sandbox", lambda _: None)
         to_be_copied.grade()
     return to_be_copied.path
 
@@ -57,7 +57,7 @@ def graded(
     _graded: Path, fake_engine: FakeEngine, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> TinyClass:
     """A class with one submission, of which a check has evidence."""
-    monkeypatch.setattr(execution_backends, "require", lambda _: None)
+    monkeypatch.setattr(execution_backends, "require_sandbox", lambda _: None)
     fake_engine.evidence[ID] = evidence()
     return TinyClass(shutil.copytree(_graded, tmp_path / "class"))
 
@@ -170,8 +170,8 @@ def test_what_a_judge_hands_over_comes_from_the_worker_and_from_no_notebook(
     tiny: TinyClass, with_fake_judge: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Through real workers: the notebook writes where it can, and only the judge's words are kept."""
-    monkeypatch.setattr(execution_backends, "require", lambda _: None)
-    execution_backends.switch_off(tiny.path)
+    monkeypatch.setattr(execution_backends, "require_sandbox", lambda _: None)
+    execution_backends.switch_sandbox_off(tiny.path)
     tiny.submit("ada", "10 if print('evidence') is None else 0", 1)
     tiny.grade(jobs=1, judge=with_fake_judge, console=QUIET)
     assert kept(tiny) == {ID: b"lab_1_2.talker said 10", "lab_1_2.listener": b"lab_1_2.listener said 1"}

@@ -328,7 +328,7 @@ def _with_results(nb: NotebookNode, task: Task, execution: Execution) -> Noteboo
     make_harmless(nb, range(len(nb.cells)) if execution.trouble else execution.as_typed)
     nb.cells = list(_with_rubrics(nb.cells))
     if not task.boxed:
-        nb.cells.insert(0, nbformat_nodes.cell(CellType.MARKDOWN, f"**{execution_backends.NOTE}**"))
+        nb.cells.insert(0, nbformat_nodes.cell(CellType.MARKDOWN, f"**{execution_backends.UNBOXED_NOTE}**"))
     return nb
 
 

@@ -96,7 +96,7 @@ def demo(path: Path, *, console: Console | None = None) -> GradeReport:
     """
     console = console or Console()
     if sandbox.why_impossible():
-        execution_backends.switch_off(path)
+        execution_backends.switch_sandbox_off(path)
     _make(path, console)
     report = grade(path)
     show(report, console)

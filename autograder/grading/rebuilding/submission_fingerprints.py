@@ -41,7 +41,7 @@ class Fingerprints:
             [
                 self.of_sources(submission.assignment),
                 self._directory.secret.hex(),
-                str(execution_backends.switched_off(self._directory)),
+                str(execution_backends.is_sandbox_off(self._directory)),
                 submission.student,
                 *(_content(file) for file in (*files, submission.folder / TIMESTAMP)),
             ]

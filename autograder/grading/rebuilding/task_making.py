@@ -75,7 +75,7 @@ def task_of(directory: ClassDirectory, submission: Submission, notebook: str) ->
         problem=problem,
         remarks=() if problem else tuple(rebuilt.metadata["autograder"]["remarks"]),
         pictures=hashlib.sha256(msgspec.json.encode(pictures)).hexdigest() if pictures else "",
-        boxed=not execution_backends.switched_off(directory),
+        boxed=not execution_backends.is_sandbox_off(directory),
     )
     return task, rebuilt
 

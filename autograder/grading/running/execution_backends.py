@@ -40,7 +40,7 @@ if TYPE_CHECKING:
 
 
 @contextlib.contextmanager
-def local(directory: ClassDirectory, jobs: int | None, judge: str) -> Iterator[Execute]:
+def on_this_machine(directory: ClassDirectory, jobs: int | None, judge: str) -> Iterator[Execute]:
     """Yield a function that executes tasks on this machine.
 
     Args:
@@ -51,8 +51,8 @@ def local(directory: ClassDirectory, jobs: int | None, judge: str) -> Iterator[E
     Raises:
         SandboxMissing: Submissions cannot be boxed on this machine. The message says what to do.
     """
-    require(directory)
-    boxed = not switched_off(directory)
+    require_sandbox(directory)
+    boxed = not is_sandbox_off(directory)
 
     def execute(tasks: Iterable[Task], on_start: Callable[[Task], None]) -> Generator[Done, None, None]:
         return execute_all(tasks, scratch.path, jobs, on_start=on_start, judge=judge or JUDGE, boxed=boxed)
@@ -62,7 +62,7 @@ def local(directory: ClassDirectory, jobs: int | None, judge: str) -> Iterator[E
 
 
 @contextlib.contextmanager
-def cluster(
+def on_cluster(
     directory: ClassDirectory, scheduler: str, judge: str, tell: Callable[[str], None]
 ) -> Iterator[Execute]:
     """Yield a function that executes tasks on the workers of a Dask cluster.
@@ -76,7 +76,7 @@ def cluster(
     Raises:
         GradingError: The cluster cannot be used. The message says why.
     """
-    boxed = not switched_off(directory)
+    boxed = not is_sandbox_off(directory)
     with connected(scheduler, judge=judge or JUDGE, boxed=boxed, tell=tell) as pool:
         yield functools.partial(dispatch, pool)
 
@@ -228,7 +228,7 @@ def check_address(address: str) -> None:
         )
 
 
-NOTE = (
+UNBOXED_NOTE = (
     "Graded without a sandbox: the submissions ran with all rights of the person who graded them, "
     "and could have changed any grade."
 )
@@ -245,14 +245,14 @@ objects, because several such objects may represent one class.
 """
 
 
-def require(directory: ClassDirectory) -> None:
+def require_sandbox(directory: ClassDirectory) -> None:
     """Check that submissions of this class can be boxed, or that the user allowed grading without boxes.
 
     Raises:
         SandboxMissing: Submissions cannot be boxed, and the user did not allow grading without boxes. The message says
             what to do.
     """
-    if switched_off(directory):
+    if is_sandbox_off(directory):
         return
     from autograder.boxes.sandbox import why_impossible
 
@@ -265,12 +265,12 @@ def require(directory: ClassDirectory) -> None:
         )
 
 
-def switched_off(directory: ClassDirectory) -> bool:
-    """Return True if this class is graded without boxes, because of its configuration or :func:`switch_off`."""
+def is_sandbox_off(directory: ClassDirectory) -> bool:
+    """Return True if this class is graded without boxes, because of its configuration or :func:`switch_sandbox_off`."""
     configured = directory.config.WireExecute.get("unsafe_no_sandbox", False)
     return bool(configured) or directory.path.resolve() in _off
 
 
-def switch_off(path: Path) -> None:
+def switch_sandbox_off(path: Path) -> None:
     """Let this process grade the class in the folder ``path`` without boxes, as ``--unsafe-no-sandbox`` does."""
     _off.add(path.resolve())

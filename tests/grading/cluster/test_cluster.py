@@ -47,7 +47,7 @@ def _unboxed(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.fixture
 def unboxed(tiny: TinyClass) -> TinyClass:
-    execution_backends.switch_off(tiny.path)
+    execution_backends.switch_sandbox_off(tiny.path)
     return tiny
 
 
@@ -234,7 +234,7 @@ def test_a_worker_of_another_version_is_refused_by_name_and_the_batch_goes_on(
 def test_where_nobody_can_execute_anything_the_class_stays_as_it_is(
     cluster: DaskCluster, tiny: TinyClass, with_fake_judge: str
 ) -> None:
-    execution_backends.switch_off(tiny.path)
+    execution_backends.switch_sandbox_off(tiny.path)
     tiny.submit("ada", 4)
     tiny.grade(judge=with_fake_judge)
     execution_backends._off.clear()
@@ -260,7 +260,7 @@ from autograder.grading.batch import grade
 from autograder.grading.running import task_dispatcher as dispatcher
 task_making.course_version = lambda: "test"
 dispatcher.course_version = lambda: "test"
-sandboxing.switch_off(Path(sys.argv[1]))
+sandboxing.switch_sandbox_off(Path(sys.argv[1]))
 grade(Path(sys.argv[1]), judge="fake_judge:FakeJudge", feedback=False, scheduler=sys.argv[2],
       console=Console(stderr=True, width=200))
 """
@@ -306,7 +306,7 @@ def test_a_lab_is_graded_on_a_worker_as_it_is_here(
         (path / "submitted" / student / "lab_1_2" / "lab_1_2.ipynb").write_text(text)
     obstacle = why_impossible()
     if obstacle:
-        execution_backends.switch_off(path)
+        execution_backends.switch_sandbox_off(path)
     options: dict[str, Any] = {"console": Console(quiet=True), "feedback": False}
     with cluster.worker("one", 2, obstacle=obstacle):
         there = grade(path, scheduler=cluster.address, **options)

@@ -45,7 +45,7 @@ def run(*arguments: object) -> str:
 @pytest.fixture
 def unboxed(monkeypatch: pytest.MonkeyPatch) -> None:
     """Nothing is executed, so no box is needed."""
-    monkeypatch.setattr(execution_backends, "require", lambda _: None)
+    monkeypatch.setattr(execution_backends, "require_sandbox", lambda _: None)
 
 
 def keep_evidence(tiny: TinyClass, student: str, exercise: str) -> None:

@@ -27,7 +27,7 @@ def said(tiny: TinyClass, *options: str) -> dict[str, Any]:
 def test_names_that_are_no_text_break_no_json(
     tiny: TinyClass, fake_engine: FakeEngine, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(execution_backends, "require", lambda _: None)
+    monkeypatch.setattr(execution_backends, "require_sandbox", lambda _: None)
     beside = tiny.submit("ada", 10, 4).with_name(os.fsdecode(b"old\xff.ipynb"))
     beside.write_text("{}")
     (tiny.path / "submitted" / os.fsdecode(b"M\xfcller") / "lab_1_2").mkdir(parents=True)
@@ -41,7 +41,7 @@ def test_it_is_one_object_with_submissions_and_totals(
     fake_engine: FakeEngine,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr(execution_backends, "require", lambda _: None)
+    monkeypatch.setattr(execution_backends, "require_sandbox", lambda _: None)
     tiny.submit("ada", 10, 4)
     tiny.submit("ben", "'die'")
     first = said(tiny)
@@ -62,7 +62,7 @@ def test_it_is_one_object_with_submissions_and_totals(
 def test_a_dry_run_says_who_would_get_other_points(
     tiny: TinyClass, fake_engine: FakeEngine, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(execution_backends, "require", lambda _: None)
+    monkeypatch.setattr(execution_backends, "require_sandbox", lambda _: None)
     tiny.submit("ada", 10, 4)
     assert said(tiny)["would_change"] is None
     tiny.submit("ada", 10, 7)

@@ -10,7 +10,7 @@ from click.testing import CliRunner
 from autograder import cli
 from autograder.boxes import sandbox
 from autograder.grading.running import execution_backends
-from autograder.grading.running.execution_backends import NOTE, SandboxMissing
+from autograder.grading.running.execution_backends import UNBOXED_NOTE, SandboxMissing
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -42,12 +42,12 @@ def test_what_was_typed_is_noted_in_the_report_and_in_the_feedback(
     tiny: TinyClass, with_fake_judge: str
 ) -> None:
     tiny.submit("ada", 10, 7)
-    execution_backends.switch_off(tiny.path)
+    execution_backends.switch_sandbox_off(tiny.path)
     report = tiny.grade(judge=with_fake_judge, feedback=True)
     assert tiny.scores("ada") == {"lab_1_2-talker": 10, "lab_1_2-listener": 7}
-    assert report.note == NOTE
+    assert report.note == UNBOXED_NOTE
     page = (tiny.path / "feedback" / "ada" / "lab_1_2" / "lab_1_2.html").read_text()
-    assert NOTE in page
+    assert UNBOXED_NOTE in page
 
 
 def test_a_class_of_which_nothing_is_executed_needs_none(
@@ -65,7 +65,7 @@ def test_a_class_of_which_nothing_is_executed_needs_none(
 
 def test_a_result_without_a_sandbox_never_stands_for_one_with(tiny: TinyClass, with_fake_judge: str) -> None:
     tiny.submit("ada", 10)
-    execution_backends.switch_off(tiny.path)
+    execution_backends.switch_sandbox_off(tiny.path)
     assert tiny.grade(judge=with_fake_judge).executed == 1
     assert tiny.grade(judge=with_fake_judge).executed == 0
     execution_backends._off.clear()
@@ -78,7 +78,7 @@ def test_the_configuration_can_say_so_too(tiny: TinyClass) -> None:
     from autograder.grading.classes.class_directory import ClassDirectory
 
     with pytest.raises(SandboxMissing, match="unsafe_no_sandbox"):
-        execution_backends.require(ClassDirectory(tiny.path))
+        execution_backends.require_sandbox(ClassDirectory(tiny.path))
     config = tiny.path / "nbgrader_config.py"
     config.write_text(config.read_text() + "\nc.WireExecute.unsafe_no_sandbox = True\n")
-    execution_backends.require(ClassDirectory(tiny.path))
+    execution_backends.require_sandbox(ClassDirectory(tiny.path))
