@@ -26,10 +26,11 @@ if TYPE_CHECKING:
 
 
 _SYNCHRONOUS_IDLE = "\x16"
-"""The character that :func:`let_log_lines_arrive` writes to the pipe: SYN, which terminals ignore. It is a single byte,
-so it is never split between two reads.
+"""The character that :func:`let_log_lines_arrive` writes to the pipe: SYN, which terminals ignore. The character is a
+single byte, so it is never split between two reads.
 """
-_LIMIT = 1.0
+_ARRIVAL_LIMIT = 1.0
+"""Time limit in seconds for that character to arrive."""
 _one_at_a_time = threading.Lock()
 
 
@@ -70,7 +71,7 @@ def let_log_lines_arrive() -> None:
         stream.write = write
         try:
             os.write(descriptor, _SYNCHRONOUS_IDLE.encode())
-            arrived.wait(_LIMIT)
+            arrived.wait(_ARRIVAL_LIMIT)
         finally:
             if replaced is None:
                 del stream.write

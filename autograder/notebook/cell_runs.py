@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import dis
 import hashlib
-import re  # noqa: TID251  (a student's cells, in their own kernel)
+import re  # noqa: TID251  (a student's cells, in the student's kernel)
 import traceback
 from dataclasses import dataclass
 from pathlib import Path
@@ -57,9 +57,11 @@ class CellWatch:
             return
         self._shell.events.register("pre_run_cell", self._cell_begins)
         # No event announces the cell that imports this module, because it is already running. So note it here.
-        parent = self._parent_request()
-        cell_id = parent.get("metadata", {}).get("cellId")
-        self._set_current(cell_id, parent.get("content", {}).get("code", ""))
+        kernel = getattr(self._shell, "kernel", None)
+        request = (kernel.get_parent("shell") or {}) if kernel is not None else {}
+        self._set_current(
+            request.get("metadata", {}).get("cellId"), request.get("content", {}).get("code", "")
+        )
 
     def before_each_run(self, action: Callable[[WatchedRun], None]) -> None:
         """Register a function that is called before each run of a cell."""
@@ -71,143 +73,13 @@ class CellWatch:
             action(run)
 
     def _set_current(self, cell_id: str | None, source: str) -> WatchedRun:
-        cell = cell_id or "text:" + hashlib.sha256(source.encode()).hexdigest()
         number = 1 if self.current is None else self.current.number + 1
-        self.current = WatchedRun(cell, number)
+        self.current = WatchedRun(_identifier(cell_id, source), number)
         return self.current
 
-    def _parent_request(self) -> dict[str, Any]:
-        kernel = getattr(self._shell, "kernel", None)
-        return (kernel.get_parent("shell") or {}) if kernel is not None else {}
 
-
-_ENTRY_POINTS = "entry_points"
-"""The name of the list that a cell passes to ``package_files.add_entry_points``."""
-_DEFINED = re.compile(rf"^(?:(?:class|(?:async\s+)?def)\s+(\w+)|({_ENTRY_POINTS})\s*=)", re.MULTILINE)
-"""Matches the beginning of a definition in the text of a cell, even if Python cannot parse the cell."""
-_CHECKED = r"^[^#\n]*\b(?:check|watch)\(.*\b{}\b"
-
-
-@dataclass(frozen=True)
-class _Failure:
-    cell: str
-    error: str
-
-
-class FailedCells:
-    """Records which names the cells of a notebook failed to define, or do not define any more.
-
-    Args:
-        shell: IPython's shell.
-    """
-
-    def __init__(self, shell: Any) -> None:
-        self._shell = shell
-        self._source = ""
-        self._before: dict[str, Any] = {}
-        self._names_of: dict[str, set[str]] = {}
-        self._failures: dict[str, _Failure] = {}
-        self._made: dict[str, tuple[str, Any]] = {}
-        self._dropped: dict[str, tuple[Any, list[str]]] = {}
-        shell.events.register("pre_run_cell", self._cell_begins)
-        shell.events.register("post_run_cell", self._cell_ended)
-        shell.set_custom_exc(
-            (NameError, ImportError, AttributeError, TypeError, RuntimeError), self._show_error
-        )
-
-    def why_missing(self, name: str) -> str:
-        """Return why a class or function is out of date, in a sentence for the student; empty if it is up to date."""
-        if failure := self._failures.get(name):
-            return f"Your cell that defines {name} stopped before {name} was defined: {failure.error}"
-        left, now = self._dropped.get(name, (None, []))
-        if left is None or left is not self._shell.user_ns.get(name):
-            return ""
-        instead = f", it defines {' and '.join(now)}" if now else ""
-        return f"Your cell does not define {name} any more{instead}. If another cell defines {name} now, run that one."
-
-    def _cell_begins(self, info: Any) -> None:
-        self._source = info.raw_cell or ""
-        known = self._names_of.get(_cell(info), set())
-        self._before = {name: self._shell.user_ns.get(name) for name in known | _defined(self._source)}
-
-    def _cell_ended(self, result: Any) -> None:
-        if result.info is None:
-            return
-        cell, before = _cell(result.info), self._before
-        self._before = {}
-        self._failures = {name: one for name, one in self._failures.items() if one.cell != cell}
-        error = result.error_before_exec or result.error_in_exec
-        known, there = self._names_of.get(cell, set()), self._shell.user_ns
-        names = self._names_of[cell] = set(before) if error else _defined(result.info.raw_cell or "")
-        for name in names:
-            if there.get(name) is not before.get(name):
-                self._made[name] = (cell, there.get(name))
-            if error is None or there.get(name) is not before.get(name):
-                self._failures.pop(name, None)
-            else:
-                self._failures[name] = _Failure(cell, " ".join(filter(None, (_named(error), _here(error)))))
-        for name in known - names:
-            # If another cell, an import or an assignment has defined the name since then, this newer definition is up
-            # to date.
-            maker, made = self._made.get(name, ("", None))
-            if maker == cell and made is there.get(name):
-                self._dropped[name] = (made, sorted(names))
-
-    def _show_error(self, shell: Any, kind: type, error: Exception, trace: Any, tb_offset: Any) -> None:
-        del kind, tb_offset
-        words = self._what_to_run(str(error.name)) if isinstance(error, NameError) else ""
-        if (
-            words and trace.tb_next is not None and trace.tb_next.tb_next is None
-        ):  # the error was raised by the cell itself, not by a function that it calls
-            error._render_traceback_ = lambda: [words]  # type: ignore[attr-defined]
-        elif here := _here(error):
-            error.add_note(here)
-        shell.showtraceback(running_compiled_code=True)
-
-    def _what_to_run(self, name: str) -> str:
-        if not re.search(_CHECKED.format(re.escape(name)), self._source, re.MULTILINE):
-            return ""
-        why = self.why_missing(name)
-        if why:
-            return (
-                f"NameError: there is no {name} yet. {why} Fix that cell and run it, then run this one again."
-            )
-        first = f"NameError: there is no {name} yet. Run the cell that defines {name} first, then run this one again."
-        return f"{first} If you have run it, compare the names in both cells letter by letter."
-
-
-def _cell(info: Any) -> str:
-    return str(getattr(info, "cell_id", None) or info.raw_cell)
-
-
-def _defined(source: str) -> set[str]:
-    return set() if source.lstrip().startswith("%%") else {a or b for a, b in _DEFINED.findall(source)}
-
-
-def _named(error: BaseException) -> str:
-    """Return an error's type, line and message as a sentence."""
-    message = error.msg if isinstance(error, SyntaxError) else str(error)
-    place = last_student_line(error)
-    line = error.lineno if isinstance(error, SyntaxError) else place and place[1]
-    named = type(error).__name__ + (f" in line {line}" if line else "")
-    return (f"{named}, {message.rstrip('.?')}" if message else named) + "."
-
-
-def _here(error: BaseException) -> str:
-    """Return advice if the error shows that code was copied from outside the course; otherwise an empty text."""
-    shown = traceback.format_exception(type(error), error, student_frames(error.__traceback__))
-    found = foreign_code.recognised("".join(shown), foreign_code.packages(_packages_of_types()))
-    return f"{found.text} {found.next_step}" if found else ""
-
-
-def _packages_of_types() -> tuple[str, ...]:
-    try:
-        return course.interfaces()
-    except (OSError, course.NoCourse, course.BrokenChapter):  # a grader's kernel sees no course folder
-        return ()
-
-
-_cells = FailedCells(notebook_shell()) if notebook_shell() is not None else None
+def _identifier(cell_id: str | None, source: str) -> str:
+    return cell_id or "text:" + hashlib.sha256(source.encode()).hexdigest()
 
 
 class StaleCodeError(Exception):
@@ -242,6 +114,130 @@ def raise_if_stale(subject: Any) -> None:
             )
 
 
+_ENTRY_POINTS = "entry_points"
+"""The name of the list that a cell passes to ``package_files.add_entry_points``."""
+_DEFINED = re.compile(rf"^(?:(?:class|(?:async\s+)?def)\s+(\w+)|({_ENTRY_POINTS})\s*=)", re.MULTILINE)
+"""Matches the beginning of a definition in the text of a cell, even if Python cannot parse the cell."""
+_CHECKED = r"^[^#\n]*\b(?:check|watch)\(.*\b{}\b"
+
+
+@dataclass(frozen=True)
+class _Failure:
+    cell: str
+    error: str
+
+
+class _FailedCells:
+    """Records which names the cells of a notebook failed to define, or do not define any more.
+
+    Args:
+        shell: IPython's shell.
+    """
+
+    def __init__(self, shell: Any) -> None:
+        self._shell = shell
+        self._source = ""
+        self._before: dict[str, Any] = {}
+        self._names_of: dict[str, set[str]] = {}
+        self._failures: dict[str, _Failure] = {}
+        self._made: dict[str, tuple[str, Any]] = {}
+        self._dropped: dict[str, tuple[Any, list[str]]] = {}
+        shell.events.register("pre_run_cell", self._cell_begins)
+        shell.events.register("post_run_cell", self._cell_ended)
+        shell.set_custom_exc(
+            (NameError, ImportError, AttributeError, TypeError, RuntimeError), self._show_error
+        )
+
+    def why_missing(self, name: str) -> str:
+        """Return why a class or function is out of date, in a sentence for the student; empty if it is up to date."""
+        if failure := self._failures.get(name):
+            return f"Your cell that defines {name} stopped before {name} was defined: {failure.error}"
+        left, now = self._dropped.get(name, (None, []))
+        if left is None or left is not self._shell.user_ns.get(name):
+            return ""
+        instead = f", it defines {' and '.join(now)}" if now else ""
+        return f"Your cell does not define {name} any more{instead}. If another cell defines {name} now, run that one."
+
+    def _cell_begins(self, info: Any) -> None:
+        self._source = info.raw_cell or ""
+        known = self._names_of.get(_cell_of(info), set())
+        self._before = {name: self._shell.user_ns.get(name) for name in known | _defined(self._source)}
+
+    def _cell_ended(self, result: Any) -> None:
+        if result.info is None:
+            return
+        cell, before = _cell_of(result.info), self._before
+        self._before = {}
+        self._failures = {name: one for name, one in self._failures.items() if one.cell != cell}
+        error = result.error_before_exec or result.error_in_exec
+        known, variables = self._names_of.get(cell, set()), self._shell.user_ns
+        names = self._names_of[cell] = set(before) if error else _defined(result.info.raw_cell or "")
+        for name in names:
+            if variables.get(name) is not before.get(name):
+                self._made[name] = (cell, variables.get(name))
+            if error is None or variables.get(name) is not before.get(name):
+                self._failures.pop(name, None)
+            else:
+                words = filter(None, (_error_sentence(error), _advice_on_foreign_code(error)))
+                self._failures[name] = _Failure(cell, " ".join(words))
+        for name in known - names:
+            # If another cell, an import or an assignment has defined the name since then, this newer definition is up
+            # to date.
+            maker, made = self._made.get(name, ("", None))
+            if maker == cell and made is variables.get(name):
+                self._dropped[name] = (made, sorted(names))
+
+    def _show_error(self, shell: Any, kind: type, error: Exception, trace: Any, tb_offset: Any) -> None:
+        del kind, tb_offset
+        words = self._what_to_run(str(error.name)) if isinstance(error, NameError) else ""
+        if (
+            words and trace.tb_next is not None and trace.tb_next.tb_next is None
+        ):  # the error was raised by the cell itself, not by a function that it calls
+            error._render_traceback_ = lambda: [words]  # type: ignore[attr-defined]
+        elif advice := _advice_on_foreign_code(error):
+            error.add_note(advice)
+        shell.showtraceback(running_compiled_code=True)
+
+    def _what_to_run(self, name: str) -> str:
+        if not re.search(_CHECKED.format(re.escape(name)), self._source, re.MULTILINE):
+            return ""
+        why = self.why_missing(name)
+        if why:
+            return (
+                f"NameError: there is no {name} yet. {why} Fix that cell and run it, then run this one again."
+            )
+        first = f"NameError: there is no {name} yet. Run the cell that defines {name} first, then run this one again."
+        return f"{first} If you have run it, compare the names in both cells letter by letter."
+
+
+def _cell_of(info: Any) -> str:
+    return _identifier(getattr(info, "cell_id", None), info.raw_cell or "")
+
+
+def _defined(source: str) -> set[str]:
+    return set() if source.lstrip().startswith("%%") else {a or b for a, b in _DEFINED.findall(source)}
+
+
+def _error_sentence(error: BaseException) -> str:
+    """Return an error's type, line and message as a sentence."""
+    message = error.msg if isinstance(error, SyntaxError) else str(error)
+    place = last_student_line(error)
+    line = error.lineno if isinstance(error, SyntaxError) else place and place[1]
+    named = type(error).__name__ + (f" in line {line}" if line else "")
+    return (f"{named}, {message.rstrip('.?')}" if message else named) + "."
+
+
+def _advice_on_foreign_code(error: BaseException) -> str:
+    """Return advice if the error shows that code was copied from outside the course; otherwise an empty text."""
+    shown = traceback.format_exception(type(error), error, student_frames(error.__traceback__))
+    try:
+        packages = course.interfaces()
+    except (OSError, course.NoCourse, course.BrokenChapter):  # a grader's kernel sees no course folder
+        packages = ()
+    found = foreign_code.recognised("".join(shown), foreign_code.packages(packages))
+    return f"{found.text} {found.next_step}" if found else ""
+
+
 def _names_read(subject: Any) -> set[str]:
     """Return the global names that a function, or the methods of a class, use."""
     own = vars(subject).values() if isinstance(subject, type) else (subject,)
@@ -252,3 +248,6 @@ def _names_read(subject: Any) -> set[str]:
         found |= {str(step.argval) for step in dis.get_instructions(code) if step.opname == "LOAD_GLOBAL"}
         codes += [inner for inner in code.co_consts if isinstance(inner, CodeType)]
     return found
+
+
+_cells = _FailedCells(notebook_shell()) if notebook_shell() is not None else None

@@ -52,35 +52,33 @@ def with_definitions(text: str, cells: list[str]) -> str:
     Raises:
         NotRunError: One of the names is not defined in any of the cells.
     """
-    there = _bound(_statements(_COPIED.sub("", text)))
+    defined = {name for node, _ in _statements(_COPIED.sub("", text)) for name in _names(node)}
     imports: list[str] = []
 
     def copied(comment: re.Match[str]) -> str:
-        found = [one for name in comment["names"].split(", ") for one in _definition(name, cells, there)]
+        found = [one for name in comment["names"].split(", ") for one in _definition(name, cells, defined)]
         imports.extend(source for node, source in found if isinstance(node, _IMPORTS))
         return "\n\n\n".join(source for node, source in found if not isinstance(node, _IMPORTS))
 
     text = _COPIED.sub(copied, text)
-    first = (
-        next((node.lineno for node in ast.parse(text).body if isinstance(node, _IMPORTS)), 1)
-        if imports
-        else 1
-    )
+    if not imports:
+        return text
+    first = next((node.lineno for node in ast.parse(text).body if isinstance(node, _IMPORTS)), 1)
     lines = text.split("\n")
     return "\n".join([*lines[: first - 1], *imports, *lines[first - 1 :]])
 
 
-Statement = tuple[ast.stmt, str]
+_Statement = tuple[ast.stmt, str]
 """A statement at the top level of a cell: its syntax tree and its text."""
 
 
-def _definition(name: str, cells: list[str], there: set[str]) -> list[Statement]:
+def _definition(name: str, cells: list[str], defined: set[str]) -> list[_Statement]:
     """Return the newest definition of a name, and before it the imports and helpers that it uses.
 
     Args:
         name: The name.
         cells: The texts of the cells that have run, the oldest first.
-        there: The names that the program defines already. The names of the returned statements are added to it.
+        defined: The names that the program defines already. The names of the returned statements are added.
     """
     for source in reversed(cells):
         statements = _statements(source)
@@ -91,32 +89,41 @@ def _definition(name: str, cells: list[str], there: set[str]) -> list[Statement]
             break
     else:
         raise NotRunError(f"Run the cell that defines {name} first, then run this one again.")
-    there.add(name)
-    return _with_helpers(found, statements, cells, there)
+    defined.add(name)
+    return _with_helpers(found, statements, cells, defined)
 
 
 def _with_helpers(
-    found: Statement, around: list[Statement], cells: list[str], there: set[str]
-) -> list[Statement]:
-    """Return a statement, and before it the imports and helpers that it uses. ``around`` are those of its cell."""
-    needed: list[Statement] = []
+    found: _Statement, around: list[_Statement], cells: list[str], defined: set[str]
+) -> list[_Statement]:
+    """Return a statement, and before it the imports and helpers that it uses.
+
+    Args:
+        found: The statement.
+        around: All statements of the same cell.
+        cells: The texts of the cells that have run, the oldest first.
+        defined: As in :func:`_definition`.
+    """
+    needed: list[_Statement] = []
     own_names = _stored(found[0])
-    for used in sorted(_used(found[0]) - there):
+    for used in sorted(_used(found[0]) - defined):
         helper, its_cell = _helper(used, around, cells if used not in own_names else [])
-        if helper is None or used in there:
+        if helper is None or used in defined:
             continue
-        there |= _names(helper[0])
+        defined |= _names(helper[0])
         needed += (
-            [helper] if isinstance(helper[0], _IMPORTS) else _with_helpers(helper, its_cell, cells, there)
+            [helper] if isinstance(helper[0], _IMPORTS) else _with_helpers(helper, its_cell, cells, defined)
         )
     return [*needed, found]
 
 
-def _helper(name: str, around: list[Statement], cells: list[str]) -> tuple[Statement | None, list[Statement]]:
+def _helper(
+    name: str, around: list[_Statement], cells: list[str]
+) -> tuple[_Statement | None, list[_Statement]]:
     """Return the statement that defines a name, and the statements of its cell; None if no cell defines the name.
 
-    In another cell than that of the class, only an import, a class, a function or a constant is a helper: a variable
-    there may be a node that the student has tried out.
+    From other cells, only an import, a class, a function or a constant is copied, because a variable there may be a
+    node that the student has tried out.
     """
     for one in reversed(around):
         if name in _names(one[0]):
@@ -138,7 +145,7 @@ def _may_be_copied(node: ast.stmt) -> bool:
     return True
 
 
-def _statements(source: str) -> list[Statement]:
+def _statements(source: str) -> list[_Statement]:
     """Return the statements at the top level of a cell; none if Python cannot parse the cell, such as a magic."""
     try:
         body = ast.parse(source).body
@@ -151,10 +158,6 @@ def _statements(source: str) -> list[Statement]:
 def _first_line(node: ast.stmt) -> int:
     decorators = getattr(node, "decorator_list", ())
     return min([node.lineno, *(one.lineno for one in decorators)])
-
-
-def _bound(statements: list[Statement]) -> set[str]:
-    return {name for node, _ in statements for name in _names(node)}
 
 
 def _imported(node: ast.stmt) -> set[str]:
@@ -179,7 +182,7 @@ def _used(node: ast.stmt) -> set[str]:
 
 
 def _stored(node: ast.stmt) -> set[str]:
-    """Return the names of variables and arguments inside a statement: a helper elsewhere may have the same name."""
+    """Return the names of the variables and arguments inside a statement. A helper elsewhere may have the same name."""
     arguments = {one.arg for one in ast.walk(node) if isinstance(one, ast.arg)}
     return arguments | {
         one.id for one in ast.walk(node) if isinstance(one, ast.Name) and isinstance(one.ctx, ast.Store)

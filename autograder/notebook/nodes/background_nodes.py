@@ -111,7 +111,7 @@ def stop_all(grace: float = GRACE) -> None:
     Args:
         grace: Seconds for each running callback to return by itself.
     """
-    for background in running_backgrounds():
+    for background in _running_backgrounds():
         background.end(grace=grace)
     for made in _made.alive():
         destroy_node(made.node)
@@ -273,19 +273,19 @@ class Spinning:
 
 def replace_named(name: str, keep: Collection[Node]) -> None:
     """Stop the nodes that spin in the background under this name, and destroy them except those in ``keep``."""
-    for background in running_backgrounds():
+    for background in _running_backgrounds():
         if background.name == name:
             background.end(keep=keep)
 
 
-def running_backgrounds() -> list[Background]:
+def _running_backgrounds() -> list[Background]:
     """Return the :class:`Background` of all nodes that spin in the background, the oldest first."""
     with _lock:
         return list(_running)
 
 
 def _background_of(node: Node) -> Background | None:
-    return next((b for b in running_backgrounds() if any(node is other for other in b.nodes)), None)
+    return next((b for b in _running_backgrounds() if any(node is other for other in b.nodes)), None)
 
 
 def _undo_earlier_run(run: WatchedRun) -> None:
@@ -294,18 +294,24 @@ def _undo_earlier_run(run: WatchedRun) -> None:
     A node that was made in another cell is only stopped and not destroyed, because a later cell may use its variable. A
     background with a name keeps running.
     """
-    left_behind = [
-        made.node for made in _made.alive() if run.is_later_run_of(made.run) and not _is_named(made.node)
-    ]
-    for background in running_backgrounds():
+    left_behind = []
+    for made in _made.alive():
+        background = _background_of(made.node)
+        is_named = background is not None and background.name is not None
+        if run.is_later_run_of(made.run) and not is_named:
+            left_behind.append(made.node)
+    for background in _running_backgrounds():
         if background.name is None and run.is_later_run_of(background.run):
-            background.end(keep=[node for node in background.nodes if not _is_in(node, left_behind)])
+            from_elsewhere = [
+                node for node in background.nodes if not any(node is other for other in left_behind)
+            ]
+            background.end(keep=from_elsewhere)
     for node in left_behind:
         _end_node(node)
 
 
 def _make_room(newcomer: NodeIdentity) -> None:
-    """Before a node is made, destroy a node with the same name from another cell. Otherwise messages would come twice.
+    """Before a node is made, destroy a node with the same name from another cell, because messages would come twice.
 
     If both nodes existed, rcl would warn, and destroying one of them would end the log of both. If one run of a cell
     makes two nodes with the same name, both stay, because a lab of the course shows what two servers with one name do.
@@ -329,15 +335,6 @@ def _end_node(node: Node) -> None:
         destroy_node(node)
 
 
-def _is_named(node: Node) -> bool:
-    background = _background_of(node)
-    return background is not None and background.name is not None
-
-
-def _is_in(node: Node, nodes: Sequence[Any]) -> bool:
-    return any(node is other for other in nodes)
-
-
 def destroy_nodes_on(context: Context) -> None:
     """Destroy every node of a ROS context. Call this before the context is shut down."""
     for node in _made.on(context):
@@ -352,5 +349,5 @@ _made.watch()
 _cells.before_each_run(_undo_earlier_run)
 prepare_environment()
 point_at_raising_lines()
-# The spinning threads must end before the interpreter ends; spin_threads.py says why.
+# The spinning threads must end before the interpreter ends. The docstring of spin_threads.py gives the reason.
 atexit.register(stop_all, grace=_GRACE_AT_EXIT)

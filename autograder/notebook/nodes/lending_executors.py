@@ -27,7 +27,85 @@ if TYPE_CHECKING:
     GoalErrorReport = Callable[[BaseException, ActionServer], None]
 
 
-def report_goal_errors(task: Any, arguments: tuple[Any, ...], report: GoalErrorReport) -> tuple[Any, ...]:
+@dataclass(frozen=True)
+class Taken:
+    """The event that a node was moved out of its executor.
+
+    Attributes:
+        node: The node.
+        caller: The rclpy function that moved the node, such as ``"spin_once"``; None if it was the ``add_node`` of
+            another executor.
+        comes_back: True if the node returns to its executor when this function ends.
+    """
+
+    node: Node
+    caller: str | None
+    comes_back: bool
+
+
+class LendingExecutor(Executor):
+    """An executor that lends its nodes. This module's two executors inherit from it, and from an executor of rclpy."""
+
+    on_taken: Callable[[Taken], None] | None = None
+    """Called after a node was moved to another executor, in the thread that moved it."""
+    on_goal_error: GoalErrorReport | None = None
+    """Called with the error of an action server's execute callback."""
+
+    def create_task(self, callback: Any, *args: Any, **kwargs: Any) -> Task:
+        """Schedule a task. rclpy's action servers use this to execute goals."""
+        if self.on_goal_error is not None:
+            args = _report_goal_errors(callback, args, self.on_goal_error)
+        return super().create_task(callback, *args, **kwargs)
+
+    def release(self, node: Node) -> None:
+        """Remove a node for good, without calling ``on_taken``."""
+        on_taken, self.on_taken = self.on_taken, None
+        try:
+            super().remove_node(node)
+        finally:
+            self.on_taken = on_taken
+
+    def remove_node(self, node: Node) -> None:
+        """Lend a node to another executor. rclpy calls this when that executor's ``add_node`` is called."""
+        had_it = node in self.get_nodes()
+        super().remove_node(node)
+        if not had_it or self.on_taken is None:
+            return
+        borrower = _global_executor()
+        comes_back = borrower is not None and node in borrower.get_nodes()
+        if borrower is not None and comes_back:
+            _return_afterwards(borrower, node, self)
+        self.on_taken(Taken(node, _spinning_function(sys._getframe(1)), comes_back))
+
+    def take_back(self, node: Node) -> None:
+        """Spin a lent node again."""
+        if self.on_taken is not None:
+            self.add_node(node)
+
+
+class _LendingSingleThreadedExecutor(LendingExecutor, SingleThreadedExecutor):
+    pass
+
+
+class _LendingMultiThreadedExecutor(LendingExecutor, MultiThreadedExecutor):
+    pass
+
+
+def make_executor(threads: int, context: Context) -> LendingExecutor:
+    """Return a lending executor with this number of threads, for nodes of a ROS context."""
+    if threads == 1:
+        return _LendingSingleThreadedExecutor(context=context)
+    return _LendingMultiThreadedExecutor(num_threads=threads, context=context)
+
+
+def wake_global_executor() -> None:
+    """Wake a callback that waits inside ``rclpy.spin_once()``, so that an exception can be raised in its thread."""
+    executor = _global_executor()
+    if executor is not None:
+        executor.wake()
+
+
+def _report_goal_errors(task: Any, arguments: tuple[Any, ...], report: GoalErrorReport) -> tuple[Any, ...]:
     """Return the arguments for a task of rclpy, changed to report errors if the task executes an action's goal.
 
     rclpy itself catches an error in the execute callback and prints the traceback to standard error, among other lines
@@ -67,119 +145,33 @@ def _guarded(
     return execute
 
 
-_RCLPY_SPINS = frozenset({"spin", "spin_once", "spin_until_future_complete"})
-_LOANS = "_nodes_to_return"
-
-
-@dataclass(frozen=True)
-class Taken:
-    """The event that a node was moved out of its executor.
-
-    Attributes:
-        node: The node.
-        caller: The rclpy function that moved the node, such as ``"spin_once"``; None if it was the ``add_node`` of
-            another executor.
-        comes_back: True if the node returns to its executor when this function ends.
-    """
-
-    node: Node
-    caller: str | None
-    comes_back: bool
-
-
-class LendingExecutor(Executor):
-    """An executor that lends its nodes. This module's two executors inherit from it, and from an executor of rclpy."""
-
-    on_taken: Callable[[Taken], None] | None = None
-    """Called after a node was moved to another executor, in the thread that moved it."""
-    on_goal_error: GoalErrorReport | None = None
-    """Called with the error of an action server's execute callback."""
-
-    def create_task(self, callback: Any, *args: Any, **kwargs: Any) -> Task:
-        """Schedule a task. rclpy's action servers use this to execute goals."""
-        if self.on_goal_error is not None:
-            args = report_goal_errors(callback, args, self.on_goal_error)
-        return super().create_task(callback, *args, **kwargs)
-
-    def release(self, node: Node) -> None:
-        """Remove a node for good, without calling ``on_taken``."""
-        on_taken, self.on_taken = self.on_taken, None
-        try:
-            super().remove_node(node)
-        finally:
-            self.on_taken = on_taken
-
-    def remove_node(self, node: Node) -> None:
-        """Lend a node to another executor. rclpy calls this when that executor's ``add_node`` is called."""
-        had_it = node in self.get_nodes()
-        super().remove_node(node)
-        if not had_it or self.on_taken is None:
-            return
-        borrower = _global_executor_holding(node)
-        if borrower is not None:
-            _return_afterwards(borrower, node, self)
-        self.on_taken(Taken(node, _spinning_function(sys._getframe(1)), comes_back=borrower is not None))
-
-    def take_back(self, node: Node) -> None:
-        """Spin a lent node again."""
-        if self.on_taken is not None:
-            self.add_node(node)
-
-
-class LendingSingleThreadedExecutor(LendingExecutor, SingleThreadedExecutor):
-    """rclpy's single-threaded executor, extended to lend its nodes."""
-
-
-class LendingMultiThreadedExecutor(LendingExecutor, MultiThreadedExecutor):
-    """rclpy's multi-threaded executor, extended to lend its nodes."""
-
-
-def make_executor(threads: int, context: Context) -> LendingExecutor:
-    """Return a lending executor with this number of threads, for nodes of a ROS context."""
-    if threads == 1:
-        return LendingSingleThreadedExecutor(context=context)
-    return LendingMultiThreadedExecutor(num_threads=threads, context=context)
-
-
-def wake_global_executor() -> None:
-    """Wake a callback that waits inside ``rclpy.spin_once()``, so that an exception can be raised in its thread."""
-    executor = _global_executor()
-    if executor is not None:
-        executor.wake()
-
-
 def _global_executor() -> Executor | None:
     """Return rclpy's global executor; None if there is none. ``rclpy.get_global_executor`` would create one."""
     executor: Executor | None = getattr(rclpy, "__executor", None)
     return executor
 
 
-def _global_executor_holding(node: Node) -> Executor | None:
-    """Return rclpy's global executor if it contains the node; otherwise None."""
-    executor = _global_executor()
-    return executor if executor is not None and node in executor.get_nodes() else None
+_LOANS = "_nodes_to_return"
+"""The attribute of a borrowing executor that contains the owners of the lent nodes, by the id of the node."""
 
 
-def _return_afterwards(borrower: Executor, node: Node, owner: LendingExecutor) -> None:
+def _return_afterwards(borrower: Any, node: Node, owner: LendingExecutor) -> None:
     """Change the executor that borrows a node: when it removes the node, it gives the node back to the owner."""
-    loans: dict[int, LendingExecutor] | None = borrower.__dict__.get(_LOANS)
-    if loans is None:
-        loans = {}
-        _hook_remove_node(borrower, loans)
-    loans[id(node)] = owner
+    if _LOANS not in vars(borrower):
+        loans: dict[int, LendingExecutor] = {}
+        plain_remove_node = borrower.remove_node
+
+        def remove_node(lent: Node) -> None:
+            plain_remove_node(lent)
+            if (its_owner := loans.pop(id(lent), None)) is not None:
+                its_owner.take_back(lent)
+
+        setattr(borrower, _LOANS, loans)
+        borrower.remove_node = remove_node
+    getattr(borrower, _LOANS)[id(node)] = owner
 
 
-def _hook_remove_node(borrower: Any, loans: dict[int, LendingExecutor]) -> None:
-    plain_remove_node = borrower.remove_node
-
-    def remove_node(node: Node) -> None:
-        plain_remove_node(node)
-        owner = loans.pop(id(node), None)
-        if owner is not None:
-            owner.take_back(node)
-
-    setattr(borrower, _LOANS, loans)
-    borrower.remove_node = remove_node
+_RCLPY_SPINS = frozenset({"spin", "spin_once", "spin_until_future_complete"})
 
 
 def _spinning_function(frame: FrameType | None) -> str | None:

@@ -143,12 +143,6 @@ def _check_is_idle(node: Node) -> None:
     )
 
 
-_HUNG_CALL = (
-    "While a callback waits in call(), only another thread can take the answer: "
-    "give the client its own callback group, and spin with threads=2."
-)
-
-
 @dataclass(frozen=True)
 class CallbackError:
     """One error in a callback, with the number of times it happened.
@@ -205,7 +199,7 @@ class CallbackErrors:
             self._errors[key] = seen
         if known is None:
             say(_report(seen, failure))
-        elif _is_milestone(seen.count):
+        elif seen.count >= 10 and str(seen.count).strip("0") == "1":  # 10, 100, 1000 and so on
             say(f"The same error has now happened {seen.count} times: {_last_line(seen.error)}")
 
     @property
@@ -228,7 +222,10 @@ def _report(seen: CallbackError, failure: SpinFailure) -> str:
     else:
         lines += render(seen.error)
     if isinstance(seen.error, NodeEndedError):
-        lines.append(_HUNG_CALL)
+        lines.append(
+            "While a callback waits in call(), only another thread can take the answer: "
+            "give the client its own callback group, and spin with threads=2."
+        )
     if failure.goes_on:
         lines.append(f"{seen.node} goes on. The same error will only be counted.")
     return "\n".join(lines)
@@ -271,8 +268,3 @@ def describe(entity: Any) -> str:
 def _last_line(error: BaseException) -> str:
     text = str(error)
     return f"{type(error).__name__}: {text}" if text else type(error).__name__
-
-
-def _is_milestone(count: int) -> bool:
-    """Return True for 10, 100, 1000 and so on."""
-    return count >= 10 and str(count).strip("0") == "1"

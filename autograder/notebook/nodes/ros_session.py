@@ -29,7 +29,7 @@ from rclpy.utilities import get_default_context, ok, try_shutdown
 from autograder.dds_discovery import DOMAIN_VARIABLE, DomainClaim, claim_free_domain, domain_from_environment
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable
 
     from rclpy.context import Context
 
@@ -116,7 +116,9 @@ def start_ros() -> RosSession:
     with _lock:
         prepare_environment()
         if ok():
-            _drop_signal_handlers()
+            # Remove the signal handlers of an earlier rclpy.init(), because they would end ROS at an interrupt.
+            if get_current_signal_handlers_options() != SignalHandlerOptions.NO:
+                uninstall_signal_handlers()
         else:
             # If the default context was shut down, this makes rclpy create a new one.
             try_shutdown()
@@ -124,12 +126,6 @@ def start_ros() -> RosSession:
         domain = get_default_context().get_domain_id()
         os.environ[DOMAIN_VARIABLE] = os.environ.get(DOMAIN_VARIABLE) or str(domain)
         return RosSession(domain=domain, picked=_claim is not None and _claim.domain == domain)
-
-
-def _drop_signal_handlers() -> None:
-    """Remove the signal handlers of an earlier ``rclpy.init()``, which would end ROS when the kernel is interrupted."""
-    if get_current_signal_handlers_options() != SignalHandlerOptions.NO:
-        uninstall_signal_handlers()
 
 
 def _session_domain() -> int:
@@ -142,11 +138,8 @@ def _session_domain() -> int:
     return domain
 
 
-# This exit handler is registered before that of background.py and therefore runs after it: nodes end first, then ROS.
+# This exit handler is registered before the one of background_nodes.py, so it runs after it: nodes end first, then ROS.
 atexit.register(try_shutdown)
-
-
-_STOPPED = "was stopped while this call was waiting for its answer"
 
 
 @dataclass(frozen=True)
@@ -163,7 +156,7 @@ class NodeIdentity:
 
 
 @dataclass(frozen=True)
-class MadeNode:
+class _MadeNode:
     """A node and the run of the cell that made it.
 
     Attributes:
@@ -218,12 +211,12 @@ class MadeNodes:
             self._made = [entry for entry in self._made if entry[0]() is not None]
             self._made.append((weakref.ref(node), identity, self._current_run()))
 
-    def alive(self) -> list[MadeNode]:
+    def alive(self) -> list[_MadeNode]:
         """Return the nodes that are on the graph."""
         with self._lock:
             entries = [(reference(), identity, run) for reference, identity, run in self._made]
         return [
-            MadeNode(node, identity, run)
+            _MadeNode(node, identity, run)
             for node, identity, run in entries
             if node is not None and _has_begun(node)
         ]
@@ -292,10 +285,13 @@ def is_destroyed(node: Node) -> bool:
         return True
 
 
+_STOPPED = "was stopped while this call was waiting for its answer"
+
+
 def release_waiting_calls(node: Node) -> None:
     """Make each call of this node that waits for an answer raise a ``NodeEndedError``."""
     error = NodeEndedError(f"{node_label(node)} {_STOPPED}")
-    for future in list(_pending_answers(node)):
+    for future in _pending_answers(node):
         if not future.done():
             with warnings.catch_warnings():
                 # A callback that waits for the answer gets this error, as intended. Suppress rclpy's warning about this
@@ -306,13 +302,17 @@ def release_waiting_calls(node: Node) -> None:
             future.exception()
 
 
-def _pending_answers(node: Node) -> Iterator[Future]:
+def _pending_answers(node: Node) -> list[Future]:
     # Look into the dictionaries in which rclpy's clients keep the futures of the answers for which they wait
     # (rclpy/client.py, rclpy/action/client.py).
-    for client in (*_parts(node, "clients"), *_parts(node, "waitables")):
-        for name, requests in vars(client).items():
-            if name.startswith("_pending_") and isinstance(requests, dict):
-                yield from (future for future in list(requests.values()) if isinstance(future, Future))
+    return [
+        future
+        for client in (*_parts(node, "clients"), *_parts(node, "waitables"))
+        for name, requests in vars(client).items()
+        if name.startswith("_pending_") and isinstance(requests, dict)
+        for future in list(requests.values())
+        if isinstance(future, Future)
+    ]
 
 
 def _parts(node: Node, kind: str) -> list[Any]:

@@ -16,7 +16,7 @@ PACKAGE = Path(autograder.notebook.__file__).parent
 
 def test_no_file_of_the_notebooks_package_is_the_students() -> None:
     files = sorted(PACKAGE.rglob("*.py"))
-    assert {file.parent.name for file in files} > {"notebook", "cells", "nodes", "checking"}
+    assert {file.parent.name for file in files} > {"notebook", "nodes", "checking"}
     assert not [file for file in files if is_students(str(file))]
 
 
