@@ -76,7 +76,7 @@ class Progress:
         return " ".join(filter(None, (words, slow, self.known)))
 
 
-class Telling:
+class ProgressUpdater:
     """Updates the progress of a check repeatedly, in its own thread, until :meth:`stop`.
 
     Args:
@@ -129,7 +129,7 @@ class CardDisplay:
     subject: Any
     _handle: Any = None
     _progress: Progress = field(default_factory=Progress)
-    _telling: Telling | None = None
+    _updater: ProgressUpdater | None = None
 
     def __enter__(self) -> Self:
         if is_live():
@@ -138,13 +138,13 @@ class CardDisplay:
                 self._handle = display_card(
                     _dated(earlier, "Checking again: this is the result of the previous check.")
                 )
-            self._telling = Telling(self._tell)
+            self._updater = ProgressUpdater(self._tell)
         return self
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        self._stop_telling()
+        self._stop_updating()
         if error is not None and self._handle is not None:
             earlier = _shown.get(self.exercise)
             if earlier is not None:
@@ -165,7 +165,7 @@ class CardDisplay:
 
     def show(self, verdict: Verdict) -> None:
         """Show the result on the card; outside a notebook, print it."""
-        self._stop_telling()
+        self._stop_updating()
         shell = notebook_shell()
         earlier = _shown.get(self.exercise)
         before = earlier.verdict.score if earlier else None
@@ -179,9 +179,9 @@ class CardDisplay:
         if shell is not None:
             _remember(shell, self.exercise, self.subject, _Shown(verdict, before, self._handle, "", None))
 
-    def _stop_telling(self) -> None:
-        if self._telling is not None:
-            self._telling.stop()
+    def _stop_updating(self) -> None:
+        if self._updater is not None:
+            self._updater.stop()
 
     def _tell(self) -> None:
         earlier = _shown.get(self.exercise)

@@ -37,7 +37,7 @@ class Score(float):
         return '<span class="agc-cell-value" hidden="hidden"></span>'
 
 
-class CardPlace(Protocol):
+class _CardPlace(Protocol):
     """The display of a check's card and its progress."""
 
     def doing(self, what: str) -> None:
@@ -116,7 +116,7 @@ def _ask(exercise: str, subject: Any, place: CardDisplay) -> Verdict | None:
         link.close()
 
 
-def converse(link: JudgeLink, exercise: str, subject: Any, card: CardPlace) -> Verdict | None:
+def converse(link: JudgeLink, exercise: str, subject: Any, card: _CardPlace) -> Verdict | None:
     """Carry out the judge's requests, then return the verdict; None if the judge reports only to the grader.
 
     Args:
@@ -243,7 +243,7 @@ def _last_words(exercise: str, words: messages.FromJudge) -> Verdict | None:
     return not_checked(exercise, exercise, 0.0, why)
 
 
-def _retold(tell: Tell, card: CardPlace) -> Tell:
+def _retold(tell: Tell, card: _CardPlace) -> Tell:
     """Return a function that calls ``tell`` and also shows the last printed line of a program on the card."""
 
     def told(message: Message) -> None:

@@ -1,8 +1,8 @@
 """Connects a check with the judge: by messages over a socket, and by a ROS context on the judge's domain.
 
 If no grader has started a judge process, this module starts one. Notebook and judge share only the definitions of the
-messages (:mod:`autograder.messages.checks`). The judge imports nothing from :mod:`autograder.notebook`, and trusts
-nothing in the kernel, because a student can change all of it.
+messages (:mod:`autograder.messages.judge_messages`). The judge imports nothing from :mod:`autograder.notebook`, and
+trusts nothing in the kernel, because a student can change everything there.
 
 While a check runs, rclpy's default context is a new one on the judge's domain. A student's class calls
 ``super().__init__("talker_node")``, which uses rclpy's default context. So its node is made on the judge's domain,
@@ -44,8 +44,6 @@ if TYPE_CHECKING:
 
 MAX_TEXT = 4_000
 """The maximum length in characters of a text that is sent to the judge. A longer message would end the connection."""
-START_LIMIT = 60.0
-"""Time limit in seconds of wall time for the kernel's own judge to start."""
 
 
 class JudgeUnreachable(ConnectionError):
@@ -61,7 +59,7 @@ class JudgeLink:
         Raises:
             JudgeUnreachable: No judge is running, and none could be started.
         """
-        path = os.environ.get(SOCKET_VARIABLE) or own_judge().path()
+        path = os.environ.get(SOCKET_VARIABLE) or _own_judge().path()
         try:
             self._lines = Lines.to(path)
         except Hangup as error:
@@ -89,7 +87,7 @@ class JudgeLink:
         self._lines.close()
 
 
-class OwnJudge:
+class _OwnJudge:
     """The judge process of this kernel. It ends together with the kernel, because then its standard input is closed."""
 
     def __init__(self) -> None:
@@ -138,14 +136,14 @@ class OwnJudge:
         self._folder.remove()
 
 
-_own: OwnJudge | None = None
+_own: _OwnJudge | None = None
 
 
-def own_judge() -> OwnJudge:
+def _own_judge() -> _OwnJudge:
     """Return this kernel's own judge. The first call starts it; a later call restarts a judge that has died."""
     global _own
     if _own is None or not _own.alive:
-        _own = OwnJudge()
+        _own = _OwnJudge()
         atexit.register(_own.stop)
     return _own
 
@@ -153,7 +151,7 @@ def own_judge() -> OwnJudge:
 def warm_up() -> None:
     """Start this kernel's judge before the first check needs it. If a grader has started a judge, do nothing."""
     if not os.environ.get(SOCKET_VARIABLE):
-        own_judge()
+        _own_judge()
 
 
 _GLOBAL_EXECUTOR = "__executor"

@@ -204,9 +204,14 @@ class PathRun:
             options: Always empty, because only a function or a node has options.
         """
         del options
-        # The process gets its own session, so that interrupting the kernel does not end it. The judge decides when it
-        # ends.
-        self._program = OwnSession([*self._command, *map(str, arguments)], _environment(self._domain))
+        environment = {
+            **os.environ,
+            "ROS_DOMAIN_ID": str(self._domain),
+            "FASTDDS_BUILTIN_TRANSPORTS": "UDPv4",
+            "PYTHONUNBUFFERED": "1",
+        }
+        # The process gets its own session, so that an interrupt of the kernel does not end it: the judge decides that.
+        self._program = OwnSession([*self._command, *map(str, arguments)], environment)
         self._reader = threading.Thread(target=self._follow, args=(self._program,), daemon=True)
         self._reader.start()
 
@@ -261,13 +266,3 @@ def send_sources(tell: Tell, subject: object) -> None:
     for source in sent:
         tell(source)
     tell(Sources(path, trouble))
-
-
-def _environment(domain: int) -> dict[str, str]:
-    """Return the kernel's environment variables, with the ROS domain and the DDS transport of the check."""
-    return {
-        **os.environ,
-        "ROS_DOMAIN_ID": str(domain),
-        "FASTDDS_BUILTIN_TRANSPORTS": "UDPv4",
-        "PYTHONUNBUFFERED": "1",
-    }

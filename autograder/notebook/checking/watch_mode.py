@@ -1,10 +1,10 @@
-"""Watch mode: checks a Python class or function again each time a cell redefines it.
+"""Watch mode: checks a class or function again each time a cell redefines it.
 
 Watching begins after a check that did not earn all points, or when a student calls ``watch``.
 
-The check runs while the kernel is idle, so no cell takes longer. A check replaces rclpy's default context and captures
-all output, so it cannot run at the same time as a cell: when a cell is run, the check stops, and starts again after the
-cell. A restart of the kernel ends watching. While a grader executes a notebook, nothing is watched.
+The check runs while the kernel is idle, so no cell takes longer. A check cannot run at the same time as a cell, because
+it replaces rclpy's default context and captures all output. So when a cell is run, the check stops, and starts again
+after the cell. A restart of the kernel ends watching. While a grader executes a notebook, nothing is watched.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from autograder.cards import html_rendering
 from autograder.notebook.cell_output import notebook_shell
 from autograder.notebook.checking.card_display import (
     Progress,
-    Telling,
+    ProgressUpdater,
     display_card,
     is_live,
     renew_card,
@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 
 
 @dataclass
-class WatchMode:
+class _WatchedExercise:
     """An exercise that is watched. ``watch`` returns this object.
 
     Attributes:
@@ -56,8 +56,8 @@ class WatchMode:
     _progress: Progress = field(default_factory=Progress)
     _here: contextvars.Context = field(default_factory=contextvars.copy_context)
 
-    def is_defined_anew(self, subject: Any) -> bool:
-        """Return True if ``subject`` is a class or function, and is not the one that is watched so far."""
+    def _is_redefined_by(self, subject: Any) -> bool:
+        """Return True if ``subject`` is a class or function, but not the one that is watched so far."""
         return subject is not self.subject and (inspect.isclass(subject) or inspect.isfunction(subject))
 
     def begin(self, subject: Any) -> None:
@@ -70,7 +70,7 @@ class WatchMode:
         self._here = contextvars.copy_context()
         self._handle = display_card(self._card("The check begins as soon as this cell has ended."))
 
-    def get_ready(self) -> None:
+    def _get_ready(self) -> None:
         """Show on the card that the check begins."""
         self._progress = Progress()
         self.tell()
@@ -88,7 +88,7 @@ class WatchMode:
         """Show what the judge knows so far, once the check has taken long."""
         self._progress.known = so_far
 
-    def give_way(self) -> None:
+    def _give_way_to_cell(self) -> None:
         """Show on the card that the check waits for another cell."""
         self._say("The check begins again as soon as the running cell has ended.")
 
@@ -120,7 +120,7 @@ class WatchMode:
         return f"{self.name} is checked again whenever its cell is run. unwatch() ends it."
 
 
-class Watches:
+class _Watches:
     """All exercises that are watched in this kernel.
 
     Args:
@@ -128,7 +128,7 @@ class Watches:
     """
 
     def __init__(self, shell: Any) -> None:
-        self.all: dict[str, WatchMode] = {}
+        self.all: dict[str, _WatchedExercise] = {}
         self._names: dict[str, Any] = shell.user_ns
         self._thread: threading.Thread | None = None
         self._link: JudgeLink | None = None
@@ -147,7 +147,7 @@ class Watches:
         """
         for watch in self.all.values():
             subject = self._names.get(watch.name)
-            if watch.is_defined_anew(subject):
+            if watch._is_redefined_by(subject):
                 watch.begin(subject)
         if any(watch.due for watch in self.all.values()):
             self._giving_way = False
@@ -168,36 +168,36 @@ class Watches:
     def _check_what_is_due(self) -> None:
         for watch in list(self.all.values()):
             if watch.due:
-                watch.get_ready()
+                watch._get_ready()
                 self._check(watch)
 
-    def _check(self, watch: WatchMode) -> None:
+    def _check(self, watch: _WatchedExercise) -> None:
         try:
             link = JudgeLink()
             with self._lock:
                 self._link = link
                 if self._giving_way:
                     link.close()
-            telling = Telling(watch.tell)
+            updater = ProgressUpdater(watch.tell)
             try:
                 verdict = converse(link, watch.exercise, watch.subject, watch)
             finally:
-                telling.stop()
+                updater.stop()
                 link.close()
         except JudgeUnreachable as error:
             if self._giving_way:
-                watch.give_way()
+                watch._give_way_to_cell()
                 return
             verdict = not_checked(watch.exercise, watch.exercise, 0.0, str(error), "Run the cell again.")
         if verdict is not None:  # a grader's judge sends the notebook no verdict
             watch.show(verdict)
 
 
-_watches: Watches | None = None
+_watches: _Watches | None = None
 _ended_by_the_student = False
 
 
-def watch(exercise: str, subject: Callable[..., Any]) -> WatchMode:
+def watch(exercise: str, subject: Callable[..., Any]) -> _WatchedExercise:
     """Check a class again whenever its cell is run, until ``unwatch()`` or a restart of the kernel.
 
     A short card below the cell shows the points, what happened and what to do next. These checks change no grade. While
@@ -214,11 +214,11 @@ def watch(exercise: str, subject: Callable[..., Any]) -> WatchMode:
     if not (inspect.isclass(subject) or inspect.isfunction(subject)):
         raise TypeError(what_to_pass(exercise, subject, "watch"))
     _ended_by_the_student = False
-    begun = WatchMode(exercise, subject.__name__, subject)
+    begun = _WatchedExercise(exercise, subject.__name__, subject)
     if is_live():
-        _watches = _watches or Watches(notebook_shell())
+        _watches = _watches or _Watches(notebook_shell())
         # If the student calls watch(...) in the cell of the class, the call is repeated with each run of the cell.
-        # Return the earlier Watch then, so that the new class counts as not checked yet.
+        # Then return the object of the earlier call, so that the new class counts as not checked yet.
         earlier = _watches.all.get(exercise)
         if earlier is not None and earlier.name == begun.name:
             return earlier

@@ -36,129 +36,6 @@ if TYPE_CHECKING:
 Point = tuple[float, float]
 """A position or size in pixels: along the main direction of the arrows, and across it."""
 
-SWEEPS = 100
-"""The maximum number of passes in which igraph reduces the crossings of arrows."""
-GAP_BESIDE = 24
-"""Pixels between two boxes in the same column."""
-_PORTS = 0.72
-"""The fraction of a box's edge, from 0 to 1, that has room for the ends of arrows."""
-
-
-@dataclass(frozen=True)
-class Arrow:
-    """A line between two boxes, given by points: the first on the edge of box ``start``, the last on ``end``'s."""
-
-    start: str
-    end: str
-    points: tuple[Point, ...]
-
-
-@dataclass(frozen=True)
-class GraphLayout:
-    """The positions of boxes and arrows, in pixels.
-
-    Attributes:
-        centres: The center of each box.
-        arrows: The arrows, in the same order as the input.
-        extent: The size of the whole layout, along and across.
-    """
-
-    centres: Mapping[str, Point]
-    arrows: tuple[Arrow, ...]
-    extent: Point
-
-
-def lay_out(sizes: Mapping[str, Point], arrows: Sequence[tuple[str, str]], gap: float) -> GraphLayout:
-    """Return the positions of boxes and arrows, with coordinates from 0.
-
-    Args:
-        sizes: The size of each box, along and across.
-        arrows: Pairs of two boxes: where the arrow begins, and where it ends. Arrows from a box to itself are left out.
-        gap: Pixels between two columns.
-    """
-    import igraph  # imported here, so that only a notebook that draws a graph waits for the import
-
-    boxes = list(sizes)
-    drawn = [(a, b) for a, b in dict.fromkeys(arrows) if a != b]
-    if not boxes:
-        return GraphLayout({}, (), (0.0, 0.0))
-    number = {box: index for index, box in enumerate(boxes)}
-    edges = [(number[a], number[b]) for a, b in drawn]
-    # Reverse the arrows that close a cycle before igraph does, because igraph 1.0 returns wrong routes for arrows that
-    # it reverses itself.
-    back = set(igraph.Graph(n=len(boxes), edges=edges, directed=True).feedback_arc_set(method="eades"))
-    onward = [(b, a) if index in back else (a, b) for index, (a, b) in enumerate(edges)]
-    graph = igraph.Graph(n=len(boxes), edges=onward, directed=True)
-    found = graph.layout_sugiyama(hgap=1, vgap=1, maxiter=SWEEPS)
-    places = [list(place) for place in found.coords]
-    routing = [way[::-1] if index in back else way for index, way in enumerate(found.edge_routing)]
-    _push_apart([*places, *itertools.chain(*routing)])
-    columns = [round(layer) for _, layer in places]
-    unit = max(beside for _, beside in sizes.values()) + GAP_BESIDE
-    along = _columns(columns, [sizes[box][0] for box in boxes], gap)
-    first = min(place for place, _ in (*places, *itertools.chain(*routing)))
-    start = max(beside for _, beside in sizes.values()) / 2
-
-    def middle(place: float, layer: float) -> Point:
-        return along[round(layer)], (place - first) * unit + start
-
-    centres = {box: middle(*places[index]) for box, index in number.items()}
-    ways = [
-        [centres[a], *(middle(*point) for point in routed), centres[b]]
-        for (a, b), routed in zip(drawn, routing, strict=True)
-    ]
-    extent = (
-        max(centres[box][0] + sizes[box][0] / 2 for box in boxes),
-        max(beside for way in (*ways, [*centres.values()]) for _, beside in way) + start,
-    )
-    return GraphLayout(centres, _with_ports(drawn, ways, sizes), extent)
-
-
-def _push_apart(places: Sequence[list[float]]) -> None:
-    """Move the boxes of a column at least one unit apart, because igraph does not always keep this distance."""
-    last: dict[int, float] = {}
-    for place in sorted(places):
-        column = round(place[1])
-        place[0] = max(place[0], last.get(column, place[0] - 1) + 1)
-        last[column] = place[0]
-
-
-def _columns(columns: Sequence[int], widths: Sequence[float], gap: float) -> list[float]:
-    """Return the center of each column. A column is as wide as its widest box."""
-    middles = []
-    edge = 0.0
-    for column in range(max(columns) + 1):
-        width = max((w for c, w in zip(columns, widths, strict=True) if c == column), default=0.0)
-        middles.append(edge + width / 2)
-        edge += width + gap
-    return middles
-
-
-def _with_ports(
-    drawn: Sequence[tuple[str, str]], ways: Sequence[list[Point]], sizes: Mapping[str, Point]
-) -> tuple[Arrow, ...]:
-    """Return the arrows, with their ends spread along the edges of the boxes so that arrows cross less."""
-    ends: dict[tuple[str, bool], list[tuple[float, int, bool]]] = {}
-    for index, ((a, b), way) in enumerate(zip(drawn, ways, strict=True)):
-        onward = way[-1][0] > way[0][0]
-        ends.setdefault((a, onward), []).append((way[1][1], index, True))
-        ends.setdefault((b, not onward), []).append((way[-2][1], index, False))
-    ports: dict[tuple[int, bool], Point] = {}
-    for (box, after), there in ends.items():
-        width, height = sizes[box]
-        for place, (_, index, leaves) in enumerate(sorted(there)):
-            centre = ways[index][0 if leaves else -1]
-            share = (place + 1) / (len(there) + 1) - 0.5
-            ports[index, leaves] = (
-                centre[0] + (width / 2 if after else -width / 2),
-                centre[1] + share * height * _PORTS,
-            )
-    return tuple(
-        Arrow(a, b, (ports[index, True], *ways[index][1:-1], ports[index, False]))
-        for index, (a, b) in enumerate(drawn)
-    )
-
-
 PERIOD = 1.0
 """Seconds between two queries of the graph."""
 AGAIN = 10.0
@@ -253,7 +130,13 @@ class GraphPicture:
         labels = {_node_key(node): _Label("node", node) for node in self.graph.nodes}
         labels |= {_channel_key(c): _Label(c.kind, c.name, c.type) for c in self.graph.channels}
         rates = {_channel_key(channel): f"{rate:g}/s" for channel, rate in self.rates.items() if rate}
-        return _Drawing(labels, _arrows(self.graph), rates, " ".join(self.sentences())).svg()
+        # An arrow shows the direction of messages, requests and goals: from a publisher or client to the topic, service
+        # or action, or from there to a subscriber or server.
+        arrows = []
+        for end in self.graph.ends:
+            node, channel = _node_key(end.node), _channel_key(end.channel)
+            arrows.append((node, channel) if end.gives else (channel, node))
+        return _Drawing(labels, arrows, rates, " ".join(self.sentences())).svg()
 
     @property
     def is_moving(self) -> bool:
@@ -303,14 +186,14 @@ class _Label:
     type: str = ""
 
     @property
-    def small_print(self) -> str:
+    def _small_print(self) -> str:
         """The small second line of text in a box."""
         return self.type if self.shape in (ChannelKind.TOPIC, "node") else f"{self.shape}: {self.type}"
 
     @property
     def width(self) -> float:
         """The width of the box, in pixels."""
-        return max(len(self.name) * 1.1, len(self.small_print)) * _LETTER + 2 * _PADDING
+        return max(len(self.name) * 1.1, len(self._small_print)) * _LETTER + 2 * _PADDING
 
 
 def _node_key(node: str) -> str:
@@ -319,19 +202,6 @@ def _node_key(node: str) -> str:
 
 def _channel_key(channel: GraphChannel) -> str:
     return f"{channel.kind} {channel.name} {channel.type}"
-
-
-def _arrows(graph: RosGraph) -> list[tuple[str, str]]:
-    """Return the arrows of the picture, which show the direction of messages, requests and goals.
-
-    An arrow leads from a publisher or client to a topic, service or action, or from there to a subscriber or server.
-    """
-    return [
-        (_node_key(end.node), _channel_key(end.channel))
-        if end.gives
-        else (_channel_key(end.channel), _node_key(end.node))
-        for end in graph.ends
-    ]
 
 
 class _Drawing:
@@ -389,13 +259,13 @@ class _Drawing:
         above = 9 if label.type else 0
         texts = f'<text x="{x:.1f}" y="{y - above:.1f}">{escape(label.name)}</text>'
         if label.type:
-            texts += f'<text class="type" x="{x:.1f}" y="{y + 10:.1f}">{escape(label.small_print)}</text>'
+            texts += f'<text class="type" x="{x:.1f}" y="{y + 10:.1f}">{escape(label._small_print)}</text>'
         if rate := self._rates.get(name):
             edge = (x + label.width / 2 - 8, y - _HEIGHT / 2)
             texts += f'<text class="rate" x="{edge[0]:.1f}" y="{edge[1]:.1f}">{escape(rate)}</text>'
         return f'<g class="box {label.shape}">{rect}{texts}</g>'
 
-    def _line(self, arrow: Arrow) -> str:
+    def _line(self, arrow: _Arrow) -> str:
         """Return the SVG of an arrow: a curve along its route, and an arrowhead."""
         path = "M{:.1f},{:.1f}".format(*self._xy(arrow.points[0]))
         for (a1, b1), (a2, b2) in itertools.pairwise(arrow.points):
@@ -405,8 +275,131 @@ class _Drawing:
         flows = " flows" if {arrow.start, arrow.end} & self._rates.keys() else ""
         return f'<path class="line{flows}" d="{path}"/><path class="head" d="{self._head(arrow)}"/>'
 
-    def _head(self, arrow: Arrow) -> str:
+    def _head(self, arrow: _Arrow) -> str:
         (before, _), (along, beside) = arrow.points[-2:]
         back = -8 if along > before else 8
         corners = ((along, beside), (along + back, beside - 4.5), (along + back, beside + 4.5))
         return "M" + " L".join("{:.1f},{:.1f}".format(*self._xy(corner)) for corner in corners) + " z"
+
+
+SWEEPS = 100
+"""The maximum number of passes in which igraph reduces the crossings of arrows."""
+GAP_BESIDE = 24
+"""Pixels between two boxes in the same column."""
+_PORTS = 0.72
+"""The fraction of a box's edge, from 0 to 1, that has room for the ends of arrows."""
+
+
+@dataclass(frozen=True)
+class _Arrow:
+    """A line between two boxes, given by points: the first on the edge of box ``start``, the last on ``end``'s."""
+
+    start: str
+    end: str
+    points: tuple[Point, ...]
+
+
+@dataclass(frozen=True)
+class GraphLayout:
+    """The positions of boxes and arrows, in pixels.
+
+    Attributes:
+        centres: The center of each box.
+        arrows: The arrows, in the same order as the input.
+        extent: The size of the whole layout, along and across.
+    """
+
+    centres: Mapping[str, Point]
+    arrows: tuple[_Arrow, ...]
+    extent: Point
+
+
+def lay_out(sizes: Mapping[str, Point], arrows: Sequence[tuple[str, str]], gap: float) -> GraphLayout:
+    """Return the positions of boxes and arrows, with coordinates from 0.
+
+    Args:
+        sizes: The size of each box, along and across.
+        arrows: Pairs of two boxes: where the arrow begins, and where it ends. Arrows from a box to itself are left out.
+        gap: Pixels between two columns.
+    """
+    import igraph  # imported here, so that only a notebook that draws a graph waits for the import
+
+    boxes = list(sizes)
+    drawn = [(a, b) for a, b in dict.fromkeys(arrows) if a != b]
+    if not boxes:
+        return GraphLayout({}, (), (0.0, 0.0))
+    number = {box: index for index, box in enumerate(boxes)}
+    edges = [(number[a], number[b]) for a, b in drawn]
+    # Reverse the arrows that close a cycle before igraph does, because igraph 1.0 returns wrong routes for arrows that
+    # it reverses itself.
+    back = set(igraph.Graph(n=len(boxes), edges=edges, directed=True).feedback_arc_set(method="eades"))
+    onward = [(b, a) if index in back else (a, b) for index, (a, b) in enumerate(edges)]
+    graph = igraph.Graph(n=len(boxes), edges=onward, directed=True)
+    found = graph.layout_sugiyama(hgap=1, vgap=1, maxiter=SWEEPS)
+    places = [list(place) for place in found.coords]
+    routing = [way[::-1] if index in back else way for index, way in enumerate(found.edge_routing)]
+    _push_apart([*places, *itertools.chain(*routing)])
+    columns = [round(layer) for _, layer in places]
+    unit = max(beside for _, beside in sizes.values()) + GAP_BESIDE
+    along = _columns(columns, [sizes[box][0] for box in boxes], gap)
+    first = min(place for place, _ in (*places, *itertools.chain(*routing)))
+    start = max(beside for _, beside in sizes.values()) / 2
+
+    def middle(place: float, layer: float) -> Point:
+        return along[round(layer)], (place - first) * unit + start
+
+    centres = {box: middle(*places[index]) for box, index in number.items()}
+    ways = [
+        [centres[a], *(middle(*point) for point in routed), centres[b]]
+        for (a, b), routed in zip(drawn, routing, strict=True)
+    ]
+    extent = (
+        max(centres[box][0] + sizes[box][0] / 2 for box in boxes),
+        max(beside for way in (*ways, [*centres.values()]) for _, beside in way) + start,
+    )
+    return GraphLayout(centres, _with_ports(drawn, ways, sizes), extent)
+
+
+def _push_apart(places: Sequence[list[float]]) -> None:
+    """Move the boxes of a column at least one unit apart, because igraph does not always keep this distance."""
+    last: dict[int, float] = {}
+    for place in sorted(places):
+        column = round(place[1])
+        place[0] = max(place[0], last.get(column, place[0] - 1) + 1)
+        last[column] = place[0]
+
+
+def _columns(columns: Sequence[int], widths: Sequence[float], gap: float) -> list[float]:
+    """Return the center of each column. A column is as wide as its widest box."""
+    middles = []
+    edge = 0.0
+    for column in range(max(columns) + 1):
+        width = max((w for c, w in zip(columns, widths, strict=True) if c == column), default=0.0)
+        middles.append(edge + width / 2)
+        edge += width + gap
+    return middles
+
+
+def _with_ports(
+    drawn: Sequence[tuple[str, str]], ways: Sequence[list[Point]], sizes: Mapping[str, Point]
+) -> tuple[_Arrow, ...]:
+    """Return the arrows, with their ends spread along the edges of the boxes so that arrows cross less."""
+    ends: dict[tuple[str, bool], list[tuple[float, int, bool]]] = {}
+    for index, ((a, b), way) in enumerate(zip(drawn, ways, strict=True)):
+        onward = way[-1][0] > way[0][0]
+        ends.setdefault((a, onward), []).append((way[1][1], index, True))
+        ends.setdefault((b, not onward), []).append((way[-2][1], index, False))
+    ports: dict[tuple[int, bool], Point] = {}
+    for (box, after), there in ends.items():
+        width, height = sizes[box]
+        for place, (_, index, leaves) in enumerate(sorted(there)):
+            centre = ways[index][0 if leaves else -1]
+            share = (place + 1) / (len(there) + 1) - 0.5
+            ports[index, leaves] = (
+                centre[0] + (width / 2 if after else -width / 2),
+                centre[1] + share * height * _PORTS,
+            )
+    return tuple(
+        _Arrow(a, b, (ports[index, True], *ways[index][1:-1], ports[index, False]))
+        for index, (a, b) in enumerate(drawn)
+    )

@@ -57,7 +57,7 @@ def as_image(svg: str, words: str, attributes: str = "") -> str:
     return f'<img{more} alt="{escape(words)}" src="data:image/svg+xml;base64,{data}">'
 
 
-class Pictures(Protocol):
+class _Pictures(Protocol):
     """The source of the pictures that a :class:`LivePicture` shows one after the other."""
 
     name: str
@@ -89,7 +89,7 @@ class LivePicture:
         ValueError: ``minutes`` is not a positive number.
     """
 
-    def __init__(self, pictures: Pictures, minutes: float) -> None:
+    def __init__(self, pictures: _Pictures, minutes: float) -> None:
         if not minutes > 0:
             raise ValueError(f"minutes must be a positive number, such as 10, not {minutes!r}")
         self._pictures = pictures

@@ -52,7 +52,7 @@ class Recorded:
     message: Any
 
 
-def recording(path: str | os.PathLike[str], topics: Collection[str] = ()) -> Recording:
+def recording(path: str | os.PathLike[str], topics: Collection[str] = ()) -> _Recording:
     """Record the messages of topics while a ``with`` block runs.
 
     For example::
@@ -74,10 +74,10 @@ def recording(path: str | os.PathLike[str], topics: Collection[str] = ()) -> Rec
     file = Path(path)
     if file.suffix != ".mcap":
         raise ValueError(f"a recording is a file such as hello.mcap: {file.name} does not end in .mcap")
-    return Recording(file, [name if name.startswith("/") else f"/{name}" for name in topics])
+    return _Recording(file, [name if name.startswith("/") else f"/{name}" for name in topics])
 
 
-class Recording:
+class _Recording:
     """A recording, for use in a ``with`` statement. ``recording`` returns this object.
 
     Attributes:
@@ -120,9 +120,8 @@ class Recording:
         return f"{self._path}: {listed or 'no messages'}"
 
     def _record(self) -> None:
-        with contextlib.suppress(
-            *GONE
-        ):  # if ROS was shut down or the node destroyed, keep the recording so far
+        # If ROS is shut down or the node is destroyed, keep the recording so far.
+        with contextlib.suppress(*GONE):
             while not self._over.wait(LOOK_AGAIN):
                 self._take()
                 self._look_for_topics()

@@ -245,7 +245,7 @@ Scene = Tour | Spiral
 KEYBOARD = "keyboard"
 """The name of the node that publishes the commands. ``draw_graph`` shows it next to the robot."""
 _DISCOVERY_LIMIT = 1.0
-"""Time limit in seconds for discovering the robot. After that, the student is told that no robot listens."""
+"""Time limit in seconds for discovering the robot. After that, the student gets the message that no robot listens."""
 
 
 @dataclass(frozen=True)
@@ -253,14 +253,6 @@ class _Keyboard:
     node: Node
     publisher: Publisher
     made: float
-
-    @property
-    def is_gone(self) -> bool:
-        return is_destroyed(self.node) or not self.node.context.ok()
-
-    @property
-    def finds_no_robot(self) -> bool:
-        return time.monotonic() > self.made + _DISCOVERY_LIMIT and not self.publisher.get_subscription_count()
 
 
 _keyboard: _Keyboard | None = None
@@ -279,10 +271,11 @@ def drive(forward: float, turn: float) -> str:
     global _keyboard
     if not rclpy.ok():
         return "ROS is not started: run the cell with start_ros() first."
-    if _keyboard is None or _keyboard.is_gone:
+    if _keyboard is None or is_destroyed(_keyboard.node) or not _keyboard.node.context.ok():
         node = rclpy.create_node(KEYBOARD, start_parameter_services=False)
         _keyboard = _Keyboard(node, node.create_publisher(Twist, "/cmd_vel", 10), time.monotonic())
     _keyboard.publisher.publish(Twist(linear=Vector3(x=float(forward)), angular=Vector3(z=float(turn))))
-    if _keyboard.finds_no_robot:
+    is_late = time.monotonic() > _keyboard.made + _DISCOVERY_LIMIT
+    if is_late and not _keyboard.publisher.get_subscription_count():
         return "No robot listens to /cmd_vel: run the cell with start_robot() again."
     return ""

@@ -20,13 +20,13 @@ _STEP = 0.05
 
 
 @dataclass(frozen=True)
-class Wall:
+class _Wall:
     """A straight wall from one point to another."""
 
     start: Point
     end: Point
 
-    def distance_to(self, point: Point) -> float:
+    def _distance_to(self, point: Point) -> float:
         """Return the distance in meters from a point to the nearest point of this wall."""
         (x1, y1), (x2, y2) = self.start, self.end
         along = ((point[0] - x1) * (x2 - x1) + (point[1] - y1) * (y2 - y1)) / math.dist(
@@ -35,7 +35,7 @@ class Wall:
         nearest = min(1.0, max(0.0, along))
         return math.dist(point, (x1 + nearest * (x2 - x1), y1 + nearest * (y2 - y1)))
 
-    def distance_along(self, origin: Point, direction: Point) -> float:
+    def _distance_along(self, origin: Point, direction: Point) -> float:
         """Return the distance in meters from a point to this wall in a direction of length 1; infinity for a miss."""
         wall_x, wall_y = self.end[0] - self.start[0], self.end[1] - self.start[1]
         across = direction[0] * wall_y - direction[1] * wall_x
@@ -48,7 +48,7 @@ class Wall:
 
 
 @dataclass(frozen=True)
-class Walls:
+class _Walls:
     """The walls around the robot.
 
     Attributes:
@@ -60,24 +60,24 @@ class Walls:
 
     width: float
     height: float
-    walls: tuple[Wall, ...]
+    walls: tuple[_Wall, ...]
     door: Point
 
     def clearance(self, point: Point) -> float:
         """Return the distance in meters from a point to the nearest wall."""
-        return min(wall.distance_to(point) for wall in self.walls)
+        return min(wall._distance_to(point) for wall in self.walls)
 
     def ranges(self, origin: Point, angles: tuple[float, ...]) -> list[float]:
         """Return the distance in meters from a point to the first wall at each angle (in radians from the x axis)."""
         rays = [(math.cos(angle), math.sin(angle)) for angle in angles]
-        return [min(wall.distance_along(origin, ray) for wall in self.walls) for ray in rays]
+        return [min(wall._distance_along(origin, ray) for wall in self.walls) for ray in rays]
 
 
-def _two_rooms() -> Walls:
+def _two_rooms() -> _Walls:
     corners: tuple[Point, ...] = ((0, 0), (6, 0), (6, 4), (0, 4))
-    outer = tuple(Wall(corner, corners[(i + 1) % 4]) for i, corner in enumerate(corners))
-    beside_the_door = (Wall((4, 0), (4, 1.4)), Wall((4, 2.6), (4, 4)))
-    return Walls(6.0, 4.0, (*outer, *beside_the_door), door=(4.0, 2.0))
+    outer = tuple(_Wall(corner, corners[(i + 1) % 4]) for i, corner in enumerate(corners))
+    beside_the_door = (_Wall((4, 0), (4, 1.4)), _Wall((4, 2.6), (4, 4)))
+    return _Walls(6.0, 4.0, (*outer, *beside_the_door), door=(4.0, 2.0))
 
 
 ROOM = _two_rooms()
@@ -109,7 +109,7 @@ class Velocity:
     forward: float = 0.0
     turn: float = 0.0
 
-    def within_limits(self) -> Velocity:
+    def _within_limits(self) -> Velocity:
         """Return the velocity, limited to what the motors can do. A value that is NaN becomes 0."""
         return Velocity(_limited(self.forward, FASTEST), _limited(self.turn, FASTEST_TURN))
 
@@ -136,9 +136,9 @@ class Moved:
     bumped: bool = False
 
 
-def move(pose: Pose, velocity: Velocity, seconds: float, room: Walls) -> Moved:
+def move(pose: Pose, velocity: Velocity, seconds: float, room: _Walls) -> Moved:
     """Return the pose and velocity of the robot after turning and rolling for some seconds. A wall stops it."""
-    speed = velocity.within_limits()
+    speed = velocity._within_limits()
     pieces = max(1, math.ceil(abs(speed.forward) * seconds / _STEP))
     here = pose
     for _ in range(pieces):

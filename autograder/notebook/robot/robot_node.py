@@ -104,9 +104,9 @@ class RobotNode(Node):
 
     def _tell(self, state: RobotState) -> None:
         now = self.get_clock().now()
-        self._odometry.publish(odometry(state, now))
+        self._odometry.publish(_odometry_message(state, now))
         if self._ticks % SCAN_EVERY == 0:
-            self._scan.publish(laser_scan(state, now))
+            self._scan.publish(_laser_scan_message(state, now))
         self._ticks += 1
 
     def _reset(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
@@ -125,8 +125,7 @@ class RobotNode(Node):
         return float(self.get_clock().now().nanoseconds) / 1e9
 
 
-def odometry(state: RobotState, now: Time) -> Odometry:
-    """Return the robot's odometry as a message."""
+def _odometry_message(state: RobotState, now: Time) -> Odometry:
     message = Odometry()
     message.header.stamp, message.header.frame_id = now.to_msg(), "odom"
     message.child_frame_id = "base_link"
@@ -138,8 +137,7 @@ def odometry(state: RobotState, now: Time) -> Odometry:
     return message
 
 
-def laser_scan(state: RobotState, now: Time) -> LaserScan:
-    """Return the robot's laser scan as a message."""
+def _laser_scan_message(state: RobotState, now: Time) -> LaserScan:
     message = LaserScan()
     message.header.stamp, message.header.frame_id = now.to_msg(), "base_link"
     message.angle_min, message.angle_increment = 0.0, math.tau / RAYS
