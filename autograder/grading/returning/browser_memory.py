@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
 
-MOST_POINTS = 100_000_000
+MOST_PIXELS = 100_000_000
 """The maximum number of pixels of all pictures on a notebook's page: a dozen 4K screenshots, or 400 MB in a
 browser.
 """
@@ -43,30 +43,30 @@ _ALONE = {0x01, *range(0xD0, 0xD8)}
 
 
 class PixelBudget:
-    """Counts the pixels of a notebook's pictures up to the limit ``MOST_POINTS``."""
+    """Counts the pixels of a notebook's pictures up to the limit ``MOST_PIXELS``."""
 
     def __init__(self) -> None:
-        self._left = MOST_POINTS
+        self._left = MOST_PIXELS
 
     def fit(self, encoded: Iterable[str]) -> bool:
         """Count the pixels of base64 pictures, and return True.
 
         If the pixels would exceed the limit, count none and return False.
         """
-        wanted = sum(points_of(picture) or 0 for picture in encoded)
+        wanted = sum(pixels_of(picture) or 0 for picture in encoded)
         if wanted > self._left:
             return False
         self._left -= wanted
         return True
 
 
-def is_shown(encoded: str) -> bool:
+def may_be_shown(encoded: str) -> bool:
     """Return True if a page may show a base64 picture: a valid PNG, JPEG, GIF or WebP with few enough pixels."""
-    points = points_of(encoded)
-    return points is not None and points <= MOST_POINTS
+    pixels = pixels_of(encoded)
+    return pixels is not None and pixels <= MOST_PIXELS
 
 
-def points_of(encoded: str) -> int | None:
+def pixels_of(encoded: str) -> int | None:
     """Return the number of pixels of a base64 picture, in all frames; None if it is not a PNG, JPEG, GIF or WebP.
 
     The type is recognized by the first bytes, as in a browser, not by the type that the notebook declares.
@@ -74,19 +74,19 @@ def points_of(encoded: str) -> int | None:
     try:
         data = base64.b64decode(encoded)
         if data.startswith(_PNG):
-            return _points_of_png(data)
+            return _pixels_of_png(data)
         if data.startswith((b"GIF87a", b"GIF89a")):
-            return _points_of_gif(data)
+            return _pixels_of_gif(data)
         if data.startswith(b"\xff\xd8"):
-            return _points_of_jpeg(data)
+            return _pixels_of_jpeg(data)
         if data[:4] == b"RIFF" and data[8:12] == b"WEBP":
-            return _points_of_webp(data)
+            return _pixels_of_webp(data)
     except (binascii.Error, ValueError, struct.error, IndexError):
         pass  # the picture is incomplete, or is not a picture
     return None
 
 
-def _points_of_png(data: bytes) -> int | None:
+def _pixels_of_png(data: bytes) -> int | None:
     width, height = struct.unpack_from(">4x4sII", data, 8)[1:] if data[12:16] == b"IHDR" else (0, 0)
     frames, place = 1, 8
     for _ in _parts():
@@ -98,7 +98,7 @@ def _points_of_png(data: bytes) -> int | None:
     return width * height * max(1, frames) or None
 
 
-def _points_of_gif(data: bytes) -> int | None:
+def _pixels_of_gif(data: bytes) -> int | None:
     width, height, flags = struct.unpack_from("<HHB", data, 6)
     place, frames = 13 + _colors(flags), 0
     parts = _parts()
@@ -127,7 +127,7 @@ def _colors(flags: int) -> int:
     return 3 << (flags & 7) + 1 if flags & 0x80 else 0
 
 
-def _points_of_jpeg(data: bytes) -> int | None:
+def _pixels_of_jpeg(data: bytes) -> int | None:
     place, parts = 2, _parts()
     while next(parts) and place < len(data):
         kind = data[place + 1] if data[place] == 0xFF else 0xFF
@@ -141,20 +141,20 @@ def _points_of_jpeg(data: bytes) -> int | None:
     return None
 
 
-def _points_of_webp(data: bytes) -> int | None:
-    points, frames = 0, 0
+def _pixels_of_webp(data: bytes) -> int | None:
+    pixels, frames = 0, 0
     for kind, at in _chunks(data):
         if kind == b"VP8X":
             wide, high = (int.from_bytes(data[at + n : at + n + 3], "little") + 1 for n in (4, 7))
-            points = max(points, wide * high)
+            pixels = max(pixels, wide * high)
         elif kind == b"VP8L":
             bits = int.from_bytes(data[at + 1 : at + 5], "little")
-            points = max(points, ((bits & 0x3FFF) + 1) * ((bits >> 14 & 0x3FFF) + 1))
+            pixels = max(pixels, ((bits & 0x3FFF) + 1) * ((bits >> 14 & 0x3FFF) + 1))
         elif kind == b"VP8 ":
             wide, high = struct.unpack_from("<HH", data, at + 6)
-            points = max(points, (wide & 0x3FFF) * (high & 0x3FFF))
+            pixels = max(pixels, (wide & 0x3FFF) * (high & 0x3FFF))
         frames += kind == b"ANMF"
-    return points * max(1, frames) or None
+    return pixels * max(1, frames) or None
 
 
 def _chunks(data: bytes) -> Iterator[tuple[bytes, int]]:

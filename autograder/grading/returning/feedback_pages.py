@@ -10,12 +10,15 @@ from nbgrader.utils import is_grade, is_solution, is_task
 from autograder.grading.classes.class_directory import SUFFIX
 from autograder.grading.classes.gradebook_reading import read_entry
 from autograder.grading.rebuilding import nbformat_nodes
-from autograder.grading.returning.page_exporter import PageExporter, mark_waiting
+from autograder.grading.rebuilding.notebook_rebuilding import grade_id, is_check
+from autograder.grading.returning.page_exporter import WAITS, PageExporter
 from autograder.safe_files import write_whole
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from pathlib import Path
+
+    from nbformat import NotebookNode
 
     from autograder.grading.classes.class_directory import ClassDirectory, Submission
     from autograder.grading.classes.gradebook_reading import CellEntry, SubmissionEntry
@@ -71,6 +74,23 @@ class FeedbackPages:
         make: Any = PageExporter
         exporter: PageExporter = make(config=self._directory.config)
         return exporter
+
+
+_FOR_A_PERSON, _TRIED_AGAIN = "waits for your instructor", "could not be checked, and is tried again"
+
+
+def mark_waiting(notebook: NotebookNode, cells: Mapping[str, CellEntry]) -> None:
+    """Mark the cells whose points a person or the judge still has to give.
+
+    Args:
+        notebook: A graded notebook. It is changed.
+        cells: The notebook's entries in the gradebook, by grade_id.
+    """
+    for cell in notebook.cells:
+        entry = cells.get(grade_id(cell))
+        if entry is not None and entry.waits:
+            unchecked = is_check(cell) and entry.by_hand is None
+            cell.metadata.nbgrader[WAITS] = _TRIED_AGAIN if unchecked else _FOR_A_PERSON
 
 
 def _fill_in(cell: Any, cells: Mapping[str, CellEntry]) -> None:

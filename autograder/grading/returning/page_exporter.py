@@ -39,102 +39,6 @@ from autograder.grading.returning.sanitize import Renderer, clean, make_harmless
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
 
-    from autograder.grading.classes.gradebook_reading import CellEntry
-
-
-WAITS = "waits_for_a_person"
-"""The key of a remark for the student, such as "waits for your instructor", in a cell's nbgrader metadata. Only a cell
-without final points has a remark.
-"""
-_FOR_A_PERSON, _TRIED_AGAIN = "waits for your instructor", "could not be checked, and is tried again"
-_BEGIN, _END = '<div id="toc">', "</div>"
-_LINK = re2.compile(r'(?s)<a\b[^>]*\bhref="([^"]*)"[^>]*>(.*?)</a>')
-_LEADS_SOMEWHERE = re2.compile(r"#|[a-zA-Z][a-zA-Z+.-]*:")
-_CELL = "padding: 4px 14px 4px 0; vertical-align: top; text-align: left"
-
-
-def with_summary(body: str, notebook: NotebookNode, names: Mapping[str, Any]) -> str:
-    """Return a page in which the student's name and a table of exercises replace nbgrader's list.
-
-    Args:
-        body: The page as HTML. Text by a student may follow nbgrader's list, but must not precede the list.
-        notebook: The notebook of the page, with points filled in.
-        names: The values that the template gets about the student and the points.
-    """
-    before, begin, rest = body.partition(_BEGIN)
-    _, end, after = rest.partition(_END)
-    if not end:
-        return body
-    lines = "".join(
-        f'<tr><td style="{_CELL}">{name}</td><td style="{_CELL}; white-space: nowrap">{points}</td>'
-        f'<td style="{_CELL}">{words}</td></tr>'
-        for name, points, words in _lines(notebook, names)
-    )
-    student, name = str(names.get("student", "")), str(names.get("name", ""))
-    heading = f"{name} ({student})" if name else student
-    return f"{before}{begin}<p><strong>{escape(printable(heading))}</strong></p><table>{lines}</table>{end}{after}"
-
-
-def cards_first(notebook: NotebookNode) -> list[tuple[bool, bool]]:
-    """Move the check cells to the top of a notebook, because their outputs are the cards.
-
-    Returns:
-        For each cell, two booleans: True if a block of given cells begins with the cell, and True if a block of given
-        cells ends with the cell. The page folds these blocks.
-    """
-    notebook.cells = sorted(notebook.cells, key=lambda cell: not is_check(cell))
-    given = [is_the_masters(cell) and not is_check(cell) for cell in notebook.cells]
-    return [
-        (one and not before, one and not after)
-        for before, one, after in zip([False, *given], given, [*given[1:], False], strict=False)
-    ]
-
-
-def mark_waiting(notebook: NotebookNode, cells: Mapping[str, CellEntry]) -> None:
-    """Mark the cells whose points a person or the judge still has to give.
-
-    Args:
-        notebook: A graded notebook. It is changed.
-        cells: The notebook's entries in the gradebook, by grade_id.
-    """
-    for cell in notebook.cells:
-        entry = cells.get(grade_id(cell))
-        if entry is not None and entry.waits:
-            unchecked = is_check(cell) and entry.by_hand is None
-            cell.metadata.nbgrader[WAITS] = _TRIED_AGAIN if unchecked else _FOR_A_PERSON
-
-
-def without_dead_links(page: str) -> str:
-    """Turn links to files next to the page into plain text, because the page is sent without these files."""
-    return _LINK.sub(lambda link: link[0] if _LEADS_SOMEWHERE.match(link[1]) else link[2], page)
-
-
-def _lines(notebook: NotebookNode, names: Mapping[str, Any]) -> Iterator[tuple[str, str, str]]:
-    """Yield a line of the table for each cell with points: the name, the points, and a remark, as HTML."""
-    for cell in notebook.cells:
-        marks = cell.metadata.get("nbgrader", {})
-        if not (marks.get("grade") or marks.get("task")):
-            continue
-        score, most = float(marks.get("score") or 0), float(marks.get("points") or 0)
-        link = f'<a href="#{escape(grade_id(cell))}">{escape(_title(cell))}</a>'
-        word = "✓ all points" if score >= most else "◐ some points, see below" if score > 0 else "✗ see below"
-        if marks.get(WAITS):
-            word = f"… {marks[WAITS]}"
-        if marks.get("comment"):
-            word += f', <a href="#comment-{escape(grade_id(cell))}">with a comment</a>'
-        yield link, f"{score:g} of {most:g}", word
-    if names.get("late_penalty"):
-        yield "Being late", f"−{float(names['late_penalty']):g}", escape(str(names.get("why_late", "")))
-
-
-def _title(cell: NotebookNode) -> str:
-    """Return the exercise's title if the judge checks the cell; otherwise the name of the cell."""
-    name = grade_id(cell)
-    if is_check(cell) and is_the_masters(cell):
-        with contextlib.suppress(LookupError):
-            return str(exercises.get(exercise_of(name)).title)
-    return name.replace("_", " ")
-
 
 POLICY = "default-src 'none'; style-src 'unsafe-inline'; img-src data:; base-uri 'none'; form-action 'none'"
 """The Content Security Policy of a feedback page, which lets a browser show only the text, styles and pictures inside
@@ -145,51 +49,10 @@ _OURS = Path(__file__).parents[1] / "page_templates"
 _FORMGRADER = Path(nbgrader.__file__).parent / "server_extensions" / "formgrader"
 _NBGRADERS = _FORMGRADER / "templates"
 _BOOTSTRAP = _FORMGRADER / "static" / "node_modules" / "bootstrap" / "dist" / "css"
-_SCRIPT = re.compile(r"<script\b.*?</script\s*>", re.DOTALL | re.IGNORECASE)
-_REMEMBERED = 1024
-"""The maximum number of code cells in the cache of highlighted code; enough for a chapter, which has a few hundred
-given cells.
-"""
 _REMEMBERED_CHARACTERS = 8_000_000
 """The maximum length of all rendered parts of pages in the cache, in characters; enough for the parts that are the same
 for all students of a chapter, which take about a million.
 """
-_PICTURE = re2.compile(r"(?i)<img\b[^>]*")
-_SHOWS_ATTACHED = re2.compile(r'(?P<before><img\b(?:\s+[\w-]+="[^"]*")*?\s+)src="attachment:(?P<name>[^"]*)"')
-_ALTERNATIVE = re2.compile(r"(?i)\salt=")
-
-
-class Remembered:
-    """A cache of rendered texts, by the values from which they are made. The least recently used is dropped first.
-
-    Args:
-        characters: The maximum length of all texts together.
-    """
-
-    def __init__(self, characters: int) -> None:
-        self._left = characters
-        self._texts: OrderedDict[bytes, str] = OrderedDict()
-
-    def get(self, of: Any, make: Callable[[], str]) -> str:
-        """Return the text for the given values, from the cache or newly made.
-
-        Args:
-            of: The values on which the text depends. They are encoded as JSON for the key.
-            make: Makes the text.
-        """
-        # The key is a cryptographic hash, so that no student can write a cell with the key of another text.
-        key = hashlib.sha256(msgspec.json.encode(of)).digest()
-        known = self._texts.get(key)
-        if known is not None:
-            self._texts.move_to_end(key)
-            return known
-        text = make()
-        self._texts[key] = text
-        self._left -= len(text)
-        while self._left < 0:
-            _, forgotten = self._texts.popitem(last=False)
-            self._left += len(forgotten)
-        return text
 
 
 class PageExporter(HTMLExporter):
@@ -274,6 +137,39 @@ class PageExporter(HTMLExporter):
         register(name, function)
 
 
+class Remembered:
+    """A cache of rendered texts, by the values from which they are made. The least recently used is dropped first.
+
+    Args:
+        characters: The maximum length of all texts together.
+    """
+
+    def __init__(self, characters: int) -> None:
+        self._left = characters
+        self._texts: OrderedDict[bytes, str] = OrderedDict()
+
+    def get(self, of: Any, make: Callable[[], str]) -> str:
+        """Return the text for the given values, from the cache or newly made.
+
+        Args:
+            of: The values on which the text depends. They are encoded as JSON for the key.
+            make: Makes the text.
+        """
+        # The key is a cryptographic hash, so that no student can write a cell with the key of another text.
+        key = hashlib.sha256(msgspec.json.encode(of)).digest()
+        known = self._texts.get(key)
+        if known is not None:
+            self._texts.move_to_end(key)
+            return known
+        text = make()
+        self._texts[key] = text
+        self._left -= len(text)
+        while self._left < 0:
+            _, forgotten = self._texts.popitem(last=False)
+            self._left += len(forgotten)
+        return text
+
+
 @pass_context
 def markdown_to_html(context: Any, source: str) -> str:
     """Return a Markdown cell as HTML, cleaned unless the cell comes from the master. This replaces nbconvert's filter.
@@ -289,6 +185,9 @@ def markdown_to_html(context: Any, source: str) -> str:
     page = without_dead_links(harmless.replace("<img ", '<img style="max-width: 100%" '))
     attached = dict(cell.get("attachments", {}))
     return _with_pictures(page, attached.get if is_the_masters(cell) else attached.pop)
+
+
+_SHOWS_ATTACHED = re2.compile(r'(?P<before><img\b(?:\s+[\w-]+="[^"]*")*?\s+)src="attachment:(?P<name>[^"]*)"')
 
 
 def _with_pictures(page: str, take: Callable[[str, dict[str, str]], Mapping[str, str]]) -> str:
@@ -307,6 +206,9 @@ def _with_pictures(page: str, take: Callable[[str, dict[str, str]], Mapping[str,
     return _SHOWS_ATTACHED.sub(shown, page)
 
 
+_SCRIPT = re.compile(r"<script\b.*?</script\s*>", re.DOTALL | re.IGNORECASE)
+
+
 # The result is cached, because the head is most of a page, and the same for all students of an assignment.
 @functools.lru_cache(maxsize=16)
 def without_scripts(head: str) -> str:
@@ -317,6 +219,12 @@ def without_scripts(head: str) -> str:
     """
     policy = f'<meta http-equiv="Content-Security-Policy" content="{POLICY}" />'
     return _SCRIPT.sub("", head).replace("<head>", f"<head>\n{policy}", 1)
+
+
+_REMEMBERED = 1024
+"""The maximum number of code cells in the cache of highlighted code; enough for a chapter, which has a few hundred
+given cells.
+"""
 
 
 @functools.lru_cache(maxsize=8)
@@ -335,6 +243,10 @@ def _highlighter(lexer: str | None) -> Any:
     return filtered
 
 
+_PICTURE = re2.compile(r"(?i)<img\b[^>]*")
+_ALTERNATIVE = re2.compile(r"(?i)\salt=")
+
+
 def _with_alternative_texts(page: str) -> str:
     """Add missing alternative texts to pictures, as nbconvert does, but parse the page only if any is missing."""
     if all(_ALTERNATIVE.search(picture[0]) for picture in _PICTURE.finditer(page)):
@@ -343,3 +255,84 @@ def _with_alternative_texts(page: str) -> str:
     for picture in soup.select("img:not([alt])"):
         picture.attrs["alt"] = "No description has been provided for this image"
     return str(soup)
+
+
+WAITS = "waits_for_a_person"
+"""The key of a remark for the student, such as "waits for your instructor", in a cell's nbgrader metadata. Only a cell
+without final points has a remark.
+"""
+_BEGIN, _END = '<div id="toc">', "</div>"
+_CELL = "padding: 4px 14px 4px 0; vertical-align: top; text-align: left"
+
+
+def with_summary(body: str, notebook: NotebookNode, names: Mapping[str, Any]) -> str:
+    """Return a page in which the student's name and a table of exercises replace nbgrader's list.
+
+    Args:
+        body: The page as HTML. Text by a student may follow nbgrader's list, but must not precede the list.
+        notebook: The notebook of the page, with points filled in.
+        names: The values that the template gets about the student and the points.
+    """
+    before, begin, rest = body.partition(_BEGIN)
+    _, end, after = rest.partition(_END)
+    if not end:
+        return body
+    lines = "".join(
+        f'<tr><td style="{_CELL}">{name}</td><td style="{_CELL}; white-space: nowrap">{points}</td>'
+        f'<td style="{_CELL}">{words}</td></tr>'
+        for name, points, words in _lines(notebook, names)
+    )
+    student, name = str(names.get("student", "")), str(names.get("name", ""))
+    heading = f"{name} ({student})" if name else student
+    return f"{before}{begin}<p><strong>{escape(printable(heading))}</strong></p><table>{lines}</table>{end}{after}"
+
+
+def cards_first(notebook: NotebookNode) -> list[tuple[bool, bool]]:
+    """Move the check cells to the top of a notebook, because their outputs are the cards.
+
+    Returns:
+        For each cell, two booleans: True if a block of given cells begins with the cell, and True if a block of given
+        cells ends with the cell. The page folds these blocks.
+    """
+    notebook.cells = sorted(notebook.cells, key=lambda cell: not is_check(cell))
+    given = [is_the_masters(cell) and not is_check(cell) for cell in notebook.cells]
+    return [
+        (one and not before, one and not after)
+        for before, one, after in zip([False, *given], given, [*given[1:], False], strict=False)
+    ]
+
+
+def _lines(notebook: NotebookNode, names: Mapping[str, Any]) -> Iterator[tuple[str, str, str]]:
+    """Yield a line of the table for each cell with points: the name, the points, and a remark, as HTML."""
+    for cell in notebook.cells:
+        marks = cell.metadata.get("nbgrader", {})
+        if not (marks.get("grade") or marks.get("task")):
+            continue
+        score, most = float(marks.get("score") or 0), float(marks.get("points") or 0)
+        link = f'<a href="#{escape(grade_id(cell))}">{escape(_title(cell))}</a>'
+        word = "✓ all points" if score >= most else "◐ some points, see below" if score > 0 else "✗ see below"
+        if marks.get(WAITS):
+            word = f"… {marks[WAITS]}"
+        if marks.get("comment"):
+            word += f', <a href="#comment-{escape(grade_id(cell))}">with a comment</a>'
+        yield link, f"{score:g} of {most:g}", word
+    if names.get("late_penalty"):
+        yield "Being late", f"−{float(names['late_penalty']):g}", escape(str(names.get("why_late", "")))
+
+
+def _title(cell: NotebookNode) -> str:
+    """Return the exercise's title if the judge checks the cell; otherwise the name of the cell."""
+    name = grade_id(cell)
+    if is_check(cell) and is_the_masters(cell):
+        with contextlib.suppress(LookupError):
+            return str(exercises.get(exercise_of(name)).title)
+    return name.replace("_", " ")
+
+
+_LINK = re2.compile(r'(?s)<a\b[^>]*\bhref="([^"]*)"[^>]*>(.*?)</a>')
+_LEADS_SOMEWHERE = re2.compile(r"#|[a-zA-Z][a-zA-Z+.-]*:")
+
+
+def without_dead_links(page: str) -> str:
+    """Turn links to files next to the page into plain text, because the page is sent without these files."""
+    return _LINK.sub(lambda link: link[0] if _LEADS_SOMEWHERE.match(link[1]) else link[2], page)

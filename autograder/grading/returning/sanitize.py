@@ -22,7 +22,7 @@ from autograder.execution.executed_cells import CellType
 from autograder.grading.rebuilding import nbformat_nodes
 from autograder.grading.rebuilding.notebook_rebuilding import is_check, is_the_masters
 from autograder.grading.rebuilding.submitted_notebook import HARMLESS_LENGTH
-from autograder.grading.returning.browser_memory import PixelBudget, is_shown, places_in_tables
+from autograder.grading.returning.browser_memory import PixelBudget, may_be_shown, places_in_tables
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable
@@ -144,7 +144,7 @@ def _with_pictures_that_fit(output: NotebookNode, pictures: PixelBudget) -> Note
     """Return an output in which a sentence replaces each picture that is invalid or too large."""
     for kind in IMAGES:
         encoded = output.get("data", {}).get(kind)
-        if encoded is not None and not (is_shown(text := "".join(encoded)) and pictures.fit([text])):
+        if encoded is not None and not (may_be_shown(text := "".join(encoded)) and pictures.fit([text])):
             del output.data[kind]
             output.data["text/plain"] = "[picture left out: it is too large, or damaged]"
     return output
@@ -172,7 +172,9 @@ def harmless_markdown(source: str, figures: tuple[str, ...] = ()) -> str:
         if (in_one_line := _in_one_line(cleaned)) == source:
             return source  # the text was cleaned earlier
         block = f"<div>{in_one_line}</div>"
-        return block if _as_shown(block).strip() == block else as_typed(source)
+        # Store the block only if nbconvert shows it unchanged.
+        shown = MarkdownWithMath(renderer=IPythonRenderer(escape=False)).render(block)
+        return block if shown.strip() == block else as_typed(source)
     except Exception:  # a parser may raise any error for a hostile text, for example because of deep nesting
         return as_typed(source)
 
@@ -253,7 +255,7 @@ def _shown_or_kept(markup: Any) -> str:
 def _is_picture(address: str) -> bool:
     """Return True if an address is a data URL with a picture that a page may show."""
     found = _PICTURE.fullmatch(address)
-    return found is not None and is_shown(found[1])
+    return found is not None and may_be_shown(found[1])
 
 
 def _value_that_may_stay(tag: str, name: str, value: str) -> str | None:
@@ -329,11 +331,6 @@ class _Looking(Renderer):
             self.is_plain = False
             return f"<em>[picture left out: {escape(text)}]</em>"
         return super().image(text, url, title)
-
-
-def _as_shown(markdown: str) -> str:
-    """Return the HTML that nbconvert makes from Markdown."""
-    return MarkdownWithMath(renderer=IPythonRenderer(escape=False)).render(markdown)
 
 
 def harmless_output(output: NotebookNode) -> NotebookNode:

@@ -5,10 +5,9 @@ The result also lists the files that were not compared.
 
 from __future__ import annotations
 
-import itertools
 from collections import Counter, defaultdict
 from dataclasses import dataclass
-from itertools import combinations
+from itertools import chain, combinations
 from typing import TYPE_CHECKING
 
 from rapidfuzz.distance import LCSseq
@@ -27,6 +26,8 @@ if TYPE_CHECKING:
     from autograder.grading.similarity.own_words import Compared
 
 
+MOST_SHOWN = 100
+"""The maximum number of pairs of students to show, the most similar first."""
 SHORTEST = 40
 """Two answers are similar only if they share at least this number of students' own words: four to eight lines.
 
@@ -45,148 +46,6 @@ HINT = (
     "Read both answers, and talk with both students, before you decide anything."
 )
 """The text that is shown with every list of pairs."""
-
-
-@dataclass(frozen=True)
-class Passage:
-    """A part of two answers that has the same words in the same order.
-
-    Attributes:
-        first: The index of the passage's first word in the first answer.
-        second: The index of the passage's first word in the second answer.
-        own: For each word of the passage, True if the word is the student's own in both answers.
-    """
-
-    first: int
-    second: int
-    own: tuple[bool, ...]
-
-
-@dataclass(frozen=True)
-class Pair:
-    """Two similar answers.
-
-    Attributes:
-        one: The first answer.
-        other: The second answer.
-        passages: The common passages, in the order of the first answer.
-    """
-
-    one: Compared
-    other: Compared
-    passages: Sequence[Passage]
-
-    @property
-    def shared(self) -> int:
-        """The number of students' own words in the common passages."""
-        return sum(sum(passage.own) for passage in self.passages)
-
-    @property
-    def share(self) -> float:
-        """The fraction of the shorter answer that is in the common passages, counting only the student's own words."""
-        return self.shared / min(self.one.length, self.other.length)
-
-    @property
-    def percent(self) -> str:
-        """The share in percent as text, rounded down, so that only a share of all words is ``100 %``."""
-        return f"{int(100 * self.share)} %"
-
-    @property
-    def students(self) -> tuple[str, str]:
-        """The ids of the two students."""
-        return self.one.answer.student, self.other.answer.student
-
-    @property
-    def place(self) -> str:
-        """The notebook and the cells of the two answers, as text."""
-        cells = dict.fromkeys((self.one.answer.cell, self.other.answer.cell))
-        return f"{self.one.answer.notebook}, {' and '.join(cells)}"
-
-
-def close_pairs(answers: Sequence[Compared]) -> list[Pair]:
-    """Return the similar pairs of answers to one notebook, the most similar first.
-
-    Each cell of a student is compared with all cells of the other students, because a student may have moved a copy
-    into an added cell.
-    """
-    candidates = _candidates([answer for answer in answers if answer.length >= SHORTEST])
-    pairs = [Pair(left, right, _common_passages(left, right)) for left, right in candidates]
-    return closest_first([pair for pair in pairs if pair.shared >= SHORTEST and pair.share >= LEAST_SHARE])
-
-
-def closest_first(pairs: Sequence[Pair]) -> list[Pair]:
-    """Return the pairs sorted by similarity, the most similar first."""
-    return sorted(pairs, key=lambda pair: (-round(pair.share, 2), -pair.shared, _names(pair)))
-
-
-def by_students(pairs: Iterable[Pair]) -> list[list[Pair]]:
-    """Return the pairs grouped by students: each group contains the pairs of the same two students."""
-    found: dict[tuple[str, str], list[Pair]] = {}
-    for pair in pairs:
-        found.setdefault(pair.students, []).append(pair)
-    return list(found.values())
-
-
-def _candidates(answers: Sequence[Compared]) -> list[tuple[Compared, Compared]]:
-    """Return the pairs that share enough sequences to be similar: only these are then compared fully, to save time.
-
-    No similar pair is lost, because two answers that share ``SHORTEST`` own words share at least ``SHORTEST //
-    SEQUENCE`` sequences.
-    """
-    holders: defaultdict[tuple[str, ...], list[int]] = defaultdict(list)
-    for place, answer in enumerate(answers):
-        for sequence in answer.sequences:
-            holders[sequence].append(place)
-    meetings = Counter(pair for places in holders.values() for pair in combinations(places, 2))
-    return [
-        (answers[left], answers[right])
-        for (left, right), sequences in sorted(meetings.items())
-        if sequences >= SHORTEST // SEQUENCE and answers[left].answer.student != answers[right].answer.student
-    ]
-
-
-def _common_passages(one: Compared, other: Compared) -> list[Passage]:
-    """Return the common passages of two answers, in the order of the first answer.
-
-    A passage that consists only of given code is left out.
-    """
-    numbers = {sign: number for number, sign in enumerate({*one.signs, *other.signs})}
-    first, second = ([numbers[sign] for sign in answer.signs] for answer in (one, other))
-    found: list[Passage] = []
-    for _ in range(_ROUNDS):
-        blocks = [
-            (block.src_start, block.dest_start, block.src_end - block.src_start)
-            for block in LCSseq.opcodes(first, second)
-            if block.tag == "equal" and block.src_end - block.src_start >= SEQUENCE
-        ]
-        if not blocks:
-            break
-        for here, there, length in blocks:
-            # Replace the passage by one number in the first answer and by another in the second, so that no later
-            # comparison finds the passage again.
-            first[here : here + length] = [_FOUND_IN_ONE] * length
-            second[there : there + length] = [_FOUND_IN_OTHER] * length
-            sides = zip(one.own[here : here + length], other.own[there : there + length], strict=True)
-            found.append(Passage(here, there, tuple(left and right for left, right in sides)))
-    return sorted((passage for passage in found if any(passage.own)), key=lambda passage: passage.first)
-
-
-def _names(pair: Pair) -> tuple[str, ...]:
-    return (
-        pair.one.answer.assignment,
-        pair.one.answer.student,
-        pair.other.answer.student,
-        pair.one.answer.cell,
-    )
-
-
-def nothing_found(compared: int) -> str:
-    """Return the sentence to show if no pairs are similar."""
-    return f"No two answers are more similar than their task explains ({compared} notebooks compared)."
-
-
-MOST_SHOWN = 100
-"""The maximum number of pairs of students to show, the most similar first."""
 
 
 @dataclass(frozen=True)
@@ -231,7 +90,7 @@ def find_similar(directory: ClassDirectory, assignment: str = "") -> Similar:
     check_known([assignment] if assignment else [], known, "assignment")
     submissions, refused = directory.submissions()
     submissions = [one for one in submissions if assignment in ("", one.assignment)]
-    troubles = list(_not_looked_at(directory, refused, assignment))
+    troubles = list(_refused_lines(directory, refused, assignment))
     if not submissions and not troubles:
         raise GradingError(
             f"The class has no submissions yet{f' for {assignment}' if assignment else ''}, so nothing can be compared."
@@ -258,12 +117,12 @@ def find_similar(directory: ClassDirectory, assignment: str = "") -> Similar:
                 for one in answers
                 if one.is_cut
             ]
-            pairs += close_pairs(answers)
-    groups = by_students(closest_first(pairs))
+            pairs += _close_pairs(answers)
+    groups = by_students(sorted(pairs, key=_rank))
     students = read_roster(directory).students
     return Similar(
         directory.path,
-        tuple(itertools.chain.from_iterable(groups[:MOST_SHOWN])),
+        tuple(chain.from_iterable(groups[:MOST_SHOWN])),
         len(groups[MOST_SHOWN:]),
         {id_: student.name for id_, student in students.items() if student.name},
         read,
@@ -272,7 +131,7 @@ def find_similar(directory: ClassDirectory, assignment: str = "") -> Similar:
     )
 
 
-def _not_looked_at(
+def _refused_lines(
     directory: ClassDirectory, refused: Iterable[RefusedFile], assignment: str
 ) -> Iterator[str]:
     """Yield a line for each file that cannot be used because it is refused or lies in a wrong folder."""
@@ -281,3 +140,134 @@ def _not_looked_at(
         below = one.path.relative_to(directory.path / "submitted").parts[1:]
         if not assignment or not below or below[0] == assignment:
             yield f"refused      {one.path}: {one.reason}"
+
+
+@dataclass(frozen=True)
+class _Passage:
+    """A part of two answers that has the same words in the same order.
+
+    Attributes:
+        first: The index of the passage's first word in the first answer.
+        second: The index of the passage's first word in the second answer.
+        own: For each word of the passage, True if the word is the student's own in both answers.
+    """
+
+    first: int
+    second: int
+    own: tuple[bool, ...]
+
+
+@dataclass(frozen=True)
+class Pair:
+    """Two similar answers.
+
+    Attributes:
+        one: The first answer.
+        other: The second answer.
+        passages: The common passages, in the order of the first answer.
+    """
+
+    one: Compared
+    other: Compared
+    passages: Sequence[_Passage]
+
+    @property
+    def shared(self) -> int:
+        """The number of students' own words in the common passages."""
+        return sum(sum(passage.own) for passage in self.passages)
+
+    @property
+    def share(self) -> float:
+        """The fraction of the shorter answer that is in the common passages, counting only the student's own words."""
+        return self.shared / min(self.one.length, self.other.length)
+
+    @property
+    def percent(self) -> str:
+        """The share in percent as text, rounded down, so that only a share of all words is ``100 %``."""
+        return f"{int(100 * self.share)} %"
+
+    @property
+    def students(self) -> tuple[str, str]:
+        """The ids of the two students."""
+        return self.one.answer.student, self.other.answer.student
+
+    @property
+    def place(self) -> str:
+        """The notebook and the cells of the two answers, as text."""
+        cells = dict.fromkeys((self.one.answer.cell, self.other.answer.cell))
+        return f"{self.one.answer.notebook}, {' and '.join(cells)}"
+
+
+def by_students(pairs: Iterable[Pair]) -> list[list[Pair]]:
+    """Return the pairs grouped by students: each group contains the pairs of the same two students."""
+    found: dict[tuple[str, str], list[Pair]] = {}
+    for pair in pairs:
+        found.setdefault(pair.students, []).append(pair)
+    return list(found.values())
+
+
+def nothing_found(notebooks: int) -> str:
+    """Return the sentence to show if no pairs are similar in this number of compared notebooks."""
+    return f"No two answers are more similar than their task explains ({notebooks} notebooks compared)."
+
+
+def _close_pairs(answers: Sequence[Compared]) -> list[Pair]:
+    """Return the similar pairs of answers to one notebook.
+
+    Each cell of a student is compared with all cells of the other students, because a student may have moved a copy
+    into an added cell.
+    """
+    candidates = _candidates([answer for answer in answers if answer.length >= SHORTEST])
+    pairs = [Pair(left, right, _common_passages(left, right)) for left, right in candidates]
+    return [pair for pair in pairs if pair.shared >= SHORTEST and pair.share >= LEAST_SHARE]
+
+
+def _candidates(answers: Sequence[Compared]) -> list[tuple[Compared, Compared]]:
+    """Return the pairs that share enough sequences to be similar: only these are then compared fully, to save time.
+
+    No similar pair is lost, because two answers that share ``SHORTEST`` own words share at least ``SHORTEST //
+    SEQUENCE`` sequences.
+    """
+    holders: defaultdict[tuple[str, ...], list[int]] = defaultdict(list)
+    for place, answer in enumerate(answers):
+        for sequence in answer.sequences:
+            holders[sequence].append(place)
+    meetings = Counter(pair for places in holders.values() for pair in combinations(places, 2))
+    return [
+        (answers[left], answers[right])
+        for (left, right), sequences in sorted(meetings.items())
+        if sequences >= SHORTEST // SEQUENCE and answers[left].answer.student != answers[right].answer.student
+    ]
+
+
+def _common_passages(one: Compared, other: Compared) -> list[_Passage]:
+    """Return the common passages of two answers, in the order of the first answer.
+
+    A passage that consists only of given code is left out.
+    """
+    numbers = {sign: number for number, sign in enumerate({*one.signs, *other.signs})}
+    first, second = ([numbers[sign] for sign in answer.signs] for answer in (one, other))
+    found: list[_Passage] = []
+    for _ in range(_ROUNDS):
+        blocks = [
+            (block.src_start, block.dest_start, block.src_end - block.src_start)
+            for block in LCSseq.opcodes(first, second)
+            if block.tag == "equal" and block.src_end - block.src_start >= SEQUENCE
+        ]
+        if not blocks:
+            break
+        for here, there, length in blocks:
+            # Replace the passage by one number in the first answer and by another in the second, so that no later
+            # comparison finds the passage again.
+            first[here : here + length] = [_FOUND_IN_ONE] * length
+            second[there : there + length] = [_FOUND_IN_OTHER] * length
+            sides = zip(one.own[here : here + length], other.own[there : there + length], strict=True)
+            found.append(_Passage(here, there, tuple(left and right for left, right in sides)))
+    return sorted((passage for passage in found if any(passage.own)), key=lambda passage: passage.first)
+
+
+def _rank(pair: Pair) -> tuple[object, ...]:
+    """Return a key that sorts pairs by similarity, the most similar first, and equally similar pairs by name."""
+    answer = pair.one.answer
+    names = (answer.assignment, *pair.students, answer.cell)
+    return -round(pair.share, 2), -pair.shared, names

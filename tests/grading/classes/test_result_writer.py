@@ -22,7 +22,8 @@ from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.classes.gradebook_reading import read_entries
 from autograder.grading.classes.submission_times import handed_in_at
 from autograder.grading.grading_task import points
-from autograder.grading.returning.page_exporter import PageExporter, mark_waiting
+from autograder.grading.returning.feedback_pages import mark_waiting
+from autograder.grading.returning.page_exporter import PageExporter
 from autograder.grading.returning.sanitize import make_harmless
 from autograder.verdict import State, Verdict
 

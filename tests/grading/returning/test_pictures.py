@@ -8,7 +8,7 @@ import struct
 import nbformat
 import pytest
 
-from autograder.grading.returning.browser_memory import MOST_POINTS, points_of
+from autograder.grading.returning.browser_memory import MOST_PIXELS, pixels_of
 from autograder.grading.returning.sanitize import harmless_markdown, make_harmless
 
 WIDTH, HEIGHT = 640, 480
@@ -62,7 +62,7 @@ def encoded(picture: bytes) -> str:
     ],
 )
 def test_the_size_is_that_of_the_header(picture: bytes) -> None:
-    assert points_of(encoded(picture)) == WIDTH * HEIGHT
+    assert pixels_of(encoded(picture)) == WIDTH * HEIGHT
 
 
 @pytest.mark.parametrize(
@@ -74,7 +74,7 @@ def test_the_size_is_that_of_the_header(picture: bytes) -> None:
     ],
 )
 def test_each_frame_of_an_animated_picture_counts(picture: bytes) -> None:
-    assert points_of(encoded(picture)) == 7 * WIDTH * HEIGHT
+    assert pixels_of(encoded(picture)) == 7 * WIDTH * HEIGHT
 
 
 @pytest.mark.parametrize(
@@ -82,8 +82,8 @@ def test_each_frame_of_an_animated_picture_counts(picture: bytes) -> None:
 )
 def test_what_is_cut_off_or_of_another_kind_has_no_size(picture: bytes) -> None:
     for length in range(min(len(picture), 20)):
-        assert points_of(encoded(picture[:length])) is None
-    assert points_of("no base64") is None
+        assert pixels_of(encoded(picture[:length])) is None
+    assert pixels_of("no base64") is None
 
 
 @pytest.mark.parametrize(
@@ -99,7 +99,7 @@ def test_what_is_cut_off_or_of_another_kind_has_no_size(picture: bytes) -> None:
 )
 def test_a_file_of_countless_empty_parts_is_no_picture(picture: bytes) -> None:
     # Each byte of ten million was looked at on its own, four times for a page.
-    assert points_of(encoded(picture)) is None
+    assert pixels_of(encoded(picture)) is None
 
 
 def outputs_of(*pictures: bytes) -> list[str]:
@@ -135,7 +135,7 @@ def test_a_picture_of_sixteen_thousand_points_a_side_is_left_out() -> None:
 def test_many_pictures_have_one_budget() -> None:
     of_4k = png(3840, 2160)
     shown = outputs_of(*[of_4k] * 20)
-    assert shown.count("image/png,text/plain") == MOST_POINTS // (3840 * 2160)
+    assert shown.count("image/png,text/plain") == MOST_PIXELS // (3840 * 2160)
     texts = [f"![{n}](data:image/png;base64,{encoded(png(3840, 2160 + n))})" for n in range(20)]
     notebook = nbformat.v4.new_notebook(cells=[nbformat.v4.new_markdown_cell(text) for text in texts])
     for _ in range(2):
