@@ -54,19 +54,26 @@ class Progress:
     """The progress of a check.
 
     Attributes:
-        doing: The current step, such as ``"run 2"``.
+        step: The current step, such as ``"run 2"``.
         known: What the judge knows so far, in a sentence.
         began: The time at which the check began, in seconds of a monotonic clock.
+        on_step: Called after each change of the step.
     """
 
-    doing: str = "the judge gets ready"
+    step: str = "the judge gets ready"
     known: str = ""
     began: float = field(default_factory=time.monotonic)
+    on_step: Callable[[], None] = lambda: None
+
+    def doing(self, step: str) -> None:
+        """Change the current step."""
+        self.step = step
+        self.on_step()
 
     def words(self) -> str:
-        """Return the progress in one or two sentences."""
+        """Return the progress in one or two sentences, with what the judge knows once the check has taken long."""
         seconds = time.monotonic() - self.began
-        words = f"Checking: {self.doing}, {duration(seconds)} …"
+        words = f"Checking: {self.step}, {duration(seconds)} …"
         if seconds < LONG:
             return words
         busy = os.getloadavg()[0] > CROWDED * (os.cpu_count() or 1)
@@ -123,12 +130,13 @@ class CardDisplay:
     Attributes:
         exercise: The exercise's id.
         subject: The checked class, function or path.
+        progress: The progress, which the card shows until the result is there.
     """
 
     exercise: str
     subject: Any
+    progress: Progress = field(default_factory=Progress)
     _handle: Any = None
-    _progress: Progress = field(default_factory=Progress)
     _updater: ProgressUpdater | None = None
 
     def __enter__(self) -> Self:
@@ -155,14 +163,6 @@ class CardDisplay:
                 card = html_rendering.waiting_bundle(self.exercise, words, over=True)
             update_card(self._handle, card)
 
-    def doing(self, what: str) -> None:
-        """Show the current step, in a few words such as ``"run 2"``."""
-        self._progress.doing = what
-
-    def know(self, so_far: str) -> None:
-        """Set the sentence that says what the judge knows so far. It is shown once the check has taken long."""
-        self._progress.known = so_far
-
     def show(self, verdict: Verdict) -> None:
         """Show the result on the card; outside a notebook, print it."""
         self._stop_updating()
@@ -186,7 +186,7 @@ class CardDisplay:
     def _tell(self) -> None:
         earlier = _shown.get(self.exercise)
         title = earlier.verdict.title if earlier is not None else self.exercise
-        card = html_rendering.waiting_bundle(title, self._progress.words())
+        card = html_rendering.waiting_bundle(title, self.progress.words())
         if self._handle is None:
             self._handle = display_card(card)
         else:

@@ -5,14 +5,20 @@ from __future__ import annotations
 import contextlib
 import inspect
 import os
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 from autograder import course
 from autograder.cards import html_rendering
 from autograder.messages import judge_messages as messages
 from autograder.notebook.cell_output import notebook_shell
 from autograder.notebook.cell_runs import raise_if_stale
-from autograder.notebook.checking.card_display import CardDisplay, is_live, is_validating, raise_unless_full
+from autograder.notebook.checking.card_display import (
+    CardDisplay,
+    Progress,
+    is_live,
+    is_validating,
+    raise_unless_full,
+)
 from autograder.notebook.checking.judge_link import CheckContext, JudgeLink, JudgeUnreachable
 from autograder.notebook.checking.subject_reports import CapturedOutput, ToldCalls
 from autograder.notebook.checking.subject_runs import PathRun, SubjectRun, Tell, is_path, send_sources
@@ -35,16 +41,6 @@ class Score(float):
 
     def _repr_html_(self) -> str:
         return '<span class="agc-cell-value" hidden="hidden"></span>'
-
-
-class _CardPlace(Protocol):
-    """The display of a check's card and its progress."""
-
-    def doing(self, what: str) -> None:
-        """Show the current step, in a few words."""
-
-    def know(self, so_far: str) -> None:
-        """Show what the judge knows so far, in a sentence."""
 
 
 LINE = 70
@@ -80,11 +76,11 @@ def check(exercise: str, subject: Any) -> float:
     if is_live():
         raise_if_stale(subject)
     prepare_environment()
-    with CardDisplay(exercise, subject) as place, _plainly_interrupted():
-        verdict = _ask(exercise, subject, place)
+    with CardDisplay(exercise, subject) as card, _plainly_interrupted():
+        verdict = _ask(exercise, subject, card.progress)
         if verdict is None:
             return Score(0.0)
-        place.show(verdict)
+        card.show(verdict)
     keep(verdict)
     if is_validating():
         raise_unless_full(verdict)
@@ -103,27 +99,27 @@ def _plainly_interrupted() -> Iterator[None]:
         raise
 
 
-def _ask(exercise: str, subject: Any, place: CardDisplay) -> Verdict | None:
+def _ask(exercise: str, subject: Any, progress: Progress) -> Verdict | None:
     try:
         link = JudgeLink()
     except JudgeUnreachable as error:
         return not_checked(exercise, exercise, 0.0, str(error))
     try:
-        return converse(link, exercise, subject, place)
+        return converse(link, exercise, subject, progress)
     except JudgeUnreachable as error:
         return not_checked(exercise, exercise, 0.0, str(error), "Run the cell again.")
     finally:
         link.close()
 
 
-def converse(link: JudgeLink, exercise: str, subject: Any, card: _CardPlace) -> Verdict | None:
+def converse(link: JudgeLink, exercise: str, subject: Any, progress: Progress) -> Verdict | None:
     """Carry out the judge's requests, then return the verdict; None if the judge reports only to the grader.
 
     Args:
         link: The connection to the judge.
         exercise: The exercise's id.
         subject: The class, function or path to check.
-        card: Shows the progress.
+        progress: Receives the steps of the check.
 
     Raises:
         JudgeUnreachable: The judge has ended, or the link was closed.
@@ -161,9 +157,9 @@ def converse(link: JudgeLink, exercise: str, subject: Any, card: _CardPlace) -> 
                         if not is_path(subject):
                             place.ensure(fresh=order.fresh)
                         number = order.run
-                        card.doing(f"run {number} of your code")
+                        progress.doing(f"run {number} of your code")
                         run = (
-                            PathRun(number, exercise, subject, first.domain, _retold(link.say, card))
+                            PathRun(number, exercise, subject, first.domain, _retold(link.say, progress))
                             if is_path(subject)
                             else SubjectRun(number, subject, place.context, link.say)
                         )
@@ -179,10 +175,10 @@ def converse(link: JudgeLink, exercise: str, subject: Any, card: _CardPlace) -> 
                         if not run.stop():
                             place.renew()  # the run still uses the old context, so the next run gets a new one
                         link.say(messages.Stopped(number))
-                        card.doing(f"the judge examines run {number}")
+                        progress.doing(f"the judge examines run {number}")
                         run = None
                     case messages.SoFar():
-                        card.know(order.words)
+                        progress.known = order.words
                     case messages.Judged() | messages.Refused():
                         return _last_words(exercise, order)
         finally:
@@ -243,12 +239,12 @@ def _last_words(exercise: str, words: messages.FromJudge) -> Verdict | None:
     return not_checked(exercise, exercise, 0.0, why)
 
 
-def _retold(tell: Tell, card: _CardPlace) -> Tell:
+def _retold(tell: Tell, progress: Progress) -> Tell:
     """Return a function that calls ``tell`` and also shows the last printed line of a program on the card."""
 
     def told(message: Message) -> None:
         if isinstance(message, messages.Output) and message.text.strip() and not message.text.startswith("@"):
-            card.doing(message.text.strip()[:LINE])
+            progress.doing(message.text.strip()[:LINE])
         tell(message)
 
     return told

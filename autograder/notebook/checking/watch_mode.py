@@ -45,15 +45,16 @@ class _WatchedExercise:
         name: The name of the watched class or function.
         subject: The newest class or function with that name.
         due: True if this subject still has to be checked.
+        progress: The progress of the running check.
     """
 
     exercise: str
     name: str
     subject: Any
     due: bool = False
+    progress: Progress = field(default_factory=Progress)
     _verdict: Verdict | None = None
     _handle: Any = None
-    _progress: Progress = field(default_factory=Progress)
     _here: contextvars.Context = field(default_factory=contextvars.copy_context)
 
     def _is_redefined_by(self, subject: Any) -> bool:
@@ -72,21 +73,12 @@ class _WatchedExercise:
 
     def _get_ready(self) -> None:
         """Show on the card that the check begins."""
-        self._progress = Progress()
+        self.progress = Progress(on_step=self.tell)
         self.tell()
 
     def tell(self) -> None:
         """Update the progress on the card."""
-        self._say(self._progress.words())
-
-    def doing(self, what: str) -> None:
-        """Show the current step on the card, in a few words."""
-        self._progress.doing = what
-        self.tell()
-
-    def know(self, so_far: str) -> None:
-        """Show what the judge knows so far, once the check has taken long."""
-        self._progress.known = so_far
+        self._say(self.progress.words())
 
     def _give_way_to_cell(self) -> None:
         """Show on the card that the check waits for another cell."""
@@ -180,7 +172,7 @@ class _Watches:
                     link.close()
             updater = ProgressUpdater(watch.tell)
             try:
-                verdict = converse(link, watch.exercise, watch.subject, watch)
+                verdict = converse(link, watch.exercise, watch.subject, watch.progress)
             finally:
                 updater.stop()
                 link.close()

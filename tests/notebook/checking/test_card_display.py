@@ -27,10 +27,10 @@ from autograder.verdict import CriterionResult, Diagnosis, State, Verdict
 
 usual_display = globals().setdefault("usual_display", dict(vars(card_display)))
 vars(card_display).update(usual_display)
-scores, meanwhile = [], lambda place: None
+scores, meanwhile = [], lambda progress: None
 
-def verdict(exercise, subject, place):
-    meanwhile(place)
+def verdict(exercise, subject, progress):
+    meanwhile(progress)
     score = scores.pop(0)
     text = CriterionResult("text", "Says the right string", 10.0, score == 10, "a", "b")
     state = State.PASSED if score == 10 else State.FAILED
@@ -83,8 +83,8 @@ def update(handle, card):
     usual(handle, card)
 card_display.update_card = update
 
-def meanwhile(place):
-    place.doing("building my_package")
+def meanwhile(progress):
+    progress.doing("building my_package")
     import time
     while not any("building" in text for text in shown):
         time.sleep(0.01)
@@ -118,9 +118,9 @@ scores[:] = [5.0, 8.0]
 check("lab", Talker)
 """
     again = """
-def meanwhile(place):
+def meanwhile(progress):
     import time
-    place.know("So far: it says nothing.")
+    progress.known = "So far: it says nothing."
     while not any("it says nothing" in text for text in shown):
         time.sleep(0.01)
 card_display.LONG = 0.0
@@ -149,9 +149,16 @@ check("lab", Talker)
 
 def test_an_interrupted_check_ends_on_its_card(run: Callable[..., list[Any]]) -> None:
     interrupted = """
-def meanwhile(place):
+displayed = []
+usual = card_display.display_card
+def display_card(card):
+    displayed.append(usual(card))
+    return displayed[-1]
+card_display.display_card = display_card
+
+def meanwhile(progress):
     import time
-    while place._handle is None:
+    while not displayed:
         time.sleep(0.01)
     raise KeyboardInterrupt
 """
@@ -162,7 +169,7 @@ def meanwhile(place):
 
 
 def test_an_interrupted_check_shows_none_of_its_own_lines(run: Callable[..., list[Any]]) -> None:
-    interrupted = "def meanwhile(place):\n    raise KeyboardInterrupt"
+    interrupted = "def meanwhile(progress):\n    raise KeyboardInterrupt"
     *_, (error,) = run(interrupted, "check('lab', Talker)", allow_errors=True)
     assert error.traceback == ["KeyboardInterrupt"]
 

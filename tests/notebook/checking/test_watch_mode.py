@@ -32,10 +32,10 @@ class Link:
     def close(self):
         self.closed.set()
 
-def converse(link, exercise, subject, place):
-    place.doing(f"run 1 of {subject.text}")
+def converse(link, exercise, subject, progress):
+    progress.doing(f"run 1 of {subject.text}")
     if patient.is_set():
-        place.know("So far: “It says b.”")
+        progress.known = "So far: “It says b.”"
         link.closed.wait()
         raise JudgeUnreachable("hung up")
     score = scores.pop(0)
@@ -203,7 +203,7 @@ CHECK_CELL = """
 from autograder.notebook.checking.card_display import CardDisplay
 scores[:] = [5.0, 10.0]
 with CardDisplay("lab", Talker) as place:
-    place.show(converse(None, "lab", Talker, place))
+    place.show(converse(None, "lab", Talker, place.progress))
 watch("lab", Talker)
 """
 

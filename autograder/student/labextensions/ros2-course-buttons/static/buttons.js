@@ -1,6 +1,6 @@
 // Check, Watch and Next: three commands of JupyterLab, as buttons on a student's cell and on the card of a check; and
 // Drive, below the picture of the robot. The buttons of a card and of the robot are in their HTML (card.html.j2,
-// robot/starting.py); they are shown only where these commands are. Written as JupyterLab loads it (a container of
+// robot/live_robot.py); they are shown only where these commands are. Written as JupyterLab loads it (a container of
 // webpack's module federation: init, then get), so that nothing has to be built.
 "use strict";
 window._JUPYTERLAB = window._JUPYTERLAB || {};
