@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 if TYPE_CHECKING:
-    from ..conftest import CellOutput, Notebook
+    from .conftest import CellOutput, Notebook
 
 # A judge that is reached has said enough: the check has 0.0 points then.
 JUDGE = """
