@@ -6,12 +6,9 @@ import os
 import tomllib
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import re2
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
 
 VARIABLE = "AUTOGRADER_COURSE"
 """The environment variable for the path of the course's top folder, if the course does not contain this package."""
@@ -69,14 +66,12 @@ class Chapter:
     exercises: dict[str, tuple[str, ...]]
     interfaces: tuple[str, ...]
 
-    def in_order(self, lab: Path, files: Sequence[Path]) -> list[Path]:
-        """Return the files of a lab's exercises in the order in which students do the exercises."""
-        wanted = self.exercises.get(lab.name, ())
-        return sorted(files, key=lambda file: wanted.index(file.stem) if file.stem in wanted else len(wanted))
-
     def exercises_of(self, lab: Path) -> dict[str, Path]:
         """Return the files of a lab's exercises by exercise id, in the order in which students do the exercises."""
-        return {f"{lab.name}.{file.stem}": file for file in self.in_order(lab, sorted(lab.glob("[!_]*.py")))}
+        wanted = self.exercises.get(lab.name, ())
+        files = sorted(lab.glob("[!_]*.py"))
+        files.sort(key=lambda file: wanted.index(file.stem) if file.stem in wanted else len(wanted))
+        return {f"{lab.name}.{file.stem}": file for file in files}
 
 
 def root() -> Path:
@@ -214,17 +209,14 @@ def _description(file: Path) -> dict[str, Any]:
         raise BrokenChapter(f"{file} cannot be read: {error}") from error
     orders = said.get("exercises", {})
     named = isinstance(orders, dict) and all(
-        map(_are_names, (said.get("labs", []), said.get("interfaces", []), *orders.values()))
+        isinstance(names, list) and all(isinstance(name, str) for name in names)
+        for names in (said.get("labs", []), said.get("interfaces", []), *orders.values())
     )
     if not named or not isinstance(said.get("title", ""), str):
         raise BrokenChapter(
             f"{file}: title must be a text; labs, interfaces and each lab of the table exercises must be lists of names"
         )
     return said
-
-
-def _are_names(said: object) -> bool:
-    return isinstance(said, list) and all(isinstance(name, str) for name in said)
 
 
 def _is_lab(folder: Path) -> bool:

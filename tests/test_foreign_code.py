@@ -8,7 +8,7 @@ import sys
 
 import pytest
 
-from autograder.foreign_code import recognised
+from autograder.foreign_code import recognized
 
 SETTING = """
 import asyncio, json, linecache, sys, traceback
@@ -116,11 +116,11 @@ def shown() -> dict[str, str]:
 def test_code_of_elsewhere_is_named_with_what_is_written_here(
     shown: dict[str, str], code: str, words: str
 ) -> None:
-    found = recognised(shown[code], "my_robot_interfaces")
+    found = recognized(shown[code], "my_robot_interfaces")
     assert found is not None, shown[code]
     assert words in f"{found.text} {found.next_step}"
 
 
 @pytest.mark.parametrize("code", NOTHING)
 def test_nothing_is_said_of_other_code(shown: dict[str, str], code: str) -> None:
-    assert recognised(shown[code], "my_robot_interfaces") is None
+    assert recognized(shown[code], "my_robot_interfaces") is None

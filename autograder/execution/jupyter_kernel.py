@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from autograder.boxes.boxed_processes import ForkedProcess
     from autograder.boxes.limit_guards import Guard
     from autograder.boxes.run_limits import Left, Limits
-    from autograder.execution.cell_outputs import NotebookOutputs
+    from autograder.execution.executed_cells import NotebookOutputs
     from autograder.execution.kernel_desk_messages import DeskAnswer
 
 

@@ -21,7 +21,7 @@ from zmq.utils.monitor import recv_monitor_message
 
 from autograder.boxes.process_isolation import filter_system_calls
 from autograder.boxes.seccomp_filter import filter_for_desks
-from autograder.execution.cell_outputs import Budget, OutputCollector
+from autograder.execution.executed_cells import Budget, OutputCollector
 from autograder.execution.jupyter_kernel import IOPUB, SHELL
 from autograder.execution.kernel_desk_messages import DeskAnswer, DeskOrder, Do, Said, Setting
 from autograder.messages.json_lines import Hangup, Lines

@@ -13,7 +13,7 @@ from typing import Annotated, Literal
 
 import msgspec
 
-from autograder.execution.cell_outputs import TRACEBACK_LINES
+from autograder.execution.executed_cells import TRACEBACK_LINES
 
 MOST_ESCAPED = 8
 """The maximum number of bytes in an answer for each byte of output. In JSON, a control character takes six bytes."""

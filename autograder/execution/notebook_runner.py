@@ -18,8 +18,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Protocol
 
 from autograder.boxes.run_limits import Ended, Patient, first_of, wall_time
-from autograder.execution.cell_outputs import NotebookOutputs
-from autograder.execution.executed_cells import Cell, CellCheck, CellRun, CellType, Execution
+from autograder.execution.executed_cells import Cell, CellCheck, CellRun, CellType, Execution, NotebookOutputs
 from autograder.execution.jupyter_kernel import Kernel, KernelFailed, Place
 from autograder.execution.verdicts_without_judge import (
     LIMITS,

@@ -242,6 +242,9 @@ class Refused(Message, frozen=True):
 FromJudge = Begin | Collect | Meet | Start | Release | Interrupt | Stack | Stop | SoFar | Judged | Refused
 
 
+# --- From and to the grader
+
+
 class Open(msgspec.Struct, tag="open", frozen=True):
     """An order to allow the notebook one check of this exercise.
 
@@ -249,12 +252,12 @@ class Open(msgspec.Struct, tag="open", frozen=True):
         exercise: The exercise's id.
         seed: The seed of the random inputs.
         record: True to record a reference output instead of judging.
-        workspaces: The path at which the judge reaches the socket of the grader's workspace service; empty if there
-            is none.
+        workspaces: The path at which the judge reaches the socket of the grader's workspace service; empty if the
+            grader runs no such service.
         evidence: True to add the evidence to the report.
         boxed: True if judge and notebook are in sandboxes, as for a submission. No other program is on the network of
             the sandboxes, so a ROS domain is free even if its ports seem to be in use. The judge reports the verdict
-            only to the grader (:class:`autograder.messages.judge_messages.Judged` says why).
+            only to the grader; :class:`Judged` gives the reason.
     """
 
     exercise: str
@@ -275,10 +278,10 @@ class Report(msgspec.Struct, frozen=True):
     Attributes:
         verdict: The judge's verdict; None if no check was requested or the judge failed.
         reference: The reference output as text, after a recording.
-        trouble: Why there is no verdict, as a text for people; empty if there is one, or if no check was requested.
+        trouble: Why the judge gave no verdict, in words for people; empty if it gave one or if no check was requested.
         evidence: The evidence, as :mod:`autograder.judge.evidence_files` packs it; empty if it was not requested.
         crowded: True if the subject did not pass, perhaps because the machine was overloaded.
-        unfinished: True if there is no verdict because the judge's time was over.
+        unfinished: True if the judge gave no verdict because the time was over.
     """
 
     verdict: Verdict | None = None

@@ -234,7 +234,7 @@ def _advice_on_foreign_code(error: BaseException) -> str:
         packages = course.interfaces()
     except (OSError, course.NoCourse, course.BrokenChapter):  # a grader's kernel sees no course folder
         packages = ()
-    found = foreign_code.recognised("".join(shown), foreign_code.packages(packages))
+    found = foreign_code.recognized("".join(shown), foreign_code.packages(packages))
     return f"{found.text} {found.next_step}" if found else ""
 
 

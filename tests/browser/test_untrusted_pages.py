@@ -24,8 +24,7 @@ from server_of_a_test import jupyter_server
 from tiny_class import FakeEngine, TinyClass, make_tiny_class
 
 from autograder.boxes.run_limits import Ended, Limits
-from autograder.execution.cell_outputs import Budget, OutputCollector
-from autograder.execution.executed_cells import CellRun, CellType
+from autograder.execution.executed_cells import Budget, CellRun, CellType, OutputCollector
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.rebuilding import nbformat_nodes
 from autograder.grading.returning.sanitize import clean, harmless_markdown

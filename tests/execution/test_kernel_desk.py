@@ -15,8 +15,7 @@ import pytest
 
 from autograder.boxes.fork_server import INSIDE, ForkServer
 from autograder.boxes.run_limits import Ended, Limits
-from autograder.execution.cell_outputs import NotebookOutputs
-from autograder.execution.executed_cells import Cell, CellCheck, Execution
+from autograder.execution.executed_cells import Cell, CellCheck, Execution, NotebookOutputs
 from autograder.execution.kernel_desk_messages import admitted_answer
 from autograder.execution.notebook_boxes import BoxedPlace, JudgeSetting, UnboxedPlace
 from autograder.execution.notebook_runner import run_notebook

@@ -18,8 +18,7 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 import re2
 
-from autograder.execution.cell_outputs import IMAGES
-from autograder.execution.executed_cells import CellType
+from autograder.execution.executed_cells import IMAGES, CellType
 from autograder.grading.rebuilding.submitted_notebook import (
     LONGEST_NAME,
     LONGEST_REASON,

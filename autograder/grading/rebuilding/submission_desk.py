@@ -18,7 +18,7 @@ import msgspec
 
 from autograder.boxes.box_connection import ChannelClosed
 from autograder.boxes.reading_desks import KeptDesk, answer_in, in_memory
-from autograder.execution.cell_outputs import IMAGES
+from autograder.execution.executed_cells import IMAGES
 from autograder.grading.grading_errors import GradingError
 from autograder.grading.rebuilding.notebook_parsing import BASE64
 from autograder.grading.rebuilding.submitted_notebook import (

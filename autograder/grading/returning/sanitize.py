@@ -17,8 +17,7 @@ import re2
 from nbconvert.filters.markdown_mistune import IPythonRenderer, MarkdownWithMath
 from pygments.token import STANDARD_TYPES
 
-from autograder.execution.cell_outputs import IMAGES
-from autograder.execution.executed_cells import CellType
+from autograder.execution.executed_cells import IMAGES, CellType
 from autograder.grading.rebuilding import nbformat_nodes
 from autograder.grading.rebuilding.notebook_rebuilding import is_check, is_the_masters
 from autograder.grading.rebuilding.submitted_notebook import HARMLESS_LENGTH

@@ -354,7 +354,7 @@ class Dispatcher:
         """Let the task run again, alone, if its result is not reliable or another worker may succeed; else keep it."""
         job = flight.job
         another_may_do = job.attempts < ATTEMPTS and not job.tried >= self._workers.keys()
-        again = bool(execution.trouble) and another_may_do if job.alone else execution.says_nothing
+        again = bool(execution.trouble) and another_may_do if job.alone else execution.should_retry_alone
         if not again:
             self._done.append(Done(job.task, execution))
             return

@@ -15,8 +15,7 @@ from typing import TYPE_CHECKING
 
 import msgspec
 
-from autograder.execution.cell_outputs import NotebookOutputs
-from autograder.execution.executed_cells import Execution
+from autograder.execution.executed_cells import Execution, NotebookOutputs
 from autograder.verdict import State
 
 if TYPE_CHECKING:

@@ -15,7 +15,7 @@ from autograder.kit.mistakes.python_errors import MARKS, Name, is_a_library, mea
 from autograder.kit.model import Advice, Mistake
 
 if TYPE_CHECKING:
-    from autograder.foreign_code import Elsewhere
+    from autograder.foreign_code import ForeignCode
     from autograder.kit.evidence import Event, Evidence, Part
     from autograder.kit.mistakes.known_crashes import Crash
 
@@ -40,7 +40,7 @@ def traceback_of(evidence: Evidence) -> str:
     return next((text for text in crashes if not meant(text)), crashes[0] if crashes else "")
 
 
-def _recogniser(crash: Crash | Elsewhere) -> Mistake:
+def _recogniser(crash: Crash | ForeignCode) -> Mistake:
     compiled = re2.compile(f"(?m){crash.pattern}")
 
     def recognise(evidence: Evidence) -> Advice | None:

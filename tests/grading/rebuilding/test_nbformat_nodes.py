@@ -9,8 +9,7 @@ import msgspec
 import nbformat
 import pytest
 
-from autograder.execution.cell_outputs import Budget, OutputCollector
-from autograder.execution.executed_cells import CellType
+from autograder.execution.executed_cells import Budget, CellType, OutputCollector
 from autograder.grading.rebuilding import nbformat_nodes
 
 _new_output: Any = nbformat.v4.new_output

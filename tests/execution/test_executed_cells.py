@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 from nbconvert.filters.ansi import ansi2html
 
-from autograder.execution.cell_outputs import OUTPUT_BYTES, Budget, NotebookOutputs, OutputCollector
+from autograder.execution.executed_cells import OUTPUT_BYTES, Budget, NotebookOutputs, OutputCollector
 
 
 def collector(cell: int = 10_000, notebook: int = 100_000) -> OutputCollector:
