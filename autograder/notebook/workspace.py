@@ -16,11 +16,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from autograder.workspaces.builds.colcon_build import look
+from autograder.workspaces.builds.colcon_build import CannotCopyBuild, copy_to_workspace, look
 from autograder.workspaces.builds.install_folder import (
-    CannotPlace,
     package_prefixes,
-    place,
     python_folders,
     with_prefixes,
 )
@@ -88,8 +86,8 @@ def build_workspace(folder: str | os.PathLike[str] = "ros2_ws") -> WorkspaceBuil
     if not made.ok:
         return WorkspaceBuild(made)
     try:
-        install = place(made)
-    except CannotPlace as error:
+        install = copy_to_workspace(made)
+    except CannotCopyBuild as error:
         return WorkspaceBuild(made, str(error))
     return WorkspaceBuild(made, _use(package_prefixes(install), made))
 

@@ -1,17 +1,26 @@
 """Describes a workspace before and after its build, makes colcon's command line, and finds why a build failed.
 
-The reason for a failed build is the line of colcon's output that explains the failure best.
+The reason for a failed build is the line of colcon's output that explains the failure best. A build in the cache can be
+copied into the workspace, where terminals find it.
 """
 
 from __future__ import annotations
 
+import shutil
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import re2
 
-from autograder.workspaces.builds.install_folder import entry_points, package_prefixes, programs
+from autograder.safe_files import scratch_folder
+from autograder.workspaces.builds.install_folder import (
+    entry_points,
+    is_merged,
+    package_prefixes,
+    programs,
+    rename_paths,
+)
 from autograder.workspaces.packages import find_packages, launch_files, needed
 from environment.python_child import INTERPRETER, python_child
 
@@ -154,6 +163,44 @@ def command(packages: Iterable[Package], folder: Path, cmake: Sequence[str] = ()
         "-DBUILD_TESTING=OFF", "--no-warn-unused-cli", "-Wno-dev", *cmake,
     ]  # fmt: skip
     return python_child(*words).command
+
+
+class CannotCopyBuild(RuntimeError):
+    """A build cannot be copied into the workspace's install folder. The exception's text says what to do."""
+
+
+def copy_to_workspace(made: Build) -> Path:
+    """Copy a build from the cache into the workspace's ``install`` folder, so that terminals can source it.
+
+    Packages of the build replace earlier builds of the same packages; other packages stay. Files are replaced and not
+    overwritten, so that a running program keeps the libraries that it has loaded.
+
+    Returns:
+        The install folder.
+
+    Raises:
+        ValueError: The build failed.
+        CannotCopyBuild: The folder was made with ``--merge-install``, or is not writable.
+    """
+    if made.install is None:
+        raise ValueError("a build that failed cannot be copied")
+    target = made.workspace / "install"
+    if is_merged(target):
+        raise CannotCopyBuild(f"{target} was built with --merge-install: delete it, and build again")
+    try:
+        target.mkdir(exist_ok=True)
+        with scratch_folder(target, ".new-") as fresh:
+            copied = fresh / "install"
+            shutil.copytree(made.install, copied, symlinks=True, ignore=shutil.ignore_patterns("__pycache__"))
+            rename_paths(copied, str(made.install), str(target))
+            for entry in sorted(copied.iterdir()):
+                old = target / entry.name
+                if old.is_dir() and not old.is_symlink():
+                    shutil.rmtree(old)
+                entry.replace(old)
+    except OSError as error:
+        raise CannotCopyBuild(f"{target} cannot be written: {error.strerror}") from error
+    return target
 
 
 MAX_LOG = 40_000

@@ -14,12 +14,9 @@ from typing import TYPE_CHECKING
 
 import re2
 
-from autograder.safe_files import scratch_folder
-
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
-    from autograder.workspaces.builds.colcon_build import Build
     from autograder.workspaces.sources import ByteBudget
 
 LIBRARY = f"lib/python{sys.version_info.major}.{sys.version_info.minor}/site-packages"
@@ -27,10 +24,6 @@ BESIDE = ("build", "log")
 """The folders that colcon makes next to ``install``: for its next build, and with logs for people to read."""
 _LAYOUT = ".colcon_install_layout"
 _INDEX = "share/ament_index/resource_index"
-
-
-class CannotPlace(RuntimeError):
-    """A build cannot be copied into the workspace's install folder. The exception's text says what to do."""
 
 
 def package_prefixes(install: Path) -> list[Path]:
@@ -44,6 +37,11 @@ def is_isolated(install: Path) -> bool:
     """Return True if an install folder has a prefix for each package, as colcon makes it without `--merge-install`."""
     layout = install / _LAYOUT
     return layout.is_file() and layout.read_text(encoding="utf-8").strip() == "isolated"
+
+
+def is_merged(install: Path) -> bool:
+    """Return True if colcon made an install folder with `--merge-install`: all packages have one prefix."""
+    return (install / _LAYOUT).is_file() and not is_isolated(install)
 
 
 def python_folders(prefix: Path) -> list[Path]:
@@ -182,40 +180,6 @@ def merge(lent: Iterable[Path], own: Iterable[Path], install: Path) -> None:
             layers.insert(1, (students[prefix.name], target))
         for layer, there in layers:
             shutil.copytree(layer, there, ignore_dangling_symlinks=True, dirs_exist_ok=True)
-
-
-def place(made: Build) -> Path:
-    """Copy a build from the cache into the workspace's ``install`` folder, so that terminals can source it.
-
-    Packages of the build replace earlier builds of the same packages; other packages stay. Files are replaced and not
-    overwritten, so that a running program keeps the libraries that it has loaded.
-
-    Returns:
-        The install folder.
-
-    Raises:
-        ValueError: The build failed.
-        CannotPlace: The folder was made with ``--merge-install``, or is not writable.
-    """
-    if made.install is None:
-        raise ValueError("a build that failed cannot be copied")
-    target = made.workspace / "install"
-    if (target / _LAYOUT).is_file() and not is_isolated(target):
-        raise CannotPlace(f"{target} was built with --merge-install: delete it, and build again")
-    try:
-        target.mkdir(exist_ok=True)
-        with scratch_folder(target, ".new-") as fresh:
-            copied = fresh / "install"
-            shutil.copytree(made.install, copied, symlinks=True, ignore=shutil.ignore_patterns("__pycache__"))
-            rename_paths(copied, str(made.install), str(target))
-            for entry in sorted(copied.iterdir()):
-                old = target / entry.name
-                if old.is_dir() and not old.is_symlink():
-                    shutil.rmtree(old)
-                entry.replace(old)
-    except OSError as error:
-        raise CannotPlace(f"{target} cannot be written: {error.strerror}") from error
-    return target
 
 
 def rename_paths(folder: Path, old: str, new: str) -> None:

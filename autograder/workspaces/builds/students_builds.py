@@ -35,14 +35,12 @@ from autograder.messages import workspace_messages as messages
 from autograder.messages.json_lines import Hangup, Lines, NotUnderstood
 from autograder.workspaces.builds import build_artefacts, build_cache
 from autograder.workspaces.builds.cached_builds import Builds, BuildTookTooLong
-from autograder.workspaces.builds.colcon_build import look
+from autograder.workspaces.builds.colcon_build import CannotCopyBuild, copy_to_workspace, look
 from autograder.workspaces.builds.install_folder import (
     BESIDE,
-    CannotPlace,
     entry_points,
     is_isolated,
     linked_build,
-    place,
     programs,
     python_folders,
     rename_paths,
@@ -281,7 +279,7 @@ def main(arguments: Sequence[str]) -> int:
             made = OwnBuilds().build(found, (lambda _: names) if option else None)
             try:
                 return _take_over(made)
-            except CannotPlace:
+            except CannotCopyBuild:
                 pass  # the real colcon reports the reason
     command = python_child("-m", "colcon", *arguments).command
     os.execv(command[0], command)
@@ -302,7 +300,7 @@ def _take_over(made: Build) -> int:
     """Copy the build into the workspace, and print what colcon would print. Return the exit code.
 
     Raises:
-        CannotPlace: The build cannot be copied into the workspace's install folder.
+        CannotCopyBuild: The build cannot be copied into the workspace's install folder.
     """
     if not made.ok and not made.log:
         print(f"colcon build: {made.line}")  # the build did not even begin
@@ -311,7 +309,7 @@ def _take_over(made: Build) -> int:
         print(f"{made.log.rstrip()}\nFailed   <<< {made.package} [{made.seconds:.2f}s, exited with code 1]")
         print(f"\nSummary: 0 packages finished [{made.seconds:.2f}s]\n  1 package failed: {made.package}")
         return 1
-    place(made)
+    copy_to_workspace(made)
     names = [prefix.name for prefix in made.prefixes]
     for folder in BESIDE:
         (made.workspace / folder).mkdir(exist_ok=True)

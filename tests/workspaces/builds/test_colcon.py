@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING
 import pytest
 
 from autograder.workspaces.builds import students_builds
-from autograder.workspaces.builds.colcon_build import look
-from autograder.workspaces.builds.install_folder import CannotPlace, place, with_prefixes
+from autograder.workspaces.builds.colcon_build import CannotCopyBuild, copy_to_workspace, look
+from autograder.workspaces.builds.install_folder import with_prefixes
 
 sys.path.insert(0, str(Path(__file__).parent))
 from made_workspaces import interface_package, python_package
@@ -36,7 +36,7 @@ def run_program(made: Build) -> str:
 
 
 def assert_that_it_can_be_placed_and_sourced(made: Build) -> None:
-    install = place(made)
+    install = copy_to_workspace(made)
     script = (
         f"source '{install}/setup.bash' && \"$AMENT_PREFIX_PATH_FIRST\" 2>/dev/null; echo $AMENT_PREFIX_PATH"
     )
@@ -70,7 +70,7 @@ def test_a_changed_byte_is_another_build(workspace: Path) -> None:
 
 def test_what_an_earlier_build_left_behind_has_no_part_in_it(workspace: Path) -> None:
     setup = workspace / "src" / "tiny_pkg" / "setup.py"
-    place(build(workspace))
+    copy_to_workspace(build(workspace))
     setup.write_text(setup.read_text().replace("'hello = tiny_pkg.hello:main'", ""))
     made = build(workspace)
     assert made.ok
@@ -138,15 +138,15 @@ def test_a_merged_install_is_left_alone(workspace: Path) -> None:
     made = build(workspace)
     (workspace / "install").mkdir()
     (workspace / "install" / ".colcon_install_layout").write_text("merged\n")
-    with pytest.raises(CannotPlace, match="delete it"):
-        place(made)
+    with pytest.raises(CannotCopyBuild, match="delete it"):
+        copy_to_workspace(made)
 
 
 def test_packages_of_others_stay(workspace: Path) -> None:
     other = workspace / "install" / "other_pkg" / "share"
     other.mkdir(parents=True)
-    place(build(workspace))
-    place(build(workspace))
+    copy_to_workspace(build(workspace))
+    copy_to_workspace(build(workspace))
     assert other.is_dir()
     assert (workspace / "install" / "tiny_pkg" / "lib" / "tiny_pkg" / "hello").is_file()
     assert not list((workspace / "install").glob(".new-*"))
