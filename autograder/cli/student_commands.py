@@ -207,9 +207,9 @@ def _notebooks_and_journal(root: Path, folder: Path | None) -> tuple[Path, Path 
     from autograder.student.lab import NOTEBOOKS_VARIABLE
 
     if folder is not None:
-        return folder.resolve(), check_journal.place(folder.resolve())
+        return folder.resolve(), check_journal.journal_path(folder.resolve())
     session = os.environ.get(NOTEBOOKS_VARIABLE)
-    return Path(session) if session else root / course.CHAPTERS, check_journal.own_place()
+    return Path(session) if session else root / course.CHAPTERS, check_journal.session_journal_path()
 
 
 @click.command()

@@ -17,7 +17,14 @@ from autograder.messages import workspace_messages
 from autograder.messages.json_lines import Hangup, Lines, NotUnderstood
 from autograder.messages.judge_messages import Collect, FromNotebook, Sources
 from autograder.messages.workspace_messages import Source
-from autograder.workspaces.sources import MAX_FILES, MAX_HELD, BadSources, check_path, checked, room_of
+from autograder.workspaces.sources import (
+    MAX_FILES,
+    MAX_HELD,
+    BadSources,
+    check_path,
+    checked_sources,
+    room_of,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -165,7 +172,7 @@ class PathSubject(InOwnProcesses):
         try:
             check_path(said.path)
             self._path = said.path
-            return checked(sources), wrong
+            return checked_sources(sources), wrong
         except BadSources as error:
             return [], wrong or str(error)
 

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from autograder.workspaces.builds.colcon_build import CannotCopyBuild, copy_to_workspace, look
+from autograder.workspaces.builds.colcon_build import CannotCopyBuild, copy_to_workspace, describe_workspace
 from autograder.workspaces.builds.install_folder import (
     package_prefixes,
     python_folders,
@@ -82,7 +82,7 @@ def build_workspace(folder: str | os.PathLike[str] = "ros2_ws") -> WorkspaceBuil
     Args:
         folder: The workspace folder, which contains ``src``.
     """
-    made = OwnBuilds().build(look(Path(folder)), None)
+    made = OwnBuilds().build(describe_workspace(Path(folder)), None)
     if not made.ok:
         return WorkspaceBuild(made)
     try:

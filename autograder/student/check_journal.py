@@ -63,7 +63,7 @@ class JournalEntry:
         return self.kind == "check" and self.points >= self.possible > 0
 
 
-def place(folder: Path) -> Path:
+def journal_path(folder: Path) -> Path:
     """Return the path of the journal for a folder of notebooks: there or, if it is read-only, in the user's home.
 
     Args:
@@ -76,13 +76,13 @@ def place(folder: Path) -> Path:
     return platformdirs.user_data_path("ros2-course") / f"journal-{key}.jsonl"
 
 
-def own_place() -> Path | None:
+def session_journal_path() -> Path | None:
     """Return the path of this session's journal: that of ``./course lab``, else that of the course's own chapters."""
     named = os.environ.get(VARIABLE)
     if named is not None:
         return Path(named) if named else None
     with contextlib.suppress(course.NoCourse):
-        return place(course.root() / course.CHAPTERS)
+        return journal_path(course.root() / course.CHAPTERS)
     return None
 
 
@@ -105,7 +105,7 @@ def note(entry: JournalEntry, journal: Path | None = None) -> bool:
         journal: The journal to write to; by default this session's.
     """
     try:
-        journal = journal or own_place()
+        journal = journal or session_journal_path()
         if journal is None:
             return False
         journal.parent.mkdir(parents=True, exist_ok=True)

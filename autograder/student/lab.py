@@ -68,7 +68,7 @@ def open_lab(folder: Path, arguments: Sequence[str] = ()) -> None:
     os.environ[_CONFIG_PATH] = os.pathsep.join(filter(None, (str(SETTINGS), os.environ.get(_CONFIG_PATH))))
     os.chdir(folder)
     os.environ[NOTEBOOKS_VARIABLE] = str(Path.cwd())
-    os.environ[check_journal.VARIABLE] = str(check_journal.place(Path.cwd()))
+    os.environ[check_journal.VARIABLE] = str(check_journal.journal_path(Path.cwd()))
     os.environ[_BUILD_TYPE] = os.environ.get(_BUILD_TYPE) or "Release"
     from jupyterlab.labapp import LabApp
 

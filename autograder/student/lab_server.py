@@ -51,7 +51,7 @@ class _CourseHandler(JupyterHandler):
     def _journal(self) -> Path:
         """The path of the journal for the folder that JupyterLab shows."""
         named = os.environ.get(check_journal.VARIABLE)
-        return Path(named) if named else check_journal.place(self._notebooks)
+        return Path(named) if named else check_journal.journal_path(self._notebooks)
 
     def _standing(self) -> Standing:
         """The progress of the student."""

@@ -22,9 +22,9 @@ from autograder.kit.runners import Launches, LaunchesFromPackage, RunsPrograms
 from autograder.process_trees import die_with_parent
 from autograder.workspaces.builds.students_builds import StudentsBuilds
 from autograder.workspaces.packages import workspace_of
-from autograder.workspaces.program_plans import alone, plan_for, ros2
+from autograder.workspaces.program_plans import plan_for, ros2, single_program_command
 from autograder.workspaces.program_preparation import Preparation
-from autograder.workspaces.program_processes import tell, watched
+from autograder.workspaces.program_processes import print_line, watched
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -48,7 +48,7 @@ def main(arguments: Sequence[str]) -> int:
     if exercise.runner is None or (len(arguments) > 2 and not launches) != several:
         print(f"{exercise.id} takes no path: give it the class or function, or a command", file=sys.stderr)
         return 2
-    here = Preparation(StudentsBuilds(), tell)
+    here = Preparation(StudentsBuilds(), print_line)
     prepared = here.workspace(plan_for(exercise.runner, arguments[2:]), Path(arguments[1]))
     if prepared is not None and launches:
         return _run(prepared)
@@ -58,15 +58,15 @@ def main(arguments: Sequence[str]) -> int:
 
 
 def _launch(rest: Sequence[str]) -> int:
-    here = Preparation(StudentsBuilds(), tell)
+    here = Preparation(StudentsBuilds(), print_line)
     if rest[0] == "--":
-        prepared = here.launch(alone(rest) or rest[1:], None, None)
+        prepared = here.launch(single_program_command(rest) or rest[1:], None, None)
     elif not (file := Path(rest[0])).is_file():
         print(f"there is no launch file {file}", file=sys.stderr)
         return 1
     else:
         workspace = workspace_of(file, (file.resolve().parent, Path.cwd()))
-        prepared = here.launch(alone(rest) or [ros2(), "launch", rest[0]], file, workspace)
+        prepared = here.launch(single_program_command(rest) or [ros2(), "launch", rest[0]], file, workspace)
     return _run(prepared) if prepared else 1
 
 
@@ -82,7 +82,7 @@ def _run(launch: Prepared) -> int:
     process = subprocess.Popen(launch.command, env=launch.environment, preexec_fn=_listen_to_interrupts)
     signal.signal(signal.SIGTERM, lambda *_: process.terminate())
     # Start each report on a new line, because the launch may have written only part of a line.
-    with watched(process.pid, lambda line: tell(f"\n{line}")):
+    with watched(process.pid, lambda line: print_line(f"\n{line}")):
         return process.wait()
 
 

@@ -33,7 +33,7 @@ from autograder.messages.workspace_messages import Source
 from autograder.safe_files import HeldFolder
 from autograder.workspaces.builds import build_artefacts, build_cache
 from autograder.workspaces.builds.cached_builds import Builds, BuildTookTooLong, file_state
-from autograder.workspaces.builds.colcon_build import failed, look
+from autograder.workspaces.builds.colcon_build import describe_workspace, failed_build
 from autograder.workspaces.packages import DEFINITIONS, FOR_READERS, UNREADABLE
 from autograder.workspaces.program_plans import course_interfaces, reference_workspace
 from autograder.workspaces.program_preparation import COURSE
@@ -90,7 +90,7 @@ class GradedBuilds(Builds):
         try:
             build_artefacts.check_room(size := build_cache.size_of(made.install), self._room)
         except build_artefacts.BadArtefacts as error:
-            return failed(found, f"error: {error}")
+            return failed_build(found, f"error: {error}")
         self._room -= size
         self._paid.add(job.key)
         return made
@@ -126,7 +126,7 @@ def build_ahead(folder: Path, jobs: Jobs) -> None:
         functools.partial(_build, builds, files) for files in packages_to_build_ahead(course.root())
     ]
     if (own := reference_workspace()).is_dir():
-        every.append(lambda: builds.build(look(own), None, name=COURSE))
+        every.append(lambda: builds.build(describe_workspace(own), None, name=COURSE))
     # Begin with a different package in each thread, so that notebooks that start at the same time share the work.
     first = threading.get_native_id() % max(1, len(every))
     for build in (*every[first:], *every[:first]):
@@ -148,7 +148,7 @@ def _build(builds: GradedBuilds, files: PackageFiles) -> object:
 
 def _written(tree: Tree, workspace: Path) -> Build:
     tree.write(workspace / "src")
-    return look(workspace)
+    return describe_workspace(workspace)
 
 
 MAX_SIMPLIFIED = 50_000

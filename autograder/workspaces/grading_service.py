@@ -26,11 +26,11 @@ from autograder.messages.json_lines import Hangup, Lines, NotUnderstood, listen
 from autograder.safe_files import fresh_folder
 from autograder.workspaces.builds.build_artefacts import pack
 from autograder.workspaces.builds.cached_builds import BuildTookTooLong
-from autograder.workspaces.builds.colcon_build import look
+from autograder.workspaces.builds.colcon_build import describe_workspace
 from autograder.workspaces.graded_builds import GradedBuilds
 from autograder.workspaces.jobs import ProgramJob, output_lines
 from autograder.workspaces.packages import WORKSPACE, workspace_of
-from autograder.workspaces.program_plans import alone, course_interfaces, plan_for, ros2
+from autograder.workspaces.program_plans import course_interfaces, plan_for, ros2, single_program_command
 from autograder.workspaces.program_preparation import Preparation, no_sources_line
 from autograder.workspaces.program_processes import watched
 from autograder.workspaces.sources import BadSources, receive_sources
@@ -158,7 +158,7 @@ class WorkspaceService:
         except (BadSources, NotUnderstood) as error:
             lines.say(messages.NotBuilt(str(error)))
             return
-        made = look(folder / order.path)
+        made = describe_workspace(folder / order.path)
         if not made.trouble:
             made = self._made(made, frozenset(order.only))
         if made.ok and made.install is not None:
@@ -345,7 +345,7 @@ class _ProgramRun:
         if workspace is not None and not workspace.is_relative_to(tree):
             workspace = None
         seen = self._jobs.tree(tree) / file.relative_to(tree)
-        command = alone(self._arguments) or [ros2(), "launch", str(seen)]
+        command = single_program_command(self._arguments) or [ros2(), "launch", str(seen)]
         self._follow(self._prepare.launch(command, file, workspace), watch=True)
 
     def _follow(self, prepared: Prepared | None, *, watch: bool = False) -> None:

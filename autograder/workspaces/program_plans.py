@@ -102,7 +102,7 @@ def _launch_plan(package: str, file: str, arguments: Sequence[str]) -> Plan:
         return [path for path in found if path.name == found[0].name]
 
     def command(made: Build) -> Sequence[str]:
-        return alone(arguments) or [ros2(), "launch", package, installed(made)[0].name]
+        return single_program_command(arguments) or [ros2(), "launch", package, installed(made)[0].name]
 
     return Plan(
         targets=targets,
@@ -158,7 +158,7 @@ def launch_targets(file: Path) -> Targets:
     return targets
 
 
-def alone(arguments: Sequence[str]) -> Sequence[str]:
+def single_program_command(arguments: Sequence[str]) -> Sequence[str]:
     """Return the command for the single program that the arguments name; empty if the whole launch is to be run."""
     words = list(arguments)
     return [ros2(), "run", *words[words.index(ALONE) + 1 :]] if ALONE in words else []

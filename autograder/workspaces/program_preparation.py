@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import re2
 
 from autograder.kit.runners import Interface, PackageReport, WorkspaceReport, workspace_report_line
-from autograder.workspaces.builds.colcon_build import look
+from autograder.workspaces.builds.colcon_build import describe_workspace
 from autograder.workspaces.builds.install_folder import relocated, with_prefixes
 from autograder.workspaces.packages import MAX_LOOK, WORKSPACE, launch_files
 from autograder.workspaces.program_plans import lacks_programs, launch_targets, reference_workspace
@@ -72,7 +72,7 @@ class Preparation:
         Returns:
             The program; None if there is nothing to run, for the reason that the report contains.
         """
-        found = look(folder)
+        found = describe_workspace(folder)
         self.report(report_line("found", found, plan))
         made = found if found.trouble else self._built(found, plan.targets)
         missing = plan.missing(made) if made.ok else ""
@@ -102,7 +102,7 @@ class Preparation:
         course = self._course()
         if file is None or workspace is None:
             return self._launched(command, file, None, course)
-        made = self._built(look(workspace), launch_targets(file))
+        made = self._built(describe_workspace(workspace), launch_targets(file))
         self.build_ended()
         self.report(report_line("built", made))
         return self._launched(command, file, made, course) if made.ok else None
@@ -114,7 +114,7 @@ class Preparation:
         """
         if not (own := reference_workspace()).is_dir():
             return None
-        course = self.builds.build(look(own), None, name=COURSE)
+        course = self.builds.build(describe_workspace(own), None, name=COURSE)
         if not course.ok:
             raise RuntimeError(f"the course's own packages could not be built: {course.line}")
         return course

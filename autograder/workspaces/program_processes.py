@@ -208,6 +208,6 @@ def _status(pid: int, name: str) -> list[str]:
     return next((line.split()[1:] for line in lines if line.startswith(f"{name}:")), [])
 
 
-def tell(line: str) -> None:
+def print_line(line: str) -> None:
     """Print a line in one write, so that other output to the same pipe cannot come in between."""
     os.write(1, f"{line}\n".encode("utf-8", "replace"))

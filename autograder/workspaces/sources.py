@@ -214,7 +214,7 @@ def receive_sources(lines: Lines, count: int, path: str, folder: Path) -> None:
     if room < 0:
         raise _too_much()
     check_path(path)
-    Tree(tuple(checked(taken))).write(folder)
+    Tree(tuple(checked_sources(taken))).write(folder)
 
 
 def room_of(source: Source) -> int:
@@ -222,7 +222,7 @@ def room_of(source: Source) -> int:
     return len(source.data or b"") + len(source.path)
 
 
-def checked(sources: Iterable[Source]) -> list[Source]:
+def checked_sources(sources: Iterable[Source]) -> list[Source]:
     """Check that sources are harmless (names, number, sizes, no duplicates), and return the real sources among them.
 
     Other files are dropped, so that a box sees nothing that the build's key does not cover. An honest sender has

@@ -96,9 +96,9 @@ def test_where_no_file_may_be_made_it_is_in_the_home_one_for_each_folder(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path / "home"))
-    assert check_journal.place(tmp_path) == tmp_path / check_journal.NAME
+    assert check_journal.journal_path(tmp_path) == tmp_path / check_journal.NAME
     monkeypatch.setattr(os, "access", lambda path, mode: False)  # root may write everywhere
-    first, second = check_journal.place(tmp_path / "a"), check_journal.place(tmp_path / "b")
+    first, second = check_journal.journal_path(tmp_path / "a"), check_journal.journal_path(tmp_path / "b")
     assert first.parent == second.parent == tmp_path / "home" / "ros2-course"
     assert first != second
     assert check_journal.note(JournalEntry("read", "lab", 1), first)
@@ -107,5 +107,5 @@ def test_where_no_file_may_be_made_it_is_in_the_home_one_for_each_folder(
 
 def test_an_empty_name_means_no_journal(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv(check_journal.VARIABLE, "")
-    assert check_journal.own_place() is None
+    assert check_journal.session_journal_path() is None
     assert not check_journal.note(JournalEntry("read", "lab", 1))

@@ -20,7 +20,7 @@ from autograder.boxes.sandbox import Enclosure, why_impossible
 from autograder.kit.runners import LaunchesFromPackage
 from autograder.workspaces import program_preparation
 from autograder.workspaces.boxed_jobs import BoxedJobs, BoxedProgram
-from autograder.workspaces.builds.colcon_build import look
+from autograder.workspaces.builds.colcon_build import describe_workspace
 from autograder.workspaces.graded_builds import GradedBuilds
 from autograder.workspaces.jobs import Built, ProgramJob
 from autograder.workspaces.program_plans import course_interfaces, plan_for
@@ -60,7 +60,7 @@ def made(builds: GradedBuilds, workspace: Path, setup: str = "") -> Build:
     """The workspace's build, with some lines at the end of its setup.py."""
     file = workspace / "src" / "tiny_pkg" / "setup.py"
     file.write_text(file.read_text() + setup)
-    return builds.build(look(workspace), None, name="ros2_ws")
+    return builds.build(describe_workspace(workspace), None, name="ros2_ws")
 
 
 def said(program: BoxedProgram) -> str:
@@ -245,7 +245,7 @@ raise SystemExit('there are %d' % len([size for size in sizes if size]))
     definition = workspace / "src" / "tiny_pkg" / "srv" / "AddTwoInts.srv"
     definition.parent.mkdir()
     definition.write_text("int64 a\n---\nint64 b\n")
-    assert "there are 0" in builds.build(look(workspace), None, name="ros2_ws").log
+    assert "there are 0" in builds.build(describe_workspace(workspace), None, name="ros2_ws").log
 
 
 def test_the_builds_of_one_notebook_have_so_much_room_and_no_more(
@@ -273,5 +273,5 @@ def test_a_big_build_that_nobody_waits_for_gives_up_its_turn(
     fcntl.flock(another, fcntl.LOCK_EX)
     threading.Timer(20.0, os.close, [another]).start()  # so that a defect fails, and does not hang
     began = time.monotonic()
-    assert not builds.build(look(workspace), None, cancelled=lambda: True).ok
+    assert not builds.build(describe_workspace(workspace), None, cancelled=lambda: True).ok
     assert time.monotonic() - began < 10.0

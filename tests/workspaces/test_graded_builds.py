@@ -15,7 +15,7 @@ from autograder.grading.classes.sample_class import _without_markers
 from autograder.masters.master_files import masters
 from autograder.masters.source_notebooks import source_notebook
 from autograder.workspaces import graded_builds
-from autograder.workspaces.builds.colcon_build import look
+from autograder.workspaces.builds.colcon_build import describe_workspace
 from autograder.workspaces.graded_builds import (
     BUILT_AHEAD,
     GradedBuilds,
@@ -56,7 +56,7 @@ def execution(tmp_path: Path, ahead: Path) -> Callable[[], tuple[GradedBuilds, F
 
 
 def built(builds: GradedBuilds, workspace: Path) -> Build:
-    made = builds.build(look(workspace), None)
+    made = builds.build(describe_workspace(workspace), None)
     assert made.ok, made.log
     return made
 

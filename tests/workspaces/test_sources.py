@@ -183,7 +183,9 @@ def test_a_grader_takes_nothing_that_no_key_has() -> None:
         Source("ws/src/.git/x", b""),
         Source("ws/src/p/notes.txt", b"\x7fELF"),
     ]
-    assert sources.checked([*sent, Source("ws/src/p/setup.py", b"x")]) == [Source("ws/src/p/setup.py", b"x")]
+    assert sources.checked_sources([*sent, Source("ws/src/p/setup.py", b"x")]) == [
+        Source("ws/src/p/setup.py", b"x")
+    ]
 
 
 def sent_over(line: bytes) -> Source:
@@ -198,7 +200,7 @@ def test_what_is_collected_builds_the_same(workspace: Path, tmp_path: Path) -> N
     setup = workspace / "src" / "tiny_pkg" / "setup.py"
     setup.chmod(0o755)
     sent = [sent_over(encode(source)) for source in sources.collect_workspace(workspace)]
-    Tree(tuple(sources.checked(sent))).write(tmp_path / "there")
+    Tree(tuple(sources.checked_sources(sent))).write(tmp_path / "there")
     here, there = workspace / "src", tmp_path / "there" / "ros2_ws" / "src"
     assert sources_of(there, packages_in(there)) == sources_of(here, packages_in(here))
 
@@ -257,7 +259,7 @@ def test_a_launch_file_in_a_package_is_sent_once(workspace: Path) -> None:
 )
 def test_no_path_leads_out(path: str) -> None:
     with pytest.raises(BadSources):
-        sources.checked([Source(path, b"")])
+        sources.checked_sources([Source(path, b"")])
 
 
 @pytest.mark.parametrize(
@@ -273,7 +275,7 @@ def test_no_path_leads_out(path: str) -> None:
 )
 def test_what_could_do_harm_is_refused(some: list[Source]) -> None:
     with pytest.raises(BadSources):
-        sources.checked(some)
+        sources.checked_sources(some)
 
 
 @pytest.mark.parametrize("one", [Source("a", b"x" * 700_000), Source("x" * 900_000)], ids=["data", "paths"])

@@ -204,7 +204,7 @@ def keep(verdict: Verdict) -> None:
 
 def _chapter_ended_by(verdict: Verdict) -> tuple[str, float, float] | None:
     """Return the title, points and completion time of the chapter that this check completed; None if there is none."""
-    place = check_journal.own_place()
+    place = check_journal.session_journal_path()
     before = check_journal.best(check_journal.entries(place))
     check_journal.note_check(verdict, place)
     if place is None or not verdict.passed:

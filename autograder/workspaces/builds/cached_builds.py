@@ -20,7 +20,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from autograder.workspaces.builds import build_artefacts, build_cache
-from autograder.workspaces.builds.colcon_build import choose, command, failed, moved
+from autograder.workspaces.builds.colcon_build import (
+    colcon_command,
+    failed_build,
+    moved_packages,
+    packages_to_build,
+)
 from autograder.workspaces.builds.install_folder import merge
 from autograder.workspaces.jobs import BuildJob
 from autograder.workspaces.packages import WORKSPACE, sources_of
@@ -60,7 +65,7 @@ class BuildTookTooLong(RuntimeError):
 
     def __init__(self, seconds: float, found: Build, log: str) -> None:
         super().__init__(f"a build did not end within {seconds:g} s; is the machine too busy?")
-        self.build = replace(failed(found, log), line=str(self))
+        self.build = replace(failed_build(found, log), line=str(self))
 
 
 class Builds:
@@ -95,7 +100,7 @@ class Builds:
         import ``my_robot_interfaces`` and should still run. A program that does import it then fails when it runs.
 
         Args:
-            found: The workspace, as :func:`autograder.workspaces.builds.colcon_build.look` returns it.
+            found: The workspace, as :func:`autograder.workspaces.builds.colcon_build.describe_workspace` returns it.
             targets: A function that returns the names of the needed packages; None if all packages are needed.
             name: The kind of workspace; see :meth:`autograder.workspaces.jobs.Jobs.place`.
             cancelled: Returns True when the build is no longer needed.
@@ -143,12 +148,12 @@ class Builds:
         self, found: Build, targets: Targets | None, name: str, cancelled: Callable[[], bool]
     ) -> Build:
         began = time.monotonic()
-        chosen, found = choose(found, targets)
+        chosen, found = packages_to_build(found, targets)
         if found.trouble:
             return found
         src = found.workspace / "src"
         try:
-            tree, packages = sources_of(src, chosen), moved(chosen, src, Path("src"))
+            tree, packages = sources_of(src, chosen), moved_packages(chosen, src, Path("src"))
             # If the packages are interfaces and Python packages, no package needs the interfaces in C++.
             only_python = all(
                 package.holds_only_interfaces or package.build_type == "ament_python" for package in chosen
@@ -180,7 +185,7 @@ class Builds:
                 job.tree,
                 type(self.jobs).__name__,
                 job.name,
-                *command(job.packages, Path(), job.cmake),
+                *colcon_command(job.packages, Path(), job.cmake),
                 *(f"{variable}={value}" for variable, value in job.variables.items()),
                 *(f"hidden {path}" for path in job.hidden),
                 *words,
@@ -201,7 +206,7 @@ class Builds:
     def _make(self, found: Build, job: BuildJob, entry: build_cache.CachedBuild) -> Build:
         place, install = self.jobs.place(job.name, entry.folder), entry.folder / "install"
         job.tree.write(entry.folder / "src")
-        words = command(moved(job.packages, Path("src"), place / "src"), place, job.cmake)
+        words = colcon_command(moved_packages(job.packages, Path("src"), place / "src"), place, job.cmake)
         try:
             built = self.jobs.build(job, words, entry)
         finally:
@@ -210,13 +215,13 @@ class Builds:
         if built.late:
             raise BuildTookTooLong(built.late, found, log)
         if built.returncode != 0:
-            return failed(found, log)
+            return failed_build(found, log)
         try:
             if built.archive is not None:
                 # The build may only use the space that is left in the cache.
                 build_artefacts.unpack(built.archive, install, self._room)
         except build_artefacts.BadArtefacts as error:
-            return failed(found, f"{log}\nerror: {error}")
+            return failed_build(found, f"{log}\nerror: {error}")
         return replace(found, ok=True, install=install)
 
 

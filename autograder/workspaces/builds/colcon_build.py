@@ -92,7 +92,7 @@ Targets = Callable[[Build], Iterable[str]]
 """A function that returns the names of the needed packages of a workspace. An empty result means all packages."""
 
 
-def look(workspace: Path) -> Build:
+def describe_workspace(workspace: Path) -> Build:
     """Return the description of a workspace that is not built: its packages, or why it has no usable package.
 
     Args:
@@ -119,7 +119,7 @@ def _no_workspace(workspace: Path) -> str:
     return f"{workspace} has no folder src"
 
 
-def choose(found: Build, targets: Targets | None) -> tuple[list[Package], Build]:
+def packages_to_build(found: Build, targets: Targets | None) -> tuple[list[Package], Build]:
     """Return the packages to build, and the description of the workspace.
 
     The packages to build are the targets that the workspace contains, and the packages on which these depend. If the
@@ -132,7 +132,7 @@ def choose(found: Build, targets: Targets | None) -> tuple[list[Package], Build]
     return [], replace(found, trouble="bad_package", line=found.unusable[0])
 
 
-def moved(packages: Iterable[Package], src: Path, there: Path) -> list[Package]:
+def moved_packages(packages: Iterable[Package], src: Path, there: Path) -> list[Package]:
     """Return copies of the packages, with the paths that they have when their sources are in another folder.
 
     Args:
@@ -143,7 +143,7 @@ def moved(packages: Iterable[Package], src: Path, there: Path) -> list[Package]:
     return [replace(package, folder=there / package.folder.relative_to(src)) for package in packages]
 
 
-def command(packages: Iterable[Package], folder: Path, cmake: Sequence[str] = ()) -> list[str]:
+def colcon_command(packages: Iterable[Package], folder: Path, cmake: Sequence[str] = ()) -> list[str]:
     """Return the command with which colcon builds only these packages.
 
     Args:
@@ -215,7 +215,7 @@ _WHAT_REFUSED = (
 _FAILED = re2.compile(r"(?m)^Failed\s+<<< (?P<name>\S+)")
 
 
-def failed(found: Build, log: str) -> Build:
+def failed_build(found: Build, log: str) -> Build:
     """Return the description of a failed build, with the reason from colcon's output (``log``)."""
     search = _FAILED.search(log)
     name = search["name"] if search else ""

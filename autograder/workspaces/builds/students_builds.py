@@ -35,7 +35,7 @@ from autograder.messages import workspace_messages as messages
 from autograder.messages.json_lines import Hangup, Lines, NotUnderstood
 from autograder.workspaces.builds import build_artefacts, build_cache
 from autograder.workspaces.builds.cached_builds import Builds, BuildTookTooLong
-from autograder.workspaces.builds.colcon_build import CannotCopyBuild, copy_to_workspace, look
+from autograder.workspaces.builds.colcon_build import CannotCopyBuild, copy_to_workspace, describe_workspace
 from autograder.workspaces.builds.install_folder import (
     BESIDE,
     entry_points,
@@ -115,7 +115,7 @@ def _ask(socket: str, found: Build, chosen: Iterable[Package], install: Path) ->
 
     Args:
         socket: The path of the grader's socket.
-        found: The workspace, as :func:`autograder.workspaces.builds.colcon_build.look` returns it.
+        found: The workspace, as :func:`autograder.workspaces.builds.colcon_build.describe_workspace` returns it.
         chosen: The packages.
         install: The folder to create for the build. It must not exist yet.
 
@@ -160,7 +160,8 @@ _RECORDS = ("install.log", "install_manifest.txt")
 """Files in a package's build folder that list what its last build installed: setuptools' list and CMake's."""
 _OPTIMIZED = re2.compile(r"(?m)^CMAKE_BUILD_TYPE:\w+=(?:Release|RelWithDebInfo|MinSizeRel)$")
 """Matches a build type in CMakeCache.txt that defines NDEBUG. Without NDEBUG, a value of the wrong type ends the
-process, which does not happen when a class is graded (:func:`autograder.workspaces.builds.colcon_build.command`).
+process. That does not happen when a class is graded
+(:func:`autograder.workspaces.builds.colcon_build.colcon_command`).
 """
 
 
@@ -270,7 +271,7 @@ def _text(file: Path) -> str:
 def main(arguments: Sequence[str]) -> int:
     """Request a plain build from the grader, or replace this process by the real colcon. Return the exit code."""
     chosen = _chosen(arguments)
-    found = look(Path.cwd())
+    found = describe_workspace(Path.cwd())
     if os.environ.get(GRADERS) and chosen is not None and not found.trouble and not found.unusable:
         option, names = chosen
         if set(names) <= {package.name for package in found.packages}:

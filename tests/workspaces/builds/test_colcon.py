@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from autograder.workspaces.builds import students_builds
-from autograder.workspaces.builds.colcon_build import CannotCopyBuild, copy_to_workspace, look
+from autograder.workspaces.builds.colcon_build import CannotCopyBuild, copy_to_workspace, describe_workspace
 from autograder.workspaces.builds.install_folder import with_prefixes
 
 sys.path.insert(0, str(Path(__file__).parent))
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 def build(workspace: Path, targets: Targets | None = None) -> Build:
     """What comes of building a folder."""
-    return students_builds.OwnBuilds().build(look(workspace), targets)
+    return students_builds.OwnBuilds().build(describe_workspace(workspace), targets)
 
 
 def run_program(made: Build) -> str:

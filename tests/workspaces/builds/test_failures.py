@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from autograder.workspaces.builds.colcon_build import Build, failed
+from autograder.workspaces.builds.colcon_build import Build, failed_build
 
 LOGS = {
     "compiler": (
@@ -64,4 +64,4 @@ LOGS = {
 @pytest.mark.parametrize("name", LOGS)
 def test_the_line_that_matters(name: str) -> None:
     log, expected = LOGS[name]
-    assert failed(Build(Path(), ok=False), log).line == expected
+    assert failed_build(Build(Path(), ok=False), log).line == expected

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from autograder.workspaces.builds.colcon_build import look
+from autograder.workspaces.builds.colcon_build import describe_workspace
 from autograder.workspaces.builds.install_folder import LIBRARY
 from autograder.workspaces.builds.students_builds import OwnBuilds, StudentsBuilds, changed_since, is_current
 from autograder.workspaces.graded_builds import GradedBuilds
@@ -93,7 +93,7 @@ def nothing_is_built(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_what_the_student_has_built_is_used(workspace: Path, request: pytest.FixtureRequest) -> None:
     colcon_build(workspace)
     request.getfixturevalue("nothing_is_built")
-    made = StudentsBuilds().build(look(workspace), None)
+    made = StudentsBuilds().build(describe_workspace(workspace), None)
     assert (made.ok, made.install, made.changed) == (True, workspace / "install", "")
     assert made.programs("tiny_pkg") == ("hello",)
     assert run_program(made) == SAYS
@@ -101,25 +101,25 @@ def test_what_the_student_has_built_is_used(workspace: Path, request: pytest.Fix
 
 @pytest.mark.usefixtures("nothing_is_built")
 def test_only_the_packages_that_the_exercise_needs_are_in_it(built: Path) -> None:
-    made = StudentsBuilds().build(look(built), the_package)
+    made = StudentsBuilds().build(describe_workspace(built), the_package)
     assert made.install == built / "install"
     assert [prefix.name for prefix in made.prefixes] == ["tiny_pkg"]
 
 
 def test_a_change_since_then_is_built_for_the_check_and_named(built: Path) -> None:
     change(module_of(built))
-    made = StudentsBuilds().build(look(built), the_package)
+    made = StudentsBuilds().build(describe_workspace(built), the_package)
     assert made.install != built / "install"
     assert made.changed == "`tiny_pkg/tiny_pkg/hello.py`"
     assert run_program(made) == "good evening from the workspace\n"
     colcon_build(built, "--packages-select", "tiny_pkg")
-    made = StudentsBuilds().build(look(built), the_package)
+    made = StudentsBuilds().build(describe_workspace(built), the_package)
     assert (made.install, made.changed) == (built / "install", "")
 
 
 def test_the_change_is_named_even_if_it_cannot_be_built(built: Path) -> None:
     change(built / "src" / "tiny_pkg" / "setup.py", "version='0.0.0',", "version='0.0.0'")
-    made = StudentsBuilds().build(look(built), the_package)
+    made = StudentsBuilds().build(describe_workspace(built), the_package)
     assert (made.trouble, made.changed) == ("build", "`tiny_pkg/setup.py`")
 
 
@@ -127,13 +127,13 @@ def test_three_changes_are_named_and_the_others_counted(built: Path) -> None:
     for name in "abcde":
         module_of(built).with_name(f"{name}.py").write_text(name)
     first = ", ".join(f"`tiny_pkg/tiny_pkg/{name}.py`" for name in "abc")
-    assert changed_since(built, look(built).packages) == f"{first} and 2 more"
+    assert changed_since(built, describe_workspace(built).packages) == f"{first} and 2 more"
 
 
 @pytest.mark.usefixtures("nothing_is_built")
 def test_a_cell_that_writes_the_same_file_again_changes_nothing(built: Path) -> None:
     module_of(built).write_text(module_of(built).read_text())
-    assert StudentsBuilds().build(look(built), the_package).install == built / "install"
+    assert StudentsBuilds().build(describe_workspace(built), the_package).install == built / "install"
 
 
 def test_a_file_that_is_put_there_with_an_old_date_is_a_change(built: Path, tmp_path: Path) -> None:
@@ -141,7 +141,7 @@ def test_a_file_that_is_put_there_with_an_old_date_is_a_change(built: Path, tmp_
     old.write_text("def main():\n    print('older')\n")
     os.utime(old, (1_000_000_000, 1_000_000_000))
     old.replace(module_of(built))
-    made = StudentsBuilds().build(look(built), the_package)
+    made = StudentsBuilds().build(describe_workspace(built), the_package)
     assert made.changed == "`tiny_pkg/tiny_pkg/hello.py`"
     assert run_program(made) == "older\n"
 
@@ -154,26 +154,26 @@ def test_links_show_a_changed_module_without_a_build_and_lead_elsewhere_once_the
     for name in ("src", "install", "build"):
         shutil.copytree(workspace / name, copied / name, symlinks=True)
     as_if_built_now(copied)
-    assert not is_current(copied, look(copied).packages)
+    assert not is_current(copied, describe_workspace(copied).packages)
     change(module_of(workspace))
     request.getfixturevalue("nothing_is_built")
-    made = StudentsBuilds().build(look(workspace), None)
+    made = StudentsBuilds().build(describe_workspace(workspace), None)
     assert made.changed == ""
     assert run_program(made) == "good evening from the workspace\n"
 
 
 def test_what_colcon_has_left_of_a_deleted_module_is_not_used(built: Path) -> None:
-    assert is_current(built, look(built).packages)
+    assert is_current(built, describe_workspace(built).packages)
     (installed,) = (built / "install" / "tiny_pkg").rglob("hello.py")
     installed.with_name("helper.py").touch()
-    assert not is_current(built, look(built).packages)
+    assert not is_current(built, describe_workspace(built).packages)
 
 
 def test_what_colcon_has_left_of_a_removed_entry_point_is_not_used(built: Path) -> None:
     change(built / "src" / "tiny_pkg" / "setup.py", "'hello = tiny_pkg.hello:main'", "")
     colcon_build(built, "--packages-select", "tiny_pkg")
     assert (built / "install" / "tiny_pkg" / "lib" / "tiny_pkg" / "hello").exists()
-    assert StudentsBuilds().build(look(built), the_package).programs("tiny_pkg") == ()
+    assert StudentsBuilds().build(describe_workspace(built), the_package).programs("tiny_pkg") == ()
 
 
 def test_what_colcon_has_left_of_a_launch_file_that_is_installed_elsewhere_now_is_not_used(
@@ -187,33 +187,33 @@ def test_what_colcon_has_left_of_a_launch_file_that_is_installed_elsewhere_now_i
     ]
     change(package / "setup.py", "['package.xml']),", f"['package.xml']), {pairs[0]}")
     colcon_build(built, "--packages-select", "tiny_pkg")
-    assert is_current(built, look(built).packages)
+    assert is_current(built, describe_workspace(built).packages)
     change(package / "setup.py", *pairs)
     colcon_build(built, "--packages-select", "tiny_pkg")
     assert len(list((built / "install" / "tiny_pkg" / "share").rglob("a.launch.py"))) == 2
-    made = StudentsBuilds().build(look(built), the_package)
+    made = StudentsBuilds().build(describe_workspace(built), the_package)
     assert made.launch_files("tiny_pkg") == (Path("share/tiny_pkg/launch/a.launch.py"),)
 
 
 def test_a_build_that_failed_is_not_used(built: Path) -> None:
     (built / "build" / "tiny_pkg" / "colcon_build.rc").write_text("1\n")
-    assert not is_current(built, look(built).packages)
+    assert not is_current(built, describe_workspace(built).packages)
 
 
 def test_a_merged_install_is_not_used(built: Path) -> None:
     (built / "install" / ".colcon_install_layout").write_text("merged\n")
-    assert not is_current(built, look(built).packages)
+    assert not is_current(built, describe_workspace(built).packages)
 
 
 def test_what_a_notebook_asks_to_be_built_is_built(built: Path) -> None:
-    assert OwnBuilds().build(look(built), the_package).install != built / "install"
+    assert OwnBuilds().build(describe_workspace(built), the_package).install != built / "install"
 
 
 def test_a_class_builds_again(built: Path, tmp_path: Path) -> None:
-    assert is_current(built, look(built).packages)
+    assert is_current(built, describe_workspace(built).packages)
     (tmp_path / "execution").mkdir(mode=0o700)
     builds = GradedBuilds(tmp_path / "execution", jobs := FakeJobs())
-    made = builds.build(look(built), the_package)
+    made = builds.build(describe_workspace(built), the_package)
     assert made.install != built / "install"
     assert jobs.builds == [["tiny_pkg"]]
 
@@ -238,8 +238,8 @@ def test_interfaces_are_used_if_they_are_built_as_in_a_class(
         (build / "CMakeCache.txt").write_text(cached)
     definition = Path("srv", "AddTwoInts.srv")
     shutil.copy(source / definition, prefix / "share" / name / definition)
-    assert is_current(workspace, look(workspace).packages) is current
+    assert is_current(workspace, describe_workspace(workspace).packages) is current
     touch_later(tmp_path / "later", build / "colcon_command_prefix_build.sh")
     (source / definition).write_text("int64 a\n---\nint64 sum\n")
-    assert not is_current(workspace, look(workspace).packages)
-    assert changed_since(workspace, look(workspace).packages) == f"`{name}/{definition}`"
+    assert not is_current(workspace, describe_workspace(workspace).packages)
+    assert changed_since(workspace, describe_workspace(workspace).packages) == f"`{name}/{definition}`"
