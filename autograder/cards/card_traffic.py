@@ -1,8 +1,7 @@
-"""Chooses the moments of a check that a card shows, groups them by part, and places each part on an axis.
+"""Chooses the moments of a check that a card shows, and groups them by part.
 
 A judge may have seen hundreds of messages, but a card shows only a few dozen. Every part of the check gets an equal
-share, and the card says how many moments are left out. An axis shows times or, if all moments have the same time, the
-moments one after the other.
+share, and the card says how many moments are left out.
 """
 
 from __future__ import annotations
@@ -14,7 +13,7 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Mapping, Sequence
 
     from autograder.verdict import Moment
 
@@ -155,91 +154,3 @@ def _few_lanes(moments: list[Moment]) -> list[Moment]:
         else replace(moment, lane=OTHER_LANES, label=f"{moment.lane}: {moment.label}", key=False)
         for moment in moments
     ]
-
-
-CHARACTER_WIDTH = 6.7
-"""The width in pixels of a character of the 11-pixel monospaced label font. Names of lanes use a 12-pixel font."""
-_MARGIN = 10.0
-_SHORTEST = 0.002
-"""The minimum length of an axis, in seconds."""
-TURNS = "one after the other"
-"""The label of an axis that does not show seconds."""
-
-
-@dataclass(frozen=True)
-class Tick:
-    """A tick of the axis: its distance from the left in pixels, its text, and the text's ``text-anchor``."""
-
-    x: float
-    text: str
-    anchor: str
-
-
-@dataclass(frozen=True)
-class Axis:
-    """Converts a position to pixels: ``start`` is at the left margin, ``end`` at ``right``.
-
-    A position is a time in seconds or, if ``seconds`` is false, the number of a moment.
-    """
-
-    start: float
-    end: float
-    right: float
-    width: int
-    seconds: bool
-
-    @classmethod
-    def of(cls, part: TrafficPart, lengths: Sequence[float], width: int) -> Axis:
-        """Return an axis that leaves enough space between each mark and the right edge for the mark's label.
-
-        Args:
-            part: The part of the traffic to draw.
-            lengths: The length of each moment's label, in pixels.
-            width: The width of the picture, in pixels.
-        """
-        places = places_of(part)
-        first, last = min(places), max(places)
-        if part.stands_still:
-            start, end = 0.0, max(last, 1.0)
-        else:
-            start = 0.0 if 0 <= first <= 2 * (last - first) else first
-            end = max(last, start + _SHORTEST)
-        room = width - _MARGIN
-        right = room
-        for place, length in zip(places, lengths, strict=True):
-            share = (place - start) / (end - start)
-            if share > 0:
-                right = min(right, _MARGIN + (room - length - 2 * _MARGIN) / share)
-        return cls(start, end, right, width, seconds=not part.stands_still)
-
-    def x(self, place: float) -> float:
-        """Return the distance from the left, in pixels, of a position."""
-        return _MARGIN + (place - self.start) / (self.end - self.start) * (self.right - _MARGIN)
-
-    def ticks(self) -> Iterator[Tick]:
-        """Yield ticks at round values that cover the axis, including the space to the right of the last moment."""
-        if not self.seconds:
-            yield Tick(0.0, TURNS, "start")
-            return
-        edge = self.start + (self.width - 3 * _MARGIN) / (self.right - _MARGIN) * (self.end - self.start)
-        step = round_step((edge - self.start) * 100 / self.width)
-        short = edge - self.start < 0.1
-        decimals = max(0, -math.floor(math.log10(step) + 1e-9) - (3 if short else 0))
-        for number in range(math.ceil(self.start / step - 1e-9), math.floor(edge / step + 1e-9) + 1):
-            value = number * step
-            text = f"{value * 1000:.{decimals}f} ms" if short else f"{value:.{decimals}f} s"
-            x = self.x(value)
-            yield Tick(x, text, "start" if x < len(text) * CHARACTER_WIDTH / 2 else "middle")
-
-
-def places_of(part: TrafficPart) -> list[float]:
-    """Return the position of each moment of a part on the axis."""
-    if part.stands_still:
-        return [float(number) for number in range(len(part.moments))]
-    return [moment.t for moment in part.moments]
-
-
-def round_step(step: float) -> float:
-    """Return the next number, at least this large, that is 1, 2 or 5 times a power of ten."""
-    power = 10.0 ** math.floor(math.log10(step))
-    return next(factor * power for factor in (1, 2, 5, 10) if factor * power >= step * (1 - 1e-9))

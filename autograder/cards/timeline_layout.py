@@ -3,20 +3,20 @@
 A picture shows one part of the check: a row (lane) for each name on the graph, and time from left to right. Marks
 that would cover each other are drawn one below the other. Lengths along the time axis are computed for the narrowest
 picture and stored as percentages, so that a wider card only gets more space. Heights are in pixels. No label covers
-another label or a leader line.
+another label or a leader line. If many moments have the same time, the axis shows their order instead of times.
 """
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from autograder.cards import card_wording, readable_text
-from autograder.cards.card_traffic import CHARACTER_WIDTH, Axis, Tick, places_of
 from autograder.cards.readable_text import one_line
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
     from autograder.cards.card_traffic import TrafficPart
 
@@ -100,7 +100,7 @@ class Picture:
     """
 
     lanes: tuple[Lane, ...]
-    ticks: tuple[Tick, ...]
+    ticks: tuple[_Tick, ...]
     axis_y: float
     width: int
     height: float
@@ -118,8 +118,8 @@ def picture(part: TrafficPart, width: int = WIDTH) -> Picture:
     """
     moments = part.moments
     labels = _labels(part)
-    axis = Axis.of(part, [_length(label) for label in labels], width)
-    xs = [axis.x(place) for place in places_of(part)]
+    axis = _Axis.of(part, [_length(label) for label in labels], width)
+    xs = [axis.x(position) for position in _positions(part)]
     lanes: list[Lane] = []
     bottom = 0.0
     for name in part.lanes:
@@ -128,7 +128,7 @@ def picture(part: TrafficPart, width: int = WIDTH) -> Picture:
         lanes.append(lane)
     return Picture(
         lanes=tuple(lanes),
-        ticks=tuple(Tick(_percent(tick.x, width), tick.text, tick.anchor) for tick in axis.ticks()),
+        ticks=tuple(_Tick(_percent(tick.x, width), tick.text, tick.anchor) for tick in axis.ticks()),
         axis_y=bottom,
         height=bottom + _AXIS_HEIGHT + _READING_HEIGHT,
         summary=card_wording.part_in_words(part),
@@ -152,7 +152,7 @@ def _lane(
     placed = _flags([_Wish(labels[i], xs[i], needed=moments[i].key) for i in members])
     text = one_line(name, 60)
     levels = 1 + max((flag.level for flag in placed if flag), default=0)
-    name_end = readable_text.width(text) * (CHARACTER_WIDTH + 0.7) + 6
+    name_end = readable_text.width(text) * (_CHARACTER_WIDTH + 0.7) + 6
     if any(flag.level == levels - 1 and flag.left < name_end for flag in placed if flag):
         levels += 1
     line_y = top + _LANE_HEAD + levels * _LEVEL_HEIGHT + 7
@@ -241,7 +241,7 @@ class _Flag:
 
 def _length(label: str) -> float:
     """Return the distance in pixels from a mark to the end of its label."""
-    return 5 + readable_text.width(label) * CHARACTER_WIDTH
+    return 5 + readable_text.width(label) * _CHARACTER_WIDTH
 
 
 def _flags(wishes: Sequence[_Wish]) -> list[_Flag | None]:
@@ -286,3 +286,91 @@ def _are_apart(one: _Flag, other: _Flag) -> bool:
         return one.right + 4 <= other.left or other.right + 4 <= one.left
     upper, lower = (one, other) if one.level > other.level else (other, one)
     return not (lower.left < upper.pole <= lower.right + 2) or upper.pole == lower.pole
+
+
+_CHARACTER_WIDTH = 6.7
+"""The width in pixels of a character of the 11-pixel monospaced label font. Names of lanes use a 12-pixel font."""
+_MARGIN = 10.0
+_SHORTEST = 0.002
+"""The minimum length of an axis, in seconds."""
+TURNS = "one after the other"
+"""The label of an axis that does not show seconds."""
+
+
+@dataclass(frozen=True)
+class _Tick:
+    """A tick of the axis: its distance from the left in pixels, its text, and the text's ``text-anchor``."""
+
+    x: float
+    text: str
+    anchor: str
+
+
+@dataclass(frozen=True)
+class _Axis:
+    """Converts a position to pixels: ``start`` is at the left margin, ``end`` at ``right``.
+
+    A position is a time in seconds or, if ``seconds`` is false, the number of a moment.
+    """
+
+    start: float
+    end: float
+    right: float
+    width: int
+    seconds: bool
+
+    @classmethod
+    def of(cls, part: TrafficPart, lengths: Sequence[float], width: int) -> _Axis:
+        """Return an axis that leaves enough space between each mark and the right edge for the mark's label.
+
+        Args:
+            part: The part of the traffic to draw.
+            lengths: The length of each moment's label, in pixels.
+            width: The width of the picture, in pixels.
+        """
+        positions = _positions(part)
+        first, last = min(positions), max(positions)
+        if part.stands_still:
+            start, end = 0.0, max(last, 1.0)
+        else:
+            start = 0.0 if 0 <= first <= 2 * (last - first) else first
+            end = max(last, start + _SHORTEST)
+        room = width - _MARGIN
+        right = room
+        for position, length in zip(positions, lengths, strict=True):
+            share = (position - start) / (end - start)
+            if share > 0:
+                right = min(right, _MARGIN + (room - length - 2 * _MARGIN) / share)
+        return cls(start, end, right, width, seconds=not part.stands_still)
+
+    def x(self, position: float) -> float:
+        """Return the distance from the left, in pixels, of a position."""
+        return _MARGIN + (position - self.start) / (self.end - self.start) * (self.right - _MARGIN)
+
+    def ticks(self) -> Iterator[_Tick]:
+        """Yield ticks at round values that cover the axis, including the space to the right of the last moment."""
+        if not self.seconds:
+            yield _Tick(0.0, TURNS, "start")
+            return
+        edge = self.start + (self.width - 3 * _MARGIN) / (self.right - _MARGIN) * (self.end - self.start)
+        step = round_step((edge - self.start) * 100 / self.width)
+        short = edge - self.start < 0.1
+        decimals = max(0, -math.floor(math.log10(step) + 1e-9) - (3 if short else 0))
+        for number in range(math.ceil(self.start / step - 1e-9), math.floor(edge / step + 1e-9) + 1):
+            value = number * step
+            text = f"{value * 1000:.{decimals}f} ms" if short else f"{value:.{decimals}f} s"
+            x = self.x(value)
+            yield _Tick(x, text, "start" if x < len(text) * _CHARACTER_WIDTH / 2 else "middle")
+
+
+def _positions(part: TrafficPart) -> list[float]:
+    """Return the position of each moment of a part on the axis."""
+    if part.stands_still:
+        return [float(number) for number in range(len(part.moments))]
+    return [moment.t for moment in part.moments]
+
+
+def round_step(step: float) -> float:
+    """Return the next number, at least this large, that is 1, 2 or 5 times a power of ten."""
+    power = 10.0 ** math.floor(math.log10(step))
+    return next(factor * power for factor in (1, 2, 5, 10) if factor * power >= step * (1 - 1e-9))

@@ -8,8 +8,8 @@ from itertools import pairwise
 import pytest
 
 from autograder.cards import readable_text
-from autograder.cards.card_traffic import TURNS, TrafficPart, traffic
-from autograder.cards.timeline_layout import HALF_WIDTH, WIDTH, Lane, Mark, Picture, picture
+from autograder.cards.card_traffic import TrafficPart, traffic
+from autograder.cards.timeline_layout import HALF_WIDTH, TURNS, WIDTH, Lane, Mark, Picture, picture
 from autograder.verdict import Moment, Verdict
 
 CHARACTER = 6.62  # pixels of a character of the 11-pixel label font (DejaVu Sans Mono and Menlo: 0.602 em)

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import re2
 
-from autograder.cards.card_traffic import round_step
+from autograder.cards.timeline_layout import round_step
 from autograder.notebook.observing.live_picture import LivePicture, as_image, svg_page
 from autograder.notebook.observing.ros_graph import UNDEMANDING_QOS, message_class
 
