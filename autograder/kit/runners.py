@@ -131,7 +131,7 @@ class Interface:
 
 @dataclass(frozen=True)
 class PackageReport:
-    """What the files of a package say about it.
+    """A package of the workspace, described by its files.
 
     Attributes:
         name: The package's name in its package.xml.

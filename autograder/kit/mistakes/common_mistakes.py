@@ -46,9 +46,8 @@ def endpoint_name(role: str) -> Mistake:
         missing, strange = sorted(wanted.keys() - made), made - wanted.keys()
         if not missing or not strange:
             return None
-        return (difflib.get_close_matches(missing[0], strange, n=1, cutoff=0.0) or sorted(strange))[
-            0
-        ], missing[0]
+        closest = difflib.get_close_matches(missing[0], strange, n=1, cutoff=0.0) or sorted(strange)
+        return closest[0], missing[0]
 
     return mistake(
         _KEY[noun],

@@ -1,1 +1,1 @@
-"""The recipes: one module for each kind of subject, with its scenario, criteria and common mistakes."""
+"""The recipes for exercises: the scenario, criteria and common mistakes of each kind of subject."""

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from autograder.kit.model import Finding, Pace
-from autograder.kit.recipes.own_scenario import Declared, fields, pick, variant
+from autograder.kit.model import Finding
+from autograder.kit.recipes.own_scenario import QUIET, Declared, fields, pick, variant
 from autograder.kit.rules import SOME_TEXT, same, value
 
 if TYPE_CHECKING:
@@ -20,8 +20,6 @@ if TYPE_CHECKING:
 
 __all__ = ["SOME_TEXT", "Machine"]
 
-QUIET = {Pace.FAST: 3.0, Pace.REAL_TIME: 6.0}
-"""The judge stops waiting for an answer or a message if no event comes for this many seconds of wall time."""
 PAUSE = 0.5
 """Seconds of the subject's time that the judge waits after each answer, because the subject may report a change from a
 timer.

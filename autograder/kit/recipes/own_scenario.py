@@ -19,7 +19,7 @@ from autograder.kit.mistakes import common_mistakes as common
 from autograder.kit.mistakes import unfinished
 from autograder.kit.mistakes.crashes import CRASHES, OTHER_CRASHES
 from autograder.kit.mistakes.hangs import HANGS
-from autograder.kit.model import Finding
+from autograder.kit.model import Finding, Pace
 from autograder.kit.rules import got_through, in_words, same
 
 if TYPE_CHECKING:
@@ -229,6 +229,8 @@ class OwnLadder(SeenAsItIs):
         self.ladder = ladder
 
 
+QUIET = {Pace.FAST: 3.0, Pace.REAL_TIME: 6.0}
+"""The judge stops waiting for an answer or a message if no event comes for this many seconds of wall time."""
 SILENCE = object()
 """The author's function returns this if the subject must not publish anything."""
 

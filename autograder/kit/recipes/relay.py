@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from autograder.kit.model import Pace
 from autograder.kit.recipes.own_scenario import (
+    QUIET,
     SILENCE,
     Declared,
     fields,
@@ -39,8 +40,6 @@ PATIENCE = {Pace.FAST: 2.0, Pace.REAL_TIME: 6.0}
 
 PAUSE = 0.5
 """The maximum number of seconds of the subject's time that a hub has for the message that is due after an input."""
-QUIET = {Pace.FAST: 3.0, Pace.REAL_TIME: 6.0}
-"""If no event comes for this many seconds of wall time, the judge stops waiting for the answer of a service."""
 
 Due = Callable[..., Any]
 """A function that is given all inputs so far and returns the value to publish after the last one, or :data:`SILENCE`.
@@ -236,7 +235,11 @@ class Hub(Relay):
         draws, random, interface = self._gives, met.bench.random, met.bench.reference.interface
         speakers = dict(zip(sorted(interface.get("subscription", {})), met.speakers, strict=True))
         callers = dict(zip(sorted(interface.get("service", {})), met.callers, strict=True))
-        inputs = list(draws(random) if callable(draws) else _drawn_to(draws, random))
+        if callable(draws):
+            inputs = list(draws(random))
+        else:
+            values = _drawn([given.value for given in draws], random)
+            inputs = [To(given.name, drawn) for given, drawn in zip(draws, values, strict=True)]
         for number, (name, given) in enumerate(inputs, 1):
             whole = given if isinstance(given, Mapping) else {"data": given}
             if name in callers:
@@ -296,11 +299,6 @@ def _drawn(inputs: Sequence[Any], random: Random) -> Iterator[Any]:
 
 def _heard(met: Met, number: int) -> bool:
     return met.heard >= number
-
-
-def _drawn_to(inputs: Sequence[To], random: Random) -> Iterator[To]:
-    values = _drawn([given.value for given in inputs], random)
-    return (To(given.name, drawn) for given, drawn in zip(inputs, values, strict=True))
 
 
 def _is_empty(copied: Any) -> bool:
