@@ -78,12 +78,12 @@ class Part:
 
     @property
     def had_node(self) -> bool:
-        """Return True if the subject had a node, even for a short time."""
+        """True if the subject had a node, even for a short time."""
         return bool(self.of("announced")) or any(survey.data.get("nodes") for survey in self.of("interface"))
 
     @property
     def ending(self) -> Event | None:
-        """Return the event with which the subject ended by itself (``exited``, ``returned`` or ``raised``), or None."""
+        """The event with which the subject ended by itself (``exited``, ``returned`` or ``raised``), or None."""
         return next((e for e in self.events if e.kind == "subject" and e.name in _ENDINGS), None)
 
     @property

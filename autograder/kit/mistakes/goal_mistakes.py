@@ -143,6 +143,7 @@ def _refusal_not_reported(evidence: Evidence) -> Advice | None:
 
 
 REFUSAL_NOT_REPORTED = Mistake("refusal_not_reported", _refusal_not_reported)
+
 # --- what comes back ----------------------------------------------------------------------------------------------
 
 

@@ -13,7 +13,7 @@ from autograder.kit.mistakes import unfinished
 from autograder.kit.model import STEP, Advice, Bench, Finding, Mistake, Pace
 from autograder.kit.rate import ROW, Rate, burst_at_the_start, confirmed, rate_of, simulated
 from autograder.kit.reading import published_texts
-from autograder.kit.reading.published_texts import Publisher
+from autograder.kit.reading.published_texts import Counting, Publisher
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -250,7 +250,7 @@ class Hears:
     @property
     def ladder(self) -> tuple[Mistake, ...]:
         """The common mistakes, most specific first."""
-        of = published_texts.Counting(self._variable)
+        of = Counting(self._variable)
         texts, numbers = self._text is published_texts.says_text, self._course is published_texts.counts
         early = [("field_typo", published_texts.field_typo)] * texts + [("counter_stuck", of.stuck)] * numbers
         early += [("wrong_text", of.wrong_text)] * texts
