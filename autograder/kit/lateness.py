@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from autograder.kit.giving_up import CLOSELY, LATE_AT_FIRST, LATENESS, TOO_SHORT, patience, waited
 from autograder.kit.model import Pace, mistake
-from autograder.kit.reading.service_calls import HANGS_AFTER
+from autograder.kit.service_calls import HANGS_AFTER
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

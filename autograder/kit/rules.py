@@ -1,25 +1,202 @@
-"""Rules for a subject that reports a state from time to time, and functions that compare message contents.
+"""Rules for a subject that publishes from time to time: the rate of its messages, and the state that they report.
+
+The rate is measured in simulated time if the subject follows it, otherwise in real time. In simulated time, intervals
+are exact, so all of them count. But in real time, a busy machine may delay a message, so it is enough if several
+successive messages have the right rate, and even one of these may be late. The times are those at which the publisher
+says it sent the messages, unless the times of arrival contradict them.
 
 The state depends on the inputs that the subject was given. For a subject that answers each input, see
-``recipes/relay.py`` and ``recipes/machine.py``.
+``recipes/relay.py`` and ``recipes/machine.py``. Functions that compare the contents of messages are here, too.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from math import isclose, isnan
+from statistics import mean, median
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from autograder.kit.in_words import counted
 from autograder.kit.model import Finding
-from autograder.kit.rate import sent_times
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from autograder.kit.draft import Judge
     from autograder.kit.evidence import Event, Part
+
+
+ROW = 7
+"""The number of successive messages that must have the right rate in real time."""
+ONE_LATE_IN = 6
+"""In real time, one message out of this many may be late."""
+SIMULATED_TOLERANCE = 0.05
+"""The tolerance for the mean interval in simulated time, as a fraction of the reference's interval."""
+SIMULATED_JITTER = 0.1
+"""The tolerance for a single interval, in simulated seconds: two steps, or one long step, because the judge moves its
+clock in steps.
+"""
+SLOWER, FASTER = 0.18, 0.1
+"""The tolerances for the median interval in real time, as fractions of the reference's interval. The tolerance for
+slower talkers is larger, because load only makes a talker slower.
+"""
+BURST = 0.1
+"""Two messages form a burst if the time between them is less than this fraction of the right interval."""
+UNEVEN = 0.3
+"""The tolerance for a single interval in real time, as a fraction of the right interval."""
+ON_THE_WAY = 0.3
+"""The maximum delay in seconds from sending to arrival. If the delay of a message is longer, or negative, its time of
+sending is ignored.
+"""
+ROUNDING = 0.005
+"""The number of seconds by which a message may seem to arrive before it was sent, because times are rounded."""
+
+
+@dataclass(frozen=True)
+class Rate:
+    """The measured rate of a publisher.
+
+    Attributes:
+        period: The mean time between two messages, in seconds.
+        intervals: The time between each two successive messages, in seconds.
+        even: True if all intervals are equal, within the tolerance; in real time, almost all.
+        kept: True if the measured rate is the right one, within the tolerance.
+    """
+
+    period: float
+    intervals: Sequence[float]
+    even: bool
+    kept: bool
+
+
+def simulated_times(messages: Sequence[Event]) -> list[float]:
+    """Return the simulated time of each message; empty if the publisher did not follow the simulated clock to the end.
+
+    The first message is left out, because the jump to simulated time distorts the message's time.
+    """
+    follows = bool(messages) and messages[-1].sim is not None
+    return [event.sim for event in messages if event.sim is not None][1:] if follows else []
+
+
+def rate_of(messages: Sequence[Event], wanted: float, row: int = ROW) -> Rate | None:
+    """Return the rate of a publisher's messages; None if there are too few messages.
+
+    Args:
+        messages: The messages that the judge received.
+        wanted: The reference's interval, in seconds.
+        row: Used only in real time, where messages may be late: the number of successive messages in a group. The
+            result is the rate of the first group with the right rate; if no group has the right rate, the rate of the
+            last group.
+    """
+    if times := simulated_times(messages):
+        return _exact_rate(times, wanted) if len(times) > 1 else None
+    sent = sent_times(messages)
+    rows = [sent[i : i + row] for i in range(max(1, len(sent) - row + 1))] if len(sent) > 1 else []
+    rates = [_rate_in_real_time(times, wanted) for times in rows]
+    return next((rate for rate in rates if rate.kept), rates[-1] if rates else None)
+
+
+def sent_times(messages: Sequence[Event]) -> list[float]:
+    """Return the time at which each message was sent: the publisher's own time if that is plausible.
+
+    The publisher's times are better, because a busy judge receives messages late and close together. But a publisher
+    could report a false time, so each time is compared with the time of arrival. They can be compared, because both
+    processes read the clock of the same machine.
+    """
+    return [_sent_time(event) for event in messages]
+
+
+def _sent_time(event: Event) -> float:
+    arrived = float(event.data.get("arrived", event.t))
+    sent = float(event.data.get("sent", arrived))
+    return sent if -ROUNDING <= arrived - sent <= ON_THE_WAY else arrived
+
+
+def burst_at_the_start(messages: Sequence[Event], unheard: int, wanted: float) -> str:
+    """Return in words what shows that a publisher began with a burst of messages; empty if nothing does.
+
+    Two facts show a burst: the first three messages came almost at once, or the judge missed more messages than a
+    talker with the right rate can have sent since the program began.
+
+    Args:
+        messages: The messages that the judge received, from the first one that counts.
+        unheard: The number of earlier messages, which the judge could not receive.
+        wanted: The reference's interval, in seconds.
+    """
+    if not messages:
+        return ""
+    first = messages[0]
+    arrived = float(first.data.get("arrived", first.t))
+    # The times of arrival are not used, because messages that were held up during discovery arrive all at once.
+    in_real_time = (one for one in messages if one.sim is None or one is first)
+    sent = [float(one.data.get("sent", one.data.get("arrived", one.t))) for one in in_real_time]
+    since = sent[0] - (arrived - first.t)
+    # The jump to simulated time may have made the first received message come earlier.
+    if (unheard - (first.sim is not None)) * wanted * (1 - FASTER) > since:
+        return f"{counted(unheard + 1, 'message')} in the first {since:.1f} s"
+    gaps = [after - before for before, after in pairwise(sent)]
+    if not unheard and len(gaps) > 1 and max(gaps[:2]) < BURST * wanted:
+        return "the first three messages came at once"
+    return ""
+
+
+def _exact_rate(times: Sequence[float], wanted: float) -> Rate:
+    gaps = [later - earlier for earlier, later in pairwise(times)]
+    period = mean(gaps)
+    even = all(abs(gap - period) <= SIMULATED_JITTER + 1e-6 for gap in gaps)
+    return Rate(period, gaps, even, even and abs(period - wanted) <= SIMULATED_TOLERANCE * wanted)
+
+
+def _rate_in_real_time(times: Sequence[float], wanted: float) -> Rate:
+    gaps = [later - earlier for earlier, later in pairwise(times)]
+    period, most = median(gaps), UNEVEN * wanted
+    # A late message makes one interval longer, and the next one shorter if the timer keeps its schedule.
+    even = all(
+        sum(off > most for off in offs) <= len(gaps) // ONE_LATE_IN
+        for offs in ([gap - period for gap in gaps], [period - gap for gap in gaps])
+    )
+    near = (1 - FASTER) * wanted <= period <= (1 + SLOWER) * wanted
+    return Rate(period if even else mean(gaps), gaps, even, even and near)
+
+
+def confirmed(rate: Rate, before: Rate, wanted: float) -> bool:
+    """Return True if a rate in real time confirms the wrong rate that was measured in simulated time.
+
+    A thread that sleeps in real time may seem slow in simulated time although its real rate is right. In that case the
+    result is False.
+    """
+    wrong = abs(before.period - wanted) > SIMULATED_TOLERANCE * wanted
+    return wrong and abs(rate.period - before.period) < abs(rate.period - wanted)
+
+
+def keeps_rate(seen: Part, expected: Part) -> Finding:
+    """Decide whether the messages on a single topic come as often as the reference's.
+
+    Raises:
+        ValueError: The reference has too few messages to measure a rate.
+    """
+    messages, wanted = seen.of("message"), _reference_period(expected)
+    rate = rate_of(messages, wanted)
+    heard = f"one every {rate.period:.2g} s" if rate else f"{counted(len(messages), 'message')} in all"
+    unevenly = " on average, but unevenly" if rate and not rate.even else ""
+    return Finding(rate is not None and rate.kept, f"one every {wanted:.2g} s", heard + unevenly)
+
+
+def another_rate(seen: Part, expected: Part) -> str:
+    """Return the subject's rate in words if it is wrong; empty if it is right, or if there are too few messages."""
+    rate = rate_of(seen.of("message"), _reference_period(expected))
+    return keeps_rate(seen, expected).seen if rate is not None and not rate.kept else ""
+
+
+def _reference_period(expected: Part) -> float:
+    times = simulated_times(expected.of("message"))
+    if len(times) < 2:
+        raise ValueError(
+            "the reference has fewer than three messages in simulated time: let the scenario run longer"
+        )
+    return (times[-1] - times[0]) / (len(times) - 1)
 
 
 class _SomeText:

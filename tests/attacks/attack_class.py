@@ -22,7 +22,7 @@ from attack_bank import HERE, USUAL, Attack
 
 from autograder import course
 from autograder.grading.classes.new_class import new_class
-from autograder.kit.reading import reported_texts
+from autograder.kit import reported_texts
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence

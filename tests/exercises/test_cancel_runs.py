@@ -12,9 +12,9 @@ from exercise_1_3._cancel_evidence import AGREED, CANCEL_REFUSED, HONOURED
 from autograder.judge import evidence_files
 from autograder.kit.evidence import Event, Evidence, Part
 from autograder.kit.giving_up import LATENESS
+from autograder.kit.goal_reports import REFUSED
 from autograder.kit.lateness import SOON
 from autograder.kit.model import Pace
-from autograder.kit.reading.goal_reports import REFUSED
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -17,13 +17,13 @@ from lab_1_4 import client as action_client
 
 from autograder.judge import evidence_files
 from autograder.kit.evidence import Event, Evidence, Part, Reference
+from autograder.kit.goal_reports import LATE, left_at_once
 from autograder.kit.mistakes import common_mistakes as common
 from autograder.kit.mistakes import unfinished
 from autograder.kit.mistakes.goal_mistakes import ENDED_TOO_EARLY, RESULT_NOT_REQUESTED
-from autograder.kit.reading.goal_reports import LATE, left_at_once
-from autograder.kit.reading.reported_texts import has_much_of
-from autograder.kit.reading.service_calls import BIASED, EXTREME
 from autograder.kit.recipes.service_client import ANSWER_NOT_AWAITED
+from autograder.kit.reported_texts import has_much_of
+from autograder.kit.service_calls import BIASED, EXTREME
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -5,8 +5,7 @@ from __future__ import annotations
 import pytest
 
 from autograder.kit.evidence import INTERRUPTED, Event, Evidence, Part, Reference
-from autograder.kit.mistakes.goal_mistakes import NOT_RETURNED
-from autograder.kit.reading.goal_reports import (
+from autograder.kit.goal_reports import (
     ABORTED,
     LATE,
     REFUSED,
@@ -17,6 +16,7 @@ from autograder.kit.reading.goal_reports import (
     returned_instead,
     unshown_feedback,
 )
+from autograder.kit.mistakes.goal_mistakes import NOT_RETURNED
 
 REFERENCE = Reference(
     "lab_1_4.client", {"action_client": {"/fibonacci": "my_robot_interfaces/action/Fibonacci"}}

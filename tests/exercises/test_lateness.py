@@ -35,7 +35,7 @@ from autograder.kit.lateness import (
     was_patient_with_an_answer,
 )
 from autograder.kit.model import Pace
-from autograder.kit.reading.service_calls import HANGS_AFTER
+from autograder.kit.service_calls import HANGS_AFTER
 
 if TYPE_CHECKING:
     from autograder.kit.model import Bench

@@ -5,9 +5,9 @@ from __future__ import annotations
 import pytest
 
 from autograder.kit.evidence import Event, Evidence, Part, Reference
+from autograder.kit.goal_reports import REFUSED, refused_as_seen
 from autograder.kit.mistakes.crashes import traceback_of
 from autograder.kit.mistakes.goal_mistakes import REFUSAL_NOT_REPORTED, crashed_by_refusal
-from autograder.kit.reading.goal_reports import REFUSED, refused_as_seen
 
 REFERENCE = Reference("exercise_1_3.cancel", {})
 FRAME = '  File "/home/student/client.py", line 9, in run_client\n    '

@@ -15,8 +15,11 @@ from autograder.judge import evidence_files, one_check
 from autograder.kit.evidence import Event, Evidence, Part, Reference
 from autograder.kit.lateness import ANSWERS_SOON
 from autograder.kit.model import Pace
-from autograder.kit.reading.reported_texts import mentions
-from autograder.kit.reading.service_calls import (
+from autograder.kit.recipes import service_runs
+from autograder.kit.recipes.service_client import NOT_RETURNED
+from autograder.kit.recipes.service_runs import Run, answering, has_spoken, is_done
+from autograder.kit.reported_texts import mentions
+from autograder.kit.service_calls import (
     ABSENT,
     BIASED,
     CALLED,
@@ -28,9 +31,6 @@ from autograder.kit.reading.service_calls import (
     gives_up_in_time,
     reports,
 )
-from autograder.kit.recipes import service_runs
-from autograder.kit.recipes.service_client import NOT_RETURNED
-from autograder.kit.recipes.service_runs import Run, answering, has_spoken, is_done
 
 SEEDS = range(60)
 REFERENCE = evidence_files.load_reference("lab_1_3.client")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from autograder.kit.evidence import Event, Part
-from autograder.kit.rate import another_rate, keeps_rate
+from autograder.kit.rules import another_rate, keeps_rate
 
 
 def heard(period: float, number: int = 10) -> Part:

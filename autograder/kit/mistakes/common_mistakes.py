@@ -12,7 +12,7 @@ import re2
 from autograder.kit.mistakes.crashes import CRASHES, OTHER_CRASHES
 from autograder.kit.mistakes.hangs import HANGS, something_spins
 from autograder.kit.model import Advice, Mistake, mistake
-from autograder.kit.reading.reported_texts import said_first_after
+from autograder.kit.reported_texts import said_first_after
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

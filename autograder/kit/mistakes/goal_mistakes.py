@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from autograder.kit.mistakes.crashes import meant, on_purpose, what_and_where
-from autograder.kit.model import Advice, Mistake, mistake
-from autograder.kit.reading.goal_reports import (
+from autograder.kit.goal_reports import (
     ABORTED,
     LATE,
     MANY_REQUESTS,
@@ -27,7 +25,9 @@ from autograder.kit.reading.goal_reports import (
     said_of_result,
     unshown_feedback,
 )
-from autograder.kit.reading.reported_texts import mentions, not_filled_in
+from autograder.kit.mistakes.crashes import meant, on_purpose, what_and_where
+from autograder.kit.model import Advice, Mistake, mistake
+from autograder.kit.reported_texts import mentions, not_filled_in
 
 if TYPE_CHECKING:
     from autograder.kit.evidence import Evidence

@@ -20,6 +20,18 @@ from autograder.kit.giving_up import (
     drawn_patience,
     patience_without_a_server,
 )
+from autograder.kit.goal_reports import (
+    ABORTED,
+    ABSENT,
+    FEEDBACKS,
+    LATE,
+    REFUSED,
+    REJECTED,
+    WAIT,
+    aborted_as_seen,
+    refused_as_seen,
+    unshown_feedback,
+)
 from autograder.kit.lateness import (
     ANSWERS_LATE,
     ANSWERS_SOON,
@@ -42,18 +54,6 @@ from autograder.kit.mistakes import unfinished
 from autograder.kit.mistakes.crashes import CRASHES, OTHER_CRASHES, OTHER_SLIPS
 from autograder.kit.mistakes.hangs import HANGS
 from autograder.kit.model import Bench, Mistake, Pace
-from autograder.kit.reading.goal_reports import (
-    ABORTED,
-    ABSENT,
-    FEEDBACKS,
-    LATE,
-    REFUSED,
-    REJECTED,
-    WAIT,
-    aborted_as_seen,
-    refused_as_seen,
-    unshown_feedback,
-)
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping

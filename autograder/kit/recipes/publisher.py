@@ -6,14 +6,14 @@ from itertools import pairwise
 from statistics import median
 from typing import TYPE_CHECKING
 
+from autograder.kit import published_texts
 from autograder.kit.draft import OWN, OWN_LATE
 from autograder.kit.in_words import counted
 from autograder.kit.mistakes import common_mistakes as common
 from autograder.kit.mistakes import unfinished
 from autograder.kit.model import STEP, Advice, Bench, Finding, Mistake, Pace
-from autograder.kit.rate import ROW, Rate, burst_at_the_start, confirmed, rate_of, simulated
-from autograder.kit.reading import published_texts
-from autograder.kit.reading.published_texts import Counting, Publisher
+from autograder.kit.published_texts import Counting, Publisher
+from autograder.kit.rules import ROW, Rate, burst_at_the_start, confirmed, rate_of, simulated_times
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -115,7 +115,7 @@ class Hears:
         Half is enough, because the first messages may come before the judge begins to simulate time.
         """
         topic, _ = evidence.reference.only("publisher")
-        return len(simulated(evidence.main.of("message", topic))) >= self._messages // 2
+        return len(simulated_times(evidence.main.of("message", topic))) >= self._messages // 2
 
     def _enough(self, before: Evidence | None) -> int:
         """Return how many messages to wait for in real time.
@@ -345,7 +345,7 @@ def _reference_period(reference: Reference) -> float:
     if not reference.parts:
         return USUAL_PERIOD
     topic, _ = reference.only("publisher")
-    times = simulated(reference.part("talking").of("message", topic))
+    times = simulated_times(reference.part("talking").of("message", topic))
     return (times[-1] - times[0]) / (len(times) - 1)
 
 

@@ -17,8 +17,9 @@ from autograder.kit.mistakes import unfinished
 from autograder.kit.mistakes.crashes import CRASHES, OTHER_CRASHES, OTHER_SLIPS
 from autograder.kit.mistakes.hangs import HANGS
 from autograder.kit.model import Advice, Bench, Finding, Mistake, mistake
-from autograder.kit.reading.reported_texts import mentions
-from autograder.kit.reading.service_calls import (
+from autograder.kit.recipes.service_runs import scenario
+from autograder.kit.reported_texts import mentions
+from autograder.kit.service_calls import (
     WAIT,
     ClientSeen,
     answers,
@@ -32,7 +33,6 @@ from autograder.kit.reading.service_calls import (
     requests,
     returns_another,
 )
-from autograder.kit.recipes.service_runs import scenario
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence

@@ -38,15 +38,7 @@ from autograder.kit.lateness import (
     was_patient_with_an_answer,
 )
 from autograder.kit.model import Bench, Pace
-from autograder.kit.reading.service_calls import (
-    ABSENT,
-    HANGS_AFTER,
-    LATE,
-    has_reported,
-    new_words,
-    reports,
-    requests,
-)
+from autograder.kit.service_calls import ABSENT, HANGS_AFTER, LATE, has_reported, new_words, reports, requests
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence

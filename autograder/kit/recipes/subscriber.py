@@ -9,7 +9,7 @@ from autograder.kit.draft import OWN, OWN_LATE
 from autograder.kit.mistakes import common_mistakes as common
 from autograder.kit.mistakes import unfinished
 from autograder.kit.model import Advice, Bench, Finding, Mistake, Pace
-from autograder.kit.reading.reported_texts import (
+from autograder.kit.reported_texts import (
     AT_PACE,
     SINGLY,
     TRIES,

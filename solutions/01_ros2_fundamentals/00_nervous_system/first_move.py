@@ -11,7 +11,7 @@ from autograder.kit.recipes.publisher import Hears
 
 if TYPE_CHECKING:
     from autograder.kit.evidence import Event, Evidence
-    from autograder.kit.reading.published_texts import Publisher
+    from autograder.kit.published_texts import Publisher
 
 heard = Hears(messages=8, long_run=20)
 first_move = Draft(

@@ -8,21 +8,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from autograder.kit import service_calls
 from autograder.kit.draft import Draft
 from autograder.kit.model import Advice, Finding
-from autograder.kit.reading import service_calls
-from autograder.kit.reading.service_calls import (
-    BIASED,
-    CALLED,
-    EXTREME,
-    LATE,
-    ClientSeen,
-    answers,
-    pair,
-    requests,
-)
 from autograder.kit.recipes.service_client import Calls
 from autograder.kit.recipes.service_runs import Run, hidden
+from autograder.kit.service_calls import BIASED, CALLED, EXTREME, LATE, ClientSeen, answers, pair, requests
 
 if TYPE_CHECKING:
     from random import Random

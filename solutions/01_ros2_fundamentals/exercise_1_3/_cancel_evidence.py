@@ -5,14 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from autograder.kit.reading.goal_reports import (
-    CANCELED,
-    REFUSED,
-    SUCCEEDED,
-    WAS_ABORTED,
-    asked_for,
-    left_at_once,
-)
+from autograder.kit.goal_reports import CANCELED, REFUSED, SUCCEEDED, WAS_ABORTED, asked_for, left_at_once
 
 if TYPE_CHECKING:
     from autograder.kit.evidence import Event, Evidence, Part

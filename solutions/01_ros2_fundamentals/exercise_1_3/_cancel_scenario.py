@@ -34,6 +34,7 @@ from exercise_1_3._cancel_evidence import (
 )
 
 from autograder.kit.giving_up import LATENESS
+from autograder.kit.goal_reports import REFUSED, refused_as_seen
 from autograder.kit.lateness import (
     ANSWERS_SOON,
     SOON,
@@ -44,7 +45,6 @@ from autograder.kit.lateness import (
     meets_present,
 )
 from autograder.kit.model import Bench, Pace
-from autograder.kit.reading.goal_reports import REFUSED, refused_as_seen
 from autograder.kit.recipes.action_client import needs_no_search, refuse
 
 if TYPE_CHECKING:

@@ -23,15 +23,9 @@ from exercise_1_3._cancel_mistakes import MISTAKES
 from exercise_1_3._cancel_scenario import scenario
 
 from autograder.kit.draft import Draft
+from autograder.kit.goal_reports import MANY_REQUESTS, NOT_AWAITED, asked_for, left_at_once, tells_of_refusal
 from autograder.kit.in_words import counted
 from autograder.kit.model import Finding
-from autograder.kit.reading.goal_reports import (
-    MANY_REQUESTS,
-    NOT_AWAITED,
-    asked_for,
-    left_at_once,
-    tells_of_refusal,
-)
 from autograder.kit.recipes.action_client import ActionClient
 
 if TYPE_CHECKING:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from autograder.kit import goal_reports
 from autograder.kit.draft import Draft
-from autograder.kit.reading import goal_reports
 from autograder.kit.recipes.action_client import sends_goals
 
 client = Draft(

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from summary._night import before_the_lamp, commands, goals, lamps, near_messages, published
 
 from autograder.kit.mistakes.unfinished import STEP_MISSING
-from autograder.kit.rate import another_rate
+from autograder.kit.rules import another_rate
 
 if TYPE_CHECKING:
     from collections.abc import Callable

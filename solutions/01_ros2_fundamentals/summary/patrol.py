@@ -20,8 +20,8 @@ from summary._night_mistakes import MISTAKES
 from autograder.kit.draft import Draft
 from autograder.kit.in_words import counted
 from autograder.kit.model import Finding
-from autograder.kit.rate import keeps_rate
 from autograder.kit.recipes.own_scenario import OwnScenario
+from autograder.kit.rules import keeps_rate
 
 if TYPE_CHECKING:
     from autograder.kit.evidence import Part

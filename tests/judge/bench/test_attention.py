@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from autograder.kit.evidence import Evidence, Reference
-from autograder.kit.reading.reported_texts import is_said
+from autograder.kit.reported_texts import is_said
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -13,11 +13,12 @@ from autograder.kit.evidence import Evidence
 from autograder.kit.in_words import counted
 from autograder.kit.mistakes.client_waits import Wait
 from autograder.kit.model import Finding
-from autograder.kit.reading.reported_texts import mentions, not_filled_in, said_first_after
+from autograder.kit.reported_texts import mentions, not_filled_in, said_first_after
 
 if TYPE_CHECKING:
     from autograder.kit.evidence import Event, Part, Reference
     from autograder.kit.model import Advice
+
 
 LATE = "the service comes late"
 BIASED = "the answers are surprising"

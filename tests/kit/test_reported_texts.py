@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from autograder.kit.evidence import Event, Part
-from autograder.kit.reading.reported_texts import GROWING, invented, is_said, repeated, retold, tells
+from autograder.kit.reported_texts import GROWING, invented, is_said, repeated, retold, tells
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -16,7 +16,7 @@ import re2
 
 from autograder.kit.in_words import counted, first_difference
 from autograder.kit.model import Advice, Finding
-from autograder.kit.rate import sent_times, simulated
+from autograder.kit.rules import sent_times, simulated_times
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -124,7 +124,7 @@ class Publisher:
     @property
     def pauses(self) -> list[float]:
         """The times between successive messages, in seconds of the subject's time."""
-        times = simulated(self.messages) or sent_times(self.messages)
+        times = simulated_times(self.messages) or sent_times(self.messages)
         return [after - before for before, after in pairwise(times)]
 
     @property

@@ -12,12 +12,13 @@ from autograder.kit.giving_up import remark
 from autograder.kit.mistakes.client_waits import Wait
 from autograder.kit.model import Finding
 from autograder.kit.outcomes import Outcome
-from autograder.kit.reading.reported_texts import mentions, said_first_after
+from autograder.kit.reported_texts import mentions, said_first_after
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from autograder.kit.evidence import Event, Evidence, Part
+
 
 LATE = "the server comes late"
 REFUSED = "the goal is refused"
