@@ -79,11 +79,7 @@ async def _serve(address: str, grader: Lines) -> None:
     except (OSError, ValueError, TypeError, TimeoutError) as error:
         _tell(grader, Broken(_first_line(error)))
         return
-    carrier = _Carrier(client, grader)
-    serving = [asyncio.create_task(part) for part in (carrier.take_commands(), carrier.watch_workers())]
-    await asyncio.wait(serving, return_when=asyncio.FIRST_COMPLETED)
-    for part in serving:
-        part.cancel()
+    await _Carrier(client, grader).serve()
     with contextlib.suppress(Exception):
         client.unsubscribe_topic("all")
         await client.close(timeout=1)
@@ -100,7 +96,14 @@ class _Carrier:
         self._running: set[asyncio.Task[None]] = set()
         self._changed = asyncio.Event()
 
-    async def take_commands(self) -> None:
+    async def serve(self) -> None:
+        """Carry out commands and report workers until the connection to the grader or to the scheduler ends."""
+        serving = [asyncio.create_task(part) for part in (self._take_commands(), self._watch_workers())]
+        await asyncio.wait(serving, return_when=asyncio.FIRST_COMPLETED)
+        for part in serving:
+            part.cancel()
+
+    async def _take_commands(self) -> None:
         """Carry out the grader's commands until the connection ends."""
         while True:
             try:
@@ -113,7 +116,7 @@ class _Carrier:
             else:
                 self._drop(command.number)
 
-    async def watch_workers(self) -> None:
+    async def _watch_workers(self) -> None:
         """Report to the grader which workers join and leave. For this, read the scheduler's list after each event."""
         self._client.subscribe_topic("all", self._on_event)
         try:

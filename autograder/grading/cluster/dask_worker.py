@@ -20,7 +20,7 @@ from distributed import Worker, WorkerPlugin, get_worker
 from autograder.boxes.sandbox import why_impossible
 from autograder.grading.grading_errors import GradingError
 from autograder.grading.rebuilding.course_version import course_version
-from autograder.grading.running.execution_backends import check_address
+from autograder.grading.running.execution_backends import check_address, cores
 from autograder.grading.running.order_executor import Executor
 from autograder.grading.running.task_dispatcher import SchedulerGone
 from autograder.grading.running.worker_messages import Offer
@@ -62,7 +62,7 @@ def start_worker(
         )
     check_address(address)
     name = name or os.environ.get("DASK_WORKER_NAME") or f"{os.uname().nodename}-{os.getpid()}"
-    offered = offer(jobs or len(os.sched_getaffinity(0)))
+    offered = offer(jobs or cores())
     if sandbox and offered.obstacle:
         raise GradingError(
             f"No sandbox is possible here: {offered.obstacle}. If you trust all submissions like your own programs, "

@@ -36,7 +36,7 @@ class _InertUnpickler(pickle.Unpickler):
             return getattr(builtins, name)
         # tblib, which Dask uses, stores errors under these two names.
         if name == "unpickle_traceback":
-            return _no_traceback
+            return lambda *_: None
         if name.startswith("unpickle_exception"):
             return _exception
         return type(name, (Inert,), {"__module__": module})
@@ -61,10 +61,6 @@ def install() -> None:
     replaced.loads = loads
     replaced.load = lambda file, **options: loads(file.read(), **options)
     replaced.Unpickler = _InertUnpickler
-
-
-def _no_traceback(*_: Any) -> None:
-    return None
 
 
 def _exception(kind: Any, *said: Any) -> Any:

@@ -58,7 +58,8 @@ def task_of(directory: ClassDirectory, submission: Submission, notebook: str) ->
     master = directory.master(assignment, notebook)
     rebuilt, problem = _rebuilt(directory, submission, notebook, master)
     prose = [cell.source for cell in master.cells if cell.cell_type == CellType.MARKDOWN]
-    cells = cells_of(rebuilt, demonstrations=_runs_demonstrations(directory), prose=prose)
+    demonstrations = bool(directory.config.WireExecute.get("demonstrations", False))
+    cells = cells_of(rebuilt, demonstrations=demonstrations, prose=prose)
     work = hashlib.sha256(msgspec.json.encode(cells)).hexdigest()
     pictures = [
         cell["attachments"] for cell in rebuilt.cells if "attachments" in cell and not is_the_masters(cell)
@@ -129,11 +130,6 @@ def cells_of(
         )
         for place, cell in enumerate(notebook.cells)
     )
-
-
-def _runs_demonstrations(directory: ClassDirectory) -> bool:
-    """Return True if demonstrations are run in this class (option ``demonstrations`` in its configuration)."""
-    return bool(directory.config.WireExecute.get("demonstrations", False))
 
 
 def demonstrations_of(notebook: NotebookNode) -> frozenset[int]:

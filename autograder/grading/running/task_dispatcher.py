@@ -60,7 +60,7 @@ _MOST_TROUBLES = 3
 
 
 class NoWorkers(GradingError):
-    """There is no worker that can execute tasks."""
+    """No worker can execute tasks."""
 
 
 class SchedulerGone(GradingError):
@@ -166,7 +166,7 @@ class Dispatcher:
 
         Raises:
             SchedulerGone: The scheduler cannot be reached.
-            NoWorkers: There are no workers, or all of them were asked for their offers and rejected.
+            NoWorkers: No worker exists, or all workers were asked for their offers and rejected.
         """
         while not self._workers:
             news = self._link.hear(None)
