@@ -87,28 +87,15 @@ class Timings:
         return "time went into " + ", ".join(f"{name} {seconds:.1f} s" for name, seconds in parts)
 
 
-_LINES = 20
-"""The approximate number of lines that a large class gets in a log file, not counting a line for each failure."""
-_SILENCE = 30.0
-"""Seconds between two lines in a log file about a notebook that runs longer than estimated."""
-
-
 def plain_line(console: Console, text: str, style: str = "") -> None:
     """Print a text unchanged: without markup, highlighting and line breaks."""
     console.print(text, style=style, markup=False, highlight=False, soft_wrap=True)
 
 
-class _Now(ProgressColumn):
-    """A column of the progress bar with a text that is computed each time the bar is drawn."""
-
-    def __init__(self, now: Callable[[], str]) -> None:
-        super().__init__()
-        self._now = now
-
-    def render(self, task: Task) -> Text:
-        """Return the text of the column. Rich calls this each time it draws the bar."""
-        del task
-        return Text(self._now())
+_LINES = 20
+"""The approximate number of lines that a large class gets in a log file, not counting a line for each failure."""
+_SILENCE = 30.0
+"""Seconds between two lines in a log file about a notebook that runs longer than estimated."""
 
 
 class BatchProgress:
@@ -242,6 +229,19 @@ class BatchProgress:
     def _is_late(self) -> bool:
         """Return True if the estimated time has passed and a notebook is still running."""
         return bool(self._running and self._done) and self._clock() > self._last + self._rest_of_all()
+
+
+class _Now(ProgressColumn):
+    """A column of the progress bar with a text that is computed each time the bar is drawn."""
+
+    def __init__(self, now: Callable[[], str]) -> None:
+        super().__init__()
+        self._now = now
+
+    def render(self, task: Task) -> Text:
+        """Return the text of the column. Rich calls this each time it draws the bar."""
+        del task
+        return Text(self._now())
 
 
 def _duration(seconds: float) -> str:
