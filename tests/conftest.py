@@ -43,7 +43,7 @@ LONGEST = (
     "tests/authoring/test_recording.py",
     "tests/grading/day/test_killed_at_random.py",
     "tests/benchmarks/test_short_run.py",
-    "tests/grading/running/test_executor.py",
+    "tests/grading/running/test_order_executor.py",
     "tests/browser",
     "tests/boxes",
     "tests/execution",
