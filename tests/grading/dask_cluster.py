@@ -33,22 +33,22 @@ asyncio.run(main())
 
 _WORKER = """
 import sys
-from autograder.grading.cluster import dask_worker as start_worker
+from autograder.grading.cluster import dask_worker
 
 address, name, slots, version, obstacle = sys.argv[1:6]
 # Agreed upon, also while somebody edits the course.
-start_worker.course_version = lambda: version
-start_worker.why_impossible = lambda: obstacle
+dask_worker.course_version = lambda: version
+dask_worker.why_impossible = lambda: obstacle
 exec(sys.argv[6])
-start_worker.start_worker(address, jobs=int(slots), name=name, sandbox=False, tell=lambda line: print(line, flush=True))
+dask_worker.start_worker(address, jobs=int(slots), name=name, sandbox=False, tell=lambda line: print(line, flush=True))
 """
 
 # What `dask worker` executes first, so that it has the same to offer.
 _PRELOAD = """
-from autograder.grading.cluster import dask_worker as start_worker
+from autograder.grading.cluster import dask_worker
 
-start_worker.course_version = lambda: {version!r}
-start_worker.why_impossible = lambda: {obstacle!r}
+dask_worker.course_version = lambda: {version!r}
+dask_worker.why_impossible = lambda: {obstacle!r}
 """
 
 VERSION = "test"

@@ -171,7 +171,7 @@ class Dispatcher:
         while not self._workers:
             news = self._link.hear(None)
             if isinstance(news, Asked):
-                raise NoWorkers(self._nobody())
+                raise NoWorkers(self._why_no_worker())
             self._take_in(news)
 
     def execute_all(
@@ -202,7 +202,7 @@ class Dispatcher:
             self._take_in(self._link.hear(min(deadlines) - time.monotonic() if deadlines else None))
             now = time.monotonic()
             if return_until is not None and now >= return_until and not self._workers:
-                raise NoWorkers(f"{self._nobody()} What was graded so far is kept.")
+                raise NoWorkers(f"{self._why_no_worker()} What was graded so far is kept.")
             self._give_up_on_silent(now)
             while self._done:
                 yield self._done.pop()
@@ -345,7 +345,7 @@ class Dispatcher:
         self._take_result(flight, execution)
         if worker.troubles >= _MOST_TROUBLES and len(self._workers) > 1:
             # For example, a worker with a full disk would fail on each notebook at once, and then get the next one.
-            self._turn_out(
+            self._exclude(
                 flight.worker,
                 f"the worker failed on {worker.troubles} notebooks in a row: {execution.trouble}",
             )
@@ -371,9 +371,9 @@ class Dispatcher:
             return
         for held in self._workers[address].flights:
             self._flights[held].job.attempts -= 1  # does not count: the worker is at fault, not the notebook
-        self._turn_out(address, f"the worker sent an impossible answer: {reason}. Check that machine")
+        self._exclude(address, f"the worker sent an impossible answer: {reason}. Check that machine")
 
-    def _turn_out(self, address: str, reason: str) -> None:
+    def _exclude(self, address: str, reason: str) -> None:
         """Give no more tasks to an accepted worker, and give the tasks that it was running to other workers."""
         name = self._workers[address].name
         self._forget(address, f"the worker was given no more work: {reason}")
@@ -385,7 +385,7 @@ class Dispatcher:
                 if flight.worker == ADDRESS:
                     self._lost(number, "the execution has not ended in time")
                 else:
-                    self._turn_out(flight.worker, "the worker has not answered in time. Start it again")
+                    self._exclude(flight.worker, "the worker has not answered in time. Start it again")
 
     def _lost(self, number: int, reason: str) -> None:
         job = self._land(number).job
@@ -401,7 +401,7 @@ class Dispatcher:
             self._workers[flight.worker].flights.discard(number)
         return flight
 
-    def _nobody(self) -> str:
+    def _why_no_worker(self) -> str:
         if not self._address:
             return (
                 "This machine cannot execute notebooks: the process that executes them did not start in time."

@@ -255,12 +255,12 @@ import sys
 from pathlib import Path
 from rich.console import Console
 from autograder.grading.rebuilding import task_making
-from autograder.grading.running import execution_backends as sandboxing
+from autograder.grading.running import execution_backends
 from autograder.grading.batch import grade
 from autograder.grading.running import task_dispatcher as dispatcher
 task_making.course_version = lambda: "test"
 dispatcher.course_version = lambda: "test"
-sandboxing.switch_sandbox_off(Path(sys.argv[1]))
+execution_backends.switch_sandbox_off(Path(sys.argv[1]))
 grade(Path(sys.argv[1]), judge="fake_judge:FakeJudge", feedback=False, scheduler=sys.argv[2],
       console=Console(stderr=True, width=200))
 """

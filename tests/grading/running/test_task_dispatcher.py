@@ -22,8 +22,7 @@ from fake_link import (
 from tiny_class import FakeEngine, TinyClass
 
 from autograder.grading.classes.class_directory import ClassDirectory
-from autograder.grading.running import execution_backends
-from autograder.grading.running import task_dispatcher as dispatcher_module
+from autograder.grading.running import execution_backends, task_dispatcher
 from autograder.grading.running.task_dispatcher import ATTEMPTS, NoWorkers, SchedulerGone
 from autograder.grading.running.worker_messages import (
     Answered,
@@ -47,7 +46,7 @@ pytestmark = pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning")
 
 @pytest.fixture(autouse=True)
 def _version(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(dispatcher_module, "course_version", lambda: "here")
+    monkeypatch.setattr(task_dispatcher, "course_version", lambda: "here")
 
 
 @pytest.fixture
@@ -222,7 +221,7 @@ def test_forgers_use_up_no_attempt_of_a_notebook(tasks: list[Task]) -> None:
 
 
 def test_a_worker_that_falls_silent_is_turned_out(tasks: list[Task], monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(dispatcher_module, "_EXTRA_SECONDS", 0.05 - 2 * tasks[0].limits.longest)
+    monkeypatch.setattr(task_dispatcher, "_EXTRA_SECONDS", 0.05 - 2 * tasks[0].limits.longest)
     link = FakeLink(joined("good"), joined("mute"), Asked())
     told: list[str] = []
     link.answer = lambda give, task: None if give.worker == "mute" else honest(give, task)

@@ -10,7 +10,7 @@ import pytest
 from fake_link import FakeLink, honest, joined, make_dispatcher, students, tasks_of_six, troubled
 from tiny_class import FakeEngine, TinyClass
 
-from autograder.grading.running import task_dispatcher as dispatcher_module
+from autograder.grading.running import task_dispatcher
 from autograder.grading.running.task_dispatcher import ATTEMPTS, NoWorkers
 from autograder.grading.running.worker_messages import Answered, Asked, Give, Left, News, Offer
 
@@ -51,7 +51,7 @@ def said_nothing(give: Give, task: Task, cpu_seconds: float = 0.0) -> News:
 
 @pytest.fixture(autouse=True)
 def _version(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(dispatcher_module, "course_version", lambda: "here")
+    monkeypatch.setattr(task_dispatcher, "course_version", lambda: "here")
 
 
 @pytest.fixture
