@@ -1,12 +1,12 @@
-"""Computes how much of a browser's memory pictures and tables would take: in pixels, and in places of a table.
+"""Computes how much of a browser's memory pictures and tables would take: in pixels, and in positions of a table.
 
 Pixels are counted because even a small file can have very many: a PNG of 30 kB with 16,000 x 16,000 pixels takes a
 gigabyte in a browser. The number is read from the picture's header, without decoding the picture. In an animated
 picture, the pixels of each frame are counted. Sources: PNG specification (W3C, third edition), 11.2 and 11.3.6; GIF89a,
 18 to 26; ITU-T T.81, B.2.2; RFC 9649.
 
-The places of a table are its rows times its columns. They are counted because a browser needs memory for each position
-in a table, even if the position has no cell. A cell of twenty characters may span 1,000 columns, so 46 kB of text can
+The positions of a table are its rows times its columns. They are counted because a browser needs memory for each
+position, even if the position has no cell. A cell of twenty characters may span 1,000 columns, so 46 kB of text can
 make a table that no browser can open.
 """
 
@@ -172,23 +172,23 @@ _OF_TABLES = re2.compile(r"""<(/?table|tr|td|th)\b((?: [a-z]+="[^"]*")*)>""")
 _SPAN = re2.compile(r' (colspan|rowspan)="([0-9]+)"')
 
 
-def places_in_tables(page: str) -> int:
+def positions_in_tables(page: str) -> int:
     """Return the sum, over all tables, of rows times columns, which is an upper limit of the real size.
 
     Args:
         page: HTML that nh3 has cleaned.
     """
-    places = 0
+    positions = 0
     tables: list[_Table] = []
     for name, attributes in ((found[1], found[2]) for found in _OF_TABLES.finditer(page)):
         if name == "table":
             tables.append(_Table())
         elif name == "/table" and tables:
-            places += tables.pop().places
+            positions += tables.pop().positions
         elif tables:
             spans = {span[1]: int(span[2]) for span in _SPAN.finditer(attributes)}
             tables[-1].add(name, spans.get("colspan", 1), spans.get("rowspan", 1))
-    return places
+    return positions
 
 
 @dataclass
@@ -217,6 +217,6 @@ class _Table:
         self.reaching += columns if rows != 1 else 0
 
     @property
-    def places(self) -> int:
+    def positions(self) -> int:
         """The number of rows times the largest possible number of columns."""
         return self.rows * (self.widest + self.reaching)

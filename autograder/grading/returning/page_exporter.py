@@ -34,7 +34,7 @@ from autograder.cards.readable_text import printable
 from autograder.grading.rebuilding import nbformat_nodes
 from autograder.grading.rebuilding.notebook_rebuilding import grade_id, is_check, is_the_masters
 from autograder.grading.rebuilding.trusted_master import exercise_of
-from autograder.grading.returning.sanitize import Renderer, clean, make_harmless
+from autograder.grading.returning.sanitize import PageRenderer, clean, make_harmless
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
@@ -81,7 +81,7 @@ class PageExporter(HTMLExporter):
     def __init__(self, *args: Any, **kw: Any) -> None:
         initialise: Any = super().__init__
         initialise(*args, **kw)
-        self._parts = Remembered(_REMEMBERED_CHARACTERS)
+        self._parts = RenderedTexts(_REMEMBERED_CHARACTERS)
         self._preprocessors: list[Any] = []
         css: Any = CSSHTMLHeaderPreprocessor(config=self.config)
         register: Any = self.register_preprocessor
@@ -137,7 +137,7 @@ class PageExporter(HTMLExporter):
         register(name, function)
 
 
-class Remembered:
+class RenderedTexts:
     """A cache of rendered texts, by the values from which they are made. The least recently used is dropped first.
 
     Args:
@@ -179,7 +179,7 @@ def markdown_to_html(context: Any, source: str) -> str:
     without a page.
     """
     cell = context.get("cell", {})
-    rendered = MarkdownWithMath(renderer=Renderer(escape=False)).render(source)
+    rendered = MarkdownWithMath(renderer=PageRenderer(escape=False)).render(source)
     harmless = rendered if is_the_masters(cell) else clean(rendered)
     # Without a limit, a wide picture would extend beyond its column on nbgrader's pages.
     page = without_dead_links(harmless.replace("<img ", '<img style="max-width: 100%" '))

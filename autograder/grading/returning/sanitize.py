@@ -21,7 +21,7 @@ from autograder.execution.executed_cells import IMAGES, CellType
 from autograder.grading.rebuilding import nbformat_nodes
 from autograder.grading.rebuilding.notebook_rebuilding import is_check, is_the_masters
 from autograder.grading.rebuilding.submitted_notebook import HARMLESS_LENGTH
-from autograder.grading.returning.browser_memory import PixelBudget, may_be_shown, places_in_tables
+from autograder.grading.returning.browser_memory import PixelBudget, may_be_shown, positions_in_tables
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 LONGEST_MARKDOWN = 50_000
 """The maximum length of a text cell to render, in characters. A longer text is shown as typed."""
-_MOST_PLACES = 50_000
+_MOST_POSITIONS = 50_000
 """The maximum size of all tables in a text, as rows times columns. It is limited because a browser needs memory for
 each position in a table, even if the position has no cell.
 """
@@ -77,7 +77,7 @@ _CLASSES = {name for name in STANDARD_TYPES.values() if name} | {"highlight"}
 _LANGUAGE = re2.compile(r"language-[\w+-]{1,30}")
 
 
-_TURNS = {
+_DIRECTION_ESCAPES = {
     code: f"\\u{code:04x}"
     for code in (0x061C, 0x200E, 0x200F, *range(0x202A, 0x202F), *range(0x2066, 0x206A))
 }
@@ -86,9 +86,9 @@ with them, a text may look different from its real content (Unicode TR 36, "Bidi
 """
 
 
-def visible(text: str) -> str:
+def escape_direction_marks(text: str) -> str:
     """Return ``text`` with escapes for the characters that change the writing direction."""
-    return text if text.isascii() else text.translate(_TURNS)
+    return text if text.isascii() else text.translate(_DIRECTION_ESCAPES)
 
 
 def make_harmless(notebook: NotebookNode, as_they_are: Collection[int] = ()) -> NotebookNode:
@@ -109,7 +109,7 @@ def make_harmless(notebook: NotebookNode, as_they_are: Collection[int] = ()) -> 
     pictures = PixelBudget()
     for place, cell in enumerate(notebook.cells):
         if not is_the_masters(cell):
-            cell.source = visible(cell.source)
+            cell.source = escape_direction_marks(cell.source)
             if place in as_they_are:
                 cell.source = _cut(cell.source, longest)
             if cell.cell_type == CellType.MARKDOWN:
@@ -161,12 +161,12 @@ def harmless_markdown(source: str, figures: tuple[str, ...] = ()) -> str:
     if len(source) > LONGEST_MARKDOWN:
         return as_typed(source)
     try:
-        looking = _Looking(figures)
-        rendered = MarkdownWithMath(renderer=looking).render(source)
-        if visible(plain := unescape(rendered)) != plain:
+        renderer = _InspectingRenderer(figures)
+        rendered = MarkdownWithMath(renderer=renderer).render(source)
+        if escape_direction_marks(plain := unescape(rendered)) != plain:
             return as_typed(source)  # an HTML entity changes the writing direction
         cleaned = clean(rendered)
-        if looking.is_plain and cleaned.count("&lt;") == rendered.count("&lt;"):
+        if renderer.is_plain and cleaned.count("&lt;") == rendered.count("&lt;"):
             return source
         if (in_one_line := _in_one_line(cleaned)) == source:
             return source  # the text was cleaned earlier
@@ -228,7 +228,7 @@ def clean(page: str) -> str:
     if _may_open(page) > _MOST_OPENED:
         return f"<pre>{escape(page)}</pre>"
     cleaned = _CLEANER.clean(_MARKUP.sub(_shown_or_kept, page).translate(_CONTROL))
-    return cleaned if places_in_tables(cleaned) <= _MOST_PLACES else f"<pre>{escape(page)}</pre>"
+    return cleaned if positions_in_tables(cleaned) <= _MOST_POSITIONS else f"<pre>{escape(page)}</pre>"
 
 
 def _may_open(page: str) -> int:
@@ -287,7 +287,7 @@ _CLEANER = nh3.Cleaner(
 )
 
 
-class Renderer(IPythonRenderer):
+class PageRenderer(IPythonRenderer):
     """nbconvert's renderer without attached pictures, which are inserted later because they are slow to parse."""
 
     def _embed_image_or_attachment(self, src: str) -> str:
@@ -295,7 +295,7 @@ class Renderer(IPythonRenderer):
         return embedded or src
 
 
-class _Looking(Renderer):
+class _InspectingRenderer(PageRenderer):
     """nbconvert's renderer, which also sets ``is_plain`` to False if a text contains more than plain Markdown."""
 
     def __init__(self, figures: tuple[str, ...] = ()) -> None:
@@ -335,16 +335,16 @@ class _Looking(Renderer):
 def harmless_output(output: NotebookNode) -> NotebookNode:
     """Return an output of a student's cell with everything but texts and bitmaps removed."""
     if "data" in output:
-        output.data = {kind: _visible(output.data[kind]) for kind in SHOWN if kind in output.data}
+        output.data = {kind: _escape_marks_in(output.data[kind]) for kind in SHOWN if kind in output.data}
         output.metadata = {}
     for words in ("text", "ename", "evalue", "traceback"):
         if words in output:
-            output[words] = _visible(output[words])
+            output[words] = _escape_marks_in(output[words])
     return output
 
 
-def _visible(words: Any) -> Any:
+def _escape_marks_in(words: Any) -> Any:
     """Return a text, or a list of lines, with escapes for the characters that change the writing direction."""
     if isinstance(words, str):
-        return visible(words)
-    return [_visible(line) for line in words] if isinstance(words, list) else words
+        return escape_direction_marks(words)
+    return [_escape_marks_in(line) for line in words] if isinstance(words, list) else words

@@ -36,7 +36,7 @@ _WordSequence = tuple[str, ...]
 
 
 @dataclass(frozen=True)
-class Compared:
+class ComparedAnswer:
     """An answer, prepared for the comparison.
 
     Attributes:
@@ -62,7 +62,7 @@ class Compared:
         return sum(self.own)
 
 
-class GivenTexts:
+class GivenCode:
     """The code that is not a student's own: code that students received, and the solutions.
 
     Args:
@@ -74,11 +74,13 @@ class GivenTexts:
         self.names = {name for cell in cells for name in chosen_names(cell)}
         self.texts = {word.text for cell in cells for word in cell if word.kind == "string"}
         self.sequences = {
-            sequence for cell in cells for sequence in _sequences(neutral(cell, self.names, self.texts))
+            sequence for cell in cells for sequence in _sequences(neutral_words(cell, self.names, self.texts))
         }
 
 
-def compared(answers: Sequence[StudentAnswer], given: GivenTexts, students: int) -> list[Compared]:
+def compared_answers(
+    answers: Sequence[StudentAnswer], given: GivenCode, students: int
+) -> list[ComparedAnswer]:
     """Return the answers to one notebook, prepared for the comparison.
 
     Args:
@@ -92,7 +94,8 @@ def compared(answers: Sequence[StudentAnswer], given: GivenTexts, students: int)
     for answer, code in zip(answers, codes, strict=True):
         names[answer.student] |= chosen_names(code)
     signs = [
-        neutral(code, names[answer.student], given.texts) for answer, code in zip(answers, codes, strict=True)
+        neutral_words(code, names[answer.student], given.texts)
+        for answer, code in zip(answers, codes, strict=True)
     ]
     holders: defaultdict[_WordSequence, set[str]] = defaultdict(set)
     for answer, own_signs in zip(answers, signs, strict=True):
@@ -101,7 +104,7 @@ def compared(answers: Sequence[StudentAnswer], given: GivenTexts, students: int)
     many = max(_MANY, _MANY_SHARE * students)
     common = {sequence for sequence, who in holders.items() if len(who) >= many} | given.sequences
     return [
-        Compared(
+        ComparedAnswer(
             answer,
             code,
             own_signs,
@@ -196,7 +199,7 @@ def chosen_names(code: Sequence[Word]) -> set[str]:
     return chosen
 
 
-def neutral(code: Sequence[Word], names: Collection[str], texts: Collection[str]) -> list[str]:
+def neutral_words(code: Sequence[Word], names: Collection[str], texts: Collection[str]) -> list[str]:
     """Return the texts of words, with one sign for every chosen name, and another for every chosen string.
 
     Args:

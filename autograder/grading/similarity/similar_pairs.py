@@ -14,7 +14,7 @@ from rapidfuzz.distance import LCSseq
 
 from autograder.grading.collecting.submitted_folder import misplaced_files
 from autograder.grading.grading_errors import GradingError, check_known
-from autograder.grading.similarity.own_words import LONGEST, SEQUENCE, GivenTexts, compared
+from autograder.grading.similarity.own_words import LONGEST, SEQUENCE, GivenCode, compared_answers
 from autograder.grading.similarity.student_answers import given_texts, read_answers
 from autograder.grading.table.roster import read_roster
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from autograder.grading.classes.class_directory import ClassDirectory, RefusedFile
-    from autograder.grading.similarity.own_words import Compared
+    from autograder.grading.similarity.own_words import ComparedAnswer
 
 
 MOST_SHOWN = 100
@@ -49,7 +49,7 @@ HINT = (
 
 
 @dataclass(frozen=True)
-class Similar:
+class SimilarPairs:
     """The result of a search for similar answers in a class.
 
     Attributes:
@@ -76,7 +76,7 @@ class Similar:
         return 2 if self.troubles else 0
 
 
-def find_similar(directory: ClassDirectory, assignment: str = "") -> Similar:
+def find_similar(directory: ClassDirectory, assignment: str = "") -> SimilarPairs:
     """Compare the submissions of a class with each other.
 
     Args:
@@ -95,7 +95,7 @@ def find_similar(directory: ClassDirectory, assignment: str = "") -> Similar:
         raise GradingError(
             f"The class has no submissions yet{f' for {assignment}' if assignment else ''}, so nothing can be compared."
         )
-    given = GivenTexts(given_texts(directory))
+    given = GivenCode(given_texts(directory))
     pairs: list[Pair] = []
     notes = []
     read = 0
@@ -110,7 +110,7 @@ def find_similar(directory: ClassDirectory, assignment: str = "") -> Similar:
                 notes.append(
                     f"{notebook}: only one student has submitted this notebook, so there is nothing to compare"
                 )
-            answers = compared(handed_in.answers, given, len(handed_in.students))
+            answers = compared_answers(handed_in.answers, given, len(handed_in.students))
             troubles += [
                 f"left out     {one.answer.student}/{name}: {one.answer.cell} is too long; only its "
                 f"first {LONGEST} words were compared"
@@ -120,7 +120,7 @@ def find_similar(directory: ClassDirectory, assignment: str = "") -> Similar:
             pairs += _close_pairs(answers)
     groups = by_students(sorted(pairs, key=_rank))
     students = read_roster(directory).students
-    return Similar(
+    return SimilarPairs(
         directory.path,
         tuple(chain.from_iterable(groups[:MOST_SHOWN])),
         len(groups[MOST_SHOWN:]),
@@ -167,8 +167,8 @@ class Pair:
         passages: The common passages, in the order of the first answer.
     """
 
-    one: Compared
-    other: Compared
+    one: ComparedAnswer
+    other: ComparedAnswer
     passages: Sequence[_Passage]
 
     @property
@@ -211,7 +211,7 @@ def nothing_found(notebooks: int) -> str:
     return f"No two answers are more similar than their task explains ({notebooks} notebooks compared)."
 
 
-def _close_pairs(answers: Sequence[Compared]) -> list[Pair]:
+def _close_pairs(answers: Sequence[ComparedAnswer]) -> list[Pair]:
     """Return the similar pairs of answers to one notebook.
 
     Each cell of a student is compared with all cells of the other students, because a student may have moved a copy
@@ -222,7 +222,7 @@ def _close_pairs(answers: Sequence[Compared]) -> list[Pair]:
     return [pair for pair in pairs if pair.shared >= SHORTEST and pair.share >= LEAST_SHARE]
 
 
-def _candidates(answers: Sequence[Compared]) -> list[tuple[Compared, Compared]]:
+def _candidates(answers: Sequence[ComparedAnswer]) -> list[tuple[ComparedAnswer, ComparedAnswer]]:
     """Return the pairs that share enough sequences to be similar: only these are then compared fully, to save time.
 
     No similar pair is lost, because two answers that share ``SHORTEST`` own words share at least ``SHORTEST //
@@ -240,7 +240,7 @@ def _candidates(answers: Sequence[Compared]) -> list[tuple[Compared, Compared]]:
     ]
 
 
-def _common_passages(one: Compared, other: Compared) -> list[_Passage]:
+def _common_passages(one: ComparedAnswer, other: ComparedAnswer) -> list[_Passage]:
     """Return the common passages of two answers, in the order of the first answer.
 
     A passage that consists only of given code is left out.

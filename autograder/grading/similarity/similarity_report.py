@@ -32,11 +32,11 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
     from pathlib import Path
 
-    from autograder.grading.similarity.own_words import Compared
-    from autograder.grading.similarity.similar_pairs import Pair, Similar
+    from autograder.grading.similarity.own_words import ComparedAnswer
+    from autograder.grading.similarity.similar_pairs import Pair, SimilarPairs
 
 
-def show(found: Similar, page: Path, console: Console | None = None) -> None:
+def show(found: SimilarPairs, page: Path, console: Console | None = None) -> None:
     """Print the pairs, a line for each file that was not compared, and the path of the page.
 
     Args:
@@ -66,7 +66,7 @@ def show(found: Similar, page: Path, console: Console | None = None) -> None:
     line(f"page       {page}")
 
 
-def similar_json(found: Similar, page: Path) -> dict[str, Any]:
+def similar_json(found: SimilarPairs, page: Path) -> dict[str, Any]:
     """Return the similar pairs and the path of the page, as data for ``similar --json``."""
     pairs = [
         {
@@ -87,7 +87,7 @@ def similar_json(found: Similar, page: Path) -> dict[str, Any]:
     }
 
 
-def _table(found: Similar) -> Table:
+def _table(found: SimilarPairs) -> Table:
     shown = Table(header_style="bold", box=box.SIMPLE_HEAD, pad_edge=False)
     shown.add_column("students", overflow="fold")
     shown.add_column("notebook, cell", overflow="fold")
@@ -140,7 +140,7 @@ class _Line:
     left_out: int = 0
 
 
-def write_page(found: Similar, to: Path | None = None) -> Path:
+def write_page(found: SimilarPairs, to: Path | None = None) -> Path:
     """Write the page about the similar pairs of a class, and return its path.
 
     Args:
@@ -160,7 +160,7 @@ def write_page(found: Similar, to: Path | None = None) -> Path:
     return to
 
 
-def page_html(found: Similar) -> str:
+def page_html(found: SimilarPairs) -> str:
     """Return the page about the similar pairs of a class, as HTML."""
     environment = page_templates("autograder.grading.similarity")
     return environment.get_template("similar.html.j2").render(
@@ -189,7 +189,7 @@ def _shown_pair(pair: Pair, names: Mapping[str, str]) -> dict[str, object]:
 
 
 def _shown_answer(
-    answer: Compared, passages: Iterable[tuple[int, Sequence[bool]]], names: Mapping[str, str]
+    answer: ComparedAnswer, passages: Iterable[tuple[int, Sequence[bool]]], names: Mapping[str, str]
 ) -> dict[str, object]:
     own = answer.answer
     return {
@@ -205,7 +205,7 @@ def _called(student: str, names: Mapping[str, str]) -> str:
     return one_line(f"{name} ({student})" if name else student, _LONGEST_NAME)
 
 
-def _lines(answer: Compared, passages: Iterable[tuple[int, Sequence[bool]]]) -> list[_Line]:
+def _lines(answer: ComparedAnswer, passages: Iterable[tuple[int, Sequence[bool]]]) -> list[_Line]:
     """Return the lines with common passages and the lines around them, with notes for the lines left out.
 
     Args:

@@ -141,7 +141,7 @@ def converse(link: JudgeLink, exercise: str, subject: Any, progress: Progress) -
         link.say(kind(number, **data))
 
     with (
-        CheckContext(first.domain, first.keeper) as place,
+        CheckContext(first.domain, first.keeper) as check_context,
         CapturedOutput(lambda line, logged: tell(messages.Output, text=line, logged=logged)) as captured,
         ToldCalls(captured.is_captured, tell) as calls,
     ):
@@ -150,18 +150,20 @@ def converse(link: JudgeLink, exercise: str, subject: Any, progress: Progress) -
             while True:
                 match order := link.hear():
                     case messages.Meet():
-                        place.ensure(fresh=order.fresh)
-                        link.say(messages.EndpointsMet(place.sees(order.there, order.gone, order.within)))
+                        check_context.ensure(fresh=order.fresh)
+                        link.say(
+                            messages.EndpointsMet(check_context.sees(order.there, order.gone, order.within))
+                        )
                     case messages.Start():
                         # Only a class or function runs in this kernel's context. A path runs in a new process.
                         if not is_path(subject):
-                            place.ensure(fresh=order.fresh)
+                            check_context.ensure(fresh=order.fresh)
                         number = order.run
                         progress.doing(f"run {number} of your code")
                         run = (
                             PathRun(number, exercise, subject, first.domain, _retold(link.say, progress))
                             if is_path(subject)
-                            else SubjectRun(number, subject, place.context, link.say)
+                            else SubjectRun(number, subject, check_context.context, link.say)
                         )
                         calls.begin_run()
                         run.start(order.arguments, order.options)
@@ -173,7 +175,7 @@ def converse(link: JudgeLink, exercise: str, subject: Any, progress: Progress) -
                         link.say(messages.Stacks(number, captured.stacks()))
                     case messages.Stop() if run is not None:
                         if not run.stop():
-                            place.renew()  # the run still uses the old context, so the next run gets a new one
+                            check_context.renew()  # the run still uses the old context, so the next run gets a new one
                         link.say(messages.Stopped(number))
                         progress.doing(f"the judge examines run {number}")
                         run = None

@@ -57,32 +57,19 @@ class _WatchedExercise:
     _handle: Any = None
     _here: contextvars.Context = field(default_factory=contextvars.copy_context)
 
-    def _is_redefined_by(self, subject: Any) -> bool:
-        """Return True if ``subject`` is a class or function, but not the one that is watched so far."""
-        return subject is not self.subject and (inspect.isclass(subject) or inspect.isfunction(subject))
-
     def begin(self, subject: Any) -> None:
         """Show a card below the cell that has just defined this subject, and plan the check."""
         if self._handle is not None:
             # Mark the earlier card as out of date. If the same cell was run again, this card has already disappeared.
-            self._say(f"Another cell has defined {self.name} since then.", over=True)
+            self.say(f"Another cell has defined {self.name} since then.", over=True)
         self.subject, self.due = subject, True
         # The context variables tell which cell is running, so that output can be assigned to that cell.
         self._here = contextvars.copy_context()
         self._handle = display_card(self._card("The check begins as soon as this cell has ended."))
 
-    def _get_ready(self) -> None:
-        """Show on the card that the check begins."""
-        self.progress = Progress(on_step=self.tell)
-        self.tell()
-
     def tell(self) -> None:
         """Update the progress on the card."""
-        self._say(self.progress.words())
-
-    def _give_way_to_cell(self) -> None:
-        """Show on the card that the check waits for another cell."""
-        self._say("The check begins again as soon as the running cell has ended.")
+        self.say(self.progress.words())
 
     def show(self, verdict: Verdict) -> None:
         """Show the verdict on this card and on the card of the check cell."""
@@ -98,7 +85,8 @@ class _WatchedExercise:
             update_card, self._handle, html_rendering.card_bundle(verdict, before=before, short=True)
         )
 
-    def _say(self, words: str, *, over: bool = False) -> None:
+    def say(self, words: str, *, over: bool = False) -> None:
+        """Show these words on the card. ``over`` means that no result follows."""
         # Run in a copy of the context, because the thread that shows the progress may be using the context itself.
         self._here.copy().run(update_card, self._handle, self._card(words, over=over))
 
@@ -139,7 +127,7 @@ class _Watches:
         """
         for watch in self.all.values():
             subject = self._names.get(watch.name)
-            if watch._is_redefined_by(subject):
+            if _is_code(subject) and subject is not watch.subject:
                 watch.begin(subject)
         if any(watch.due for watch in self.all.values()):
             self._giving_way = False
@@ -160,7 +148,8 @@ class _Watches:
     def _check_what_is_due(self) -> None:
         for watch in list(self.all.values()):
             if watch.due:
-                watch._get_ready()
+                watch.progress = Progress(on_step=watch.tell)
+                watch.tell()
                 self._check(watch)
 
     def _check(self, watch: _WatchedExercise) -> None:
@@ -178,7 +167,7 @@ class _Watches:
                 link.close()
         except JudgeUnreachable as error:
             if self._giving_way:
-                watch._give_way_to_cell()
+                watch.say("The check begins again as soon as the running cell has ended.")
                 return
             verdict = not_checked(watch.exercise, watch.exercise, 0.0, str(error), "Run the cell again.")
         if verdict is not None:  # a grader's judge sends the notebook no verdict
@@ -203,7 +192,7 @@ def watch(exercise: str, subject: Callable[..., Any]) -> _WatchedExercise:
         TypeError: The subject is neither a class nor a function. The message says what to write instead.
     """
     global _watches, _ended_by_the_student
-    if not (inspect.isclass(subject) or inspect.isfunction(subject)):
+    if not _is_code(subject):
         raise TypeError(what_to_pass(exercise, subject, "watch"))
     _ended_by_the_student = False
     begun = _WatchedExercise(exercise, subject.__name__, subject)
@@ -250,9 +239,13 @@ def watch_after(verdict: Verdict, subject: Any) -> None:
     watched = _watches.all.get(verdict.exercise) if _watches is not None else None
     if watched is not None and watched.due and watched.subject is subject:
         watched.settle(verdict)
-    is_code = inspect.isclass(subject) or inspect.isfunction(subject)
-    if is_live() and verdict.state is State.FAILED and is_code and not _ended_by_the_student:
+    is_failed_code = verdict.state is State.FAILED and _is_code(subject)
+    if is_failed_code and is_live() and not _ended_by_the_student:
         watch(verdict.exercise, subject)
+
+
+def _is_code(subject: object) -> bool:
+    return inspect.isclass(subject) or inspect.isfunction(subject)
 
 
 after_each_check(watch_after)

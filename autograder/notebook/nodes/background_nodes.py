@@ -21,13 +21,13 @@ from autograder.notebook.nodes.node_errors import (
     check_threads,
 )
 from autograder.notebook.nodes.ros_session import (
-    MadeNodes,
+    KernelNodes,
     NodeIdentity,
     destroy_node,
     node_label,
     prepare_environment,
 )
-from autograder.notebook.nodes.spin_threads import GRACE, Ending, SpinThreads
+from autograder.notebook.nodes.spin_threads import GRACE, SpinEnding, SpinThreads
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from rclpy.context import Context
     from rclpy.node import Node
 
-    from autograder.notebook.nodes.lending_executors import Taken
+    from autograder.notebook.nodes.lending_executors import NodeTaken
 
 
 _GRACE_AT_EXIT = 0.5
@@ -205,21 +205,21 @@ class Background:
         trouble = f" Errors so far: {sum(error.count for error in self.errors)}." if self.errors else ""
         return f"{name}{self._label} spinning in the background{threads}. .stop() ends it.{trouble}"
 
-    def _when_ended(self, ending: Ending) -> None:
+    def _when_ended(self, ending: SpinEnding) -> None:
         with _lock:
             if self in _running:
                 _running.remove(self)
-        if ending is Ending.ROS_SHUT_DOWN:
+        if ending is SpinEnding.ROS_SHUT_DOWN:
             say(
                 f"ROS was shut down, so {self._label} spins no longer. "
                 "To go on, call start_ros() and run the cell again that made the node."
             )
-        elif ending is Ending.CALLBACK_ASKED:
+        elif ending is SpinEnding.CALLBACK_ASKED:
             say(f"A callback raised SystemExit, so {self._label} spins no longer.")
-        elif ending is Ending.EXECUTOR_FAILED:
+        elif ending is SpinEnding.EXECUTOR_FAILED:
             say(f"The executor failed, so {self._label} spins no longer. Run the cell again.")
 
-    def _when_taken(self, taken: Taken) -> None:
+    def _when_taken(self, taken: NodeTaken) -> None:
         name = node_label(taken.node)
         if self._threads.is_own_thread() and taken.caller:
             say(
@@ -344,7 +344,7 @@ def destroy_nodes_on(context: Context) -> None:
 _running: list[Background] = []
 _lock = threading.Lock()
 _cells = CellWatch()
-_made = MadeNodes(current_run=lambda: _cells.current, before_making=_make_room)
+_made = KernelNodes(current_run=lambda: _cells.current, before_making=_make_room)
 _made.watch()
 _cells.before_each_run(_undo_earlier_run)
 prepare_environment()

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Taken:
+class NodeTaken:
     """The event that a node was moved out of its executor.
 
     Attributes:
@@ -46,7 +46,7 @@ class Taken:
 class LendingExecutor(Executor):
     """An executor that lends its nodes. This module's two executors inherit from it, and from an executor of rclpy."""
 
-    on_taken: Callable[[Taken], None] | None = None
+    on_taken: Callable[[NodeTaken], None] | None = None
     """Called after a node was moved to another executor, in the thread that moved it."""
     on_goal_error: GoalErrorReport | None = None
     """Called with the error of an action server's execute callback."""
@@ -75,7 +75,7 @@ class LendingExecutor(Executor):
         comes_back = borrower is not None and node in borrower.get_nodes()
         if borrower is not None and comes_back:
             _return_afterwards(borrower, node, self)
-        self.on_taken(Taken(node, _spinning_function(sys._getframe(1)), comes_back))
+        self.on_taken(NodeTaken(node, _spinning_function(sys._getframe(1)), comes_back))
 
     def take_back(self, node: Node) -> None:
         """Spin a lent node again."""

@@ -56,7 +56,7 @@ class CallbackBrokenOff(BaseException):
         return "the callback did not return when its node was stopped, so it was interrupted here"
 
 
-class Ending(Enum):
+class SpinEnding(Enum):
     """The reasons why nodes no longer spin."""
 
     STOPPED = "stopped"
@@ -112,7 +112,7 @@ class SpinThreads:
         *,
         threads: int = 1,
         on_failure: Callable[[SpinFailure], None],
-        on_end: Callable[[Ending], None],
+        on_end: Callable[[SpinEnding], None],
     ) -> None:
         self._context = nodes[0].context
         self.executor = make_executor(threads, self._context)
@@ -121,7 +121,7 @@ class SpinThreads:
         self._on_end = on_end
         self._nodes = tuple(nodes)
         self._stop = threading.Event()
-        self._ending = Ending.STOPPED
+        self._ending = SpinEnding.STOPPED
         self._lock = threading.Lock()
         self._finish_lock = threading.RLock()
         self._finished = False
@@ -173,7 +173,7 @@ class SpinThreads:
         Args:
             grace: Seconds for a running callback to return by itself.
         """
-        self._ask_to_stop(Ending.STOPPED)
+        self._ask_to_stop(SpinEnding.STOPPED)
         if self.is_own_thread():
             return
         if not self._await_callbacks(grace):
@@ -194,7 +194,7 @@ class SpinThreads:
             if left <= 0:
                 return False
 
-    def _ask_to_stop(self, ending: Ending) -> None:
+    def _ask_to_stop(self, ending: SpinEnding) -> None:
         with self._lock:
             if not self._stop.is_set():
                 self._ending = ending
@@ -272,7 +272,7 @@ class SpinThreads:
                     failed_waits += 1
                     if failed_waits == _MAX_FAILED_WAITS:
                         self._on_failure(SpinFailure(error, goes_on=False))
-                        self._ask_to_stop(Ending.EXECUTOR_FAILED)
+                        self._ask_to_stop(SpinEnding.EXECUTOR_FAILED)
                 else:
                     failed_waits = 0
                     if work is not None:
@@ -288,7 +288,7 @@ class SpinThreads:
                 raise ExternalShutdownException
             return _Work(*self.executor.wait_for_ready_callbacks(None, None, self._stop.is_set))
         except (ExternalShutdownException, ShutdownException):
-            self._ask_to_stop(Ending.ROS_SHUT_DOWN)
+            self._ask_to_stop(SpinEnding.ROS_SHUT_DOWN)
         except ConditionReachedException:
             pass  # stopped
         return None
@@ -316,7 +316,7 @@ class SpinThreads:
             error = work.task.exception() if work.task.done() else None
         except SystemExit:
             error = None
-            self._ask_to_stop(Ending.CALLBACK_ASKED)
+            self._ask_to_stop(SpinEnding.CALLBACK_ASKED)
         except BaseException as raised:
             error = raised
         finally:

@@ -65,7 +65,7 @@ class GraphChannel:
 
 
 @dataclass(frozen=True, order=True)
-class End:
+class GraphEndpoint:
     """A node's connection to a topic, service or action, for example as a publisher.
 
     Attributes:
@@ -84,7 +84,7 @@ class RosGraph:
     """The graph at one moment: nodes and connections, sorted by name."""
 
     nodes: tuple[str, ...]
-    ends: tuple[End, ...]
+    ends: tuple[GraphEndpoint, ...]
 
     @property
     def channels(self) -> tuple[GraphChannel, ...]:
@@ -155,7 +155,7 @@ def _full(name: str, space: str) -> str:
     return f"{space.rstrip('/')}/{name}"
 
 
-def _topic_ends(node: Node) -> Iterator[End]:
+def _topic_ends(node: Node) -> Iterator[GraphEndpoint]:
     """Yield all publishers and subscriptions, with the names of their nodes.
 
     The query is by topic, because a query by node finds only one of two nodes that have the same name.
@@ -170,10 +170,10 @@ def _topic_ends(node: Node) -> Iterator[End]:
         ):
             for info in infos:
                 full = _full(info.node_name, info.node_namespace)
-                yield End(full, GraphChannel(ChannelKind.TOPIC, topic, info.topic_type), gives)
+                yield GraphEndpoint(full, GraphChannel(ChannelKind.TOPIC, topic, info.topic_type), gives)
 
 
-def _service_and_action_ends(node: Node, name: str, space: str) -> Iterator[End]:
+def _service_and_action_ends(node: Node, name: str, space: str) -> Iterator[GraphEndpoint]:
     """Yield a node's connections to services and actions; none if the node has just ended."""
     services, actions = ChannelKind.SERVICE, ChannelKind.ACTION
     try:
@@ -187,7 +187,7 @@ def _service_and_action_ends(node: Node, name: str, space: str) -> Iterator[End]
         return
     for kind, gives, names_and_types in found:
         for channel in _channels(kind, names_and_types):
-            yield End(_full(name, space), channel, gives)
+            yield GraphEndpoint(_full(name, space), channel, gives)
 
 
 def _channels(kind: ChannelKind, names_and_types: Iterable[tuple[str, list[str]]]) -> Iterator[GraphChannel]:

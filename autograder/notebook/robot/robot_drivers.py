@@ -53,7 +53,7 @@ class _Walk:
     blocked: int = 0
 
 
-class Walking:
+class WalkToServer:
     """Serves the action ``/walk_to``. The robot walks to one goal at a time: a new goal replaces the earlier one.
 
     Args:

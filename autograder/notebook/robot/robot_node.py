@@ -12,7 +12,7 @@ from rclpy.node import Node
 from sensor_msgs.msg import LaserScan
 from std_srvs.srv import SetBool, Trigger
 
-from autograder.notebook.robot.robot_drivers import Walking
+from autograder.notebook.robot.robot_drivers import WalkToServer
 from autograder.notebook.robot.robot_motion import ROOM, START, STILL, TICK, Pose, Velocity, move
 
 if TYPE_CHECKING:
@@ -69,7 +69,7 @@ class RobotNode(Node):
         self.create_subscription(Twist, "/cmd_vel", self._obey, 10)
         self.create_service(Trigger, "/reset", self._reset)
         self.create_service(SetBool, "/lamp", self._switch_lamp)
-        self._walking = Walking(self)
+        self._walking = WalkToServer(self)
         self._scene: Scene | None = None
         self.create_timer(TICK, self._tick)
 

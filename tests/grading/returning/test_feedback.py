@@ -15,7 +15,7 @@ from autograder.grading.classes.class_directory import ClassDirectory, Submissio
 from autograder.grading.classes.gradebook_reading import CellEntry, SubmissionEntry
 from autograder.grading.rebuilding import nbformat_nodes
 from autograder.grading.returning import feedback_pages
-from autograder.grading.returning.page_exporter import POLICY, PageExporter, Remembered
+from autograder.grading.returning.page_exporter import POLICY, PageExporter, RenderedTexts
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -142,7 +142,7 @@ class Pages:
     @functools.cached_property
     def _forgetful(self) -> feedback_pages.FeedbackPages:
         maker = feedback_pages.FeedbackPages(self.directory)
-        maker._exporter._parts = Remembered(0)
+        maker._exporter._parts = RenderedTexts(0)
         return maker
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from autograder.grading.returning.page_exporter import Remembered
+from autograder.grading.returning.page_exporter import RenderedTexts
 
 
 class Maker:
@@ -10,7 +10,7 @@ class Maker:
 
     def __init__(self, characters: int) -> None:
         self.made: list[object] = []
-        self._texts = Remembered(characters)
+        self._texts = RenderedTexts(characters)
 
     def get(self, of: object, length: int = 10) -> str:
         def make() -> str:

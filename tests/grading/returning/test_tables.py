@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from autograder.grading.returning.browser_memory import places_in_tables
+from autograder.grading.returning.browser_memory import positions_in_tables
 from autograder.grading.returning.sanitize import clean, harmless_markdown
 
 
@@ -30,8 +30,8 @@ def table(*rows: str) -> str:
 )
 def test_a_table_of_too_many_places_is_text(text: str) -> None:
     assert len(text) < 50_000
-    assert places_in_tables(clean(text)) <= 50_000
-    assert places_in_tables(harmless_markdown(f"<div>{text}</div>")) <= 50_000
+    assert positions_in_tables(clean(text)) <= 50_000
+    assert positions_in_tables(harmless_markdown(f"<div>{text}</div>")) <= 50_000
 
 
 def test_tables_as_students_write_them_stay() -> None:
@@ -39,8 +39,8 @@ def test_tables_as_students_write_them_stay() -> None:
     assert harmless_markdown(plain) == plain
     spans = table("<td colspan=3>head", "<td rowspan=2>a<td>b<td>c", "<td>d<td>e")
     assert 'colspan="3"' in clean(spans)
-    assert places_in_tables(clean(spans)) == 3 * 4
+    assert positions_in_tables(clean(spans)) == 3 * 4
     large = table(*["<td>x" * 20] * 300)
     assert clean(large).startswith("<table>")
     nested = clean(f"<table><tr><td>{table('<td>a<td>b')}<td>c</table>")
-    assert places_in_tables(nested) == 2 + 2
+    assert positions_in_tables(nested) == 2 + 2

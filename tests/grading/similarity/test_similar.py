@@ -18,7 +18,7 @@ from answers_of_students import ALSO_NEAR, COPIED, NEAR, OF_ONES_OWN, SOLUTION, 
 from autograder.cli import cli
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.grading_errors import GradingError
-from autograder.grading.similarity.similar_pairs import Similar, find_similar
+from autograder.grading.similarity.similar_pairs import SimilarPairs, find_similar
 from autograder.grading.similarity.similarity_report import page_html
 
 if TYPE_CHECKING:
@@ -31,11 +31,11 @@ def class_(tiny: TinyClass) -> TinyClass:
     return tiny
 
 
-def found(class_: TinyClass, assignment: str = "") -> Similar:
+def found(class_: TinyClass, assignment: str = "") -> SimilarPairs:
     return find_similar(ClassDirectory(class_.path), assignment)
 
 
-def students(similar: Similar) -> list[tuple[str, str]]:
+def students(similar: SimilarPairs) -> list[tuple[str, str]]:
     return [(pair.one.answer.student, pair.other.answer.student) for pair in similar.pairs]
 
 

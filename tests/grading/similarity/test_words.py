@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from autograder.grading.similarity.own_words import chosen_names, neutral, words
+from autograder.grading.similarity.own_words import chosen_names, neutral_words, words
 
 
 @pytest.mark.parametrize(
@@ -45,5 +45,5 @@ class Mine(Node):
 
 def test_other_names_and_texts_are_the_same_answer() -> None:
     one, other = list(words("a = say('x', 'task')")), list(words("bb = say('yy', 'task')"))
-    assert neutral(one, {"a"}, {"'task'"}) == neutral(other, {"bb"}, {"'task'"})
-    assert neutral(one, {"a"}, {"'x'", "'task'"}) != neutral(other, {"bb"}, {"'task'"})
+    assert neutral_words(one, {"a"}, {"'task'"}) == neutral_words(other, {"bb"}, {"'task'"})
+    assert neutral_words(one, {"a"}, {"'x'", "'task'"}) != neutral_words(other, {"bb"}, {"'task'"})

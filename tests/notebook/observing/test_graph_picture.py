@@ -18,7 +18,13 @@ from std_msgs.msg import String
 
 from autograder.notebook import start_ros
 from autograder.notebook.observing.graph_picture import GraphPicture, draw_graph
-from autograder.notebook.observing.ros_graph import ChannelKind, End, GraphChannel, RosGraph, read_graph
+from autograder.notebook.observing.ros_graph import (
+    ChannelKind,
+    GraphChannel,
+    GraphEndpoint,
+    RosGraph,
+    read_graph,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -57,12 +63,12 @@ def test_topics_services_and_actions_are_seen(make: Callable[..., Node]) -> None
     count = GraphChannel(ChannelKind.ACTION, "/count", "my_robot_interfaces/action/Fibonacci")
     assert graph.nodes == ("/desk/other", "/one")
     assert set(graph.ends) == {
-        End("/one", CHATTER, True),
-        End("/desk/other", CHATTER, False),
-        End("/desk/other", add, True),
-        End("/one", add, False),
-        End("/desk/other", count, True),
-        End("/one", count, False),
+        GraphEndpoint("/one", CHATTER, True),
+        GraphEndpoint("/desk/other", CHATTER, False),
+        GraphEndpoint("/desk/other", add, True),
+        GraphEndpoint("/one", add, False),
+        GraphEndpoint("/desk/other", count, True),
+        GraphEndpoint("/one", count, False),
     }
 
 
@@ -75,7 +81,7 @@ def test_two_nodes_of_one_name_in_two_programs_both_count(make: Callable[..., No
     try:
         other = Node("twin", context=other_program)
         other.create_subscription(String, "chatter", print, 10)
-        both = {End("/twin", CHATTER, True), End("/twin", CHATTER, False)}
+        both = {GraphEndpoint("/twin", CHATTER, True), GraphEndpoint("/twin", CHATTER, False)}
         deadline = time.monotonic() + 10.0
         while set(read_graph().ends) != both and time.monotonic() < deadline:
             pass
@@ -99,7 +105,8 @@ def test_nothing_is_running(make: Callable[..., Node]) -> None:
 
 
 GRAPH = RosGraph(
-    ("/<talker>", "/listener"), (End("/<talker>", CHATTER, True), End("/listener", CHATTER, False))
+    ("/<talker>", "/listener"),
+    (GraphEndpoint("/<talker>", CHATTER, True), GraphEndpoint("/listener", CHATTER, False)),
 )
 
 
@@ -143,8 +150,8 @@ def test_the_arrow_leads_from_the_publisher_to_the_subscriber() -> None:
 def test_a_long_chain_runs_down_the_page() -> None:
     topics = [GraphChannel(ChannelKind.TOPIC, f"/topic_number_{n}", "std_msgs/msg/String") for n in range(6)]
     nodes = tuple(f"/node_number_{n}" for n in range(7))
-    ends = [End(nodes[n], topic, True) for n, topic in enumerate(topics)]
-    ends += [End(nodes[n + 1], topic, False) for n, topic in enumerate(topics)]
+    ends = [GraphEndpoint(nodes[n], topic, True) for n, topic in enumerate(topics)]
+    ends += [GraphEndpoint(nodes[n + 1], topic, False) for n, topic in enumerate(topics)]
     _, _, width, height = (
         GraphPicture(RosGraph(nodes, tuple(ends))).svg().split('viewBox="')[1].split('"')[0].split()
     )
@@ -162,9 +169,9 @@ def test_the_first_notebook_s_graph_is_not_drawn_wider_downwards() -> None:
         GraphChannel(ChannelKind.ACTION, "/walk_to", "small_robot_interfaces/action/WalkTo"),
     )
     ends = (
-        End("/driver", drive, True),
-        End("/robot", drive, False),
-        *(End("/robot", one, True) for one in robots),
+        GraphEndpoint("/driver", drive, True),
+        GraphEndpoint("/robot", drive, False),
+        *(GraphEndpoint("/robot", one, True) for one in robots),
     )
     box = (
         GraphPicture(RosGraph(("/driver", "/robot"), ends)).svg().split('viewBox="')[1].split('"')[0].split()
