@@ -32,7 +32,7 @@ MAX_LOG = 4_000
 
 
 @dataclass(frozen=True, repr=False)
-class WorkspaceBuild:
+class _WorkspaceBuild:
     """The result of `build_workspace`, which a notebook shows below the cell.
 
     Attributes:
@@ -71,7 +71,7 @@ class WorkspaceBuild:
         return f"<p><strong>Not built.</strong> <code>{line}</code></p>{whole}"
 
 
-def build_workspace(folder: str | os.PathLike[str] = "ros2_ws") -> WorkspaceBuild:
+def build_workspace(folder: str | os.PathLike[str] = "ros2_ws") -> _WorkspaceBuild:
     """Build a workspace as ``colcon build`` does, and make its packages available in this kernel.
 
     Sources that did not change are not built again. The packages are in the workspace's ``install`` folder, which a
@@ -84,12 +84,12 @@ def build_workspace(folder: str | os.PathLike[str] = "ros2_ws") -> WorkspaceBuil
     """
     made = OwnBuilds().build(describe_workspace(Path(folder)), None)
     if not made.ok:
-        return WorkspaceBuild(made)
+        return _WorkspaceBuild(made)
     try:
         install = copy_to_workspace(made)
     except CannotCopyBuild as error:
-        return WorkspaceBuild(made, str(error))
-    return WorkspaceBuild(made, _use(package_prefixes(install), made))
+        return _WorkspaceBuild(made, str(error))
+    return _WorkspaceBuild(made, _use(package_prefixes(install), made))
 
 
 def _use(prefixes: list[Path], made: Build) -> str:

@@ -18,7 +18,7 @@ from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPo
 
 from autograder.mcap_files import ROS_2, MessageFile, definition
 from autograder.notebook.observing.live_picture import GONE
-from autograder.notebook.observing.ros_graph import hidden_node, message_class
+from autograder.notebook.observing.ros_graph import hidden_node, is_shown_topic, message_class
 
 if TYPE_CHECKING:
     import os
@@ -32,7 +32,6 @@ LOOK_AGAIN = 0.05
 """Seconds between two checks for new messages and new topics."""
 DEPTH = 1000
 """The maximum number of messages on a topic between two checks; if more arrive, some of them are lost."""
-_EVERY_NODE = ("/rosout", "/parameter_events")
 
 
 @dataclass(frozen=True)
@@ -141,8 +140,7 @@ class _Recording:
 
     def _look_for_topics(self) -> None:
         for topic, types in self._node.get_topic_names_and_types():
-            hidden = any(part.startswith("_") for part in topic.split("/"))
-            wanted = topic in self._topics if self._topics else topic not in _EVERY_NODE and not hidden
+            wanted = topic in self._topics if self._topics else is_shown_topic(topic)
             for type_name in types if wanted else ():
                 if (topic, type_name) not in self._known and self._node.count_publishers(topic):
                     self._known.add((topic, type_name))

@@ -160,9 +160,8 @@ def _topic_ends(node: Node) -> Iterator[GraphEndpoint]:
 
     The query is by topic, because a query by node finds only one of two nodes that have the same name.
     """
-    for topic, types in node.get_topic_names_and_types():
-        # Skip topics that every node has, and hidden topics such as those of an action.
-        if not list(_channels(ChannelKind.TOPIC, [(topic, types)])):
+    for topic, _ in node.get_topic_names_and_types():
+        if not is_shown_topic(topic):
             continue
         for gives, infos in (
             (True, node.get_publishers_info_by_topic(topic)),
@@ -192,16 +191,19 @@ def _service_and_action_ends(node: Node, name: str, space: str) -> Iterator[Grap
 
 def _channels(kind: ChannelKind, names_and_types: Iterable[tuple[str, list[str]]]) -> Iterator[GraphChannel]:
     for name, types in names_and_types:
-        last = name.rpartition("/")[2]
-        common = (
-            name in _EVERY_TOPIC
-            if kind is ChannelKind.TOPIC
-            else kind is ChannelKind.SERVICE and last in _EVERY_SERVICE
-        )
-        # Hidden names include the topics and services of an action: they begin with <action>/_action.
-        hidden = any(part.startswith("_") for part in name.split("/"))
-        if not common and not hidden:
+        is_of_every_node = kind is ChannelKind.SERVICE and name.rpartition("/")[2] in _EVERY_SERVICE
+        if not is_of_every_node and not _is_hidden(name):
             yield from (GraphChannel(kind, name, type_name) for type_name in types)
+
+
+def is_shown_topic(topic: str) -> bool:
+    """Return False for the topics that every node has, and for hidden topics such as those of an action."""
+    return topic not in _EVERY_TOPIC and not _is_hidden(topic)
+
+
+def _is_hidden(name: str) -> bool:
+    # The names of the topics and services of an action are hidden, too: they begin with <action>/_action.
+    return any(part.startswith("_") for part in name.split("/"))
 
 
 MOST_COUNTED = 200
