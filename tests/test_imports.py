@@ -50,7 +50,10 @@ NOTEBOOK_MAY_IMPORT = {
     "nodes": frozenset({"cell_output", "cell_runs"}),
     "checking": frozenset({"cell_output", "cell_runs", "nodes"}),
     "observing": frozenset({"cell_output", "cell_runs", "checking"}),
-    "robot": frozenset({"nodes", "observing"}),
+    "robot_motion": frozenset[str](),
+    "robot_drivers": frozenset({"nodes", "robot_motion"}),
+    "robot_node": frozenset({"robot_drivers", "robot_motion"}),
+    "live_robot": frozenset({"nodes", "observing", "robot_drivers", "robot_motion", "robot_node"}),
 }
 MOST_FILES = 32
 """In one folder of the package: a stranger must be able to read their names."""

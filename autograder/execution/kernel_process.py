@@ -38,7 +38,7 @@ _PRELOADED = (
     "numpy.random",
     "autograder.notebook",
     "autograder.notebook.checking.check",
-    "autograder.notebook.robot.live_robot",
+    "autograder.notebook.live_robot",
     "autograder.cards.html_rendering",
 )
 _MAGIC = "autograder.notebook.program_magic"

@@ -5,6 +5,8 @@ Nothing in this package is secret or decides a grade, because the judge is a sep
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import autograder.notebook.program_magic  # noqa: F401  (defines the cell magic %%program)
 from autograder.notebook.checking import judge_link
 from autograder.notebook.checking.check import check
@@ -15,7 +17,9 @@ from autograder.notebook.nodes.ros_session import RosSession
 from autograder.notebook.observing.graph_picture import draw_graph, watch_graph
 from autograder.notebook.observing.message_recordings import read_recording, recording
 from autograder.notebook.observing.topic_plots import plot
-from autograder.notebook.robot import start_robot
+
+if TYPE_CHECKING:
+    from autograder.notebook.live_robot import LiveRobot
 
 __all__ = [
     "RosSession",
@@ -38,3 +42,19 @@ def start_ros() -> RosSession:
     """Start ROS in this kernel, and the judge in the background. If ROS already runs, nothing changes."""
     judge_link.warm_up()
     return ros_session.start_ros()
+
+
+def start_robot() -> LiveRobot:
+    """Start a small robot, and show it live below this cell.
+
+    The robot is a node, ``/robot``, that subscribes to ``/cmd_vel``, publishes on ``/odom`` and ``/scan``, and offers
+    the services ``/reset`` and ``/lamp`` and the action ``/walk_to``. It stops if no command arrives for a second.
+    Running the cell again restarts the robot. ``.stop()`` or the end of the kernel ends it. The picture is kept up to
+    date for half an hour; ``.show()`` shows a new picture.
+    """
+    # Import this here: it imports many message types, which only notebooks with the robot need.
+    from autograder.notebook.live_robot import LiveRobot
+
+    robot = LiveRobot()
+    robot.show()
+    return robot

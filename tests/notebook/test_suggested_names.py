@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from autograder.notebook.checking.subject_runs import formatted
+from autograder.notebook.checking.subject_runs import student_traceback
 
 CELL = """
 class Driver:
@@ -36,4 +36,4 @@ def test_the_name_that_was_meant_is_said(line: str, end: str) -> None:
     exec(compile(CELL.format(line=line), "/tmp/ipykernel_7/123.py", "exec"), names)
     with pytest.raises(Exception) as caught:  # noqa: PT011
         names["Driver"]().drive()
-    assert formatted(caught.value).endswith(end)
+    assert student_traceback(caught.value).endswith(end)

@@ -81,7 +81,7 @@ def check(exercise: str, subject: Any) -> float:
         if verdict is None:
             return Score(0.0)
         card.show(verdict)
-    keep(verdict)
+    record_check(verdict)
     if is_validating():
         raise_unless_full(verdict)
     for then in _after_a_check:
@@ -188,7 +188,7 @@ def converse(link: JudgeLink, exercise: str, subject: Any, progress: Progress) -
                 run.stop()
 
 
-def keep(verdict: Verdict) -> None:
+def record_check(verdict: Verdict) -> None:
     """Record a check in the journal. If it completes a chapter, show the certificate.
 
     A grader's kernel has no journal. Files that cannot be read or written are skipped, so that they do not break a

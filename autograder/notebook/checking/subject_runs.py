@@ -100,7 +100,7 @@ class SubjectRun:
             pass
         except BaseException as error:
             if not (self._stopping.is_set() and isinstance(error, SystemExit)):
-                self._tell(Raised(self._number, formatted(error)))
+                self._tell(Raised(self._number, student_traceback(error)))
 
     def _made(self) -> Node:
         node = self._subject(*self._arguments)
@@ -131,7 +131,7 @@ class SubjectRun:
         # Report an exception in a callback as the end of the subject, because it would also end rclpy.spin in a
         # program.
         if not self._stopping.is_set():
-            self._tell(Raised(self._number, formatted(failure.error)))
+            self._tell(Raised(self._number, student_traceback(failure.error)))
 
 
 def _is_alive(node: Node) -> bool:
@@ -142,7 +142,7 @@ def _is_alive(node: Node) -> bool:
     return True
 
 
-def formatted(error: BaseException) -> str:
+def student_traceback(error: BaseException) -> str:
     """Return an error's traceback with only the student's code, in the format of a terminal.
 
     If the error contains the errors of several callbacks, only the first of them is formatted.

@@ -193,7 +193,7 @@ class CallbackErrors:
         with self._lock:
             known = self._errors.get(key)
             if known is None:
-                seen = CallbackError(node_label(failure.node), describe(failure.entity), failure.error)
+                seen = CallbackError(node_label(failure.node), _callback_owner(failure.entity), failure.error)
             else:
                 seen = replace(known, count=known.count + 1)
             self._errors[key] = seen
@@ -250,7 +250,7 @@ def _likely_callback(node: Node | None) -> str:
     return own[0] if len(own) == 1 else "your_method"
 
 
-def describe(entity: Any) -> str:
+def _callback_owner(entity: Any) -> str:
     """Return the owner of a callback in words, such as ``its service /reset``."""
     if isinstance(entity, Timer):
         return f"its timer (every {entity.timer_period_ns / 1e9:g} s)"

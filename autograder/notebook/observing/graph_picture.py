@@ -23,7 +23,7 @@ from autograder.notebook.observing.ros_graph import (
     GraphChannel,
     RosGraph,
     TopicTraffic,
-    look,
+    graph_known_to,
     read_graph,
 )
 
@@ -166,8 +166,8 @@ class _GraphPictures:
 
     def next(self, node: Node) -> GraphPicture | None:
         self._traffic = self._traffic or TopicTraffic(node)
-        graph = look(node)
-        picture = GraphPicture(graph, self._traffic.look(graph.channels))
+        graph = graph_known_to(node)
+        picture = GraphPicture(graph, self._traffic.rates(graph.channels))
         old = picture.is_moving and time.monotonic() > self._shown_at + AGAIN
         if picture == self._shown and not old:
             return None

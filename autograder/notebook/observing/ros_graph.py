@@ -118,10 +118,10 @@ def read_graph() -> RosGraph:
     """Return the graph of this kernel's ROS domain, once two successive readings are equal."""
     deadline = time.monotonic() + PATIENCE
     with _reader() as node:
-        seen = look(node)
+        seen = graph_known_to(node)
         while True:
             time.sleep(SETTLING)
-            before, seen = seen, look(node)
+            before, seen = seen, graph_known_to(node)
             if seen == before or time.monotonic() > deadline:
                 return seen
 
@@ -140,7 +140,7 @@ def hidden_node(name: str) -> Node:
     return rclpy.create_node(name, enable_rosout=False, start_parameter_services=False)
 
 
-def look(node: Node) -> RosGraph:
+def graph_known_to(node: Node) -> RosGraph:
     """Return the graph as the observing node knows it now, without hidden nodes."""
     pairs = [
         (name, space) for name, space in node.get_node_names_and_namespaces() if not name.startswith("_")
@@ -207,7 +207,7 @@ def _is_hidden(name: str) -> bool:
 
 
 MOST_COUNTED = 200
-"""The maximum number of messages on a topic that can be counted between two calls of :meth:`TopicTraffic.look`. If
+"""The maximum number of messages on a topic that can be counted between two calls of :meth:`TopicTraffic.rates`. If
 there are more, the rate is only a lower bound.
 """
 UNDEMANDING_QOS = QoSProfile(
@@ -226,13 +226,13 @@ class _Counted:
 
 
 class TopicTraffic:
-    """Counts messages with a node that is not spun. Messages wait in the middleware until :meth:`look` takes them."""
+    """Counts messages with a node that is not spun. Messages wait in the middleware until :meth:`rates` takes them."""
 
     def __init__(self, node: Node) -> None:
         self._node = node
         self._counted: dict[GraphChannel, _Counted | None] = {}
 
-    def look(self, channels: Iterable[GraphChannel]) -> dict[GraphChannel, float]:
+    def rates(self, channels: Iterable[GraphChannel]) -> dict[GraphChannel, float]:
         """Return the messages per second on each of these topics since the last call. New topics are left out."""
         wanted = {channel for channel in channels if channel.kind is ChannelKind.TOPIC}
         for channel in self._counted.keys() - wanted:

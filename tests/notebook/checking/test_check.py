@@ -45,10 +45,10 @@ def test_the_check_that_ends_the_chapter_shows_the_certificate_once(shown: list[
     chapter = course.chapters(course.root())[0]
     *others, last = [name for lab in chapter.labs for name in chapter.exercises_of(lab)]
     for name in others:
-        check_cell.keep(passed(name))
+        check_cell.record_check(passed(name))
     assert shown == []
-    check_cell.keep(passed(last))
-    check_cell.keep(passed(last))
+    check_cell.record_check(passed(last))
+    check_cell.record_check(passed(last))
     (words,) = shown
     assert words[:2] == (chapter.title, 10.0 * (len(others) + 1))
     assert len(check_journal.entries(kept)) == len(others) + 2
@@ -67,7 +67,7 @@ def test_a_graders_kernel_keeps_nothing(
     shown: list[Any], kept: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv(SOCKET_VARIABLE, "/somewhere/judge.socket")
-    check_cell.keep(passed("lab_1_2.talker"))
+    check_cell.record_check(passed("lab_1_2.talker"))
     assert not kept.exists()
 
 
@@ -80,14 +80,14 @@ def test_no_trouble_of_the_journal_breaks_a_check(
     else:
         monkeypatch.delenv(check_journal.VARIABLE)
         monkeypatch.setenv("AUTOGRADER_COURSE", str(kept))
-    check_cell.keep(passed("lab_1_2.talker"))
+    check_cell.record_check(passed("lab_1_2.talker"))
     assert shown == []
 
 
 def test_what_ended_before_is_not_shown_again(shown: list[Any], kept: Path) -> None:
     for name in exercises.all_ids():
         check_journal.note(JournalEntry("check", name, 1, 10, 10))
-    check_cell.keep(passed(exercises.all_ids()[0]))
+    check_cell.record_check(passed(exercises.all_ids()[0]))
     assert shown == []
 
 

@@ -1,6 +1,6 @@
 // Check, Watch and Next: three commands of JupyterLab, as buttons on a student's cell and on the card of a check; and
 // Drive, below the picture of the robot. The buttons of a card and of the robot are in their HTML (card.html.j2,
-// robot/live_robot.py); they are shown only where these commands are. Written as JupyterLab loads it (a container of
+// notebook/live_robot.py); they are shown only where these commands are. Written as JupyterLab loads it (a container of
 // webpack's module federation: init, then get), so that nothing has to be built.
 "use strict";
 window._JUPYTERLAB = window._JUPYTERLAB || {};
@@ -174,7 +174,7 @@ window._JUPYTERLAB["ros2-course-buttons"] = (() => {
           while (changed) {
             changed = false;
             const [ahead, left] = [...pressed].map(key => KEYS[key]).reduce((a, b) => [a[0] + b[0], a[1] + b[1]], [0, 0]);
-            const said = await ask(kernel, "autograder.notebook.robot.robot_drivers", `drive(${ahead}, ${left})`).catch(() => "");
+            const said = await ask(kernel, "autograder.notebook.robot_drivers", `drive(${ahead}, ${left})`).catch(() => "");
             if (said && endDriving) { endDriving(); say(said); }
           }
           sends = false;

@@ -10,9 +10,9 @@ from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any, cast
 
-from autograder.notebook.robot.live_robot import RobotPicture, _RobotPictures
-from autograder.notebook.robot.robot_motion import START, Pose, Velocity
-from autograder.notebook.robot.robot_node import RobotState
+from autograder.notebook.live_robot import RobotPicture, _RobotPictures
+from autograder.notebook.robot_motion import START, Pose, Velocity
+from autograder.notebook.robot_node import RobotState
 
 
 def place(picture: RobotPicture) -> tuple[float, float, float]:

@@ -9,8 +9,8 @@ import pytest
 from my_robot_interfaces.action import Fibonacci
 from small_robot_interfaces.action import WalkTo
 
-from autograder.notebook.robot.robot_drivers import SAYS_EVERY, Scene, Spiral, Tour
-from autograder.notebook.robot.robot_motion import ROOM, START, STILL, TICK, Moved, Pose, move
+from autograder.notebook.robot_drivers import SAYS_EVERY, Scene, Spiral, Tour
+from autograder.notebook.robot_motion import ROOM, START, STILL, TICK, Moved, Pose, move
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -12,13 +12,13 @@ from rclpy.node import Node
 from sensor_msgs.msg import LaserScan
 from std_srvs.srv import SetBool, Trigger
 
-from autograder.notebook.robot.robot_drivers import WalkToServer
-from autograder.notebook.robot.robot_motion import ROOM, START, STILL, TICK, Pose, Velocity, move
+from autograder.notebook.robot_drivers import WalkToServer
+from autograder.notebook.robot_motion import ROOM, START, STILL, TICK, Pose, Velocity, move
 
 if TYPE_CHECKING:
     from rclpy.time import Time
 
-    from autograder.notebook.robot.robot_drivers import Scene
+    from autograder.notebook.robot_drivers import Scene
 
 
 SCAN_EVERY = 5

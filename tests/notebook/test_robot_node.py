@@ -17,10 +17,10 @@ from sensor_msgs.msg import LaserScan
 from small_robot_interfaces.action import WalkTo
 from std_srvs.srv import SetBool, Trigger
 
+from autograder.notebook import robot_drivers
 from autograder.notebook.nodes.background_nodes import spin_in_background
-from autograder.notebook.robot import robot_drivers
-from autograder.notebook.robot.robot_motion import START
-from autograder.notebook.robot.robot_node import RAYS, RobotNode
+from autograder.notebook.robot_motion import START
+from autograder.notebook.robot_node import RAYS, RobotNode
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator

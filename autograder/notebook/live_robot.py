@@ -14,17 +14,17 @@ from IPython.display import display
 from autograder.notebook.nodes.background_nodes import replace_named, spin_in_background
 from autograder.notebook.nodes.ros_session import start_ros
 from autograder.notebook.observing.live_picture import LivePicture, as_image, svg_page
-from autograder.notebook.robot.robot_drivers import Spiral, Tour
-from autograder.notebook.robot.robot_motion import RADIUS, ROOM
-from autograder.notebook.robot.robot_node import RobotNode
+from autograder.notebook.robot_drivers import Spiral, Tour
+from autograder.notebook.robot_motion import RADIUS, ROOM
+from autograder.notebook.robot_node import RobotNode
 
 if TYPE_CHECKING:
     from typing import Any
 
     from rclpy.node import Node
 
-    from autograder.notebook.robot.robot_motion import Point, Pose
-    from autograder.notebook.robot.robot_node import RobotState
+    from autograder.notebook.robot_motion import Point, Pose
+    from autograder.notebook.robot_node import RobotState
 
 
 ROBOT_NAME = "robot"

@@ -79,7 +79,7 @@ def test_shown_again_the_picture_above_rests(run: Callable[..., list[Any]]) -> N
 
 def test_the_keyboard_is_a_node_that_drives(run: Callable[..., list[Any]]) -> None:
     (_, said) = run(
-        "robot = start_robot()\nfrom autograder.notebook.robot import robot_drivers as keyboard",
+        "robot = start_robot()\nfrom autograder.notebook import robot_drivers as keyboard",
         """
 while robot.state.pose.x < 1.2:
     assert keyboard.drive(0.5, 0.0) == ""
