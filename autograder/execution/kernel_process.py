@@ -42,8 +42,8 @@ _PRELOADED = (
     "autograder.cards.html_rendering",
 )
 _MAGIC = "autograder.notebook.program_magic"
-_PREPARED = ("autograder.cards.html_rendering",)
-"""The preloaded modules whose function ``prepare`` is called after the import."""
+_PREPARED = (("autograder.cards.html_rendering", "prepare_templates"),)
+"""Functions that are called after the import, each with its module."""
 
 
 def prepare(*interfaces: str) -> None:
@@ -56,9 +56,9 @@ def prepare(*interfaces: str) -> None:
     # ipykernel works without it if it is not installed (ipykernel/debugger.py).
     sys.modules.setdefault("debugpy", None)  # type: ignore[arg-type]
     preload((*RCLPY, *_PRELOADED, *_rehearsed()))
-    for name in _PREPARED:
+    for name, function in _PREPARED:
         with contextlib.suppress(Exception):
-            importlib.import_module(name).prepare()
+            getattr(importlib.import_module(name), function)()
     preload_ros((*INTERFACES, *interfaces))
     kernel_desk.prepare()
 
