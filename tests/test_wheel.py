@@ -183,7 +183,7 @@ def test_a_folder_of_a_student_is_no_course_to_a_command_for_a_class(tmp_path: P
     assert (done.returncode, "used" in done.stdout, "it ran" in done.stdout) == (2, False, False), done.stderr
 
 
-WRITTEN_FOR_A_CLONE = ("student/handout.py", "masters/first_cell.py")
+WRITTEN_FOR_A_CLONE = ("student/handout.py", "masters/source_notebooks.py")
 """What these write is read in a clone or in what `hand-out` makes, which has ``./course``, too."""
 
 
