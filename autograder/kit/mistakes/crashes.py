@@ -128,8 +128,8 @@ def _cut_off(evidence: Evidence) -> Advice | None:
     if gone is None:
         return None
     return Advice(
-        "The check was cut off, because your notebook's kernel ended or sent data that the judge cannot accept ( "
-        f"{gone.data.get('why') or 'nothing more came'}).",
+        "The check was cut off, because your notebook's kernel ended or sent data that the judge cannot accept "
+        f"({gone.data.get('why') or 'nothing more came'}).",
         "Remove code that ends the kernel, such as os._exit or exit(), and code that prints without end.",
     )
 
