@@ -71,8 +71,8 @@ class Channels:
     orders: int
 
 
-class Place(Protocol):
-    """The part of :class:`autograder.execution.notebook_boxes.BoxedPlace` that a kernel needs."""
+class NotebookProcesses(Protocol):
+    """The part of :class:`autograder.execution.notebook_processes.BoxedProcesses` that a kernel needs."""
 
     def start_kernel(self, channels: Channels) -> ForkedProcess:
         """Start the kernel's process."""
@@ -89,7 +89,7 @@ class Kernel:
     Args:
         folder: A folder for the sockets. Its path must be short, as Unix socket names have at most 107 characters.
             Only the desk's box sees what is made there.
-        place: Starts the processes.
+        processes: Starts the processes.
         limits: ``start_seconds``, ``interrupt_grace`` and ``notebook_output_bytes`` are used.
         outputs: Receives the outputs.
         guard: Reports if a limit of the box is exceeded.
@@ -99,7 +99,12 @@ class Kernel:
     """
 
     def __init__(
-        self, folder: Path, place: Place, limits: Limits, outputs: NotebookOutputs, guard: Guard | None = None
+        self,
+        folder: Path,
+        processes: NotebookProcesses,
+        limits: Limits,
+        outputs: NotebookOutputs,
+        guard: Guard | None = None,
     ) -> None:
         self._limits = limits
         self._guard = guard or NoGuard()
@@ -121,9 +126,9 @@ class Kernel:
             started.callback(self._lines.close)
             started.callback(os.close, self._log)
             try:
-                self._process = place.start_kernel(channels)
+                self._process = processes.start_kernel(channels)
                 started.callback(self._process.end)
-                self._desk = place.start_desk(channels)
+                self._desk = processes.start_desk(channels)
             except (OSError, NoSandbox) as error:
                 raise KernelFailed(f"the kernel could not be started: {error}") from error
             finally:

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Protocol
 
 from autograder.boxes.run_limits import Ended, Patient, first_of, wall_time
 from autograder.execution.executed_cells import Cell, CellCheck, CellRun, CellType, Execution, NotebookOutputs
-from autograder.execution.jupyter_kernel import Kernel, KernelFailed, Place
+from autograder.execution.jupyter_kernel import Kernel, KernelFailed, NotebookProcesses
 from autograder.execution.verdicts_without_judge import (
     LIMITS,
     grader_trouble,
@@ -60,7 +60,7 @@ def run_notebook(
     cells: Sequence[Cell],
     *,
     judge: contextlib.AbstractContextManager[Judge],
-    place: Place,
+    processes: NotebookProcesses,
     folder: Path,
     limits: Limits,
     guard: Guard | None = None,
@@ -71,7 +71,7 @@ def run_notebook(
     Args:
         cells: The cells of the rebuilt notebook.
         judge: The judge, a context manager. It starts while the kernel starts, and ends before this function returns.
-        place: Starts the processes of the kernel and its desk.
+        processes: Starts the processes of the kernel and its desk.
         folder: The folder for the kernel's sockets. Its path must be short.
         limits: The limits of the notebook.
         guard: Reports if a limit of the box is exceeded.
@@ -85,7 +85,7 @@ def run_notebook(
     run = _Run(cells, limits, patient)
     try:
         with (
-            contextlib.closing(Kernel(folder, place, limits, run.outputs, guard)) as kernel,
+            contextlib.closing(Kernel(folder, processes, limits, run.outputs, guard)) as kernel,
             judge as ready,
         ):
             kernel.await_ready()

@@ -18,7 +18,7 @@ from autograder.boxes.fork_server import ForkServers
 from autograder.boxes.run_limits import Ended, Limits
 from autograder.boxes.sandbox import why_impossible
 from autograder.execution.executed_cells import Cell, CellCheck, Execution
-from autograder.execution.notebook_boxes import BoxedPlace, JudgeSetting, UnboxedPlace
+from autograder.execution.notebook_processes import BoxedProcesses, JudgeSetting, UnboxedProcesses
 from autograder.execution.notebook_runner import run_notebook
 from autograder.judge import controlled_judge
 from autograder.safe_files import scratch_folder
@@ -59,12 +59,12 @@ def run(request: pytest.FixtureRequest, tmp_path: Path, boxed: Addresses) -> Ite
             limits = Limits(**{"cell_seconds": 30.0, "interrupt_grace": 1.0, **changed})  # type: ignore[arg-type]
             with (
                 scratch_folder(tmp_path) as folder,
-                BoxedPlace(boxed, folder, {}, {}, "JUDGE", JudgeSetting(), limits) as place,
+                BoxedProcesses(boxed, folder, {}, {}, "JUDGE", JudgeSetting(), limits) as place,
             ):
                 execution = run_notebook(
                     [Cell(source), CHECK],
                     judge=contextlib.nullcontext(SilentJudge()),
-                    place=place,
+                    processes=place,
                     folder=folder,
                     limits=limits,
                     guard=place.guard,
@@ -287,9 +287,9 @@ def test_many_small_processes_cannot_take_the_watcher_with_them(run: Run) -> Non
 
 
 @pytest.mark.ros
-@pytest.mark.parametrize("kind", [BoxedPlace, UnboxedPlace])
-def test_a_judge_has_a_limit_of_memory(kind: type[BoxedPlace | UnboxedPlace], tmp_path: Path) -> None:
-    boxed = kind is BoxedPlace
+@pytest.mark.parametrize("kind", [BoxedProcesses, UnboxedProcesses])
+def test_a_judge_has_a_limit_of_memory(kind: type[BoxedProcesses | UnboxedProcesses], tmp_path: Path) -> None:
+    boxed = kind is BoxedProcesses
     if boxed and why_impossible():
         pytest.skip("no sandbox is possible here")
     limits = Limits()

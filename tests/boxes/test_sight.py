@@ -20,7 +20,7 @@ from autograder.boxes.run_limits import Limits
 from autograder.boxes.sandbox import Enclosure
 from autograder.boxes.visible_host import Bind, installation
 from autograder.execution.executed_cells import Cell
-from autograder.execution.notebook_boxes import BoxedPlace, JudgeSetting
+from autograder.execution.notebook_processes import BoxedProcesses, JudgeSetting
 from autograder.execution.notebook_runner import run_notebook
 from autograder.safe_files import scratch_folder
 from environment.place import Place
@@ -50,12 +50,14 @@ def ask(request: pytest.FixtureRequest, tmp_path: Path, boxed: Addresses) -> Ask
         limits = Limits(cell_seconds=30)
         with (
             scratch_folder(tmp_path) as folder,
-            BoxedPlace(boxed, folder, {"data/a.txt": b"hello"}, {}, "JUDGE", JudgeSetting(), limits) as place,
+            BoxedProcesses(
+                boxed, folder, {"data/a.txt": b"hello"}, {}, "JUDGE", JudgeSetting(), limits
+            ) as place,
         ):
             run = run_notebook(
                 [Cell(source.format(code=code))],
                 judge=contextlib.nullcontext(SilentJudge()),
-                place=place,
+                processes=place,
                 folder=folder,
                 limits=limits,
                 guard=place.guard,

@@ -16,7 +16,7 @@ from autograder.boxes.box_connection import NoSandbox
 from autograder.boxes.fork_server import Addresses
 from autograder.boxes.run_limits import Ended, Left, Limits, Patient, wall_time
 from autograder.execution.executed_cells import Cell, CellCheck, CellType, Execution
-from autograder.execution.notebook_boxes import BoxedPlace, JudgeSetting, UnboxedPlace
+from autograder.execution.notebook_processes import BoxedProcesses, JudgeSetting, UnboxedProcesses
 from autograder.execution.notebook_runner import Unfinished, run_notebook
 from autograder.safe_files import scratch_folder
 from autograder.verdict import State, Verdict
@@ -48,7 +48,7 @@ Run = Callable[..., Execution]
 
 @pytest.fixture(params=["in a box", "beside one"])
 def run(request: pytest.FixtureRequest, tmp_path: Path, boxed: Addresses, unboxed: Addresses) -> Run:
-    addresses, kind = (boxed, BoxedPlace) if request.param == "in a box" else (unboxed, UnboxedPlace)
+    addresses, kind = (boxed, BoxedProcesses) if request.param == "in a box" else (unboxed, UnboxedProcesses)
 
     def go(
         cells: Sequence[Cell | str],
@@ -68,7 +68,7 @@ def run(request: pytest.FixtureRequest, tmp_path: Path, boxed: Addresses, unboxe
             return run_notebook(
                 [Cell(cell) if isinstance(cell, str) else cell for cell in cells],
                 judge=judge(),
-                place=place,
+                processes=place,
                 folder=folder,
                 limits=holds,
                 patient=patient,
@@ -281,11 +281,11 @@ def test_the_kernel_knows_nothing_of_the_hosts_variables(run: Run, monkeypatch: 
 
 def test_a_kernel_that_cannot_start_is_the_graders_trouble(tmp_path: Path) -> None:
     nobody = Addresses("", str(tmp_path / "nobody"), "")
-    place = UnboxedPlace(nobody, tmp_path, {}, {}, "JUDGE", JudgeSetting(), Limits())
+    place = UnboxedProcesses(nobody, tmp_path, {}, {}, "JUDGE", JudgeSetting(), Limits())
     execution = run_notebook(
         [check()],
         judge=contextlib.nullcontext(SayingJudge(passed())),
-        place=place,
+        processes=place,
         folder=tmp_path,
         limits=Limits(),
     )
@@ -294,15 +294,15 @@ def test_a_kernel_that_cannot_start_is_the_graders_trouble(tmp_path: Path) -> No
 
 
 def test_a_kernel_without_a_box_is_no_fault_of_the_judge(tmp_path: Path) -> None:
-    class NoPlace(UnboxedPlace):
+    class NoKernel(UnboxedProcesses):
         def start_kernel(self, channels: Channels) -> NoReturn:
             raise NoSandbox("no room for a box")
 
-    place = NoPlace(Addresses("", "", ""), tmp_path, {}, {}, "JUDGE", JudgeSetting(), Limits())
+    place = NoKernel(Addresses("", "", ""), tmp_path, {}, {}, "JUDGE", JudgeSetting(), Limits())
     execution = run_notebook(
         [check()],
         judge=contextlib.nullcontext(SayingJudge(passed())),
-        place=place,
+        processes=place,
         folder=tmp_path,
         limits=Limits(),
     )

@@ -38,7 +38,7 @@ from autograder.process_trees import adopt_orphans, end_descendants
 
 if TYPE_CHECKING:
     from autograder.boxes.fork_server import Addresses
-    from autograder.execution.notebook_boxes import BoxedPlace, UnboxedPlace
+    from autograder.execution.notebook_processes import BoxedProcesses, UnboxedProcesses
 
 
 LAST_SECONDS = 10.0
@@ -134,10 +134,10 @@ class _Running:
 
     def __init__(self) -> None:
         self._changing = threading.Lock()
-        self._place: BoxedPlace | UnboxedPlace | None = None
+        self._place: BoxedProcesses | UnboxedProcesses | None = None
         self._ended = False
 
-    def began(self, place: BoxedPlace | UnboxedPlace) -> None:
+    def began(self, place: BoxedProcesses | UnboxedProcesses) -> None:
         """Remember the boxes of the order, so that :meth:`end` can end them."""
         with self._changing:
             self._place = place

@@ -17,7 +17,12 @@ from autograder import exercises
 from autograder.boxes.box_connection import NoSandbox
 from autograder.boxes.run_limits import Ended
 from autograder.boxes.visible_host import kernel_environment
-from autograder.execution.notebook_boxes import SHARED_FOLDER, BoxedPlace, JudgeSetting, UnboxedPlace
+from autograder.execution.notebook_processes import (
+    SHARED_FOLDER,
+    BoxedProcesses,
+    JudgeSetting,
+    UnboxedProcesses,
+)
 from autograder.execution.notebook_runner import Unfinished, run_notebook
 from autograder.grading.returning.rendering_time import too_costly
 from autograder.judge import controlled_judge
@@ -54,7 +59,7 @@ def execute(
     scratch: Path,
     judge: str,
     addresses: Addresses,
-    began: Callable[[BoxedPlace | UnboxedPlace], None] = lambda _: None,
+    began: Callable[[BoxedProcesses | UnboxedProcesses], None] = lambda _: None,
 ) -> Execution:
     """Execute one task.
 
@@ -81,12 +86,12 @@ def _execute(
     judge: Any,
     addresses: Addresses,
     stack: contextlib.ExitStack,
-    began: Callable[[BoxedPlace | UnboxedPlace], None],
+    began: Callable[[BoxedProcesses | UnboxedProcesses], None],
 ) -> Execution:
     if task.boxed and not addresses.supervisors:
         raise NoSandbox("this task must run in a box, but no box can be made here")
     boxed = task.boxed
-    kind: type[BoxedPlace] | type[UnboxedPlace] = BoxedPlace if boxed else UnboxedPlace
+    kind: type[BoxedProcesses] | type[UnboxedProcesses] = BoxedProcesses if boxed else UnboxedProcesses
     paths = _make_paths(task, folder)
     place = kind(
         addresses,
@@ -118,7 +123,7 @@ def _execute(
     execution = run_notebook(
         task.cells,
         judge=judges,
-        place=place,
+        processes=place,
         folder=folder,
         limits=task.limits,
         guard=place.guard,
@@ -267,7 +272,7 @@ def _make_paths(task: Task, folder: Path) -> _Paths:
 
 
 def _workspace_service(
-    paths: _Paths, place: BoxedPlace | UnboxedPlace, addresses: Addresses
+    paths: _Paths, place: BoxedProcesses | UnboxedProcesses, addresses: Addresses
 ) -> WorkspaceService:
     """Return the workspace service of a notebook, for use in a ``with`` block that lasts as long as the notebook runs.
 
@@ -280,7 +285,7 @@ def _workspace_service(
     folder.mkdir()
     jobs: BoxedJobs | PlainJobs
     builds, ahead = build_cache.graders_root(), None
-    if isinstance(place, BoxedPlace):
+    if isinstance(place, BoxedProcesses):
         jobs = BoxedJobs(addresses.supervisors, place.programs, folder, addresses.programs)
         ros = boxed_ros_environment()
         _furnish(place.shared)

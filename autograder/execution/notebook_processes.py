@@ -1,6 +1,6 @@
-"""The boxes in which a notebook runs, or their replacement if the user asked for no sandbox.
+"""Starts the processes of a notebook (kernel, desk and judge): in boxes, or without if the user asked for no sandbox.
 
-Each of the two classes starts the processes of a notebook (kernel, desk and judge), and leaves none behind.
+Each of the two classes leaves no process behind.
 """
 
 from __future__ import annotations
@@ -57,8 +57,8 @@ class JudgeSetting:
     readable: Sequence[Path] = ()
 
 
-class BoxedPlace:
-    """The boxes of one submission, in one network or in two.
+class BoxedProcesses:
+    """Starts the processes of a notebook in boxes, which are on one network or on two.
 
     The student's box and the judge's box share the notebook's network. Programs that the grader builds and starts for
     a check run on a second network, with another judge. The student's box cannot reach that network.
@@ -168,10 +168,11 @@ class BoxedPlace:
         self._open.close()
 
 
-class UnboxedPlace:
-    """A replacement for the boxes: the processes run with the rights of the user who grades.
+class UnboxedProcesses:
+    """Starts the processes of a notebook without boxes, with the rights of the user who grades.
 
-    The course's own notebooks and ``--unsafe-no-sandbox`` use it. The arguments are those of :class:`BoxedPlace`.
+    The course's own notebooks, and those of ``--unsafe-no-sandbox``, run in this way. The arguments are those of
+    :class:`BoxedProcesses`.
     """
 
     def __init__(
@@ -196,7 +197,7 @@ class UnboxedPlace:
         self._variables = {**variables, socket_variable: str(self.judge_socket)}
 
     def abandon(self) -> None:
-        """Kill the processes, and do not wait for their end; see :meth:`BoxedPlace.abandon`."""
+        """Kill the processes, and do not wait for their end; see :meth:`BoxedProcesses.abandon`."""
         for process in list(self._started):
             process.abandon()
 
