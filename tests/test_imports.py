@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import functools
+import re
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -264,6 +265,33 @@ def test_dask_is_imported_where_it_is_shut_in_and_where_it_executes() -> None:
         if name.split(".")[0] in {"dask", "distributed"}
     }
     assert found == {f"grading/cluster/{name}.py" for name in ("dask_client", "dask_worker")}
+
+
+def test_what_a_text_of_the_package_names_exists() -> None:
+    """A fork server imports modules by their names, and skips those that it cannot import."""
+    modules = _modules(PACKAGE)
+    wrong = []
+    for path in modules.values():
+        text = path.read_text(encoding="utf-8")
+        for found in re.finditer(r"\bautograder(?:\.[a-z_]\w*)+(?:\.[A-Z]\w*)?", text):
+            name, rest = found[0], ""
+            while name not in modules:
+                name, _, rest = name.rpartition(".")
+            if rest and rest not in _defined(modules[name]):
+                wrong.append(
+                    f"{path.relative_to(ROOT)}:{text[: found.start()].count(chr(10)) + 1}: {found[0]}"
+                )
+    assert not wrong, "\n".join(wrong)
+
+
+def _defined(path: Path) -> set[str]:
+    """The names at the top level of a module."""
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    names = {
+        node.id for node in ast.walk(tree) if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)
+    }
+    kinds = (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)
+    return names | {node.name for node in tree.body if isinstance(node, kinds)}
 
 
 def test_every_part_has_its_line_in_the_architecture() -> None:

@@ -6,8 +6,8 @@ enters the box named in the request (:mod:`autograder.boxes.process_isolation`).
 the connection itself.
 
 Forking is safe because this process starts with a clean environment, and makes no thread and no ROS context. (LTTng,
-which rclpy loads, has two threads, but they sleep until a tracing daemon runs.) Not this process but each child reads a
-request, so data of one submission is never in the memory with which the next kernel begins. The process ends when its
+which rclpy loads, has two threads, but they sleep until a tracing daemon runs.) Each child reads its request itself, so
+the memory with which the next kernel begins contains no data of an earlier submission. The process ends when its
 standard input ends, and its children end with it.
 """
 

@@ -2,7 +2,7 @@
 
 .. code-block:: python
 
-    desk = KeptDesk("autograder.grading.rebuilding.desk_process")
+    desk = KeptDesk("autograder.grading.rebuilding.notebook_parsing")
     with in_memory(data) as source, in_memory() as answer:
         code = desk.ask(source, answer, most=1_000_000, seconds=20)
 

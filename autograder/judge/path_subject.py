@@ -1,7 +1,7 @@
 """A workspace or launch file as the subject of a notebook's check, built and run by the grader's workspace service.
 
-The notebook sends only the sources. The workspace service (:mod:`autograder.workspaces.service`) writes them to files,
-builds and runs them, and sends the judge its reports and the programs' output.
+The notebook sends only the sources. The workspace service (:mod:`autograder.workspaces.grading_service`) writes them to
+files, builds and runs them, and sends the judge its reports and the programs' output.
 """
 
 from __future__ import annotations

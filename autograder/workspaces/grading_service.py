@@ -7,7 +7,7 @@ The service runs in the grader's executor, outside all boxes, and has two Unix s
   the judge what the workspace contains, how the build ended, which processes were started, and what the programs print.
 * The **notebook's** socket, only for builds: `colcon build` in the student's box lets the service make the build.
 
-The messages on both sockets are defined in :mod:`autograder.messages.workspaces`.
+The messages on both sockets are defined in :mod:`autograder.messages.workspace_messages`.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """A desk of ``collect`` is a process in a box that unpacks one archive, or parses one list from an LMS.
 
 Archives and lists are read in a box because they may be made to do harm. The process is forked like that of
-:mod:`autograder.grading.rebuilding.desk_process`, with the same filter of system calls.
+:mod:`autograder.grading.rebuilding.notebook_parsing`, with the same filter of system calls.
 
 The answer about an archive contains, for each file, a line of JSON and then the bytes of the file. The line has the
 size of the file, and the paths that lead to the file: ``["src.zip", "lab_1_2.ipynb"]`` for a file in an archive inside
