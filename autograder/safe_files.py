@@ -182,7 +182,7 @@ def write_files(files: Mapping[str, bytes], folder: Path) -> Path:
 def remove_tree(folder: Path) -> None:
     """Remove a folder, even if its files and folders are write-protected."""
 
-    def make_writable(function: Callable[[str], Any], name: str, _: Any) -> None:
+    def _make_writable(function: Callable[[str], Any], name: str, _: Any) -> None:
         path = Path(name)
         with contextlib.suppress(OSError):
             # Change rights only inside the folder, because its parent is shared.
@@ -191,7 +191,7 @@ def remove_tree(folder: Path) -> None:
                     place.chmod(stat.S_IRWXU)
             function(name)
 
-    shutil.rmtree(folder, onerror=make_writable)
+    shutil.rmtree(folder, onerror=_make_writable)
 
 
 class HeldFolder:

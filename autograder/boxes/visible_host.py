@@ -148,7 +148,7 @@ _PROC_HIDDEN = {"kcore", "kmsg", "keys", "key-users"}
 def _proc_covers() -> tuple[str, ...]:
     """Return bubblewrap's arguments that protect the writable files in ``/proc``, which affect the whole machine.
 
-    These arguments are needed if the grader is root. The kernel then treats the user of a box as root, too, and root
+    If the grader is root, a box needs these arguments. The kernel then treats the user of a box as root, too, and root
     may write to the settings in ``/proc/sys`` even without any capability.
     """
     words: list[str] = []

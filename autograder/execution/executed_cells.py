@@ -140,9 +140,6 @@ _NO_COLOR = "\x1b[m"
 do not form a new long code.
 """
 
-_CLOSING_LINE = 200
-"""The maximum number of bytes that a desk itself adds to an output that it had to cut."""
-
 
 class Budget:
     """The bytes of output that may still be kept, over several cells."""
@@ -313,6 +310,10 @@ class OutputCollector:
         self._outputs.clear()
         self._displays.clear()
         self._clear_at_next = False
+
+
+_CLOSING_LINE = 200
+"""The maximum number of bytes that a desk itself adds to an output that it had to cut."""
 
 
 class NotebookOutputs:
