@@ -20,7 +20,7 @@ TERMINATED = 143
 
 
 def main() -> None:
-    """Run the command line. A closed pipe, Ctrl-C or SIGTERM ends it quietly, with everything that it has started."""
+    """Run the command line. A closed pipe, Ctrl-C or SIGTERM ends the command quietly, with its children."""
     # PYTHONSAFEPATH was needed only at the start of this process. A student's program must not inherit it, because with
     # it, Python would not import modules from the program's own folder.
     os.environ.pop(SAFE_PATH, None)

@@ -47,7 +47,7 @@ def opened(path: str | Path, folder: int | None = None) -> IO[bytes]:
 
 
 def name_as_text(name: str) -> str:
-    """Return a file name as text that can be encoded and searched, because on a disk it may contain any bytes."""
+    """Return a file name as text that can be encoded and searched. A name on a disk may contain any bytes."""
     return name.encode("utf-8", "replace").decode()
 
 

@@ -118,8 +118,8 @@ connections and starts no processes.
 """
 _FUTEX = {"x86_64": 202, "aarch64": 98}
 _FUTEX_WAKE = (1, 129)
-"""FUTEX_WAKE, and its variant for a single process (linux/futex.h). Releasing a lock calls it even if no thread waits.
-A call that waits for a lock is not allowed.
+"""FUTEX_WAKE, and its variant for a single process (linux/futex.h). A program that releases a lock makes this call
+even if no thread waits for the lock. A call that waits for a lock is not allowed.
 """
 _BY_ARGUMENT = {"clone", "clone3", "socket", "socketpair", "setsockopt", "ioctl", "fcntl", "prctl"}
 _ATTRIBUTES = {"setxattr", "lsetxattr", "fsetxattr", "setxattrat"}

@@ -186,7 +186,7 @@ def _out_of_time(check: CellCheck, before: list[tuple[str, CellRun]]) -> Verdict
 
 
 def _stopped_by_error(check: CellCheck, run: CellRun, before: list[tuple[str, CellRun]]) -> Verdict:
-    """Return a verdict that names the error that stopped the cell. Its cause is often an earlier cell."""
+    """Return a verdict that names the error that stopped the cell. The cause is often an earlier cell."""
     title, cause = next(
         ((title, cell) for title, cell in before if cell.ended in (Ended.RAISED, Ended.TIMED_OUT, *LIMITS)),
         ("", None),
