@@ -16,7 +16,7 @@ from autograder.boxes.sandbox import Enclosure
 from autograder.boxes.visible_host import HOME, WORK, Bind, box_environment
 from autograder.safe_files import fresh_folder
 from autograder.workspaces.builds import build_artefacts, build_cache
-from autograder.workspaces.jobs import BUILD_SECONDS, MAX_ARCHIVE_BYTES, MAX_LOG_BYTES, Built
+from autograder.workspaces.jobs import BUILD_SECONDS, MAX_ARCHIVE_BYTES, MAX_LOG_BYTES, BuildOutcome
 from autograder.workspaces.program_plans import ros2
 from environment.python_child import python_child
 
@@ -68,7 +68,7 @@ class BoxedJobs:
         del sources
         return WORK
 
-    def build(self, job: BuildJob, command: Sequence[str], entry: CachedBuild) -> Built:
+    def build(self, job: BuildJob, command: Sequence[str], entry: CachedBuild) -> BuildOutcome:
         """Run a build in a separate box, and pack its install folder when no process of the build is alive any more.
 
         The memory limit is low at first, because other builds may run at the same time. If a build reaches this limit,
@@ -98,7 +98,7 @@ class BoxedJobs:
 
     def _build(
         self, job: BuildJob, command: Sequence[str], entry: Path, limits: Limits
-    ) -> tuple[Built, bool]:
+    ) -> tuple[BuildOutcome, bool]:
         """Return the result of a build, and whether it reached the memory limit."""
         place = self.place(job.name, entry)
         folder = fresh_folder("build-", self._folder)
@@ -119,7 +119,7 @@ class BoxedJobs:
                     output = running.said
                 if returncode != 0:
                     needs_room = limits.beside and guard.reason() is Ended.OUT_OF_MEMORY
-                    return Built(returncode, output, late=BUILD_SECONDS if late else 0.0), needs_room
+                    return BuildOutcome(returncode, output, late=BUILD_SECONDS if late else 0.0), needs_room
                 packed = enclosure.run(
                     python_child("-m", build_artefacts.__name__, str(place / "install")).command,
                     limit=PACK_SECONDS,
@@ -129,9 +129,9 @@ class BoxedJobs:
                 if packed.returncode is None:
                     # A timeout means that the machine was too busy, not that the build failed, because packing takes
                     # only milliseconds.
-                    return Built(None, output, late=PACK_SECONDS), False
+                    return BuildOutcome(None, output, late=PACK_SECONDS), False
                 whole = packed.returncode == 0 and not packed.cut
-                return Built(returncode, output, packed.output if whole else b""), False
+                return BuildOutcome(returncode, output, packed.output if whole else b""), False
         finally:
             guard.close()
             shutil.rmtree(folder, ignore_errors=True)

@@ -37,7 +37,7 @@ from autograder.workspaces.builds.colcon_build import describe_workspace, failed
 from autograder.workspaces.packages import DEFINITIONS, FOR_READERS, UNREADABLE
 from autograder.workspaces.program_plans import course_interfaces, reference_workspace
 from autograder.workspaces.program_preparation import COURSE
-from autograder.workspaces.sources import Tree
+from autograder.workspaces.sources import SourceTree
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -138,7 +138,9 @@ def build_ahead(folder: Path, jobs: Jobs) -> None:
 
 def _build(builds: GradedBuilds, files: PackageFiles) -> object:
     """Build packages that the course has recorded; from simplified sources if the packages only define interfaces."""
-    tree = Tree(tuple(Source(path, None if text is None else text.encode()) for path, text in files.items()))
+    tree = SourceTree(
+        tuple(Source(path, None if text is None else text.encode()) for path, text in files.items())
+    )
     with HeldFolder("autograder-ahead-") as folder:
         found = _written(tree, folder.path / "as-recorded")
         if all(package.holds_only_interfaces for package in found.packages):
@@ -146,7 +148,7 @@ def _build(builds: GradedBuilds, files: PackageFiles) -> object:
         return builds.build(found, None)
 
 
-def _written(tree: Tree, workspace: Path) -> Build:
+def _written(tree: SourceTree, workspace: Path) -> Build:
     tree.write(workspace / "src")
     return describe_workspace(workspace)
 
@@ -160,11 +162,11 @@ _FOR_PEOPLE = {"description", "maintainer", "author", "license", "url"}
 """Elements of package.xml that only people read. They are removed, or replaced by a fixed text if they are required."""
 
 
-def simplified(tree: Tree) -> Tree:
+def simplified(tree: SourceTree) -> SourceTree:
     """Return the sources of interface packages, simplified so that sources with the same meaning are equal."""
     if sum(len(source.data or b"") for source in tree.sources) > MAX_SIMPLIFIED:
         return tree
-    return Tree(tuple(msgspec.structs.replace(source, data=_simple(source)) for source in tree.sources))
+    return SourceTree(tuple(msgspec.structs.replace(source, data=_simple(source)) for source in tree.sources))
 
 
 def _simple(source: Source) -> bytes | None:

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
     from autograder.workspaces.builds.build_cache import CachedBuild
     from autograder.workspaces.packages import Package
-    from autograder.workspaces.sources import Tree
+    from autograder.workspaces.sources import SourceTree
 
 
 BUILD_SECONDS = 170.0
@@ -60,7 +60,7 @@ class BuildJob:
 
     name: str
     workspace: Path
-    tree: Tree
+    tree: SourceTree
     packages: Sequence[Package]
     cancelled: Callable[[], bool]
     cmake: Sequence[str] = ()
@@ -70,7 +70,7 @@ class BuildJob:
 
 
 @dataclass(frozen=True)
-class Built:
+class BuildOutcome:
     """The result of a build.
 
     Attributes:
@@ -126,7 +126,7 @@ class Jobs(Protocol):
         """
         ...
 
-    def build(self, job: BuildJob, command: Sequence[str], entry: CachedBuild) -> Built:
+    def build(self, job: BuildJob, command: Sequence[str], entry: CachedBuild) -> BuildOutcome:
         """Run colcon. Return the result of the build.
 
         Args:
@@ -201,7 +201,7 @@ class PlainJobs:
         """Return the path of the sources. Without a box, programs see the sources at their own path."""
         return sources
 
-    def build(self, job: BuildJob, command: Sequence[str], entry: CachedBuild) -> Built:
+    def build(self, job: BuildJob, command: Sequence[str], entry: CachedBuild) -> BuildOutcome:
         """Run a build in the folder of the entry. For a submission, pack the install folder and then remove it."""
         seconds, size = (
             (BUILD_SECONDS, MAX_LOG_BYTES) if self._handed_in else (OWN_BUILD_SECONDS, sys.maxsize)
@@ -217,7 +217,7 @@ class PlainJobs:
         made = (*BESIDE, "install") if self._handed_in else BESIDE
         # Use rm, because the folders may be nested more deeply than Python's recursion allows.
         subprocess.run(["rm", "-rf", *(str(entry.folder / name) for name in made)], check=False)
-        return Built(code, output, archive, late=seconds if late else 0.0)
+        return BuildOutcome(code, output, archive, late=seconds if late else 0.0)
 
     def start(self, job: ProgramJob) -> PlainProgram:
         """Start the program as a process."""

@@ -18,7 +18,7 @@ from xml.parsers.expat import ExpatError
 
 import re2
 
-from autograder.workspaces.sources import BadSources, ByteBudget, Tree, is_source, read_sources
+from autograder.workspaces.sources import BadSources, ByteBudget, SourceTree, is_source, read_sources
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -272,7 +272,7 @@ def needed(packages: Iterable[Package], targets: Iterable[str]) -> list[Package]
     return [package for package in there if package.name in wanted]
 
 
-def sources_of(src: Path, packages: Iterable[Package]) -> Tree:
+def sources_of(src: Path, packages: Iterable[Package]) -> SourceTree:
     """Return all sources that a build of these packages needs, each read once.
 
     Args:
@@ -292,7 +292,7 @@ def sources_of(src: Path, packages: Iterable[Package]) -> Tree:
                 raise BadSources(
                     f"{src} contains more than {MAX_FILES} files or {MAX_BYTES // 10**6} MB: is it a workspace?"
                 )
-    return Tree(tuple(sources))
+    return SourceTree(tuple(sources))
 
 
 FORM = re2.compile(r"\s*([\w.-]+)\s*=\s*([\w.]+)\s*:\s*([\w.]+)\s*")

@@ -57,7 +57,7 @@ class BadSources(ValueError):
 
 
 @dataclass(frozen=True)
-class Tree:
+class SourceTree:
     """The files and folders of one or more packages.
 
     Attributes:
@@ -214,7 +214,7 @@ def receive_sources(lines: Lines, count: int, path: str, folder: Path) -> None:
     if room < 0:
         raise _too_much()
     check_path(path)
-    Tree(tuple(checked_sources(taken))).write(folder)
+    SourceTree(tuple(checked_sources(taken))).write(folder)
 
 
 def room_of(source: Source) -> int:

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from autograder.boxes.fork_server import Addresses
     from autograder.workspaces.builds.colcon_build import Build
     from autograder.workspaces.jobs import BuildJob
-    from autograder.workspaces.sources import Tree
+    from autograder.workspaces.sources import SourceTree
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
@@ -84,7 +84,7 @@ def _task(master: Path) -> Task | None:
 
 def _built(task: Task, addresses: Addresses) -> list[PackageFiles]:
     """The packages that a notebook has had built for it."""
-    trees: dict[str, Tree] = {}
+    trees: dict[str, SourceTree] = {}
     entry = GradedBuilds._entry
 
     def remembering(self: GradedBuilds, found: Build, job: BuildJob, *rest: Any) -> Build:
@@ -104,5 +104,5 @@ def _built(task: Task, addresses: Addresses) -> list[PackageFiles]:
     return [_files(tree) for tree in trees.values()]
 
 
-def _files(tree: Tree) -> PackageFiles:
+def _files(tree: SourceTree) -> PackageFiles:
     return {source.path: None if source.data is None else source.data.decode() for source in tree.sources}

@@ -22,7 +22,7 @@ from autograder.workspaces import program_preparation
 from autograder.workspaces.boxed_jobs import BoxedJobs, BoxedProgram
 from autograder.workspaces.builds.colcon_build import describe_workspace
 from autograder.workspaces.graded_builds import GradedBuilds
-from autograder.workspaces.jobs import Built, ProgramJob
+from autograder.workspaces.jobs import BuildOutcome, ProgramJob
 from autograder.workspaces.program_plans import course_interfaces, plan_for
 from autograder.workspaces.program_preparation import Preparation
 
@@ -268,7 +268,7 @@ def test_the_builds_of_one_notebook_have_so_much_room_and_no_more(
 def test_a_big_build_that_nobody_waits_for_gives_up_its_turn(
     jobs: BoxedJobs, supervisors: str, builds: GradedBuilds, workspace: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(jobs, "_build", lambda *_: (Built(1, b""), True))
+    monkeypatch.setattr(jobs, "_build", lambda *_: (BuildOutcome(1, b""), True))
     another = os.open(Path(supervisors).parent, os.O_RDONLY)
     fcntl.flock(another, fcntl.LOCK_EX)
     threading.Timer(20.0, os.close, [another]).start()  # so that a defect fails, and does not hang

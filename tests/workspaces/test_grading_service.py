@@ -23,7 +23,7 @@ from autograder.workspaces.builds import students_builds
 from autograder.workspaces.builds.build_artefacts import Kind, PackedEntry
 from autograder.workspaces.builds.install_folder import LIBRARY
 from autograder.workspaces.grading_service import ServiceSockets, WorkspaceService
-from autograder.workspaces.jobs import BuildJob, Built, PlainProgram, ProgramJob
+from autograder.workspaces.jobs import BuildJob, BuildOutcome, PlainProgram, ProgramJob
 
 sys.path.insert(0, str(Path(__file__).parent))
 from made_workspaces import interface_package, python_package
@@ -46,7 +46,7 @@ class FakeJobs:
         self.sources: list[str] = []
         self.boxes: list[set[tuple[str, int, bytes]]] = []
         self.commands: list[Sequence[str]] = []
-        self.built = Built(
+        self.built = BuildOutcome(
             0, b"all is well\n", _packed("my_robot_pkg/lib/my_robot_pkg/simple_node", "my_robot_pkg/share/x")
         )
         self.script = "echo hello"
@@ -58,7 +58,7 @@ class FakeJobs:
     def tree(self, sources: Path) -> Path:
         return Path("/home/student/notebook")
 
-    def build(self, job: BuildJob, command: Sequence[str], entry: CachedBuild) -> Built:
+    def build(self, job: BuildJob, command: Sequence[str], entry: CachedBuild) -> BuildOutcome:
         self.builds.append(sorted(path.name for path in (entry.folder / "src").iterdir()))
         self.sources.append("".join(path.read_text() for path in entry.folder.rglob("*") if path.is_file()))
         self.boxes.append(
@@ -169,7 +169,7 @@ def test_what_a_program_says_is_never_a_report(sockets: ServiceSockets, jobs: Fa
 def test_a_build_that_says_it_went_well_and_brought_nothing_has_not(
     sockets: ServiceSockets, jobs: FakeJobs, lab: Path
 ) -> None:
-    jobs.built = Built(0, FORGED.encode(), _packed("my_robot_pkg/share/x"))
+    jobs.built = BuildOutcome(0, FORGED.encode(), _packed("my_robot_pkg/share/x"))
     judge = FakeJudge(sockets)
     judge.check(lab)
     heard = judge.run()
@@ -180,7 +180,7 @@ def test_a_build_that_says_it_went_well_and_brought_nothing_has_not(
 def test_a_failed_build_is_told_and_not_kept(sockets: ServiceSockets, jobs: FakeJobs, lab: Path) -> None:
     good, jobs.built = (
         jobs.built,
-        Built(1, b'  File "/x/setup.py", line 3\nSyntaxError: no\nFailed   <<< my_robot_pkg\n'),
+        BuildOutcome(1, b'  File "/x/setup.py", line 3\nSyntaxError: no\nFailed   <<< my_robot_pkg\n'),
     )
     judge = FakeJudge(sockets)
     judge.check(lab)
@@ -202,7 +202,7 @@ def test_what_fails_and_is_only_depended_on_takes_nothing_away(
     file.write_text(
         file.read_text().replace("<license>", "<depend>my_robot_interfaces</depend>\n  <license>")
     )
-    good, jobs.built = jobs.built, Built(1, b"no\nFailed   <<< my_robot_interfaces\n")
+    good, jobs.built = jobs.built, BuildOutcome(1, b"no\nFailed   <<< my_robot_interfaces\n")
 
     def mended(_: Callable[[], bool]) -> None:
         if jobs.builds[-1] == ["my_robot_pkg"]:
@@ -218,7 +218,7 @@ def test_what_fails_and_is_only_depended_on_takes_nothing_away(
 def test_what_a_failed_build_has_left_is_not_taken(
     sockets: ServiceSockets, jobs: FakeJobs, lab: Path
 ) -> None:
-    jobs.built = Built(1, b"error: no\n", jobs.built.archive)
+    jobs.built = BuildOutcome(1, b"error: no\n", jobs.built.archive)
     judge = FakeJudge(sockets)
     judge.check(lab)
     assert reports(judge.run())[-1]["trouble"] == "build"
@@ -228,7 +228,7 @@ def test_what_a_failed_build_has_left_is_not_taken(
 def test_an_archive_that_leads_out_is_a_failed_build(
     sockets: ServiceSockets, jobs: FakeJobs, lab: Path
 ) -> None:
-    jobs.built = Built(0, b"", _packed("../../evil"))
+    jobs.built = BuildOutcome(0, b"", _packed("../../evil"))
     judge = FakeJudge(sockets)
     judge.check(lab)
     assert reports(judge.run())[-1]["trouble"] == "build"
@@ -244,7 +244,7 @@ def test_no_link_that_a_build_has_made_leads_to_a_pipe_of_the_host(
         f"{info}/{deep}/b": "../" * 21,
         f"{info}/entry_points.txt": f"{deep}/b/" + "../" * 17 + f"{tmp_path}/pipe"[1:],
     }
-    jobs.built = Built(0, b"", _packed("my_robot_pkg/share/x", **links))
+    jobs.built = BuildOutcome(0, b"", _packed("my_robot_pkg/share/x", **links))
     judge = FakeJudge(sockets)
     judge.check(lab)
     told = reports(judge.run())[-1]
@@ -371,7 +371,7 @@ TRAP = "trap 'echo bye; exit 4' INT; echo started; while :; do sleep 0.05; done"
 def test_ctrl_c_ends_the_program_that_the_judge_has_named(
     sockets: ServiceSockets, jobs: FakeJobs, lab: Path
 ) -> None:
-    jobs.built = Built(0, b"", _packed("my_robot_pkg/lib/my_robot_pkg/talker", "my_robot_pkg/share/x"))
+    jobs.built = BuildOutcome(0, b"", _packed("my_robot_pkg/lib/my_robot_pkg/talker", "my_robot_pkg/share/x"))
     jobs.script = TRAP
     judge = FakeJudge(sockets)
     judge.check(lab, "lab_1_2.programs")
@@ -407,7 +407,7 @@ def test_in_place_of_a_launch_the_program_is_run_that_the_judge_has_named(
 def test_a_program_that_was_not_built_is_named_and_the_other_one_runs(
     sockets: ServiceSockets, jobs: FakeJobs, lab: Path
 ) -> None:
-    jobs.built = Built(0, b"", _packed("my_robot_pkg/lib/my_robot_pkg/talker", "my_robot_pkg/share/x"))
+    jobs.built = BuildOutcome(0, b"", _packed("my_robot_pkg/lib/my_robot_pkg/talker", "my_robot_pkg/share/x"))
     judge = FakeJudge(sockets)
     judge.check(lab, "lab_1_2.programs")
     missing = []
@@ -498,7 +498,7 @@ def test_a_notebook_s_failed_build_shows_what_colcon_said(
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    jobs.built = Built(1, b"SyntaxError: invalid syntax\nFailed   <<< my_robot_pkg\n")
+    jobs.built = BuildOutcome(1, b"SyntaxError: invalid syntax\nFailed   <<< my_robot_pkg\n")
     monkeypatch.setenv(students_builds.GRADERS, str(sockets.notebook))
     monkeypatch.chdir(lab)
     assert students_builds.main(["build"]) == 1
@@ -599,7 +599,7 @@ def test_endless_output_is_cut_and_ends_with_the_run(
 def test_a_build_that_takes_too_long_says_nothing_about_the_sources(
     sockets: ServiceSockets, jobs: FakeJobs, lab: Path
 ) -> None:
-    jobs.built = Built(None, b"", late=170.0)
+    jobs.built = BuildOutcome(None, b"", late=170.0)
     judge = FakeJudge(sockets)
     judge.check(lab)
     heard = judge.run()

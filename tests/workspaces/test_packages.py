@@ -12,7 +12,7 @@ from autograder.messages.workspace_messages import Source
 from autograder.workspaces import packages
 from autograder.workspaces.builds import cached_builds
 from autograder.workspaces.graded_builds import simplified
-from autograder.workspaces.sources import BadSources, Tree
+from autograder.workspaces.sources import BadSources, SourceTree
 
 sys.path.insert(0, str(Path(__file__).parent))
 from made_workspaces import CMAKE, PACKAGE_XML, interface_package, packages_in
@@ -121,7 +121,7 @@ def test_an_odd_package_file_is_the_packages_own_fault(workspace: Path, content:
     (workspace / "src" / "tiny_pkg" / "package.xml").write_bytes(content)
     assert "is not valid" in trouble_in(workspace / "src")
     text = content.decode("utf-8", "replace").encode()
-    assert simplified(Tree((Source("tiny_pkg/package.xml", text),))).sources[0].data
+    assert simplified(SourceTree((Source("tiny_pkg/package.xml", text),))).sources[0].data
 
 
 def test_a_format_that_does_not_exist_is_the_packages_own_fault(workspace: Path) -> None:

@@ -11,14 +11,14 @@ from rosidl_adapter.parser import InvalidSpecification, parse_service_string
 from autograder.messages.workspace_messages import Source
 from autograder.workspaces.graded_builds import simplified
 from autograder.workspaces.packages import sources_of
-from autograder.workspaces.sources import Tree
+from autograder.workspaces.sources import SourceTree
 
 sys.path.insert(0, str(Path(__file__).parent))
 from made_workspaces import CMAKE, DEFINITION, INTERFACE_PACKAGE_XML, interface_package, packages_in
 
 
 def simple_text(name: str, text: str) -> str:
-    (source,) = simplified(Tree((Source(f"p/{name}", text.encode()),))).sources
+    (source,) = simplified(SourceTree((Source(f"p/{name}", text.encode()),))).sources
     assert source.data is not None
     return source.data.decode()
 
@@ -161,5 +161,5 @@ def test_a_package_with_more_in_it_is_none(tmp_path: Path, file: str, text: str)
 @pytest.mark.parametrize("name", ["CMakeLists.txt", "srv/AddTwoInts.srv"])
 def test_far_too_much_is_built_as_it_is(name: str) -> None:
     # To simplify half a megabyte of brackets took ten seconds, outside of any box and anew for each build.
-    tree = Tree((Source("p"), Source(f"p/{name}", b"()\n" * 20_000)))
+    tree = SourceTree((Source("p"), Source(f"p/{name}", b"()\n" * 20_000)))
     assert simplified(tree) is tree

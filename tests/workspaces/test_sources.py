@@ -18,7 +18,7 @@ from autograder.messages.json_lines import Lines, NotUnderstood, encode
 from autograder.messages.workspace_messages import Source
 from autograder.workspaces import sources
 from autograder.workspaces.packages import sources_of
-from autograder.workspaces.sources import BadSources, Tree, read_sources
+from autograder.workspaces.sources import BadSources, SourceTree, read_sources
 
 sys.path.insert(0, str(Path(__file__).parent))
 from made_workspaces import packages_in
@@ -29,8 +29,8 @@ if TYPE_CHECKING:
 TWIN = unicodedata.normalize("NFC", "ä.py"), unicodedata.normalize("NFD", "ä.py")
 
 
-def tree_of(folder: Path, largest: int = 1_000) -> Tree:
-    return Tree(tuple(read_sources(folder, ".", largest)))
+def tree_of(folder: Path, largest: int = 1_000) -> SourceTree:
+    return SourceTree(tuple(read_sources(folder, ".", largest)))
 
 
 def unreadable(folder: Path) -> None:
@@ -172,7 +172,7 @@ def test_no_two_trees_have_the_same_hash_by_where_a_name_ends() -> None:
         (Source("a", b"b", executable=True),),
         (Source("a", b"file 1 0\0b"),),
     ]
-    assert len({Tree(tree).digest for tree in trees}) == len(trees)
+    assert len({SourceTree(tree).digest for tree in trees}) == len(trees)
 
 
 def test_a_grader_takes_nothing_that_no_key_has() -> None:
@@ -200,7 +200,7 @@ def test_what_is_collected_builds_the_same(workspace: Path, tmp_path: Path) -> N
     setup = workspace / "src" / "tiny_pkg" / "setup.py"
     setup.chmod(0o755)
     sent = [sent_over(encode(source)) for source in sources.collect_workspace(workspace)]
-    Tree(tuple(sources.checked_sources(sent))).write(tmp_path / "there")
+    SourceTree(tuple(sources.checked_sources(sent))).write(tmp_path / "there")
     here, there = workspace / "src", tmp_path / "there" / "ros2_ws" / "src"
     assert sources_of(there, packages_in(there)) == sources_of(here, packages_in(here))
 

@@ -26,7 +26,7 @@ from autograder.workspaces.builds.colcon_build import (
     moved_packages,
     packages_to_build,
 )
-from autograder.workspaces.builds.install_folder import merge
+from autograder.workspaces.builds.install_folder import merge_prefixes
 from autograder.workspaces.jobs import BuildJob
 from autograder.workspaces.packages import WORKSPACE, sources_of
 from autograder.workspaces.sources import BadSources
@@ -36,9 +36,9 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from autograder.workspaces.builds.colcon_build import Build, Targets
-    from autograder.workspaces.jobs import Built, Jobs
+    from autograder.workspaces.jobs import BuildOutcome, Jobs
     from autograder.workspaces.packages import Package
-    from autograder.workspaces.sources import Tree
+    from autograder.workspaces.sources import SourceTree
 
 
 FORMAT = "3"
@@ -140,7 +140,7 @@ class Builds:
         with build_cache.entry(key, self._folder) as entry:
             install = entry.folder / "install"
             if not entry.complete:
-                merge(course.prefixes, made.prefixes, install)
+                merge_prefixes(course.prefixes, made.prefixes, install)
                 entry.finish()
         return replace(course, install=install)
 
@@ -225,7 +225,7 @@ class Builds:
         return replace(found, ok=True, install=install)
 
 
-def build_key(tree: Tree, *words: str) -> str:
+def build_key(tree: SourceTree, *words: str) -> str:
     """Return the key of a build: a hash of the sources, of the build tools, and of ``words``.
 
     Args:
@@ -290,7 +290,7 @@ def file_state(file: str) -> str:
     return f"{found.st_size} {found.st_mtime_ns}"
 
 
-def _log(built: Built, place: Path) -> str:
+def _log(built: BuildOutcome, place: Path) -> str:
     """Return the output of a build as text. Long lines are cut, so that any output can be parsed quickly."""
     text = built.output.decode("utf-8", "replace").replace(f"{place}/", "")
     if built.returncode is None:

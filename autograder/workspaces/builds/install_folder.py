@@ -166,7 +166,7 @@ def without_workspaces(environment: Mapping[str, str], workspace: Path) -> dict[
     return result
 
 
-def merge(lent: Iterable[Path], own: Iterable[Path], install: Path) -> None:
+def merge_prefixes(lent: Iterable[Path], own: Iterable[Path], install: Path) -> None:
     """Copy the course's prefixes (``lent``) into a new install folder, and add the student's files (``own``).
 
     If both have a file with the same path, the course's file is used in ``lib`` (programs and modules), and the
