@@ -244,7 +244,7 @@ def look(
 
 
 def judge(exercise: Exercise, evidence: Evidence, seed: str) -> Verdict:
-    """Return the verdict that follows from the evidence. Call this within :func:`.check_process.limited`."""
+    """Return the verdict that follows from the evidence. Call this only within :func:`limited`."""
     lost = {event.data["costs"]: event for part in evidence for event in part.of("misnamed")}
     criteria = tuple(
         CriterionResult(c.name, c.title, c.points, finding.passed, _cut(finding.expected), _cut(finding.seen))
