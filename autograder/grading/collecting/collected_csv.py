@@ -125,7 +125,7 @@ class Table:
         return edits, notes
 
     def _read(self, earlier: Mapping[str, Edit]) -> tuple[dict[str, Edit], list[str]]:
-        """Return the edits, in the table or earlier, and a sentence about each unclear line or cell."""
+        """Return the earlier edits with those of the table, and a sentence about each unclear line or cell."""
         edits = dict(earlier)
         try:
             data = self.path.read_bytes()

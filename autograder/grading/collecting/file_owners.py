@@ -309,8 +309,8 @@ class StudentOf:
         return next(iter(times)) if len(times) == 1 else None
 
 
-# These are downloads, although their names look like names of files in Canvas:
-# gradebook_ROS_101_2_2025-10-03-14-05-06.zip, as Blackboard makes it, and lab_1_2_submissions.zip.
+# The names of some downloads look like names of files in Canvas: gradebook_ROS_101_2_2025-10-03-14-05-06.zip, as
+# Blackboard makes it, and lab_1_2_submissions.zip.
 _DOWNLOAD = re2.compile(r"^(?:gradebook_.*_\d{4}(?:-\d\d){5}(?: ?\(\d+\))?|\D+_\d_\d_[^_]+)\.zip$")
 
 

@@ -175,7 +175,7 @@ class Submitted:
 
 
 def _existing_file(path: Path) -> bytes | None:
-    """Return the bytes of the file at a path; None if there is no file.
+    """Return the bytes of the file at a path; None if the file does not exist.
 
     Raises:
         UnreadableSubmission: The path is not an ordinary file, or a folder in it is a link.

@@ -42,7 +42,7 @@ class _GradebookLayout:
         columns: The columns before the points: each name with the key of its content in :func:`_facts`, or an empty
             text.
         points: A template for the name of an assignment's column, with the assignment's name and maximum points.
-        possible: The first cell of the line that contains the maximum points; empty if there is no such line.
+        possible: The first cell of the line that contains the maximum points; empty if the file has no such line.
         excused: The word with which the system marks an excused student.
         end: The columns after the points, each with its content.
     """
@@ -205,7 +205,7 @@ def _form_of(header: Sequence[str], lms: str) -> ListForm:
     """Return the form of a list with these columns.
 
     Raises:
-        GradingError: The list has no place for points, or it comes from another system than ``lms``.
+        GradingError: The list has no place for points, or it comes from a system other than ``lms``.
     """
     lower = {name.lower() for name in header}
     forms = [one for one in LIST_FORMS if one.points]
