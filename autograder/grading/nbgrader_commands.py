@@ -3,7 +3,7 @@
 nbgrader's own conversion does not use the judge. It also copies every file of a submission: a pipe would block it
 forever, and a sparse file of a terabyte would fill the disk. So the steps of ``./course grade`` replace it. For this,
 the class's configuration names the exporters of this module. nbgrader makes an exporter before it converts the first
-notebook, and in its constructor, the exporter replaces the class of nbgrader's converter by one of this module.
+notebook, and the exporter's constructor replaces the class of nbgrader's converter by a class of this module.
 """
 
 from __future__ import annotations

@@ -17,7 +17,7 @@ from autograder.grading.cluster import inert_pickle
 
 inert_pickle.install()
 
-import asyncio  # noqa: E402  (whoever imports pickle from here on gets the harmless one)
+import asyncio  # noqa: E402  (modules that import pickle from here on get the harmless one)
 import contextlib  # noqa: E402
 import logging  # noqa: E402
 import resource  # noqa: E402

@@ -125,7 +125,7 @@ class _Matching:
             self._take(next((name for name in same if name not in self._places), ""), place)
 
     def _match_given_parts(self) -> None:
-        """Match an answer that defines no names, such as a text, with a cell that contains the question above it."""
+        """Match an answer that defines no names, such as a text, with a cell that contains the question."""
         for missing in self._missing():
             if not missing.is_answer or _defines(missing) or not self._is_telling(missing):
                 continue

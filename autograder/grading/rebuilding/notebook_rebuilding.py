@@ -8,7 +8,7 @@ tags, outputs and ids of a submission are dropped.
 from __future__ import annotations
 
 import itertools
-import re  # noqa: TID251  (a class of characters each, nothing repeated: there is nothing to try twice)
+import re  # noqa: TID251  (no pattern here repeats anything, so none can backtrack)
 from collections import Counter
 from typing import TYPE_CHECKING
 

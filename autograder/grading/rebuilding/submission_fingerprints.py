@@ -1,8 +1,8 @@
 """Computes a fingerprint of a submission from its files, so that a run can skip submissions that are unchanged.
 
-This saves time, because to read files is much faster than to rebuild the notebooks: a class of a hundred students has a
-thousand notebooks, and in most runs few of them are new. Only if the fingerprint of a submission has changed, its
-notebooks are rebuilt and compared cell by cell.
+This saves time, because reading files is much faster than rebuilding notebooks: a class of a hundred students has a
+thousand notebooks, and in most runs few of them are new. Only if the fingerprint of a submission has changed are its
+notebooks rebuilt and compared cell by cell.
 """
 
 from __future__ import annotations

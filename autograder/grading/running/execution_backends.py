@@ -12,7 +12,7 @@ import functools
 import importlib.util
 import os
 import queue
-import re  # noqa: TID251  (an instructor's address)
+import re  # noqa: TID251  (the text comes from the instructor)
 import threading
 from typing import TYPE_CHECKING
 
