@@ -341,3 +341,41 @@ def strings_of_code(tree: ast.AST) -> Iterator[ast.Constant]:
     for node in ast.walk(tree):
         if isinstance(node, ast.Constant) and isinstance(node.value, str) and id(node) not in texts:
             yield node
+
+
+def missing_references(text: str) -> list[str]:
+    """The names in ``:mod:`…```, ``:func:`…``` and the like that begin with the package and do not exist."""
+    modules = _modules(PACKAGE)
+    wrong = []
+    for name in re.findall(r":\w+:`~?(autograder\.[\w.]+)`", text):
+        parts = name.split(".")
+        known = [".".join(parts[:end]) for end in range(len(parts), 0, -1)]
+        module = next(one for one in known if one in modules)
+        rest = name.removeprefix(module).strip(".").partition(".")[0]
+        if rest and rest not in _defined(modules[module]):
+            wrong.append(name)
+    return wrong
+
+
+@functools.cache
+def _defined(path: Path) -> set[str]:
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    named = (ast.FunctionDef, ast.ClassDef, ast.AsyncFunctionDef)
+    stored = {node.id for node in ast.walk(tree) if isinstance(node, ast.Name)}
+    return stored | {node.name for node in ast.walk(tree) if isinstance(node, named)}
+
+
+def test_the_modules_and_functions_that_a_docstring_names_exist() -> None:
+    wrong = [
+        f"{path.relative_to(ROOT)}: {name}"
+        for path in sorted(PACKAGE.rglob("*.py"))
+        for name in missing_references(path.read_text(encoding="utf-8"))
+    ]
+    assert not wrong, "\n".join(wrong)
+
+
+def test_a_reference_to_a_module_that_has_moved_is_found() -> None:
+    text = (
+        "See :mod:`autograder.verdict`, :class:`autograder.verdict.Verdict` and :mod:`autograder.gone.away`."
+    )
+    assert missing_references(text) == ["autograder.gone.away"]
