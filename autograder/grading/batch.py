@@ -13,13 +13,12 @@ from __future__ import annotations
 import contextlib
 import functools
 import time
-from datetime import UTC
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rich.console import Console
 
-from autograder.grading.batch_work import AskedFor, Work, find_work, without_grade, would_change
+from autograder.grading.batch_work import AskedFor, Work, due_dates, find_work, without_grade, would_change
 from autograder.grading.class_store import ClassStore
 from autograder.grading.classes import gradebook_reading
 from autograder.grading.classes.class_checks import changed_master_warnings, check_configuration, limits_of
@@ -43,7 +42,6 @@ from environment.installation import COMMAND
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
-    from datetime import datetime
 
     from autograder.execution.executed_cells import Execution
     from autograder.grading.classes.result_writer import Writer
@@ -293,17 +291,8 @@ class _Batch:
             if execution_backends.is_sandbox_off(self._directory)
             else "",
             gradebook=gradebook_reading.gradebook_file(url),
-            due=self._due_dates(url),
+            due=due_dates(self._directory, self._asked.assignments or self._cells),
         )
-
-    def _due_dates(self, url: str) -> dict[str, datetime]:
-        """Return the due dates of the chosen assignments by name, in the time zone of the class."""
-        zone, asked = self._directory.time_zone, self._asked.assignments or self._cells
-        return {
-            name: due.replace(tzinfo=UTC).astimezone(zone)
-            for name, due in sorted(gradebook_reading.read_due_dates(url).items())
-            if name in asked
-        }
 
     def _settle(self, work: Work) -> None:
         """Mark a submission as written if the gradebook contains the grades of its present files."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 from dataclasses import dataclass, field, replace
+from datetime import UTC
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -17,7 +18,7 @@ from autograder.grading.table.rows import LATE, Row
 from environment.installation import COMMAND
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping, Sequence
+    from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
     from datetime import datetime
 
     from autograder.execution.executed_cells import Execution
@@ -240,6 +241,15 @@ def _foreseen(
     with contextlib.suppress(ValueError):  # a run rejects the submission if its time is invalid
         at = handed_in_at(work.submission.folder, believed=at) or at
     return replace(entry, handed_in=at, due=entry.due or due, cells=cells)
+
+
+def due_dates(directory: ClassDirectory, assignments: Collection[str]) -> dict[str, datetime]:
+    """Return the due dates of assignments by name, in the time zone of the class."""
+    return {
+        name: due.replace(tzinfo=UTC).astimezone(directory.time_zone)
+        for name, due in sorted(read_due_dates(directory.gradebook_url).items())
+        if name in assignments
+    }
 
 
 def without_grade(row: Row) -> Row:

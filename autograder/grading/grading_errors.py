@@ -126,6 +126,14 @@ class StoreTrouble(GradingError):
         )
 
 
+class NoWorkers(GradingError):
+    """No worker can execute tasks."""
+
+
+class SchedulerGone(GradingError):
+    """The scheduler of the cluster cannot be reached."""
+
+
 _GRADEBOOK_ADVICE = {
     "locked": "Another program has the file open for writing: close it, and run the same command again.",
     "readonly": "Check the owner and the mode of the file and of its folder; then run the same command again.",

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Protocol
 
 import msgspec
 
-from autograder.grading.grading_errors import GradingError
+from autograder.grading.grading_errors import NoWorkers, SchedulerGone
 from autograder.grading.rebuilding.course_version import course_version
 from autograder.grading.running.worker_messages import (
     ADDRESS,
@@ -57,14 +57,6 @@ _EXTRA_SECONDS = 90.0
 """Seconds that a worker may take beyond the time limits of a task before its answer is no longer expected."""
 _MOST_IN_FLIGHT = 2_000
 _MOST_TROUBLES = 3
-
-
-class NoWorkers(GradingError):
-    """No worker can execute tasks."""
-
-
-class SchedulerGone(GradingError):
-    """The scheduler of the cluster cannot be reached."""
 
 
 @dataclass

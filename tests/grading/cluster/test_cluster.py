@@ -20,8 +20,8 @@ from autograder import course
 from autograder.boxes.sandbox import why_impossible
 from autograder.grading.batch import grade
 from autograder.grading.classes.class_directory import ClassDirectory
+from autograder.grading.grading_errors import NoWorkers, SchedulerGone
 from autograder.grading.running import execution_backends, task_dispatcher
-from autograder.grading.running.task_dispatcher import NoWorkers, SchedulerGone
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

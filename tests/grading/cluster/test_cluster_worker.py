@@ -20,9 +20,9 @@ from unittest.mock import Mock
 
 from autograder.cli import cli
 from autograder.grading.cluster import dask_worker
+from autograder.grading.grading_errors import SchedulerGone
 from autograder.grading.running import task_dispatcher
 from autograder.grading.running.execution_backends import connected
-from autograder.grading.running.task_dispatcher import SchedulerGone
 
 if TYPE_CHECKING:
     from pathlib import Path

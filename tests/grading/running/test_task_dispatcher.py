@@ -22,8 +22,9 @@ from fake_link import (
 from tiny_class import FakeEngine, TinyClass
 
 from autograder.grading.classes.class_directory import ClassDirectory
+from autograder.grading.grading_errors import NoWorkers, SchedulerGone
 from autograder.grading.running import execution_backends, task_dispatcher
-from autograder.grading.running.task_dispatcher import ATTEMPTS, NoWorkers, SchedulerGone
+from autograder.grading.running.task_dispatcher import ATTEMPTS
 from autograder.grading.running.worker_messages import (
     Answered,
     Asked,

@@ -10,8 +10,9 @@ import pytest
 from fake_link import FakeLink, honest, joined, make_dispatcher, students, tasks_of_six, troubled
 from tiny_class import FakeEngine, TinyClass
 
+from autograder.grading.grading_errors import NoWorkers
 from autograder.grading.running import task_dispatcher
-from autograder.grading.running.task_dispatcher import ATTEMPTS, NoWorkers
+from autograder.grading.running.task_dispatcher import ATTEMPTS
 from autograder.grading.running.worker_messages import Answered, Asked, Give, Left, News, Offer
 
 if TYPE_CHECKING:
