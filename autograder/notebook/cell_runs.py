@@ -221,8 +221,8 @@ def _defined(source: str) -> set[str]:
 def _error_sentence(error: BaseException) -> str:
     """Return an error's type, line and message as a sentence."""
     message = error.msg if isinstance(error, SyntaxError) else str(error)
-    place = last_student_line(error)
-    line = error.lineno if isinstance(error, SyntaxError) else place and place[1]
+    raised_at = last_student_line(error)
+    line = error.lineno if isinstance(error, SyntaxError) else raised_at and raised_at[1]
     named = type(error).__name__ + (f" in line {line}" if line else "")
     return (f"{named}, {message.rstrip('.?')}" if message else named) + "."
 

@@ -74,11 +74,11 @@ def add_entry_points(workspace: str | Path, entries: Iterable[str], package: str
     merged = list(present)
     for entry in wanted:
         same = {n for n, old in enumerate(merged) if set(_parts(old.text)) & set(_parts(entry))}
-        place = min(same, default=len(merged))
+        index = min(same, default=len(merged))
         kept = next((old for old in merged if " ".join(old.text.split()) == " ".join(entry.split())), None)
         above = tuple(comment for n in sorted(same) for comment in merged[n].above)
         merged = [old for n, old in enumerate(merged) if n not in same]
-        merged.insert(place, replace(kept or _written(entry), above=above))
+        merged.insert(index, replace(kept or _written(entry), above=above))
     if not merged:
         return f"{package} has no executable yet."
     if merged != present:
@@ -180,8 +180,8 @@ def add_dependencies(workspace: str | Path, names: Iterable[str], package: str =
     text = manifest.read_text(encoding="utf-8")
     for name in names:
         if not re.search(rf"<(?:exec_|build_)?depend>\s*{re.escape(name)}\s*<", text):
-            place = re.search(r"\n[ \t]*(?=<(?:test_depend|member_of_group|export)\b|</package>)", text)
-            at = place.start() if place else len(text)
+            following = re.search(r"\n[ \t]*(?=<(?:test_depend|member_of_group|export)\b|</package>)", text)
+            at = following.start() if following else len(text)
             text = f"{text[:at]}\n  <depend>{name}</depend>{text[at:]}"
     manifest.write_text(text, encoding="utf-8")
     found = re.findall(r"<(?:exec_|build_)?depend>\s*(\S+?)\s*<", text)

@@ -88,31 +88,31 @@ def pixels_of(encoded: str) -> int | None:
 
 def _pixels_of_png(data: bytes) -> int | None:
     width, height = struct.unpack_from(">4x4sII", data, 8)[1:] if data[12:16] == b"IHDR" else (0, 0)
-    frames, place = 1, 8
+    frames, offset = 1, 8
     for _ in _parts():
-        if data[place + 4 : place + 8] in (b"", b"IDAT"):
+        if data[offset + 4 : offset + 8] in (b"", b"IDAT"):
             break
-        if data[place + 4 : place + 8] == b"acTL":
-            (frames,) = struct.unpack_from(">I", data, place + 8)
-        place += 12 + int.from_bytes(data[place : place + 4])
+        if data[offset + 4 : offset + 8] == b"acTL":
+            (frames,) = struct.unpack_from(">I", data, offset + 8)
+        offset += 12 + int.from_bytes(data[offset : offset + 4])
     return width * height * max(1, frames) or None
 
 
 def _pixels_of_gif(data: bytes) -> int | None:
     width, height, flags = struct.unpack_from("<HHB", data, 6)
-    place, frames = 13 + _colors(flags), 0
+    offset, frames = 13 + _colors(flags), 0
     parts = _parts()
-    while place < len(data) and data[place] != 0x3B:
-        if data[place] == 0x2C:
-            left, top, wide, high, flags = struct.unpack_from("<HHHHB", data, place + 1)
+    while offset < len(data) and data[offset] != 0x3B:
+        if data[offset] == 0x2C:
+            left, top, wide, high, flags = struct.unpack_from("<HHHHB", data, offset + 1)
             # If a frame extends beyond the picture, a browser makes the whole picture larger.
             width, height, frames = max(width, left + wide), max(height, top + high), frames + 1
-            place += 11 + _colors(flags)
+            offset += 11 + _colors(flags)
         else:
-            place += 2
-        while next(parts) and place < len(data) and data[place]:
-            place += 1 + data[place]
-        place += 1
+            offset += 2
+        while next(parts) and offset < len(data) and data[offset]:
+            offset += 1 + data[offset]
+        offset += 1
     return width * height * frames or None
 
 
@@ -128,16 +128,16 @@ def _colors(flags: int) -> int:
 
 
 def _pixels_of_jpeg(data: bytes) -> int | None:
-    place, parts = 2, _parts()
-    while next(parts) and place < len(data):
-        kind = data[place + 1] if data[place] == 0xFF else 0xFF
+    offset, parts = 2, _parts()
+    while next(parts) and offset < len(data):
+        kind = data[offset + 1] if data[offset] == 0xFF else 0xFF
         if kind == 0xFF or kind in _ALONE:
-            place += 1 if kind == 0xFF else 2
+            offset += 1 if kind == 0xFF else 2
         elif 0xC0 <= kind <= 0xCF and kind not in _NO_SIZE:
-            height, width = struct.unpack_from(">HH", data, place + 5)
+            height, width = struct.unpack_from(">HH", data, offset + 5)
             return height * width or None
         else:
-            place += 2 + max(2, int.from_bytes(data[place + 2 : place + 4]))
+            offset += 2 + max(2, int.from_bytes(data[offset + 2 : offset + 4]))
     return None
 
 
@@ -158,12 +158,12 @@ def _pixels_of_webp(data: bytes) -> int | None:
 
 
 def _chunks(data: bytes) -> Iterator[tuple[bytes, int]]:
-    """Yield the type of each WebP chunk, and the index at which its content starts."""
-    place, parts = 12, _parts()
-    while next(parts) and place + 8 <= len(data):
-        yield data[place : place + 4], place + 8
-        size = int.from_bytes(data[place + 4 : place + 8], "little")
-        place += 8 + size + size % 2
+    """Yield the type of each WebP chunk, and the offset of its content in bytes."""
+    offset, parts = 12, _parts()
+    while next(parts) and offset + 8 <= len(data):
+        yield data[offset : offset + 4], offset + 8
+        size = int.from_bytes(data[offset + 4 : offset + 8], "little")
+        offset += 8 + size + size % 2
 
 
 # Matches the tags of tables as nh3 writes them: the values of attributes are in double quotes, and contain no double

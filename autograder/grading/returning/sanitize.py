@@ -107,13 +107,13 @@ def make_harmless(notebook: NotebookNode, as_they_are: Collection[int] = ()) -> 
     """
     longest = _longest_shown([len(cell.source) for n, cell in enumerate(notebook.cells) if n in as_they_are])
     pictures = PixelBudget()
-    for place, cell in enumerate(notebook.cells):
+    for index, cell in enumerate(notebook.cells):
         if not is_the_masters(cell):
             cell.source = escape_direction_marks(cell.source)
-            if place in as_they_are:
+            if index in as_they_are:
                 cell.source = _cut(cell.source, longest)
             if cell.cell_type == CellType.MARKDOWN:
-                if place in as_they_are:
+                if index in as_they_are:
                     cell.source = as_typed(cell.source)
                 else:
                     cell.source = harmless_markdown(cell.source, _figures(cell))
@@ -122,7 +122,7 @@ def make_harmless(notebook: NotebookNode, as_they_are: Collection[int] = ()) -> 
                         cell.source = as_typed(_PICTURE.sub("picture left out: too large", cell.source))
             elif cell.cell_type == CellType.RAW:
                 cell.update(nbformat_nodes.cell(CellType.MARKDOWN, as_typed(cell.source)) | {"id": cell.id})
-            elif place in as_they_are:
+            elif index in as_they_are:
                 cell.metadata["magics_language"] = (
                     "text"  # so that nbconvert shows the code without highlighting
                 )
@@ -201,8 +201,8 @@ def _figures(cell: Any) -> tuple[str, ...]:
 def _longest_shown(lengths: Iterable[int]) -> int:
     """Return the length to which texts must be cut so that together they have at most ``HARMLESS_LENGTH``."""
     left, fewest_first = HARMLESS_LENGTH, sorted(lengths)
-    for place, length in enumerate(fewest_first):
-        share = left // (len(fewest_first) - place)
+    for index, length in enumerate(fewest_first):
+        share = left // (len(fewest_first) - index)
         if length > share:
             return share
         left -= length

@@ -118,14 +118,14 @@ def compared_answers(
 
 def _own(signs: Sequence[str], common: set[_WordSequence]) -> list[bool]:
     own = [True] * len(signs)
-    for place, sequence in enumerate(_sequences(signs)):
+    for index, sequence in enumerate(_sequences(signs)):
         if sequence in common:
-            own[place : place + SEQUENCE] = [False] * SEQUENCE
+            own[index : index + SEQUENCE] = [False] * SEQUENCE
     return own
 
 
 def _sequences(signs: Sequence[str]) -> Iterator[_WordSequence]:
-    return (tuple(signs[place : place + SEQUENCE]) for place in range(len(signs) - SEQUENCE + 1))
+    return (tuple(signs[index : index + SEQUENCE]) for index in range(len(signs) - SEQUENCE + 1))
 
 
 _WORD = re2.compile(
@@ -176,9 +176,9 @@ def chosen_names(code: Sequence[Word]) -> set[str]:
     """Return the names that code defines: of variables, functions, classes, parameters and attributes."""
     chosen: set[str] = set()
     depth, in_head, in_loop = 0, False, False
-    for place, word in enumerate(code):
-        before = code[place - 1].text if place else ""
-        behind = code[place + 1].text if place + 1 < len(code) else ""
+    for index, word in enumerate(code):
+        before = code[index - 1].text if index else ""
+        behind = code[index + 1].text if index + 1 < len(code) else ""
         if word.text in _OPENING:
             depth += 1
         elif word.text in _CLOSING:
@@ -191,7 +191,7 @@ def chosen_names(code: Sequence[Word]) -> set[str]:
         elif word.kind == "name" and word.text not in _FIXED:
             is_parameter = in_head and depth == 1 and before in ("(", ",", "*", "**")
             # The code defines the name x in the lines x: int = 3, self.x: int = 3, and x, y = 3, 4.
-            first = code[place - 2] if before == "." else word
+            first = code[index - 2] if before == "." else word
             is_declared = behind in (":", ",") and first.opens
             is_assigned = (depth == 0 and (behind == "=" or is_declared)) or behind == ":="
             if before in _BEFORE_A_NEW_NAME or is_parameter or is_assigned or in_loop:

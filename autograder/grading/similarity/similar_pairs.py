@@ -229,10 +229,10 @@ def _candidates(answers: Sequence[ComparedAnswer]) -> list[tuple[ComparedAnswer,
     SEQUENCE`` sequences.
     """
     holders: defaultdict[tuple[str, ...], list[int]] = defaultdict(list)
-    for place, answer in enumerate(answers):
+    for index, answer in enumerate(answers):
         for sequence in answer.sequences:
-            holders[sequence].append(place)
-    meetings = Counter(pair for places in holders.values() for pair in combinations(places, 2))
+            holders[sequence].append(index)
+    meetings = Counter(pair for indexes in holders.values() for pair in combinations(indexes, 2))
     return [
         (answers[left], answers[right])
         for (left, right), sequences in sorted(meetings.items())
@@ -256,13 +256,15 @@ def _common_passages(one: ComparedAnswer, other: ComparedAnswer) -> list[_Passag
         ]
         if not blocks:
             break
-        for here, there, length in blocks:
+        for start, other_start, length in blocks:
             # Replace the passage by one number in the first answer and by another in the second, so that no later
             # comparison finds the passage again.
-            first[here : here + length] = [_FOUND_IN_ONE] * length
-            second[there : there + length] = [_FOUND_IN_OTHER] * length
-            sides = zip(one.own[here : here + length], other.own[there : there + length], strict=True)
-            found.append(_Passage(here, there, tuple(left and right for left, right in sides)))
+            first[start : start + length] = [_FOUND_IN_ONE] * length
+            second[other_start : other_start + length] = [_FOUND_IN_OTHER] * length
+            sides = zip(
+                one.own[start : start + length], other.own[other_start : other_start + length], strict=True
+            )
+            found.append(_Passage(start, other_start, tuple(left and right for left, right in sides)))
     return sorted((passage for passage in found if any(passage.own)), key=lambda passage: passage.first)
 
 

@@ -249,8 +249,8 @@ def _pieces(line: str, passage_of: list[int], last: int) -> tuple[_Piece, ...]:
 
 
 def _near_marks(every: Sequence[_Line]) -> list[_Line]:
-    marked = [place for place, line in enumerate(every) if any(piece.passage for piece in line.pieces)]
-    shown = {near for place in marked for near in range(place - _AROUND, place + _AROUND + 1)}
+    marked = [index for index, line in enumerate(every) if any(piece.passage for piece in line.pieces)]
+    shown = {near for index in marked for near in range(index - _AROUND, index + _AROUND + 1)}
     found: list[_Line] = []
     for is_shown, numbered in groupby(enumerate(every), key=lambda one: one[0] in shown):
         lines = [line for _, line in numbered]

@@ -115,8 +115,8 @@ def read_answers(
     return found
 
 
-def _cells(directory: ClassDirectory, place: str) -> list[NotebookNode]:
-    path = directory.path / place
+def _cells(directory: ClassDirectory, file: str) -> list[NotebookNode]:
+    path = directory.path / file
     try:
         return list(nbformat_nodes.read(path.read_text(encoding="utf-8")).cells)
     except Exception as error:  # nbformat may raise any error of its JSON and schema libraries

@@ -206,12 +206,12 @@ def record_check(verdict: Verdict) -> None:
 
 def _chapter_ended_by(verdict: Verdict) -> tuple[str, float, float] | None:
     """Return the title, points and completion time of the chapter that this check completed; None if there is none."""
-    place = check_journal.session_journal_path()
-    before = check_journal.best(check_journal.entries(place))
-    check_journal.note_check(verdict, place)
-    if place is None or not verdict.passed:
+    journal = check_journal.session_journal_path()
+    before = check_journal.best(check_journal.entries(journal))
+    check_journal.note_check(verdict, journal)
+    if journal is None or not verdict.passed:
         return None
-    after = check_journal.best(check_journal.entries(place))
+    after = check_journal.best(check_journal.entries(journal))
     for chapter in course.chapters(course.root()):
         finished = check_journal.finished(chapter, after)
         if finished is not None and check_journal.finished(chapter, before) is None:
