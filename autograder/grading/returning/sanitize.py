@@ -112,25 +112,33 @@ def make_harmless(notebook: NotebookNode, as_they_are: Collection[int] = ()) -> 
             cell.source = escape_direction_marks(cell.source)
             if index in as_they_are:
                 cell.source = _cut(cell.source, longest)
-            if cell.cell_type == CellType.MARKDOWN:
-                if index in as_they_are:
-                    cell.source = as_typed(cell.source)
-                else:
-                    cell.source = harmless_markdown(cell.source, _figures(cell))
-                    if not pictures.fit(_pictures_of(cell)):
-                        cell.pop("attachments", None)
-                        cell.source = as_typed(_PICTURE.sub("picture left out: too large", cell.source))
-            elif cell.cell_type == CellType.RAW:
-                cell.update(nbformat_nodes.cell(CellType.MARKDOWN, as_typed(cell.source)) | {"id": cell.id})
-            elif index in as_they_are:
-                cell.metadata["magics_language"] = (
-                    "text"  # so that nbconvert shows the code without highlighting
-                )
+                _show_as_typed(cell)
+            else:
+                _make_text_harmless(cell, pictures)
         if cell.cell_type == CellType.CODE:
             shows_verdict = is_check(cell) and is_the_masters(cell)
             outputs = cell.outputs if shows_verdict else map(harmless_output, cell.outputs)
             cell.outputs = [_with_pictures_that_fit(output, pictures) for output in outputs]
     return notebook
+
+
+def _make_text_harmless(cell: NotebookNode, pictures: PixelBudget) -> None:
+    if cell.cell_type == CellType.MARKDOWN:
+        cell.source = harmless_markdown(cell.source, _figures(cell))
+        if not pictures.fit(_pictures_of(cell)):
+            cell.pop("attachments", None)
+            cell.source = as_typed(_PICTURE.sub("picture left out: too large", cell.source))
+    elif cell.cell_type == CellType.RAW:
+        _show_as_typed(cell)
+
+
+def _show_as_typed(cell: NotebookNode) -> None:
+    if cell.cell_type == CellType.CODE:
+        cell.metadata["magics_language"] = "text"  # so that nbconvert shows the code without highlighting
+    elif cell.cell_type == CellType.RAW:
+        cell.update(nbformat_nodes.cell(CellType.MARKDOWN, as_typed(cell.source)) | {"id": cell.id})
+    else:
+        cell.source = as_typed(cell.source)
 
 
 def _pictures_of(cell: NotebookNode) -> list[str]:

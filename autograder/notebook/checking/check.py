@@ -131,9 +131,9 @@ def converse(link: JudgeLink, exercise: str, subject: Any, progress: Progress) -
     if isinstance(first, messages.Collect):
         # A grader builds and runs workspaces and launch files itself, so only their sources are sent.
         send_sources(link.say, subject)
-        return _last_words(exercise, link.hear())
+        return _verdict_in(exercise, link.hear())
     if not isinstance(first, messages.Begin):
-        return _last_words(exercise, first)
+        return _verdict_in(exercise, first)
     run: SubjectRun | PathRun | None = None
     number = 0
 
@@ -182,7 +182,7 @@ def converse(link: JudgeLink, exercise: str, subject: Any, progress: Progress) -
                     case messages.SoFar():
                         progress.known = order.words
                     case messages.Judged() | messages.Refused():
-                        return _last_words(exercise, order)
+                        return _verdict_in(exercise, order)
         finally:
             if run is not None:
                 run.stop()
@@ -234,10 +234,10 @@ def _kind(subject: Any) -> str:
     return "path" if is_path(subject) else "function"
 
 
-def _last_words(exercise: str, words: messages.FromJudge) -> Verdict | None:
-    if isinstance(words, messages.Judged):
-        return words.verdict
-    why = words.why if isinstance(words, messages.Refused) else "the judge refused"
+def _verdict_in(exercise: str, answer: messages.FromJudge) -> Verdict | None:
+    if isinstance(answer, messages.Judged):
+        return answer.verdict
+    why = answer.why if isinstance(answer, messages.Refused) else "the judge refused"
     return not_checked(exercise, exercise, 0.0, why)
 
 
