@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class WatchedRun:
+class TrackedRun:
     """One run of one cell.
 
     Attributes:
@@ -41,17 +41,17 @@ class WatchedRun:
     cell: str
     number: int
 
-    def is_later_run_of(self, other: WatchedRun | None) -> bool:
+    def is_later_run_of(self, other: TrackedRun | None) -> bool:
         """Return True if this is a later run of the same cell as ``other``."""
         return other is not None and self.cell == other.cell and self.number > other.number
 
 
-class CellWatch:
+class CellTracker:
     """Knows which cell is running (``current``). Outside a notebook, ``current`` is always None."""
 
     def __init__(self) -> None:
-        self.current: WatchedRun | None = None
-        self._before_run: list[Callable[[WatchedRun], None]] = []
+        self.current: TrackedRun | None = None
+        self._before_run: list[Callable[[TrackedRun], None]] = []
         self._shell: Any = notebook_shell()
         if self._shell is None:
             return
@@ -63,7 +63,7 @@ class CellWatch:
             request.get("metadata", {}).get("cellId"), request.get("content", {}).get("code", "")
         )
 
-    def before_each_run(self, action: Callable[[WatchedRun], None]) -> None:
+    def before_each_run(self, action: Callable[[TrackedRun], None]) -> None:
         """Register a function that is called before each run of a cell."""
         self._before_run.append(action)
 
@@ -72,9 +72,9 @@ class CellWatch:
         for action in self._before_run:
             action(run)
 
-    def _set_current(self, cell_id: str | None, source: str) -> WatchedRun:
+    def _set_current(self, cell_id: str | None, source: str) -> TrackedRun:
         number = 1 if self.current is None else self.current.number + 1
-        self.current = WatchedRun(_identifier(cell_id, source), number)
+        self.current = TrackedRun(_identifier(cell_id, source), number)
         return self.current
 
 

@@ -65,7 +65,7 @@ def _has_program(package: Path, name: str) -> bool:
 
 
 def _is_empty(module: Path) -> bool:
-    """Return True if a module contains no class, because Lab 1.2's cell has written it but copied no class into it."""
+    """Return True if a module contains no class. Lab 1.2's cell writes such a module if it copies no class into it."""
     return module.is_file() and not _CLASS.search(module.read_text(encoding="utf-8", errors="replace"))
 
 

@@ -210,7 +210,7 @@ class PathRun:
             "FASTDDS_BUILTIN_TRANSPORTS": "UDPv4",
             "PYTHONUNBUFFERED": "1",
         }
-        # The process gets its own session, so that an interrupt of the kernel does not end it: the judge decides that.
+        # The process gets its own session, so that an interrupt of the kernel does not end it. Only the judge ends it.
         self._program = OwnSession([*self._command, *map(str, arguments)], environment)
         self._reader = threading.Thread(target=self._follow, args=(self._program,), daemon=True)
         self._reader.start()

@@ -11,7 +11,7 @@ import threading
 from typing import TYPE_CHECKING, Any
 
 from autograder.notebook.cell_output import let_log_lines_arrive, point_at_raising_lines, say
-from autograder.notebook.cell_runs import CellWatch, WatchedRun
+from autograder.notebook.cell_runs import CellTracker, TrackedRun
 from autograder.notebook.nodes.node_errors import (
     CallbackError,
     CallbackErrors,
@@ -128,7 +128,7 @@ class Background:
 
     def __init__(self, nodes: Sequence[Node], *, threads: int = 1, name: str | None = None) -> None:
         self.name = name
-        self.run: WatchedRun | None = _cells.current
+        self.run: TrackedRun | None = _cells.current
         self._size = threads
         self._label = ", ".join(node_label(node) for node in nodes)
         self._errors = CallbackErrors()
@@ -288,7 +288,7 @@ def _background_of(node: Node) -> Background | None:
     return next((b for b in _running_backgrounds() if any(node is other for other in b.nodes)), None)
 
 
-def _undo_earlier_run(run: WatchedRun) -> None:
+def _undo_earlier_run(run: TrackedRun) -> None:
     """End the nodes of a cell's previous run before the cell is run again. Their messages would mix with the new ones.
 
     A node that was made in another cell is only stopped and not destroyed, because a later cell may use its variable. A
@@ -343,9 +343,9 @@ def destroy_nodes_on(context: Context) -> None:
 
 _running: list[Background] = []
 _lock = threading.Lock()
-_cells = CellWatch()
+_cells = CellTracker()
 _made = KernelNodes(current_run=lambda: _cells.current, before_making=_make_room)
-_made.watch()
+_made.start_recording()
 _cells.before_each_run(_undo_earlier_run)
 prepare_environment()
 point_at_raising_lines()

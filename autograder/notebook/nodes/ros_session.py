@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
     from rclpy.context import Context
 
-    from autograder.notebook.cell_runs import WatchedRun
+    from autograder.notebook.cell_runs import TrackedRun
 
 
 _CHECK_FIELDS = "ROS_PYTHON_CHECK_FIELDS"
@@ -167,7 +167,7 @@ class _KernelNode:
 
     node: Node
     identity: NodeIdentity
-    run: WatchedRun | None
+    run: TrackedRun | None
 
 
 class KernelNodes:
@@ -179,14 +179,14 @@ class KernelNodes:
     """
 
     def __init__(
-        self, current_run: Callable[[], WatchedRun | None], before_making: Callable[[NodeIdentity], None]
+        self, current_run: Callable[[], TrackedRun | None], before_making: Callable[[NodeIdentity], None]
     ) -> None:
         self._current_run = current_run
         self._before_making = before_making
         self._lock = threading.Lock()
-        self._made: list[tuple[weakref.ref[Node], NodeIdentity, WatchedRun | None]] = []
+        self._made: list[tuple[weakref.ref[Node], NodeIdentity, TrackedRun | None]] = []
 
-    def watch(self) -> None:
+    def start_recording(self) -> None:
         """Start recording, by wrapping ``Node.__init__``: rclpy has no other hook for new nodes."""
         plain_init = Node.__init__
 

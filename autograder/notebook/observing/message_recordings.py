@@ -92,7 +92,6 @@ class _Recording:
         self._subscriptions: dict[int, Subscription] = {}
 
     def __enter__(self) -> Self:
-        """Start recording."""
         # Make the node before the file is opened: if ROS is not started, this fails, and no file is overwritten.
         self._node = hidden_node("_recorder")
         try:
