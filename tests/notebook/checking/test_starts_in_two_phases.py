@@ -174,8 +174,8 @@ class NothingYet(Node):
 
 
 PATIENT = """
-from autograder.judge.bench import bench
-bench.SETTLED = dict.fromkeys(bench.SETTLED, 60.0)
+from autograder.judge.bench import subject_presence
+subject_presence.SETTLED = dict.fromkeys(subject_presence.SETTLED, 60.0)
 """
 """Makes a judge wait as long as it ever does for whatever may still come."""
 SOON = 8.0
