@@ -109,16 +109,8 @@ class Velocity:
     forward: float = 0.0
     turn: float = 0.0
 
-    def _within_limits(self) -> Velocity:
-        """Return the velocity, limited to what the motors can do. A value that is NaN becomes 0."""
-        return Velocity(_limited(self.forward, FASTEST), _limited(self.turn, FASTEST_TURN))
-
 
 STILL = Velocity()
-
-
-def _limited(value: float, limit: float) -> float:
-    return 0.0 if math.isnan(value) else min(limit, max(-limit, value))
 
 
 @dataclass(frozen=True)
@@ -138,7 +130,8 @@ class Moved:
 
 def move(pose: Pose, velocity: Velocity, seconds: float, room: _Walls) -> Moved:
     """Return the pose and velocity of the robot after turning and rolling for some seconds. A wall stops it."""
-    speed = velocity._within_limits()
+    # The motors limit both speeds.
+    speed = Velocity(_limited(velocity.forward, FASTEST), _limited(velocity.turn, FASTEST_TURN))
     pieces = max(1, math.ceil(abs(speed.forward) * seconds / _STEP))
     here = pose
     for _ in range(pieces):
@@ -151,6 +144,11 @@ def move(pose: Pose, velocity: Velocity, seconds: float, room: _Walls) -> Moved:
             return Moved(replace(here, heading=there.heading), Velocity(0.0, speed.turn), bumped=True)
         here = there
     return Moved(here, speed)
+
+
+def _limited(value: float, limit: float) -> float:
+    """Return a value between the limit and its negative; 0 if the value is NaN."""
+    return 0.0 if math.isnan(value) else min(limit, max(-limit, value))
 
 
 def towards(pose: Pose, goal: tuple[float, float]) -> Velocity:
