@@ -30,7 +30,7 @@ if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
 
 TOGETHER = ("tests/attacks", "tests/boxes", "tests/execution", "tests/notebook/checking")
 """Folders whose tests share what takes long to make, or mostly wait, so that one process runs them all."""
-APART = ("tests/authoring/test_recording.py", "tests/authoring/test_new_exercise.py")
+APART = ("tests/authoring/test_reference_files.py", "tests/authoring/test_new_exercise.py")
 """Files with long tests that share nothing, so that several processes take them."""
 LONGEST = (
     "tests/judge/test_bank.py",
@@ -40,7 +40,7 @@ LONGEST = (
     "tests/authoring/test_notebooks.py",
     "tests/grading/cluster/test_cluster.py",
     "tests/grading/classes/test_sample_class.py",
-    "tests/authoring/test_recording.py",
+    "tests/authoring/test_reference_files.py",
     "tests/grading/day/test_killed_at_random.py",
     "tests/benchmarks/test_short_run.py",
     "tests/grading/running/test_order_executor.py",

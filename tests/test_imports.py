@@ -56,7 +56,7 @@ NOTEBOOK_MAY_IMPORT = {
     "robot_node": frozenset({"robot_drivers", "robot_motion"}),
     "live_robot": frozenset({"nodes", "observing", "robot_drivers", "robot_motion", "robot_node"}),
 }
-MOST_FILES = 32
+MOST_FILES = 15
 """In one folder of the package: a stranger must be able to read their names."""
 
 

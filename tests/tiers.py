@@ -53,11 +53,11 @@ NIGHTLY = (
     # All notebooks in one folder; two of them are executed each day.
     "tests/masters/test_run_again.py",
     # Recording what builds packages, or a changed exercise; what has changed in truth is recorded in both tiers.
-    "tests/authoring/test_recording.py::test_recording_again_gives_the_same_file[lab_1_2.programs]",
-    "tests/authoring/test_recording.py::test_recording_again_gives_the_same_file[lab_1_3.programs]",
-    "tests/authoring/test_recording.py::test_recording_again_gives_the_same_file[lab_1_4.programs]",
-    "tests/authoring/test_recording.py::test_a_changed_reference_solution_changes_what_is_expected",
-    "tests/authoring/test_recording.py::test_inputs_that_were_changed_and_not_recorded_again_are_noticed",
+    "tests/authoring/test_reference_files.py::test_recording_again_gives_the_same_file[lab_1_2.programs]",
+    "tests/authoring/test_reference_files.py::test_recording_again_gives_the_same_file[lab_1_3.programs]",
+    "tests/authoring/test_reference_files.py::test_recording_again_gives_the_same_file[lab_1_4.programs]",
+    "tests/authoring/test_reference_files.py::test_a_changed_reference_solution_changes_what_is_expected",
+    "tests/authoring/test_reference_files.py::test_inputs_that_were_changed_and_not_recorded_again_are_noticed",
     "tests/grading/rebuilding/test_course_version.py::test_a_changed_byte_in_any_of_them_moves_it",
     # A chapter and an exercise of somebody else's; the first steps of one are in both tiers.
     "tests/authoring/test_new_exercise.py::test_an_exception_of_the_exercise_is_named_with_its_line",
@@ -126,7 +126,7 @@ DRAWS = (
     Draw("tests/attacks/test_attacks.py::test_it_is_defeated[", 1, "-"),
     Draw("tests/test_left_behind.py::test_everything_ends_with_the_command[", 1, "-"),
     Draw("tests/grading/day/test_killed_at_random.py::test_a_command_is_ended_and_goes_on[3-", 1),
-    Draw("tests/authoring/test_recording.py::test_recording_again_gives_the_same_file[", 1),
+    Draw("tests/authoring/test_reference_files.py::test_recording_again_gives_the_same_file[", 1),
     Draw("tests/grading/classes/test_sample_class.py::test_every_sample_earns_what_it_must[", 3),
     Draw("tests/workspaces/test_graded_notebooks.py::test_the_master_gets_full_marks[", 1),
     Draw("tests/workspaces/test_graded_notebooks.py::test_answers_are_judged_as_in_a_terminal[", 1),

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from autograder import exercises
-from autograder.authoring import reference_recording
+from autograder.authoring import reference_files
 from autograder.authoring.answer_bank import Answer, Turn, answers, answers_folder, judge_all, warm_up
 from autograder.authoring.answer_tables import BadTable, CannotEdit
 from autograder.authoring.exercise_faults import still_to_do
@@ -111,7 +111,7 @@ def try_exercise(
         autograder.exercises.UnknownExercise: The exercise does not exist.
         autograder.exercises.BrokenExercise: The exercise's file is not a valid exercise.
         autograder.authoring.answer_tables.BadTable: A table of the exercise's answers cannot be used.
-        autograder.authoring.reference_recording.CannotRecord: The master's solution cannot be recorded.
+        autograder.authoring.reference_files.CannotRecord: The master's solution cannot be recorded.
         NothingToTry: No answer has one of the requested names.
     """
     exercises.get(exercise_id)
@@ -224,7 +224,7 @@ def _refuse_edits_that_do_not_fit(wanted: Sequence[Answer]) -> None:
 
 def _points_of_unsolved(exercise_id: str) -> Iterator[str]:
     """Yield a line for each criterion that a notebook meets as students get it, before they write anything."""
-    verdict = reference_recording.unsolved(exercise_id)
+    verdict = reference_files.unsolved(exercise_id)
     for one in verdict.criteria if verdict is not None else ():
         if one.passed:
             yield (
@@ -236,7 +236,7 @@ def _points_of_unsolved(exercise_id: str) -> Iterator[str]:
 def _is_recorded(exercise_id: str, tell: Callable[[str], object]) -> bool:
     """Return True if the stored reference output equals a new recording. If none is stored, store the new one."""
     is_stored = exercises.reference_path(exercise_id).exists()
-    changed = reference_recording.record([exercise_id], only_check=is_stored, tell=tell)
+    changed = reference_files.record([exercise_id], only_check=is_stored, tell=tell)
     if not (is_stored and changed):
         return True
     tell(

@@ -56,12 +56,12 @@ def execute(notebooks: tuple[str, ...], jobs: int | None, reports: Path | None) 
 )
 def record(exercises: tuple[str, ...], only_check: bool) -> None:
     """Record what the reference solutions do on the wire. The grader compares answers with the recordings."""
-    from autograder.authoring import reference_recording
+    from autograder.authoring import reference_files
 
     need_ros()
     try:
-        changed = reference_recording.record(exercises, only_check=only_check, tell=click.echo)
-    except reference_recording.CannotRecord as error:
+        changed = reference_files.record(exercises, only_check=only_check, tell=click.echo)
+    except reference_files.CannotRecord as error:
         fail(str(error))
     sys.exit(NO if only_check and changed else 0)
 
@@ -127,7 +127,7 @@ def try_exercise(
 ) -> None:
     """Record EXERCISE if it is new, judge its sample answers, right and wrong, and show unexpected results."""
     from autograder import exercises
-    from autograder.authoring import exercise_trial, reference_recording
+    from autograder.authoring import exercise_trial, reference_files
     from autograder.authoring.answer_tables import BadTable
     from autograder.masters.master_files import MasterError
 
@@ -146,7 +146,7 @@ def try_exercise(
         exercises.BrokenExercise,
         exercises.UnknownExercise,
         MasterError,
-        reference_recording.CannotRecord,
+        reference_files.CannotRecord,
         exercise_trial.NothingToTry,
     ) as error:
         fail(str(error))

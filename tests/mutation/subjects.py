@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from autograder import exercises
 from autograder.authoring.answer_bank import Answer, answers
-from autograder.authoring.reference_recording import CannotRecord, program
+from autograder.authoring.reference_files import CannotRecord, program
 from tests.judge.notebooks import verdict_in_notebook
 
 if TYPE_CHECKING:

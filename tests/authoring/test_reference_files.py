@@ -11,7 +11,7 @@ from types import SimpleNamespace
 import pytest
 
 from autograder import exercises
-from autograder.authoring import reference_recording
+from autograder.authoring import reference_files
 from autograder.kit.recipes.own_scenario import Met
 from autograder.verdict import CriterionResult
 from tests.measure import evidence
@@ -104,10 +104,10 @@ def test_a_solution_without_an_endpoint_that_the_recipe_judges_is_named(
     report = SimpleNamespace(reference='{"interface": {"subscription": {}}}', verdict=failed, trouble="")
     exercise = SimpleNamespace(id="lab_8_1.dog", roles=("subscription", "publisher"))
     monkeypatch.setattr(exercises, "get", lambda _: exercise)
-    monkeypatch.setattr(reference_recording, "program", lambda _: "")
-    monkeypatch.setattr(reference_recording, "_judged", lambda *_, **__: (report, ""))
-    with pytest.raises(reference_recording.CannotRecord) as raised:
-        reference_recording.recording(exercise.id)
+    monkeypatch.setattr(reference_files, "program", lambda _: "")
+    monkeypatch.setattr(reference_files, "_judged", lambda *_, **__: (report, ""))
+    with pytest.raises(reference_files.CannotRecord) as raised:
+        reference_files.recording(exercise.id)
     said = str(raised.value)
     assert "The solution has no publisher, which this recipe judges." in said
     assert "Says lost: expected lost, 4 times; seen lost, 0 times" in said
