@@ -32,8 +32,8 @@ COMMANDS = {
         "sleep 7656.5",
         [*COURSE, "check", "lab_1_2.talker", "--", sys.executable, "{folder}/program.py"],
     ),
-    "grade": ("running.executor", [*COURSE, "grade", "{folder}/tiny-class"]),
-    "execute": ("running.executor", [*COURSE, "execute", "lab_1_2", "--reports", "{folder}/reports"]),
+    "grade": ("running.order_executor", [*COURSE, "grade", "{folder}/tiny-class"]),
+    "execute": ("running.order_executor", [*COURSE, "execute", "lab_1_2", "--reports", "{folder}/reports"]),
     "test": ("sleep 7656.5", ["sh", "-c", TESTS]),
     "bank": (
         "talker.answers",
