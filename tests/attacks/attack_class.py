@@ -145,7 +145,7 @@ class Graded:
 
 def _listeners_texts() -> str:
     """Python that draws the texts which the judge sends to a listener: the course is public, its boxes are not."""
-    known = ("SINGLY", "AT_PACE", "TRIES", "KINDS", "GREETING", "_WORDS", "_ELSEWHERE")
+    known = ("SINGLY", "AT_PACE", "TRIES", "_UNUSUAL", "GREETING", "_WORDS", "_ELSEWHERE")
     lines = [f"{name} = {getattr(reported_texts, name)!r}" for name in known]
     return "\n".join(["from random import Random", *lines, inspect.getsource(reported_texts.random_texts)])
 
