@@ -49,7 +49,7 @@ def split_lines(text: AnyStr) -> list[AnyStr]:
     """Return the lines of a text without their line ends. The last line may be incomplete.
 
     A carriage return ends a line, too, because a program may write the same line of a terminal repeatedly. A carriage
-    return at the end of the text may be the first half of a line end (CR LF).
+    return at the end of the text may be the first half of a line end (CR LF), so it stays in the last line.
     """
     end: Any
     back: Any

@@ -224,7 +224,9 @@ def furnish(place: Path, size: int, inodes: int) -> None:
 
 
 def bubblewrap(arguments: Sequence[str], *, hidden_memory: bool) -> tuple[list[str], list[int]]:
-    """Return the beginning of a command line, to be followed by the command, and the descriptors that it needs.
+    """Return the beginning of bubblewrap's command line, and the file descriptors that bubblewrap needs.
+
+    The caller appends the command that runs in the box.
 
     Args:
         arguments: The description of the box (:func:`autograder.boxes.visible_host.box_arguments`).

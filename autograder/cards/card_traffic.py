@@ -127,7 +127,7 @@ def traffic(timeline: Sequence[Moment], *, at_most: int) -> Traffic:
 
 def _part(title: str, simulated: bool, moments: list[Moment], share: int) -> TrafficPart:
     ordered = _few_lanes(sorted(moments, key=lambda moment: moment.t))
-    if len(ordered) <= share + 2:  # do not leave out only one or two moments
+    if len(ordered) <= share + 2:  # one or two moments are not worth a mark that says that some are left out
         return TrafficPart(title, simulated, tuple(ordered))
     # Keep both ends: the beginning shows the pattern and the end shows the outcome. The middle only repeats the
     # pattern, so it is left out, except for important moments.

@@ -212,7 +212,7 @@ class _Batch:
         return [work.submission for work in self._works if not work.written]
 
     def take_back(self) -> None:
-        """Set the grades of the submissions that have to be graded to zero."""
+        """Set to zero the grades of all submissions that this batch still has to grade."""
         if self.unsettled:
             self._writer.take_back(self.unsettled)
 

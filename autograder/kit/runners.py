@@ -370,6 +370,11 @@ def as_run(
 
 
 def _path_of_program(word: str, programs: Sequence[tuple[str, str]]) -> str:
-    """Return the last parts of the path of the program that a module or file defines; empty if it defines none."""
+    """Return the program of a module or file, as ``package/file``; empty if the package has no such program.
+
+    Args:
+        word: The module or file in a traceback.
+        programs: The module and the path of each program of the package.
+    """
     file = word.removesuffix(".py") if word.endswith(".py") else word.replace(".", "/")
     return next((path for module, path in programs if f"/{file}".endswith(f"/{module}")), "")

@@ -221,7 +221,8 @@ def _defined_name(master: Path, cell: MasterCell) -> str:
         raise MasterError(
             master,
             cell.line,
-            f"This solution cell defines {len(names)} functions and classes, so it has no name.",
+            "A solution cell is named after the one function or class that it defines, but this one defines "
+            f"{len(names)}.",
             "Let it define exactly one, or name the cell: ':grade_id: some_name'.",
         )
     return names[0]

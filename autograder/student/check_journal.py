@@ -77,7 +77,11 @@ def journal_path(folder: Path) -> Path:
 
 
 def session_journal_path() -> Path | None:
-    """Return the path of this session's journal: that of ``./course lab``, else that of the course's own chapters."""
+    """Return the path of this session's journal.
+
+    In a session of ``./course lab`` it is the journal that this command chose, otherwise the one beside the course's
+    own chapters.
+    """
     named = os.environ.get(VARIABLE)
     if named is not None:
         return Path(named) if named else None

@@ -35,7 +35,7 @@ REFUSED = {
     "the_stub_does_not_run": (9, "Without its solution the cell is not valid Python", "docstring"),
     "the_solution_is_no_python": (16, "The solution is not valid Python", "Correct this line"),
     "region_in_a_given_cell": (9, "in a cell that is not a solution cell", ":tags: [solution]"),
-    "solution_without_a_name": (9, "it has no name", ":grade_id:"),
+    "solution_without_a_name": (9, "but this one defines", ":grade_id:"),
     "grade_id_with_a_space": (9, "'no good' cannot be a grade_id", "letters"),
     "check_with_another_grade_id": (19, "'other' does not match", "gets 'lab_9_1-double' automatically"),
     "check_of_another_notebook": (19, "does not belong to this notebook", "begin with 'lab_9_1.'"),

@@ -93,7 +93,7 @@ def cell_in(reason: str) -> str:
 
 
 def _of_notebook(place: Place, files: list[Line], folders: ClassFolders) -> Iterator[_Why]:
-    """Yield the state and the reason of each file that a student handed in for one notebook."""
+    """Yield, for each file that a student handed in for one notebook, its state and the reason for that state."""
     by_hand = [one for one in files if one.is_by_hand]
     present = [one for one in by_hand if folders.submitted.content(place) == one.content]
     chosen = present or [one for one in files if one.use == "yes"]

@@ -171,7 +171,7 @@ class _Reading:
                 late=found.late,
                 is_sure=owners.is_sure or bool(written),
             )
-            # Use the assignment in a name only if the class has an assignment with that name.
+            # A file's name may seem to contain an assignment. Believe it only if the class has such an assignment.
             asked = asked or (found.assignment if self.assignments.notebooks(found.assignment) else "")
         # Inside a student's own archive, a name identifies the notebook but not the student.
         name = found.file if found and not arrival.inner else arrival.name

@@ -192,8 +192,9 @@ def fill_list(
     if doubtful:
         sure = " or ".join(name for name in header if name.lower() in form.sure)
         notices.append(
-            f"{', '.join(doubtful)}: another line may be the same student's, so these lines stay as they were. Write "
-            f"what the list has under {sure} for each of these students into the column {lms} of students.csv"
+            f"{', '.join(doubtful)}: each of these lines may belong to the same student as another line, so "
+            f"they stay as they were. For each of these students, copy what the list has under {sure} into the column "
+            f"{lms} of students.csv"
         )
     out = io.StringIO(newline="")
     csv.writer(out, delimiter=delimiter, lineterminator="\n").writerows(rows)

@@ -42,7 +42,7 @@ class LatePolicy(LateSubmissionPlugin):
         Args:
             student_id: The student's id.
             score: The points that were earned.
-            total_seconds_late: The number of seconds after the due date, which includes the student's extension.
+            total_seconds_late: The number of seconds after the due date, which an extension has already moved.
         """
         del student_id  # unused: the due date already includes the student's extension
         if total_seconds_late <= 60 * self.grace_minutes:

@@ -45,7 +45,8 @@ class Row:
 
     Attributes:
         student: The student's id.
-        exercise: The exercise's id; the name of a cell that a person grades; or ``late`` or ``dropped``.
+        exercise: The exercise's id, or the name of a cell that a person grades. In a row that subtracts points for
+            lateness it is ``late``, and in one that subtracts those of a dropped assignment ``dropped``.
         score: The points in the gradebook, including those that a person gave.
         max_score: The maximum points for the exercise.
         state: ``passed``, ``failed``, ``not_checked``, ``not_graded``, ``not_submitted``, ``excused``, ``waits``,

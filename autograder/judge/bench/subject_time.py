@@ -132,7 +132,7 @@ def _ask(recorder: Recorder, client: Any, request: Any, limit: float, *, turns: 
     """Return the answer of a service of the subject; None if the subject's executor does not answer in time.
 
     Args:
-        recorder: The record of the part. Each new event ends a wait for the answer.
+        recorder: The record of the part. At each new event, this function looks whether the answer has come.
         client: The client of the service.
         request: The request.
         limit: Time limit in seconds for the service to appear, and again for each answer.

@@ -184,7 +184,7 @@ def went_deaf(role: str) -> Mistake:
 
 
 def connecting(role: str) -> tuple[Mistake, ...]:
-    """Return the mistakes because of which an endpoint of a role is not connected, most specific first."""
+    """Return the mistakes that can keep the subject's endpoint from being connected, most specific first."""
     qos = [qos_mismatch(role)] if role in ("publisher", "subscription") else []
     return *CRASHES, endpoint_name(role), message_type(role), *qos, *OTHER_CRASHES
 
@@ -201,7 +201,10 @@ def _was_spun(part: Part, role: str) -> bool:
 
 
 def _awaits_in_vain(evidence: Evidence) -> bool:
-    """Return True if, in a run that did not end, the subject spins but never used the last answer that it got."""
+    """Return True if, in a run that did not end, the subject waits for an answer that has come.
+
+    It still spins, but did nothing after its last answer.
+    """
     return any(part.ending is None and something_spins(part) and _left_an_answer(part) for part in evidence)
 
 

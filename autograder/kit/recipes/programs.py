@@ -53,7 +53,7 @@ class LabProgram:
         return f"{self.name}: "
 
     def parts(self, every: Iterable[Part]) -> list[Part]:
-        """Return this program's runs, with the part names of the exercise about its node."""
+        """Return this program's runs. Each is named like the same run in the exercise that checks only the node."""
         own = [part for part in every if part.name.startswith(self.prefix)]
         return [replace(part, name=part.name.removeprefix(self.prefix)) for part in own]
 

@@ -229,7 +229,10 @@ class Hears:
         return Finding(rate.kept, expected, seen)
 
     def _burst(self, evidence: Evidence) -> str:
-        """Return in words the burst with which the publisher began, even if the judge missed it; empty if none."""
+        """Describe the burst of messages with which the publisher began; empty if there was none.
+
+        The number in the first message shows a burst that the judge missed.
+        """
         seen, expected = self.seen(evidence), self.expected(evidence)
         if not seen.counters or not expected.counters:
             return ""

@@ -246,7 +246,7 @@ class SendsGoals(SeenAsItIs):
         )
 
     def _goal_not_succeeded(self, evidence: Evidence) -> Advice | None:
-        """Return advice if the server aborted a goal that should have succeeded, without an exception."""
+        """Return advice if the server aborted a good goal although its callback raised no exception."""
         aborted = [seen for seen in self._good(evidence) if seen.status == ABORTED]
         if not aborted or traceback_of(evidence):
             return None

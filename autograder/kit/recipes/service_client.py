@@ -131,7 +131,10 @@ class Calls:
         return next((part for part in answered if self._is_right(part) and not reports(part)), None)
 
     def _another_sum(self, evidence: Evidence) -> tuple[int, str] | None:
-        """Return the last answer of an unreported run, and the last line with a different number; None if none."""
+        """Return the last answer to the client in a run, and the line with another number that it printed instead.
+
+        None if the client reported the last answer in each run, or printed no other number.
+        """
         part = self._unreported(evidence)
         if part is None:
             return None

@@ -75,7 +75,10 @@ class ServiceType(SeenAsItIs):
         return [(p, i) for p in packages for i in p.interfaces if i.file.rpartition("/")[2] == self._file]
 
     def _texts(self, evidence: Evidence) -> list[tuple[str, str]]:
-        """Return the path and the text of each file with the name from the task, if the report contains the text."""
+        """Return the path and the text of each file with the name that the exercise asks for.
+
+        A file is left out if the report on the workspace does not contain its text.
+        """
         return [(file.file, file.text) for _, file in self._holders(evidence) if file.text is not None]
 
     def has_the_fields(self, evidence: Evidence) -> Finding:

@@ -71,7 +71,7 @@ class Progress:
         self.on_step()
 
     def words(self) -> str:
-        """Return the progress in one or two sentences, with what the judge knows once the check has taken long."""
+        """Return the progress in a sentence. If the check has already taken long, a second one says what is known."""
         seconds = time.monotonic() - self.began
         words = f"Checking: {self.step}, {duration(seconds)} …"
         if seconds < LONG:

@@ -306,7 +306,7 @@ class GraphLayout:
     Attributes:
         centres: The center of each box.
         arrows: The arrows, in the same order as the input.
-        extent: The size of the whole layout, along and across.
+        extent: The size of the whole layout: first in the direction of the arrows, then across it.
     """
 
     centres: Mapping[str, Point]
@@ -318,7 +318,7 @@ def lay_out(sizes: Mapping[str, Point], arrows: Sequence[tuple[str, str]], gap: 
     """Return the positions of boxes and arrows, with coordinates from 0.
 
     Args:
-        sizes: The size of each box, along and across.
+        sizes: The size of each box: first in the direction of the arrows, then across it.
         arrows: Pairs of two boxes: where the arrow begins, and where it ends. Arrows from a box to itself are left out.
         gap: Pixels between two columns.
     """

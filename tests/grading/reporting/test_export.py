@@ -380,7 +380,9 @@ def test_who_takes_the_name_of_somebody_else_in_the_lms_does_not_get_her_points(
     )
     exported = export(graded.path, "canvas", into=gradebook)
     assert [row[-1] for row in rows(graded.path / "export" / "canvas.csv")[1:]] == points
-    assert any("LOVELACE, Ada: another line may be the same student's" in one for one in exported.notices)
+    assert any(
+        "LOVELACE, Ada: each of these lines may belong to the same student" in one for one in exported.notices
+    )
 
 
 def test_a_column_of_another_name_is_named(graded: TinyClass, tmp_path: Path) -> None:
