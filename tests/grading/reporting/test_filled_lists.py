@@ -128,7 +128,7 @@ def test_a_doubtful_line_is_settled_by_what_the_list_has_in_it(klass: TinyClass,
         encoding="utf-8",
     )
     (said,) = export(klass.path, "moodle", into=into).notices
-    assert "Write what the list has under Email address for each" in said
+    assert "copy what the list has under Email address" in said
     (klass.path / "students.csv").write_text("id,first_name,last_name,moodle\nben,Ben,Bär,two@uni.example\n")
     export(klass.path, "moodle", into=into)
     assert [row[-1] for row in rows(klass.path / "export" / "list.csv")[1:]] == ["", "17"]
