@@ -38,7 +38,7 @@ def stray_lines_on_stderr() -> Iterator[None]:
         os.close(kept)
 
 
-class _Chunks(Protocol):
+class Chunks(Protocol):
     """A stream that returns available data without waiting for more."""
 
     def read1(self, size: int, /) -> bytes:
@@ -60,7 +60,7 @@ def split_lines(text: AnyStr) -> list[AnyStr]:
     return [*(piece for line in lines for piece in line.split(back)), *pieces, last + rest[len(begun) :]]
 
 
-def short_lines(stream: _Chunks, limit: int) -> Iterator[bytes]:
+def short_lines(stream: Chunks, limit: int) -> Iterator[bytes]:
     """Yield the lines of a stream as they arrive, each with its line end. A longer line is cut to the limit.
 
     A carriage return ends a line, as in :func:`split_lines`.

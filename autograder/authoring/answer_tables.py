@@ -72,7 +72,7 @@ class BadTable(ValueError):
     """A table of the bank cannot be used. The message names the table, the entry, and what to do."""
 
 
-class _AnswerEntry(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class AnswerEntry(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """The entry of a table for one answer.
 
     Attributes:
@@ -99,7 +99,7 @@ class _AnswerEntry(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     change: str = ""
 
 
-class _AnswerSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class AnswerSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """The settings for all answers of a folder, from its file ``settings.toml``, if it exists.
 
     Attributes:
@@ -122,7 +122,7 @@ class ListedAnswer:
     """
 
     file: Path
-    entry: _AnswerEntry
+    entry: AnswerEntry
     table: Path
 
     @property
@@ -176,7 +176,7 @@ def listed_answers(folder: Path) -> Iterator[ListedAnswer]:
     names = set()
     for kind in ANSWER_KINDS:
         for table in sorted((folder / kind).glob("*.toml")):
-            for name, entry in _read_table(table, dict[str, _AnswerEntry]).items():
+            for name, entry in _read_table(table, dict[str, AnswerEntry]).items():
                 answer = ListedAnswer(folder / kind / name, entry, table)
                 _refuse_unusable(answer, twice=answer.file in names)
                 names.add(answer.file)
@@ -205,14 +205,14 @@ def _refuse_unusable(answer: ListedAnswer, *, twice: bool) -> None:
             raise BadTable(f"{answer.table}: {file.name}: {what}")
 
 
-def answer_settings(folder: Path) -> _AnswerSettings:
+def answer_settings(folder: Path) -> AnswerSettings:
     """Return the settings for all answers of a folder.
 
     Raises:
         BadTable: The file cannot be used.
     """
     file = folder / "settings.toml"
-    return _read_table(file, _AnswerSettings) if file.exists() else _AnswerSettings()
+    return _read_table(file, AnswerSettings) if file.exists() else AnswerSettings()
 
 
 def _read_table(table: Path, kind: type[T]) -> T:

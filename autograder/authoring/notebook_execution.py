@@ -57,7 +57,7 @@ class Executed:
 
     planned: Planned
     execution: Execution
-    found: tuple[_Problem, ...]
+    found: tuple[Problem, ...]
     report: Path | None
 
 
@@ -255,7 +255,7 @@ def _planned(kind: NotebookKind, name: str, notebook: NotebookNode) -> Planned:
 
 
 @dataclass(frozen=True)
-class _Problem:
+class Problem:
     """A problem that was found in an executed notebook.
 
     Attributes:
@@ -267,12 +267,12 @@ class _Problem:
     text: str
 
 
-def problems_of(planned: Planned, execution: Execution) -> list[_Problem]:
+def problems_of(planned: Planned, execution: Execution) -> list[Problem]:
     """Return all problems of a notebook, in the order of its cells; empty if there are none."""
     if execution.trouble:
-        return [_Problem(None, f"the grader had trouble: {execution.trouble}")]
+        return [Problem(None, f"the grader had trouble: {execution.trouble}")]
     return [
-        _Problem(index, text)
+        Problem(index, text)
         for index, (cell, run) in enumerate(zip(planned.task.cells, execution.cells, strict=True))
         for text in _problems_of_cell(planned.kind, cell, run, execution.verdicts.get(index))
     ]
@@ -343,7 +343,7 @@ def _text(output: dict[str, Any]) -> str:
     return str(output.get("text", "")) + str(output.get("data", {}).get("text/plain", ""))
 
 
-def _write_report(folder: Path, planned: Planned, execution: Execution, found: Sequence[_Problem]) -> Path:
+def _write_report(folder: Path, planned: Planned, execution: Execution, found: Sequence[Problem]) -> Path:
     """Write a page about the problems of a notebook into a folder. Return the path of the page."""
     folder.mkdir(parents=True, exist_ok=True)
     path = folder / f"{planned.task.notebook}-{planned.kind}.html"
@@ -358,7 +358,7 @@ def _write_report(folder: Path, planned: Planned, execution: Execution, found: S
     return path
 
 
-def _with_outputs(planned: Planned, execution: Execution, found: Sequence[_Problem]) -> NotebookNode:
+def _with_outputs(planned: Planned, execution: Execution, found: Sequence[Problem]) -> NotebookNode:
     notebook = nbformat_nodes.copied(planned.notebook)
     cells = []
     for index, cell in enumerate(notebook.cells):
@@ -374,7 +374,7 @@ def _with_outputs(planned: Planned, execution: Execution, found: Sequence[_Probl
     return notebook
 
 
-def _summary(planned: Planned, found: Sequence[_Problem]) -> str:
+def _summary(planned: Planned, found: Sequence[Problem]) -> str:
     lines = ""
     for problem in found:
         text = html.escape(problem.text)

@@ -154,7 +154,7 @@ class Box:
     @property
     def lost(self) -> bool:
         """True if the supervisor has ended, and with it this box. An exit code then says nothing about student code."""
-        return self.supervision._lost
+        return self.supervision.lost
 
     def end(self) -> int:
         """Kill the box, and wait until none of its processes is alive. This may be called twice.
@@ -165,11 +165,11 @@ class Box:
         Raises:
             ChannelClosed: The box did not end in time, or the supervisor has ended.
         """
-        return self.supervision._end(self.name)
+        return self.supervision.end(self.name)
 
     def wait_end(self) -> int:
         """Wait until the box ends by itself; otherwise like :meth:`end`."""
-        return self.supervision._wait_end(self.name)
+        return self.supervision.wait_end(self.name)
 
 
 class Supervision:
@@ -216,16 +216,16 @@ class Supervision:
         return box
 
     @property
-    def _lost(self) -> bool:
+    def lost(self) -> bool:
         return self._channel.hung_up
 
-    def _end(self, name: str) -> int:
+    def end(self, name: str) -> int:
         with self._turn:
             if name not in self._ended:
                 self._channel.send({"say": "kill", "name": name})
-            return self._wait_end(name)
+            return self.wait_end(name)
 
-    def _wait_end(self, name: str) -> int:
+    def wait_end(self, name: str) -> int:
         with self._turn:
             while name not in self._ended:
                 self._take(*self._channel.receive(ANSWER_SECONDS))
@@ -242,7 +242,7 @@ class Supervision:
         """End all boxes, and wait until none of their processes is alive. This may be called twice."""
         try:
             for name in list(self._boxes):
-                self._end(name)
+                self.end(name)
         except ChannelClosed:
             pass  # the supervisor has ended, and its boxes with it
         finally:

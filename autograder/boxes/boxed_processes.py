@@ -93,7 +93,7 @@ class ForkedProcess:
         """Kill the process, which then counts as lost, but do not wait for its end. Any thread may call this."""
         self._channel.hang_up()
 
-    def _end_box(self) -> None:
+    def end_box(self) -> None:
         """Kill every process in the box. The exit status of this process can still be read."""
         if self._box is not None:
             with contextlib.suppress(OSError):
@@ -101,7 +101,7 @@ class ForkedProcess:
 
     def end(self) -> None:
         """Kill the process and everything that it started in its box. This may be called twice."""
-        self._end_box()
+        self.end_box()
         if self._channel.fileno() < 0:
             return
         if self.alive:
@@ -240,7 +240,7 @@ class WarmCommand:
         process = self._process.fileno()
         ready = select.select([self._output, process], [], [], within)[0]
         if process in ready:
-            self._process._end_box()  # processes left behind may hold the output open, or write forever
+            self._process.end_box()  # processes left behind may hold the output open, or write forever
         return os.read(self._output, 1 << 16) if ready else None
 
     def exit_code(self) -> int | None:
@@ -249,7 +249,7 @@ class WarmCommand:
         Call this only after the end of the output. The result is None if the exit code is unknown.
         """
         if not self._process.wait(_CLOSING_SECONDS):
-            self._process._end_box()  # the command closed its output but goes on; this is the last chance to stop it
+            self._process.end_box()  # the command closed its output but goes on; this is the last chance to stop it
             self._process.wait(ANSWER_SECONDS)
         status = self._process.status
         if status is None:

@@ -104,7 +104,7 @@ class CriterionRow:
     points: str
     unit: str
     weight: str
-    difference: tuple[_TextPiece, ...]
+    difference: tuple[TextPiece, ...]
 
     @classmethod
     def of(cls, criterion: CriterionResult, form: Form) -> CriterionRow:
@@ -120,7 +120,7 @@ class CriterionRow:
             points=f"{card_wording.points(earned)} of {card_wording.points(criterion.points)}",
             unit=card_wording.unit(criterion.points),
             weight=card_wording.points(max(criterion.points, 0.1)),
-            difference=tuple(_TextPiece(one.kind, one_line(one.text, 200, mark=form.mark)) for one in pieces),
+            difference=tuple(TextPiece(one.kind, one_line(one.text, 200, mark=form.mark)) for one in pieces),
         )
 
 
@@ -244,7 +244,7 @@ class _DiffTag(StrEnum):
 
 
 @dataclass(frozen=True)
-class _TextPiece:
+class TextPiece:
     """A sequence of characters, all equal in both texts, all missing, or all too much."""
 
     kind: _DiffTag
@@ -259,7 +259,7 @@ class _TextPiece:
         return f"[{text}]" if self.kind is _DiffTag.MISSING else f"{{{text}}}"
 
 
-def difference(criterion: CriterionResult) -> tuple[_TextPiece, ...]:
+def difference(criterion: CriterionResult) -> tuple[TextPiece, ...]:
     """Return the difference between the first quoted text that was seen and the first one that was expected.
 
     The result is empty if the criterion is met or if one side has no quoted text. It is also empty if the two texts are
@@ -273,12 +273,12 @@ def difference(criterion: CriterionResult) -> tuple[_TextPiece, ...]:
     return _compared(expected[1], seen[1])
 
 
-def marked(pieces: Iterable[_TextPiece]) -> str:
+def marked(pieces: Iterable[TextPiece]) -> str:
     """Return all pieces as one text, with brackets around what is missing: ``"Hello[,] world[!] 0"``."""
     return "".join(piece.marked for piece in pieces)
 
 
-def _compared(expected: str, seen: str) -> tuple[_TextPiece, ...]:
+def _compared(expected: str, seen: str) -> tuple[TextPiece, ...]:
     if expected == seen or max(len(expected), len(seen)) > _LONGEST_COMPARED:
         return ()
     matcher = difflib.SequenceMatcher(None, expected, seen, autojunk=False)
@@ -288,10 +288,10 @@ def _compared(expected: str, seen: str) -> tuple[_TextPiece, ...]:
     for operation, a1, a2, b1, b2 in matcher.get_opcodes():
         fills_in = expected[a1:a2] == _ANY_NUMBER and seen[b1:b2].isdigit()
         if operation == "equal" or fills_in:
-            found.append(_TextPiece(_DiffTag.SAME, seen[b1:b2]))
+            found.append(TextPiece(_DiffTag.SAME, seen[b1:b2]))
             continue
         if operation in ("delete", "replace"):
-            found.append(_TextPiece(_DiffTag.MISSING, expected[a1:a2]))
+            found.append(TextPiece(_DiffTag.MISSING, expected[a1:a2]))
         if operation in ("insert", "replace"):
-            found.append(_TextPiece(_DiffTag.EXTRA, seen[b1:b2]))
+            found.append(TextPiece(_DiffTag.EXTRA, seen[b1:b2]))
     return tuple(found)

@@ -100,7 +100,7 @@ class Picture:
     """
 
     lanes: tuple[Lane, ...]
-    ticks: tuple[_Tick, ...]
+    ticks: tuple[Tick, ...]
     axis_y: float
     width: int
     height: float
@@ -128,7 +128,7 @@ def picture(part: TrafficPart, width: int = WIDTH) -> Picture:
         lanes.append(lane)
     return Picture(
         lanes=tuple(lanes),
-        ticks=tuple(_Tick(_percent(tick.x, width), tick.text, tick.anchor) for tick in axis.ticks()),
+        ticks=tuple(Tick(_percent(tick.x, width), tick.text, tick.anchor) for tick in axis.ticks()),
         axis_y=bottom,
         height=bottom + _AXIS_HEIGHT + _READING_HEIGHT,
         summary=card_wording.part_in_words(part),
@@ -298,7 +298,7 @@ TURNS = "one after the other"
 
 
 @dataclass(frozen=True)
-class _Tick:
+class Tick:
     """A tick of the axis: its distance from the left in pixels, its text, and the text's ``text-anchor``."""
 
     x: float
@@ -347,10 +347,10 @@ class _Axis:
         """Return the distance from the left, in pixels, of a position."""
         return _MARGIN + (position - self.start) / (self.end - self.start) * (self.right - _MARGIN)
 
-    def ticks(self) -> Iterator[_Tick]:
+    def ticks(self) -> Iterator[Tick]:
         """Yield ticks at round values that cover the axis, including the space to the right of the last moment."""
         if not self.seconds:
-            yield _Tick(0.0, TURNS, "start")
+            yield Tick(0.0, TURNS, "start")
             return
         edge = self.start + (self.width - 3 * _MARGIN) / (self.right - _MARGIN) * (self.end - self.start)
         step = round_step((edge - self.start) * 100 / self.width)
@@ -360,7 +360,7 @@ class _Axis:
             value = number * step
             text = f"{value * 1000:.{decimals}f} ms" if short else f"{value:.{decimals}f} s"
             x = self.x(value)
-            yield _Tick(x, text, "start" if x < len(text) * _CHARACTER_WIDTH / 2 else "middle")
+            yield Tick(x, text, "start" if x < len(text) * _CHARACTER_WIDTH / 2 else "middle")
 
 
 def _positions(part: TrafficPart) -> list[float]:

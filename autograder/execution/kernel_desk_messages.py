@@ -107,7 +107,7 @@ class Result(Display, frozen=True, tag="execute_result"):
     execution_count: None
 
 
-class _Error(_Output, frozen=True, tag="error"):
+class ErrorOutput(_Output, frozen=True, tag="error"):
     """The error that ended a cell."""
 
     ename: str
@@ -126,7 +126,7 @@ class DeskAnswer(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
     number: int
     said: Said
-    outputs: Mapping[int, Sequence[Stream | Display | Result | _Error]]
+    outputs: Mapping[int, Sequence[Stream | Display | Result | ErrorOutput]]
 
 
 def admitted_answer(line: bytes, orders: range, cells: Collection[int]) -> DeskAnswer:

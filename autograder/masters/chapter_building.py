@@ -41,7 +41,7 @@ _NOTEBOOK = ".ipynb"
 
 
 @dataclass(frozen=True)
-class _BuildReport:
+class BuildReport:
     """What a build did with each chapter notebook, solution file and README, or what it would do in check mode.
 
     Attributes:
@@ -65,7 +65,7 @@ class _BuildReport:
         return not (self.stale or self.edited or self.orphans)
 
 
-def build(root: Path, *, check: bool = False, points: Points = exercise_points) -> _BuildReport:
+def build(root: Path, *, check: bool = False, points: Points = exercise_points) -> BuildReport:
     """Build the chapters of the course in ``root`` from its masters.
 
     All masters are read before the first notebook is written, so that a bad master changes nothing.
@@ -91,11 +91,11 @@ def build(root: Path, *, check: bool = False, points: Points = exercise_points) 
         found[_settle(path, text, check=check)].append(path)
     solutions = [path for master in cells for path in sorted(master.parent.glob(f"*{SOLUTION}"))]
     orphans = [path for path in (*chapter_notebooks(root), *solutions) if path not in texts]
-    return _BuildReport(**{state: tuple(paths) for state, paths in found.items()}, orphans=tuple(orphans))
+    return BuildReport(**{state: tuple(paths) for state, paths in found.items()}, orphans=tuple(orphans))
 
 
 def _settle(path: Path, text: str, *, check: bool) -> str:
-    """Write one file if necessary and allowed. Return the name of the field of :class:`_BuildReport` for this file."""
+    """Write one file if necessary and allowed. Return the name of the field of :class:`BuildReport` for this file."""
     if path.exists() and path.read_bytes() == text.encode():
         return "unchanged"
     if path.suffix == _NOTEBOOK and holds_work(path):

@@ -52,7 +52,7 @@ _ONE_THING = "A cell may ask for one thing only: split it into two cells."
 
 
 @dataclass(frozen=True)
-class _Region:
+class Region:
     """A solution cell, divided into parts. Each part is a tuple of lines, without the two markers."""
 
     before: tuple[str, ...]
@@ -76,7 +76,7 @@ def mentions_a_region(source: str) -> bool:
     return "BEGIN SOLUTION" in source or "END SOLUTION" in source
 
 
-def find_region(source: str) -> _Region:
+def find_region(source: str) -> Region:
     """Split a solution cell into its parts.
 
     Raises:
@@ -97,7 +97,7 @@ def find_region(source: str) -> _Region:
     for offset, line in enumerate(lines):
         if "TODO" in line and offset != begin + 1:
             raise CellError(offset, "A second TODO in one cell.", _ONE_THING)
-    return _Region(
+    return Region(
         before=tuple(lines[:begin]),
         stub=tuple(inside[:length]),
         answer=tuple(inside[length:]),

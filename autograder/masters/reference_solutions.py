@@ -37,7 +37,7 @@ _MAX_WIDTH = 140
 
 
 @dataclass(frozen=True)
-class _ReferenceSolution:
+class ReferenceSolution:
     """The reference solution of an exercise.
 
     Attributes:
@@ -53,7 +53,7 @@ class _ReferenceSolution:
 
 def reference_source(
     master: Path, exercise: str, *, points: Points = exercise_points, solved: bool = True
-) -> _ReferenceSolution:
+) -> ReferenceSolution:
     """Return a program that defines everything that a notebook defines before the check of ``exercise``.
 
     If ``solved`` is false, the solution cells are as students get them.
@@ -70,7 +70,7 @@ def reference_source(
         if named.check is not None and named.check.exercise == exercise:
             shell = named.check.is_path
             parts = [part for cell in cells for part in _program_parts(cell, shell=shell, solved=solved)]
-            return _ReferenceSolution("\n\n".join(parts) + "\n", named.check.subject)
+            return ReferenceSolution("\n\n".join(parts) + "\n", named.check.subject)
         cells.append(named.cell)
     raise MasterError(master, None, f"No cell checks '{exercise}'.", f'Write one: check("{exercise}", …).')
 

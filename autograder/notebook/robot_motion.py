@@ -26,7 +26,7 @@ class _Wall:
     start: Point
     end: Point
 
-    def _distance_to(self, point: Point) -> float:
+    def distance_to(self, point: Point) -> float:
         """Return the distance in meters from a point to the nearest point of this wall."""
         (x1, y1), (x2, y2) = self.start, self.end
         along = ((point[0] - x1) * (x2 - x1) + (point[1] - y1) * (y2 - y1)) / math.dist(
@@ -35,7 +35,7 @@ class _Wall:
         nearest = min(1.0, max(0.0, along))
         return math.dist(point, (x1 + nearest * (x2 - x1), y1 + nearest * (y2 - y1)))
 
-    def _distance_along(self, origin: Point, direction: Point) -> float:
+    def distance_along(self, origin: Point, direction: Point) -> float:
         """Return the distance in meters from a point to this wall in a direction of length 1; infinity for a miss."""
         wall_x, wall_y = self.end[0] - self.start[0], self.end[1] - self.start[1]
         across = direction[0] * wall_y - direction[1] * wall_x
@@ -48,7 +48,7 @@ class _Wall:
 
 
 @dataclass(frozen=True)
-class _Walls:
+class Walls:
     """The walls around the robot.
 
     Attributes:
@@ -65,19 +65,19 @@ class _Walls:
 
     def clearance(self, point: Point) -> float:
         """Return the distance in meters from a point to the nearest wall."""
-        return min(wall._distance_to(point) for wall in self.walls)
+        return min(wall.distance_to(point) for wall in self.walls)
 
     def ranges(self, origin: Point, angles: tuple[float, ...]) -> list[float]:
         """Return the distance in meters from a point to the first wall at each angle (in radians from the x axis)."""
         rays = [(math.cos(angle), math.sin(angle)) for angle in angles]
-        return [min(wall._distance_along(origin, ray) for wall in self.walls) for ray in rays]
+        return [min(wall.distance_along(origin, ray) for wall in self.walls) for ray in rays]
 
 
-def _two_rooms() -> _Walls:
+def _two_rooms() -> Walls:
     corners: tuple[Point, ...] = ((0, 0), (6, 0), (6, 4), (0, 4))
     outer = tuple(_Wall(corner, corners[(i + 1) % 4]) for i, corner in enumerate(corners))
     beside_the_door = (_Wall((4, 0), (4, 1.4)), _Wall((4, 2.6), (4, 4)))
-    return _Walls(6.0, 4.0, (*outer, *beside_the_door), door=(4.0, 2.0))
+    return Walls(6.0, 4.0, (*outer, *beside_the_door), door=(4.0, 2.0))
 
 
 ROOM = _two_rooms()
@@ -128,7 +128,7 @@ class Moved:
     bumped: bool = False
 
 
-def move(pose: Pose, velocity: Velocity, seconds: float, room: _Walls) -> Moved:
+def move(pose: Pose, velocity: Velocity, seconds: float, room: Walls) -> Moved:
     """Return the pose and velocity of the robot after turning and rolling for some seconds. A wall stops it."""
     # The motors limit both speeds.
     speed = Velocity(_limited(velocity.forward, FASTEST), _limited(velocity.turn, FASTEST_TURN))

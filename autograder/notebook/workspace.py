@@ -32,7 +32,7 @@ MAX_LOG = 4_000
 
 
 @dataclass(frozen=True, repr=False)
-class _WorkspaceBuild:
+class WorkspaceBuild:
     """The result of `build_workspace`, which a notebook shows below the cell.
 
     Attributes:
@@ -71,7 +71,7 @@ class _WorkspaceBuild:
         return f"<p><strong>Not built.</strong> <code>{line}</code></p>{whole}"
 
 
-def build_workspace(folder: str | os.PathLike[str] = "ros2_ws") -> _WorkspaceBuild:
+def build_workspace(folder: str | os.PathLike[str] = "ros2_ws") -> WorkspaceBuild:
     """Build a workspace as ``colcon build`` does, and make its packages available in this kernel.
 
     Sources that did not change are not built again. The packages are in the workspace's ``install`` folder, which a
@@ -84,12 +84,12 @@ def build_workspace(folder: str | os.PathLike[str] = "ros2_ws") -> _WorkspaceBui
     """
     made = OwnBuilds().build(describe_workspace(Path(folder)), None)
     if not made.ok:
-        return _WorkspaceBuild(made)
+        return WorkspaceBuild(made)
     try:
         install = copy_to_workspace(made)
     except CannotCopyBuild as error:
-        return _WorkspaceBuild(made, str(error))
-    return _WorkspaceBuild(made, _use(package_prefixes(install), made))
+        return WorkspaceBuild(made, str(error))
+    return WorkspaceBuild(made, _use(package_prefixes(install), made))
 
 
 def _use(prefixes: list[Path], made: Build) -> str:

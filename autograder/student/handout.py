@@ -103,7 +103,7 @@ class CannotHandOut(Exception):
 
 
 @dataclass(frozen=True)
-class _HandOut:
+class HandOut:
     """A hand-out that was made.
 
     Attributes:
@@ -124,7 +124,7 @@ def hand_out(
     assignments: Collection[str] = (),
     as_zip: bool = False,
     with_solutions: bool = False,
-) -> _HandOut:
+) -> HandOut:
     """Make the hand-out for a class.
 
     Args:
@@ -157,7 +157,7 @@ def hand_out(
     sizes = [
         len(content) if isinstance(content, bytes) else content.stat().st_size for content in files.values()
     ]
-    return _HandOut(place, len(files), sum(sizes))
+    return HandOut(place, len(files), sum(sizes))
 
 
 def _wanted(chapters: Sequence[course.Chapter], names: Collection[str]) -> list[course.Chapter]:

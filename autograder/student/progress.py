@@ -51,7 +51,7 @@ class _ExerciseStanding:
 
 
 @dataclass(frozen=True)
-class _NotebookStanding:
+class NotebookStanding:
     """A notebook of a chapter, with the student's progress.
 
     Attributes:
@@ -93,7 +93,7 @@ class _NotebookStanding:
 
 
 @dataclass(frozen=True)
-class _ChapterStanding:
+class ChapterStanding:
     """A chapter, with the student's progress.
 
     Attributes:
@@ -105,7 +105,7 @@ class _ChapterStanding:
 
     name: str
     title: str
-    notebooks: tuple[_NotebookStanding, ...]
+    notebooks: tuple[NotebookStanding, ...]
     finished: float | None
 
     @property
@@ -139,8 +139,8 @@ class Standing:
         begun: True if the student has begun any notebook.
     """
 
-    chapters: tuple[_ChapterStanding, ...]
-    following: _NotebookStanding | None
+    chapters: tuple[ChapterStanding, ...]
+    following: NotebookStanding | None
     begun: bool
 
 
@@ -165,7 +165,7 @@ def standing(root: Path, folder: Path, entries: Sequence[JournalEntry]) -> Stand
     return Standing(chapters, _following(notebooks), begun)
 
 
-def _following(notebooks: Sequence[_NotebookStanding]) -> _NotebookStanding | None:
+def _following(notebooks: Sequence[NotebookStanding]) -> NotebookStanding | None:
     """Return the notebook to continue with; None if all are done.
 
     This is the notebook that the student last worked on. If that is done, it is the next notebook that is not done, in
@@ -183,7 +183,7 @@ def _chapter(
     reached: dict[str, JournalEntry],
     read: dict[str, bool],
     last: dict[str, JournalEntry],
-) -> _ChapterStanding:
+) -> ChapterStanding:
     notebooks = []
     for lab in chapter.labs:
         title, minutes = _head(lab)
@@ -194,9 +194,9 @@ def _chapter(
         touched = bool(saved) or (entry is not None and entry.kind != "reset")
         worked = max(saved, entry.time if entry is not None else 0.0)
         marked = read.get(lab.name, False)
-        notebooks.append(_NotebookStanding(lab.name, title, minutes, shown, known, marked, touched, worked))
+        notebooks.append(NotebookStanding(lab.name, title, minutes, shown, known, marked, touched, worked))
     finished = check_journal.finished(chapter, reached)
-    return _ChapterStanding(chapter.folder.name, chapter.title, tuple(notebooks), finished)
+    return ChapterStanding(chapter.folder.name, chapter.title, tuple(notebooks), finished)
 
 
 def _is_changed(notebook: Path, lab: Path) -> bool:
@@ -286,7 +286,7 @@ def _environment() -> Environment:
     def own_file(name: str) -> Markup:
         return Markup(files("autograder.student").joinpath(name).read_text(encoding="utf-8"))
 
-    def drawn(chapter: _ChapterStanding) -> Markup:
+    def drawn(chapter: ChapterStanding) -> Markup:
         return Markup(certificate_svg(chapter.title, chapter.possible, chapter.finished or 0.0))
 
     helpers: dict[str, Any] = {
@@ -317,7 +317,7 @@ def standing_text(standing: Standing) -> str:
 MARKS = {"done": "[x]", "begun": "[~]", "new": "[ ]"}
 
 
-def _chapter_text(chapter: _ChapterStanding) -> list[str]:
+def _chapter_text(chapter: ChapterStanding) -> list[str]:
     width = max((len(one.title) for one in chapter.notebooks), default=0)
     lines = [chapter.title, points_of(chapter.points, chapter.possible), ""]
     for one in chapter.notebooks:

@@ -31,15 +31,13 @@ class _Result(_Display, frozen=True, forbid_unknown_fields=True, tag="execute_re
     execution_count: int | None
 
 
-class _ErrorOutput(
-    msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag_field="output_type", tag="error"
-):
+class _Error(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag_field="output_type", tag="error"):
     ename: str
     evalue: str
     traceback: list[str]
 
 
-_OUTPUT: Any = _Stream | _Display | _Result | _ErrorOutput
+_OUTPUT: Any = _Stream | _Display | _Result | _Error
 
 
 def notebook(cells: list[NotebookNode], metadata: dict[str, Any]) -> NotebookNode:

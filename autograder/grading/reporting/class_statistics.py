@@ -39,7 +39,7 @@ _BANDS = 10
 
 
 @dataclass(frozen=True)
-class _Band:
+class Band:
     """One of ten equal ranges of points, with the students in it.
 
     Attributes:
@@ -53,7 +53,7 @@ class _Band:
     students: tuple[str, ...]
 
 
-def bands(table: ClassTable) -> list[_Band]:
+def bands(table: ClassTable) -> list[Band]:
     """Return the distribution of total points in ten bands, without students who have no points."""
     found: dict[int, list[str]] = defaultdict(list)
     for student in handed_in(table):
@@ -63,7 +63,7 @@ def bands(table: ClassTable) -> list[_Band]:
         share = points / most if most else 0.0
         found[max(0, min(_BANDS - 1, int(share * _BANDS + 1e-9)))].append(student)
     width = 100 // _BANDS
-    return [_Band(place * width, (place + 1) * width, tuple(found[place])) for place in range(_BANDS)]
+    return [Band(place * width, (place + 1) * width, tuple(found[place])) for place in range(_BANDS)]
 
 
 @dataclass(frozen=True)
@@ -82,7 +82,7 @@ class _CriterionFigures:
 
 
 @dataclass(frozen=True)
-class _ItemFigures:
+class ItemFigures:
     """The statistics of one exercise, over the students who handed it in.
 
     Attributes:
@@ -109,7 +109,7 @@ class _ItemFigures:
     criteria: tuple[_CriterionFigures, ...] = ()
 
 
-def items(table: ClassTable, store: ClassStore) -> list[_ItemFigures]:
+def items(table: ClassTable, store: ClassStore) -> list[ItemFigures]:
     """Return the statistics of each exercise.
 
     Args:
@@ -126,7 +126,7 @@ def items(table: ClassTable, store: ClassStore) -> list[_ItemFigures]:
         mean = statistics.fmean(scores)
         others = [sum(row.score for row in table.of(one.student) if _key(row) != key) for one in rows]
         found.append(
-            _ItemFigures(
+            ItemFigures(
                 name,
                 most,
                 len(rows),
@@ -172,7 +172,7 @@ def _criteria(table: ClassTable, store: ClassStore) -> dict[tuple[str, str], lis
 
 
 @dataclass(frozen=True)
-class _MistakeFigures:
+class MistakeFigures:
     """A mistake that was recognized, with the students who made it.
 
     Attributes:
@@ -190,7 +190,7 @@ class _MistakeFigures:
     students: tuple[str, ...]
 
 
-def mistakes(table: ClassTable) -> list[_MistakeFigures]:
+def mistakes(table: ClassTable) -> list[MistakeFigures]:
     """Return the recognized mistakes with the students who made them, the most common mistake first."""
     found: dict[tuple[str, str, str], list[Row]] = defaultdict(list)
     for row in table.rows:
@@ -198,7 +198,7 @@ def mistakes(table: ClassTable) -> list[_MistakeFigures]:
             found[row.assignment, row.exercise, row.diagnosis].append(row)
     names = columns(table.rows)
     figures = [
-        _MistakeFigures(
+        MistakeFigures(
             assignment, names[assignment, exercise], key, rows[0].reason, tuple(row.student for row in rows)
         )
         for (assignment, exercise, key), rows in found.items()

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class _Exported:
+class Exported:
     """The files that an export wrote.
 
     Attributes:
@@ -56,7 +56,7 @@ def export(
     absent_zero: bool = False,
     columns: Mapping[str, str] | None = None,
     sections: Sequence[str] = (),
-) -> _Exported:
+) -> Exported:
     """Write points and feedback in the format of an LMS.
 
     Args:
@@ -114,7 +114,7 @@ def export(
             f"{', '.join(table.stale[:5])}{' …' if len(table.stale) > 5 else ''}. "
             f"Grade first: {course_command('grade', path)}"
         )
-    return _Exported(tuple(written), tuple(notices))
+    return Exported(tuple(written), tuple(notices))
 
 
 def _assignments(table: ClassTable, wanted: Sequence[str]) -> list[str]:

@@ -143,7 +143,7 @@ def _refused_lines(
 
 
 @dataclass(frozen=True)
-class _Passage:
+class Passage:
     """A part of two answers that has the same words in the same order.
 
     Attributes:
@@ -169,7 +169,7 @@ class Pair:
 
     one: ComparedAnswer
     other: ComparedAnswer
-    passages: Sequence[_Passage]
+    passages: Sequence[Passage]
 
     @property
     def shared(self) -> int:
@@ -240,14 +240,14 @@ def _candidates(answers: Sequence[ComparedAnswer]) -> list[tuple[ComparedAnswer,
     ]
 
 
-def _common_passages(one: ComparedAnswer, other: ComparedAnswer) -> list[_Passage]:
+def _common_passages(one: ComparedAnswer, other: ComparedAnswer) -> list[Passage]:
     """Return the common passages of two answers, in the order of the first answer.
 
     A passage that consists only of given code is left out.
     """
     numbers = {sign: number for number, sign in enumerate({*one.signs, *other.signs})}
     first, second = ([numbers[sign] for sign in answer.signs] for answer in (one, other))
-    found: list[_Passage] = []
+    found: list[Passage] = []
     for _ in range(_ROUNDS):
         blocks = [
             (block.src_start, block.dest_start, block.src_end - block.src_start)
@@ -264,7 +264,7 @@ def _common_passages(one: ComparedAnswer, other: ComparedAnswer) -> list[_Passag
             sides = zip(
                 one.own[start : start + length], other.own[other_start : other_start + length], strict=True
             )
-            found.append(_Passage(start, other_start, tuple(left and right for left, right in sides)))
+            found.append(Passage(start, other_start, tuple(left and right for left, right in sides)))
     return sorted((passage for passage in found if any(passage.own)), key=lambda passage: passage.first)
 
 

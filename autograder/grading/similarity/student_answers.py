@@ -43,7 +43,7 @@ class StudentAnswer:
 
 
 @dataclass
-class _HandedIn:
+class HandedIn:
     """The submitted answers to one notebook.
 
     Attributes:
@@ -74,7 +74,7 @@ def given_texts(directory: ClassDirectory) -> list[str]:
 
 def read_answers(
     directory: ClassDirectory, assignment: str, notebook: str, submissions: list[Submission]
-) -> _HandedIn:
+) -> HandedIn:
     """Return the submitted answers to one notebook.
 
     Raises:
@@ -86,7 +86,7 @@ def read_answers(
         if (name := grade_id(cell))
     }
     answers = [name for name, cell in named.items() if is_answer(cell) and cell.cell_type == CellType.CODE]
-    found = _HandedIn()
+    found = HandedIn()
     for submission in submissions:
         who = f"{submission.student}/{assignment}"
         try:

@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 
 
 @dataclass
-class _WatchedExercise:
+class WatchedExercise:
     """An exercise that is watched. ``watch`` returns this object.
 
     Attributes:
@@ -108,7 +108,7 @@ class _Watches:
     """
 
     def __init__(self, shell: Any) -> None:
-        self.all: dict[str, _WatchedExercise] = {}
+        self.all: dict[str, WatchedExercise] = {}
         self._names: dict[str, Any] = shell.user_ns
         self._thread: threading.Thread | None = None
         self._link: JudgeLink | None = None
@@ -152,7 +152,7 @@ class _Watches:
                 watch.tell()
                 self._check(watch)
 
-    def _check(self, watch: _WatchedExercise) -> None:
+    def _check(self, watch: WatchedExercise) -> None:
         try:
             link = JudgeLink()
             with self._lock:
@@ -178,7 +178,7 @@ _watches: _Watches | None = None
 _ended_by_the_student = False
 
 
-def watch(exercise: str, subject: Callable[..., Any]) -> _WatchedExercise:
+def watch(exercise: str, subject: Callable[..., Any]) -> WatchedExercise:
     """Check a class again whenever its cell is run, until ``unwatch()`` or a restart of the kernel.
 
     A short card below the cell shows the points, what happened and what to do next. These checks change no grade. While
@@ -195,7 +195,7 @@ def watch(exercise: str, subject: Callable[..., Any]) -> _WatchedExercise:
     if not _is_code(subject):
         raise TypeError(what_to_pass(exercise, subject, "watch"))
     _ended_by_the_student = False
-    begun = _WatchedExercise(exercise, subject.__name__, subject)
+    begun = WatchedExercise(exercise, subject.__name__, subject)
     if is_live():
         _watches = _watches or _Watches(notebook_shell())
         # If the student calls watch(...) in the cell of the class, the call is repeated with each run of the cell.

@@ -156,7 +156,7 @@ class NodeIdentity:
 
 
 @dataclass(frozen=True)
-class _KernelNode:
+class KernelNode:
     """A node and the run of the cell that made it.
 
     Attributes:
@@ -211,12 +211,12 @@ class KernelNodes:
             self._made = [entry for entry in self._made if entry[0]() is not None]
             self._made.append((weakref.ref(node), identity, self._current_run()))
 
-    def alive(self) -> list[_KernelNode]:
+    def alive(self) -> list[KernelNode]:
         """Return the nodes that are on the graph."""
         with self._lock:
             entries = [(reference(), identity, run) for reference, identity, run in self._made]
         return [
-            _KernelNode(node, identity, run)
+            KernelNode(node, identity, run)
             for node, identity, run in entries
             if node is not None and _has_begun(node)
         ]

@@ -186,14 +186,14 @@ class _Label:
     type: str = ""
 
     @property
-    def _small_print(self) -> str:
+    def small_print(self) -> str:
         """The small second line of text in a box."""
         return self.type if self.shape in (ChannelKind.TOPIC, "node") else f"{self.shape}: {self.type}"
 
     @property
     def width(self) -> float:
         """The width of the box, in pixels."""
-        return max(len(self.name) * 1.1, len(self._small_print)) * _LETTER + 2 * _PADDING
+        return max(len(self.name) * 1.1, len(self.small_print)) * _LETTER + 2 * _PADDING
 
 
 def _node_key(node: str) -> str:
@@ -259,13 +259,13 @@ class _Drawing:
         above = 9 if label.type else 0
         texts = f'<text x="{x:.1f}" y="{y - above:.1f}">{escape(label.name)}</text>'
         if label.type:
-            texts += f'<text class="type" x="{x:.1f}" y="{y + 10:.1f}">{escape(label._small_print)}</text>'
+            texts += f'<text class="type" x="{x:.1f}" y="{y + 10:.1f}">{escape(label.small_print)}</text>'
         if rate := self._rates.get(name):
             edge = (x + label.width / 2 - 8, y - _HEIGHT / 2)
             texts += f'<text class="rate" x="{edge[0]:.1f}" y="{edge[1]:.1f}">{escape(rate)}</text>'
         return f'<g class="box {label.shape}">{rect}{texts}</g>'
 
-    def _line(self, arrow: _Arrow) -> str:
+    def _line(self, arrow: Arrow) -> str:
         """Return the SVG of an arrow: a curve along its route, and an arrowhead."""
         path = "M{:.1f},{:.1f}".format(*self._xy(arrow.points[0]))
         for (a1, b1), (a2, b2) in itertools.pairwise(arrow.points):
@@ -275,7 +275,7 @@ class _Drawing:
         flows = " flows" if {arrow.start, arrow.end} & self._rates.keys() else ""
         return f'<path class="line{flows}" d="{path}"/><path class="head" d="{self._head(arrow)}"/>'
 
-    def _head(self, arrow: _Arrow) -> str:
+    def _head(self, arrow: Arrow) -> str:
         (before, _), (along, beside) = arrow.points[-2:]
         back = -8 if along > before else 8
         corners = ((along, beside), (along + back, beside - 4.5), (along + back, beside + 4.5))
@@ -291,7 +291,7 @@ _PORTS = 0.72
 
 
 @dataclass(frozen=True)
-class _Arrow:
+class Arrow:
     """A line between two boxes, given by points: the first on the edge of box ``start``, the last on ``end``'s."""
 
     start: str
@@ -310,7 +310,7 @@ class GraphLayout:
     """
 
     centres: Mapping[str, Point]
-    arrows: tuple[_Arrow, ...]
+    arrows: tuple[Arrow, ...]
     extent: Point
 
 
@@ -382,7 +382,7 @@ def _columns(columns: Sequence[int], widths: Sequence[float], gap: float) -> lis
 
 def _with_ports(
     drawn: Sequence[tuple[str, str]], ways: Sequence[list[Point]], sizes: Mapping[str, Point]
-) -> tuple[_Arrow, ...]:
+) -> tuple[Arrow, ...]:
     """Return the arrows, with their ends spread along the edges of the boxes so that arrows cross less."""
     ends: dict[tuple[str, bool], list[tuple[float, int, bool]]] = {}
     for index, ((a, b), way) in enumerate(zip(drawn, ways, strict=True)):
@@ -400,6 +400,6 @@ def _with_ports(
                 centre[1] + share * height * _PORTS,
             )
     return tuple(
-        _Arrow(a, b, (ports[index, True], *ways[index][1:-1], ports[index, False]))
+        Arrow(a, b, (ports[index, True], *ways[index][1:-1], ports[index, False]))
         for index, (a, b) in enumerate(drawn)
     )

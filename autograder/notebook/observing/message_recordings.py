@@ -51,7 +51,7 @@ class Recorded:
     message: Any
 
 
-def recording(path: str | os.PathLike[str], topics: Collection[str] = ()) -> _Recording:
+def recording(path: str | os.PathLike[str], topics: Collection[str] = ()) -> Recording:
     """Record the messages of topics while a ``with`` block runs.
 
     For example::
@@ -73,10 +73,10 @@ def recording(path: str | os.PathLike[str], topics: Collection[str] = ()) -> _Re
     file = Path(path)
     if file.suffix != ".mcap":
         raise ValueError(f"a recording is a file such as hello.mcap: {file.name} does not end in .mcap")
-    return _Recording(file, [name if name.startswith("/") else f"/{name}" for name in topics])
+    return Recording(file, [name if name.startswith("/") else f"/{name}" for name in topics])
 
 
-class _Recording:
+class Recording:
     """A recording, for use in a ``with`` statement. ``recording`` returns this object.
 
     Attributes:
