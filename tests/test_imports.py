@@ -173,6 +173,14 @@ def test_the_process_with_the_gradebook_imports_nothing_that_executes_a_submissi
     assert "autograder.grading.running.order_executor" not in reached
 
 
+def test_the_grader_reads_no_master() -> None:
+    """Reading one loads Jupytext, which takes a tenth of a second in each process that grades."""
+    graph = {module: _runs(path, module, types=False) for module, path in _modules(PACKAGE).items()}
+    reached = _reached("autograder.grading.rebuilding.trusted_master", graph)
+    assert "autograder.masters.notebook_release" in reached
+    assert "autograder.masters.master_cells" not in reached
+
+
 def test_no_folder_of_the_package_is_a_long_list() -> None:
     counts = {path.parent: len(list(path.parent.glob("*.py"))) for path in PACKAGE.rglob("*.py")}
     wrong = [f"{folder.relative_to(ROOT)}: {count}" for folder, count in counts.items() if count > MOST_FILES]

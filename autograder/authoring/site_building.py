@@ -21,8 +21,8 @@ from sphinx.application import Sphinx
 
 from autograder import course
 from autograder.authoring.executed_masters import MOVING_PICTURES, run_masters
-from autograder.masters.chapter_building import release_text
 from autograder.masters.master_files import chapter_path, lab_name, masters
+from autograder.masters.notebook_release import release_text
 from autograder.masters.source_notebooks import SET_UP_CELL, source_notebook
 from autograder.safe_files import HeldFolder
 from autograder.student.handout import hand_out

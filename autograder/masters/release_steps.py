@@ -13,12 +13,12 @@ if TYPE_CHECKING:
 class ReleaseSteps(DeferredConfig):
     """The value of ``c.GenerateAssignment.preprocessors`` in the configuration of a class.
 
-    The steps are imported (:func:`autograder.masters.chapter_building.release_preprocessors`) only when nbgrader makes
+    The steps are imported (:func:`autograder.masters.notebook_release.release_preprocessors`) only when nbgrader makes
     a release, because importing takes a second, and other commands, such as ``grade``, also read the configuration.
     """
 
     def get_value(self, trait: Any) -> list[type[NbGraderPreprocessor]]:  # noqa: ARG002  (traitlets' signature)
         """Return the steps. ``traitlets`` calls this (``traitlets/config/configurable.py``: ``_load_config``)."""
-        from autograder.masters.chapter_building import release_preprocessors
+        from autograder.masters.notebook_release import release_preprocessors
 
         return release_preprocessors()

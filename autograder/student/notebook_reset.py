@@ -65,7 +65,7 @@ def _released_text(lab: Path) -> bytes:
     if kept.is_file():
         return kept.read_bytes()
     # Import these modules only here, because a hand-out does not contain them.
-    from autograder.masters.chapter_building import release_text
+    from autograder.masters.notebook_release import release_text
     from autograder.masters.source_notebooks import source_notebook
 
     return release_text(source_notebook(lab / course.LAB)).encode()

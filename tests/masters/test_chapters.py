@@ -15,10 +15,11 @@ from nbgrader.nbgraderformat.v3 import MetadataValidatorV3
 
 from autograder import exercises
 from autograder.authoring.exercise_faults import broken_rules
-from autograder.masters.chapter_building import build, release_text
+from autograder.masters.chapter_building import build
 from autograder.masters.code_cells import COPIED, find_region
 from autograder.masters.master_cells import COPY_LINE, CellRole, parse_master
 from autograder.masters.master_files import chapter_path, lab_name, masters
+from autograder.masters.notebook_release import release_text
 from autograder.masters.source_notebooks import named_cells, source_notebook
 from tests.tiers import drawn
 
@@ -38,7 +39,7 @@ def test_another_process_builds_the_same_bytes() -> None:
     few = [master for master in MASTERS if str(master) in drawn(map(str, MASTERS), 3)]
     # Another hash seed, another folder: nothing of either may be in a chapter.
     code = (
-        "import sys; from pathlib import Path; from autograder.masters.chapter_building import release_text\n"
+        "import sys; from pathlib import Path; from autograder.masters.notebook_release import release_text\n"
         "from autograder.masters.source_notebooks import source_notebook\n"
         "for master in sys.argv[1:]: sys.stdout.write(release_text(source_notebook(Path(master))))"
     )

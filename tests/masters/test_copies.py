@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import nbformat
 import pytest
 
-from autograder.masters.chapter_building import release_text
 from autograder.masters.master_files import MasterError
+from autograder.masters.notebook_release import release_text
 from autograder.masters.source_notebooks import Points, source_notebook
 
 if TYPE_CHECKING:

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 import nbformat
 import pytest
 
-from autograder.masters.chapter_building import release_text
 from autograder.masters.code_cells import WrittenFile, find_region, python_of, shell_script, written_file
+from autograder.masters.notebook_release import release_text
 from autograder.masters.reference_solutions import reference_source
 from autograder.masters.source_notebooks import Points, source_notebook
 

@@ -10,10 +10,10 @@ import nbformat
 import pytest
 
 from autograder.judge.command_check import check_and_keep
-from autograder.masters.chapter_building import release_text
 from autograder.masters.code_cells import COPIED, WrittenFile, written_file
 from autograder.masters.master_cells import CellRole
 from autograder.masters.master_files import masters
+from autograder.masters.notebook_release import release_text
 from autograder.masters.source_notebooks import named_cells, source_notebook
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -11,10 +11,10 @@ from pathlib import Path
 import nbformat
 import pytest
 
-from autograder.masters.chapter_building import release_text
 from autograder.masters.code_cells import shell_script, written_file
 from autograder.masters.master_cells import CellRole
 from autograder.masters.master_files import lab_name, masters
+from autograder.masters.notebook_release import release_text
 from autograder.masters.source_notebooks import source_notebook
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -17,9 +17,9 @@ from autograder.execution.executed_cells import CellCheck
 from autograder.grading.grading_errors import MasterUnusable
 from autograder.grading.rebuilding import nbformat_nodes
 from autograder.grading.rebuilding.notebook_rebuilding import grade_id, is_answer, is_check
-from autograder.masters.chapter_building import shown_attachments
 from autograder.masters.code_cells import find_model_answer
 from autograder.masters.master_files import CellError
+from autograder.masters.notebook_release import shown_attachments
 
 if TYPE_CHECKING:
     from pathlib import Path
