@@ -1,4 +1,4 @@
-"""What drives the robot: the action ``/walk_to``, the scenes of the labs, and the arrow keys.
+"""Drives the robot: by the action ``/walk_to``, in the scenes of the labs, and by the arrow keys.
 
 The action and the scenes return a velocity for each simulation step. For the arrow keys, JupyterLab calls
 :func:`drive`, and a node publishes the command on ``/cmd_vel``.

@@ -102,9 +102,8 @@ class StudentOf:
         self._entries = list(entries)
         self._timed = (_times(own), _times(others))
         self._by_number = {(one.lms, one.number): one for one in self._entries if one.number}
-        self._identified = functools.cache(
-            self._identify
-        )  # cached, because many files have the same folder in their path
+        # Cached, because many files have the same folder in their path.
+        self._identified = functools.cache(self._identify)
 
     def owners(self, parts: Sequence[str], levels: int, *, is_alone: bool = False) -> Owners:
         """Return the students of a file, by the topmost name in its path that identifies any student.

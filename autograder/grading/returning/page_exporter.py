@@ -1,7 +1,7 @@
 """Makes a feedback page from nbgrader's template, without anything that a browser would execute or fetch.
 
 The top of the page has the student's name, and a table of the exercises with points. It replaces the top of nbgrader's
-own page, where the student's name is missing, and each exercise is called "Test cell".
+own page, which lacks the student's name and calls each exercise "Test cell".
 """
 
 from __future__ import annotations

@@ -319,7 +319,7 @@ def lay_out(sizes: Mapping[str, Point], arrows: Sequence[tuple[str, str]], gap: 
 
     Args:
         sizes: The size of each box: first in the direction of the arrows, then across it.
-        arrows: Pairs of two boxes: where the arrow begins, and where it ends. Arrows from a box to itself are left out.
+        arrows: The two boxes that each arrow joins, in its direction. Arrows from a box to itself are left out.
         gap: Pixels between two columns.
     """
     import igraph  # imported here, so that only a notebook that draws a graph waits for the import
