@@ -21,7 +21,7 @@ def text_of(lab: str) -> str:
         (
             "lab_1_2",
             "no line comes twice",
-            "Log every message exactly once, even if its text equals the previous one",
+            "If the same text arrives twice, log it twice.",
         ),
         ("lab_1_2", "not spun does nothing", "A node that is not spun calls no callbacks"),
         # ROS 1 sent its messages directly, too.

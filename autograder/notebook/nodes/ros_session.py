@@ -45,6 +45,8 @@ _DEFAULTS = {
     # Write each line at once. Otherwise, if the kernel's output does not go to a terminal (in a batch, or on a
     # JupyterHub), the C library holds log lines back until there are 4 KB, and they appear below another cell or never.
     "RCUTILS_LOGGING_BUFFERED_STREAM": "1",
+    # The same for what a Python program prints into a file while a cell waits for it.
+    "PYTHONUNBUFFERED": "1",
     # Make messages raise an error if a field is set to a value of the wrong type.
     _CHECK_FIELDS: "1",
 }
@@ -78,8 +80,8 @@ _claim: DomainClaim | None = None
 def prepare_environment() -> None:
     """Set the environment variables that ROS needs in a notebook, unless the user has set them.
 
-    With these variables, log lines go to standard output without color codes, the types of message fields are checked,
-    and discovery is limited to this computer. Processes that a cell starts inherit the variables.
+    With these variables, log lines go to standard output at once and without color codes, the types of message fields
+    are checked, and discovery is limited to this computer. Processes that a cell starts inherit the variables.
     """
     for name, value in _DEFAULTS.items():
         os.environ.setdefault(name, value)

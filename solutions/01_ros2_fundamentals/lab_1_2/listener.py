@@ -17,7 +17,8 @@ EXERCISE = listener.exercise(
     limit=120.0,
     text={
         "The listener subscribes to the topic, with one subscription that lasts as long as the node.": "topic says",
-        "Log every message exactly once, even if its text equals the previous one": "says honest",
+        "Log one line for each message that arrives, with its text": "says honest",
+        "If the same text arrives twice, log it twice.": "says",
         "Do not report a message that has not arrived.": "honest",
         "Logs every string that arrives on the topic chatter.": "says honest",
     },

@@ -19,6 +19,6 @@ EXERCISE = Programs(
         "Copy your class from step 1 to the place of the `TODO`.": "talker",
         "puts your newest `ListenerNode` in the place of the comment.": "listener",
         "To stop a program, press <kbd>Ctrl</kbd>+<kbd>C</kbd> in its terminal.": "ctrl_c",
-        "A program gets its points only if its node does everything that the steps above ask for.": "talker listener",
+        "A program gets its points only if its node passes everything that the check": "talker listener",
     },
 )

@@ -75,7 +75,7 @@ EXERCISE = client.exercise(
         "raise `TimeoutError` with a message that contains `not available`.": "limit",
         "you may also raise another exception, or log a line that contains `not available` and return `None`.": "limit",
         "Send the request, and spin the node until the answer has arrived": "call",
-        "Another node may ask your node something meanwhile, so wait until the future is done.": "call sum",
+        "so wait until the future is done.": "call sum",
         "Log or print the sum that the server sent": "sum",
         "Return it, too": "sum",
         "returning the sum is enough for the judge, and logging it alone is not.": "sum",

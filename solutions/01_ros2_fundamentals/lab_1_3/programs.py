@@ -29,10 +29,10 @@ EXERCISE = Programs(
         "The executables have shorter names than the files: `add_server` and `add_client`.": "entry_points",
         "`%%program` copies your class from step 2 into it:": "add_server",
         "`%%program` copies your function from step 3:": "add_client",
-        "Then it runs `add_server`, calls it, and presses <kbd>Ctrl</kbd>+<kbd>C</kbd>.": "ctrl_c",
-        "once there is none: the client then does what step 3 says.": "add_client ctrl_c",
+        "and presses <kbd>Ctrl</kbd>+<kbd>C</kbd>: the server has to end then.": "ctrl_c",
+        "once there is none: then the client has to do what step 3 says.": "add_client ctrl_c",
         "if it still spins after its report, <kbd>Ctrl</kbd>+<kbd>C</kbd> has to end it.": "ctrl_c",
-        "A program gets its points only if its node does everything that the steps above ask for.": (
+        "A program gets its points only if its node passes everything that the check": (
             "add_server add_client"
         ),
     },

@@ -29,7 +29,7 @@ EXERCISE = Programs(
         "The executables are `fibonacci_server` and `fibonacci_client`.": "entry_points",
         "`%%program` copies what you wrote in steps 2 to 4:": "fibonacci_server",
         "`%%program` copies what you wrote in steps 5 and 6:": "fibonacci_client",
-        "A program gets its points only if its node does everything that the steps above ask for.": (
+        "A program gets its points only if its node passes everything that the check": (
             "fibonacci_server fibonacci_client"
         ),
         "The server has to end on <kbd>Ctrl</kbd>+<kbd>C</kbd>.": "ctrl_c",

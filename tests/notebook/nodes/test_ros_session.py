@@ -9,6 +9,7 @@ import pytest
 if TYPE_CHECKING:
     import subprocess
     from collections.abc import Callable
+    from pathlib import Path
 
     RunScript = Callable[..., subprocess.CompletedProcess[str]]
 
@@ -66,6 +67,23 @@ rclpy.create_node("speaker").get_logger().error("over here")
     assert "over here" in done.stdout
     assert "\x1b[" not in done.stdout
     assert done.stderr == ""
+
+
+def test_what_a_program_prints_is_in_a_file_at_once(run_script: RunScript, tmp_path: Path) -> None:
+    # A cell of Lab 1.1 waits until the line of a student's node is in a file, whether it is logged or printed.
+    script = f"""
+import os, subprocess
+from autograder.notebook.nodes.ros_session import start_ros
+start_ros()
+os.chdir({str(tmp_path)!r})
+with open("hello.log", "w") as log:
+    node = subprocess.Popen(["python3", "-c", "print('Hello'); input()"], stdin=subprocess.PIPE, stdout=log)
+    while not open("hello.log").read() and node.poll() is None:
+        pass
+    print(open("hello.log").read(), node.poll())
+    node.communicate(b"go on")
+"""
+    assert run_script(script, PYTHONUNBUFFERED=None).stdout == "Hello\n None\n"
 
 
 @pytest.mark.parametrize("first", ["from std_msgs.msg import String", "pass"], ids=["before", "after"])
