@@ -161,8 +161,8 @@ class _Batch:
         """Find the submissions of the class, and the notices about them.
 
         Raises:
-            ClassIncomplete: The gradebook does not contain a chosen assignment as it is in the source.
-            GradingError: A chosen name is not an assignment or a student.
+            GradingError: The gradebook does not contain a chosen assignment as it is in the source, or a chosen name
+                is not an assignment or a student.
         """
         assignments = self._asked.assignments
         asked = {name: found for name, found in self._cells.items() if not assignments or name in assignments}

@@ -51,14 +51,6 @@ class NotAClass(GradingError):
         )
 
 
-class ClassExists(GradingError):
-    """A class cannot be made in a folder that is not empty."""
-
-
-class ClassIncomplete(GradingError):
-    """The class directory lacks something that grading needs, or, for example, sources and gradebook differ."""
-
-
 class ClassBusy(GradingError):
     """Another process is grading the class.
 
@@ -124,14 +116,6 @@ class StoreTrouble(GradingError):
             f"{file}, which contains the results of grading, cannot be read or written ({said}). {advice} The "
             "gradebook is unchanged, and no student has points without having earned them."
         )
-
-
-class NoWorkers(GradingError):
-    """No worker can execute tasks."""
-
-
-class SchedulerGone(GradingError):
-    """The scheduler of the cluster cannot be reached."""
 
 
 _GRADEBOOK_ADVICE = {

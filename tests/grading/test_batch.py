@@ -20,7 +20,6 @@ from autograder.grading.classes.gradebook_writing import NotebookEntry
 from autograder.grading.classes.new_class import release
 from autograder.grading.grading_errors import (
     ClassBusy,
-    ClassIncomplete,
     DiskFull,
     GradingError,
     MasterUnusable,
@@ -423,7 +422,7 @@ def test_a_source_that_the_gradebook_does_not_know_says_what_to_type(
 ) -> None:
     source = tiny.path / "source" / "lab_1_2" / "lab_1_2.ipynb"
     source.write_text(source.read_text().replace('"points": 10', '"points": 3'))
-    with pytest.raises(ClassIncomplete, match="nbgrader generate_assignment lab_1_2 --force"):
+    with pytest.raises(GradingError, match="nbgrader generate_assignment lab_1_2 --force"):
         tiny.grade()
 
 
@@ -431,10 +430,10 @@ def test_a_config_that_does_not_grade_on_the_wire_is_refused(
     tiny: TinyClass, fake_engine: FakeEngine
 ) -> None:
     (tiny.path / "nbgrader_config.py").write_text("c = get_config()\n")
-    with pytest.raises(ClassIncomplete, match="does not use the judge for grading"):
+    with pytest.raises(GradingError, match="does not use the judge for grading"):
         tiny.grade()
     (tiny.path / "nbgrader_config.py").write_text("c = \n")
-    with pytest.raises(ClassIncomplete, match="cannot be read: SyntaxError"):
+    with pytest.raises(GradingError, match="cannot be read: SyntaxError"):
         tiny.grade()
 
 

@@ -21,7 +21,7 @@ from autograder.grading.class_store import ClassStore
 from autograder.grading.classes import gradebook_writing
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.classes.gradebook_reading import read_entries
-from autograder.grading.grading_errors import ClassIncomplete
+from autograder.grading.grading_errors import GradingError
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -268,7 +268,7 @@ def test_an_assignment_in_the_making_holds_up_no_other(tiny: TinyClass, fake_eng
         tiny.path / "source" / "next_week" / "next_week.ipynb"
     )
     tiny.submit("ada", 3)
-    with pytest.raises(ClassIncomplete, match="does not contain next_week"):
+    with pytest.raises(GradingError, match="does not contain next_week"):
         tiny.grade()
     nbgrader_autograde(tiny)
     assert tiny.scores("ada")[TALKER] == 3

@@ -18,7 +18,7 @@ from autograder import course
 from autograder.boxes.run_limits import Limits
 from autograder.grading.class_records import Origin
 from autograder.grading.classes.class_directory import CONFIG_NAME
-from autograder.grading.grading_errors import ClassIncomplete, course_command
+from autograder.grading.grading_errors import GradingError, course_command
 from autograder.masters.master_files import MasterError
 from environment.installation import COMMAND
 
@@ -98,18 +98,18 @@ def check_configuration(directory: ClassDirectory) -> None:
     """Check that a class's configuration sets only supported options.
 
     Raises:
-        ClassIncomplete: An option, which the message names, is not supported.
+        GradingError: An option, which the message names, is not supported.
     """
     path = directory.path / CONFIG_NAME
     for option in _unsupported_options(directory.config):
         instead = f" {_USE_INSTEAD[option]}." if option in _USE_INSTEAD else ""
-        raise ClassIncomplete(
+        raise GradingError(
             f"{path} sets c.{option}, but this grader does not support that value: delete the line, or "
             f"write it as in a class that `{COMMAND} new-class` makes.{instead}"
         )
     for section in ("Autograde", "GenerateFeedback"):
         if not directory.config[section].get("exporter_class"):
-            raise ClassIncomplete(
+            raise GradingError(
                 f"{path} does not set c.{section}.exporter_class. Without it, nbgrader's own commands "
                 f"bypass the judge. Copy the line from a class that `{COMMAND} new-class` makes."
             )
@@ -120,7 +120,7 @@ def limits_of(directory: ClassDirectory) -> Limits:
     """Return the limits for a class's submissions, from its configuration or the defaults.
 
     Raises:
-        ClassIncomplete: A limit is not a number greater than zero.
+        GradingError: A limit is not a number greater than zero.
     """
     configured = directory.config.WireExecute
     found: dict[str, Any] = {}
@@ -128,7 +128,7 @@ def limits_of(directory: ClassDirectory) -> Limits:
         with contextlib.suppress(TypeError, ValueError, OverflowError):
             found[name] = _LIMITS[name](configured[name])
         if not 0 < found.get(name, 0) < math.inf:
-            raise ClassIncomplete(
+            raise GradingError(
                 f"{directory.path / CONFIG_NAME} sets c.WireExecute.{name} to {configured[name]!r}: write a "
                 f"number above zero, such as {getattr(Limits(), name)}."
             )

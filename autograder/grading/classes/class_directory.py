@@ -18,7 +18,7 @@ from traitlets.config.loader import PyFileConfigLoader
 
 from autograder import course
 from autograder.grading.classes.class_lock import held
-from autograder.grading.grading_errors import ClassIncomplete, NotAClass, clear_disk_errors
+from autograder.grading.grading_errors import GradingError, NotAClass, clear_disk_errors
 from autograder.grading.rebuilding.submitted_notebook import reason_against_file
 from autograder.safe_files import remove_unfinished
 from environment.installation import COMMAND
@@ -112,19 +112,19 @@ class ClassDirectory:
         """The class's nbgrader configuration, with the present path of the class as ``CourseDirectory.root``.
 
         Raises:
-            ClassIncomplete: The configuration is not valid Python, or does not use the judge for grading.
+            GradingError: The configuration is not valid Python, or does not use the judge for grading.
         """
         config = self._as_written
         steps = [str(step) for step in config.Autograde.get("autograde_preprocessors", ())]
         if not any("WireExecute" in step for step in steps):
-            raise ClassIncomplete(
+            raise GradingError(
                 f"{self.path / CONFIG_NAME} does not use the judge for grading. Make another class with "
                 f"`{COMMAND} new-class` and copy the lines with c.Autograde from its {CONFIG_NAME}."
             )
         url = str(config.CourseDirectory.get("db_url") or "sqlite:")
         if not url.startswith("sqlite:") and not config.CourseDirectory.get("course_id"):
             # nbgrader stores the course's id as a foreign key. If no id is set, only SQLite accepts this key.
-            raise ClassIncomplete(
+            raise GradingError(
                 f"A gradebook on a database server needs a name of the course. Add a line to "
                 f'{self.path / CONFIG_NAME}: c.CourseDirectory.course_id = "ros2"'
             )
@@ -138,13 +138,13 @@ class ClassDirectory:
         nbgrader's option ``c.NbGraderAPI.timezone`` sets it; the default is UTC.
 
         Raises:
-            ClassIncomplete: The zone does not exist.
+            GradingError: The zone does not exist.
         """
         name = self._as_written.NbGraderAPI.get("timezone") or "UTC"
         try:
             return ZoneInfo(str(name))
         except (ValueError, OSError, LookupError) as error:
-            raise ClassIncomplete(
+            raise GradingError(
                 f"{self.path / CONFIG_NAME} sets c.NbGraderAPI.timezone to {name!r}, but that zone does not exist. "
                 "A name looks like Europe/Berlin."
             ) from error
@@ -154,7 +154,7 @@ class ClassDirectory:
         try:
             return PyFileConfigLoader(CONFIG_NAME, path=str(self.path)).load_config()
         except Exception as error:  # the configuration file is a program, so it may raise any error
-            raise ClassIncomplete(
+            raise GradingError(
                 f"{self.path / CONFIG_NAME} cannot be read: {type(error).__name__}: {error}"
             ) from error
 
@@ -163,7 +163,7 @@ class ClassDirectory:
         """The secret of the class, which is made and stored at its first use.
 
         Raises:
-            ClassIncomplete: The file of the secret is damaged.
+            GradingError: The file of the secret is damaged.
         """
         path = self.state / "secret"
         try:
@@ -172,7 +172,7 @@ class ClassDirectory:
                 create_secret(path)
             return read_secret(path)
         except ValueError as error:
-            raise ClassIncomplete(
+            raise GradingError(
                 f"{path} is damaged ({error}). Restore a backup of the file, or delete the file. "
                 "After deleting it, every student gets different random inputs."
             ) from error
@@ -287,12 +287,12 @@ def refuse_students_folder(folder: Path) -> None:
     program.
 
     Raises:
-        ClassIncomplete: The folder is among students' files, in the class that the message names.
+        GradingError: The folder is among students' files, in the class that the message names.
     """
     place = folder.resolve()
     for outer in place.parents:
         if place.relative_to(outer).parts[0] in _STUDENTS_FILES and (outer / CONFIG_NAME).is_file():
-            raise ClassIncomplete(
+            raise GradingError(
                 f"{folder} is among students' files, so it cannot be a class. Use the class that contains it: "
                 f"{outer}"
             )

@@ -30,7 +30,7 @@ from autograder.grading.classes.class_directory import (
     refuse_students_folder,
 )
 from autograder.grading.classes.result_writer import quiet
-from autograder.grading.grading_errors import ClassExists, GradingError, clear_disk_errors, course_command
+from autograder.grading.grading_errors import GradingError, clear_disk_errors, course_command
 from autograder.grading.rebuilding import nbformat_nodes
 from autograder.masters.master_files import MasterError, lab_name, masters, relinked
 from autograder.masters.source_notebooks import source_notebook
@@ -134,8 +134,8 @@ def new_class(
         notebook_seconds: Time limit of a notebook, in seconds of wall time.
 
     Raises:
-        ClassExists: The folder is not empty, or is inside the course's repository.
-        GradingError: An assignment does not exist, a master cannot be used, or nbgrader could not make the class.
+        GradingError: The folder is not empty or is inside the course's repository, an assignment does not exist, a
+            master cannot be used, or nbgrader could not make the class.
     """
     path = path.absolute()
     _check_place(path, course_root)
@@ -170,15 +170,15 @@ def machine_timezone() -> str:
 def _check_place(path: Path, course_root: Path) -> None:
     refuse_students_folder(path)
     if path.is_symlink() or (path.exists() and not path.is_dir()):
-        raise ClassExists(f"{path} already exists and is not a folder. Choose another name.")
+        raise GradingError(f"{path} already exists and is not a folder. Choose another name.")
     if path.is_dir() and any(path.iterdir()):
-        raise ClassExists(
+        raise GradingError(
             f"{path} is not empty. Choose another name, or grade the class in it: {course_command('grade', path)}"
         )
     repository = course_root.resolve()
     place = path.resolve()
     if place.is_relative_to(repository) and place != repository / DEMO_NAME:
-        raise ClassExists(
+        raise GradingError(
             f"{path} lies inside the course's repository, where students' work could be committed "
             f"by mistake. Choose a folder outside of {repository}."
         )

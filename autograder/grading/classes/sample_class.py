@@ -18,7 +18,7 @@ from autograder.execution.executed_cells import CellType
 from autograder.grading.batch import grade
 from autograder.grading.classes.class_directory import CONFIG_NAME, STATE_NAME, SUFFIX
 from autograder.grading.classes.new_class import CONFIG, new_class
-from autograder.grading.grading_errors import ClassExists
+from autograder.grading.grading_errors import GradingError
 from autograder.grading.rebuilding import nbformat_nodes
 from autograder.grading.rebuilding.notebook_rebuilding import grade_id
 from autograder.grading.reporting.grade_report import show
@@ -112,7 +112,7 @@ def _make(path: Path, console: Console) -> None:
         console.print(f"The course has changed: making {path} again.", highlight=False)
         shutil.rmtree(path)
     elif (path / CONFIG_NAME).exists():
-        raise ClassExists(
+        raise GradingError(
             f"{path} contains a class that is not the sample. Choose another folder: autograder demo FOLDER"
         )
     new_class(

@@ -18,7 +18,7 @@ import dask
 from distributed import Worker, WorkerPlugin, get_worker
 
 from autograder.boxes.sandbox import why_impossible
-from autograder.grading.grading_errors import GradingError, SchedulerGone
+from autograder.grading.grading_errors import GradingError
 from autograder.grading.rebuilding.course_version import course_version
 from autograder.grading.running.execution_backends import check_address, cores
 from autograder.grading.running.order_executor import Executor
@@ -89,7 +89,7 @@ async def _work(address: str, name: str, slots: int, folder: str, tell: Callable
         )
         await worker
     except (OSError, ValueError, TimeoutError) as error:
-        raise SchedulerGone(
+        raise GradingError(
             f"No Dask scheduler answers at {address} ({error}). Start one with: dask scheduler"
         ) from error
     told = asyncio.Event()

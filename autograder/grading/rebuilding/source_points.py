@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import msgspec
 
 from autograder.grading.classes import gradebook_reading
-from autograder.grading.grading_errors import ClassIncomplete, MasterUnusable, course_command
+from autograder.grading.grading_errors import GradingError, MasterUnusable, course_command
 from autograder.grading.table.rows import NO_EXERCISE
 
 if TYPE_CHECKING:
@@ -75,10 +75,10 @@ def check_release(directory: ClassDirectory, cells: dict[str, tuple[GradedCell, 
     """Check that the gradebook contains each cell of the sources with the same points.
 
     Raises:
-        ClassIncomplete: The class has no assignment, or the gradebook lacks a cell or has different points for it.
+        GradingError: The class has no assignment, or the gradebook lacks a cell or has different points for it.
     """
     if not cells:
-        raise ClassIncomplete(
+        raise GradingError(
             f"{directory.path / 'source'} contains no assignment. Put an assignment there, or make a new class."
         )
     for assignment, wanted in cells.items():
@@ -86,7 +86,7 @@ def check_release(directory: ClassDirectory, cells: dict[str, tuple[GradedCell, 
         for cell in wanted:
             if entered.get(cell.notebook, {}).get(cell.name) != cell.worth:
                 command = ("nbgrader", "generate_assignment", assignment, "--force")
-                raise ClassIncomplete(
+                raise GradingError(
                     f"The gradebook does not contain {cell.notebook} as it is in "
                     f"{directory.path / 'source' / assignment}. "
                     f"Enter this version: {course_command(*command, inside=directory.path)}. "

@@ -49,21 +49,17 @@ _TOO_LONG = f"Reading the file takes far more time than reading a notebook. {_AS
 _NOT_READ = f"The file is not a notebook: the program that reads notebooks failed on it. {_AS_SAVED}"
 
 
-class DeskFailed(GradingError):
-    """No file can be read, because desks do not work on this machine. The message says what to do."""
-
-
 def read_notebook(data: bytes) -> tuple[Sequence[SubmittedCell], int]:
     """Return the valid cells of a submitted file, and the number of invalid cells that were left out.
 
     Raises:
         UnreadableSubmission: The file is not a notebook. The message is a sentence for the student.
-        DeskFailed: No file can be read on this machine.
+        GradingError: No file can be read on this machine.
     """
     try:
         return checked(document_of(_desk, data))
     except ChannelClosed as error:
-        raise DeskFailed(
+        raise GradingError(
             f"No submitted file can be read on this machine: {error}. Usually the machine is short of memory: end "
             "other programs, and type the command again."
         ) from error

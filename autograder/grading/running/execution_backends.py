@@ -49,7 +49,7 @@ def on_this_machine(directory: ClassDirectory, jobs: int | None, judge: str) -> 
         judge: The Python class that makes a judge, as ``module:class``; empty for the real judge.
 
     Raises:
-        SandboxMissing: Submissions cannot be boxed on this machine. The message says what to do.
+        GradingError: Submissions cannot be boxed on this machine.
     """
     require_sandbox(directory)
     boxed = not is_sandbox_off(directory)
@@ -154,9 +154,7 @@ def connected(
         tell: Called with a sentence for the instructor.
 
     Raises:
-        GradingError: Dask is not installed.
-        SchedulerGone: No scheduler answers at this address.
-        NoWorkers: The scheduler has no workers, or none of them can execute tasks.
+        GradingError: Dask is not installed, no scheduler answers at this address, or no worker can execute tasks.
     """
     with client_of(address) as link:
         pool = Dispatcher(link, address, judge=judge, boxed=boxed, tell=tell)
@@ -233,12 +231,6 @@ UNBOXED_NOTE = (
     "and could have changed any grade."
 )
 """A warning that the report and every feedback page show if a class was graded without a sandbox."""
-
-
-class SandboxMissing(GradingError):
-    """Submissions cannot be boxed on this machine, and the user has not asked to grade without boxes."""
-
-
 _off: set[Path] = set()
 """The folders of the classes that this process grades without boxes. Folders are stored, and not ``ClassDirectory``
 objects, because several such objects may represent one class.
@@ -249,8 +241,7 @@ def require_sandbox(directory: ClassDirectory) -> None:
     """Check that submissions of this class can be boxed, or that the user allowed grading without boxes.
 
     Raises:
-        SandboxMissing: Submissions cannot be boxed, and the user did not allow grading without boxes. The message says
-            what to do.
+        GradingError: Submissions cannot be boxed, and the user did not allow grading without boxes.
     """
     if is_sandbox_off(directory):
         return
@@ -258,7 +249,7 @@ def require_sandbox(directory: ClassDirectory) -> None:
 
     why = why_impossible()
     if why:
-        raise SandboxMissing(
+        raise GradingError(
             f"Submissions cannot be isolated from your files and from each other here: {why}. To grade "
             "them nevertheless, trusting every submission: --unsafe-no-sandbox, or "
             "c.WireExecute.unsafe_no_sandbox = True in nbgrader_config.py."

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Protocol
 
 import msgspec
 
-from autograder.grading.grading_errors import NoWorkers, SchedulerGone
+from autograder.grading.grading_errors import GradingError
 from autograder.grading.rebuilding.course_version import course_version
 from autograder.grading.running.worker_messages import (
     ADDRESS,
@@ -157,13 +157,13 @@ class Dispatcher:
         """Wait until one worker has been accepted.
 
         Raises:
-            SchedulerGone: The scheduler cannot be reached.
-            NoWorkers: No worker exists, or all workers were asked for their offers and rejected.
+            GradingError: The scheduler cannot be reached, no worker exists, or all workers were asked for their
+                offers and rejected.
         """
         while not self._workers:
             news = self._link.hear(None)
             if isinstance(news, Asked):
-                raise NoWorkers(self._why_no_worker())
+                raise GradingError(self._why_no_worker())
             self._take_in(news)
 
     def execute_all(
@@ -176,8 +176,8 @@ class Dispatcher:
             on_start: Called when a task is given to a worker for the first time.
 
         Raises:
-            SchedulerGone: The scheduler can no longer be reached.
-            NoWorkers: All workers have ended or were rejected, and no new worker came in time.
+            GradingError: The scheduler can no longer be reached, or all workers have ended or were rejected and no
+                new worker came in time.
         """
         jobs = (_Job(task) for task in tasks)
         return_until: float | None = None
@@ -194,7 +194,7 @@ class Dispatcher:
             self._take_in(self._link.hear(min(deadlines) - time.monotonic() if deadlines else None))
             now = time.monotonic()
             if return_until is not None and now >= return_until and not self._workers:
-                raise NoWorkers(f"{self._why_no_worker()} What was graded so far is kept.")
+                raise GradingError(f"{self._why_no_worker()} What was graded so far is kept.")
             self._give_up_on_silent(now)
             while self._done:
                 yield self._done.pop()
@@ -279,11 +279,11 @@ class Dispatcher:
                 else:
                     self._lost(number, f"the worker could not run this submission: {reason}")
             case Broken(reason) if not self._address:
-                raise NoWorkers(
+                raise GradingError(
                     f"This machine cannot execute notebooks: {reason}. What was graded so far is kept."
                 )
             case Broken(reason):
-                raise SchedulerGone(
+                raise GradingError(
                     f"The Dask scheduler at {self._address} cannot be reached ({reason}). Check that it "
                     "runs, and that its address and its TLS settings are right. What was graded so far "
                     "is kept."

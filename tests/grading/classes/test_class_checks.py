@@ -13,7 +13,7 @@ from tiny_class import TALKER, FakeEngine, TinyClass
 
 from autograder.grading.classes.class_checks import check_configuration
 from autograder.grading.classes.class_directory import ClassDirectory
-from autograder.grading.grading_errors import ClassIncomplete
+from autograder.grading.grading_errors import GradingError
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -74,7 +74,7 @@ def test_what_the_conversion_honours_is_not_refused(tiny: TinyClass, line: str) 
 )
 def test_what_it_does_not_know_is_refused(tiny: TinyClass, line: str, option: str) -> None:
     tiny.configure(line)
-    with pytest.raises(ClassIncomplete, match=rf"sets c\.{option}, .*delete the line"):
+    with pytest.raises(GradingError, match=rf"sets c\.{option}, .*delete the line"):
         check_configuration(ClassDirectory(tiny.path))
 
 
@@ -88,7 +88,7 @@ def test_a_limit_that_is_no_number_takes_back_nothing(
     tiny.grade()
     tiny.submit("ada", 9)
     tiny.configure(f"c.WireExecute.{line}")
-    with pytest.raises(ClassIncomplete, match=rf"c\.WireExecute\.{line.split()[0]} .*a number above zero"):
+    with pytest.raises(GradingError, match=rf"c\.WireExecute\.{line.split()[0]} .*a number above zero"):
         tiny.grade()
     assert tiny.scores("ada")[TALKER] == 4
 
@@ -103,7 +103,7 @@ def test_where_something_is_refused_nothing_is_touched(
     tiny.configure("c.Execute.timeout = 300")
     page = tiny.path / "feedback" / "ada" / "lab_1_2" / "lab_1_2.html"
     made = page.stat().st_mtime_ns
-    with pytest.raises((ClassIncomplete, NbGraderException), match=r"sets c\.Execute\.timeout, .*delete"):
+    with pytest.raises((GradingError, NbGraderException), match=r"sets c\.Execute\.timeout, .*delete"):
         way(tiny)
     assert tiny.scores("ada")[TALKER] == 4
     assert fake_engine.ran == ["ada"]
@@ -115,5 +115,5 @@ def test_without_the_lines_that_lead_here_nothing_is_graded(tiny: TinyClass, sec
     config = tiny.path / "nbgrader_config.py"
     config.write_text(config.read_text().replace(f"c.{section}.exporter_class", "unused"))
     tiny.submit("ada")
-    with pytest.raises(ClassIncomplete, match=rf"does not set c\.{section}\.exporter_class"):
+    with pytest.raises(GradingError, match=rf"does not set c\.{section}\.exporter_class"):
         tiny.grade()

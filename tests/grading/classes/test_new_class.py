@@ -14,7 +14,7 @@ from tiny_class import MASTER, TinyClass, write_master
 from autograder.course import root
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.classes.new_class import machine_timezone, new_class
-from autograder.grading.grading_errors import ClassExists, DiskFull, GradingError
+from autograder.grading.grading_errors import DiskFull, GradingError
 
 
 @pytest.fixture
@@ -78,9 +78,9 @@ def test_an_empty_folder_will_do(course: Path, tmp_path: Path) -> None:
 def test_nothing_that_is_there_is_touched(course: Path, tmp_path: Path) -> None:
     (tmp_path / "class").mkdir()
     (tmp_path / "class" / "thesis.txt").write_text("years of work")
-    with pytest.raises(ClassExists, match="is not empty"):
+    with pytest.raises(GradingError, match="is not empty"):
         new_class(tmp_path / "class", course)
-    with pytest.raises(ClassExists, match="is not a folder"):
+    with pytest.raises(GradingError, match="is not a folder"):
         new_class(tmp_path / "class" / "thesis.txt", course)
     assert [path.name for path in (tmp_path / "class").iterdir()] == ["thesis.txt"]
 
@@ -88,7 +88,7 @@ def test_nothing_that_is_there_is_touched(course: Path, tmp_path: Path) -> None:
 def test_a_class_in_the_repository_is_refused_but_for_the_ignored_one(course: Path, tmp_path: Path) -> None:
     (tmp_path / "shortcut").symlink_to(course)
     for place in (course / "class", course / "solutions" / "class", tmp_path / "shortcut" / "class"):
-        with pytest.raises(ClassExists, match="inside the course's repository"):
+        with pytest.raises(GradingError, match="inside the course's repository"):
             new_class(place, course)
         assert not place.exists()
     new_class(course / "demo-class", course)

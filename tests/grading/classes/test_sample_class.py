@@ -17,7 +17,7 @@ from autograder.appeals import appeal_file, replaying
 from autograder.grading.appeal_writing import write_appeal
 from autograder.grading.classes import sample_class
 from autograder.grading.classes.sample_class import SampleNotebook, demo, sample_notebooks
-from autograder.grading.grading_errors import ClassExists, GradingError
+from autograder.grading.grading_errors import GradingError
 from autograder.judge.machine_fitness import TOO_BUSY
 from tests.tiers import asked_for
 
@@ -166,6 +166,6 @@ def test_validate_tells_a_student_the_truth(graded: GradeReport) -> None:
 
 def test_a_class_of_ones_own_is_not_taken_for_the_sample(tmp_path: Path) -> None:
     (tmp_path / "nbgrader_config.py").write_text("c = get_config()\n")
-    with pytest.raises(ClassExists, match="a class that is not the sample"):
+    with pytest.raises(GradingError, match="a class that is not the sample"):
         demo(tmp_path)
     assert [path.name for path in tmp_path.iterdir()] == ["nbgrader_config.py"]

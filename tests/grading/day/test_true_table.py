@@ -17,7 +17,7 @@ from tiny_class import LISTENER, TALKER, FakeEngine, TinyClass
 
 from autograder.grading.classes import submission_times
 from autograder.grading.classes.class_directory import ClassDirectory
-from autograder.grading.grading_errors import ClassIncomplete
+from autograder.grading.grading_errors import GradingError
 from autograder.grading.reporting.grade_report import report_json, show
 from autograder.grading.returning.feedback_pages import FeedbackPages
 
@@ -80,7 +80,7 @@ def test_a_due_date_of_formgrader_is_a_time_in_the_zone_of_the_class(
 
 def test_a_zone_that_does_not_exist_is_refused(tiny: TinyClass, fake_engine: FakeEngine) -> None:
     tiny.configure('c.NbGraderAPI.timezone = "Berlin"')
-    with pytest.raises(ClassIncomplete, match="that zone does not exist"):
+    with pytest.raises(GradingError, match="that zone does not exist"):
         tiny.grade()
 
 

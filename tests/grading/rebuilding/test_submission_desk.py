@@ -17,10 +17,10 @@ from autograder.boxes import reading_desks as desk_of_boxes
 from autograder.boxes.box_connection import ChannelClosed
 from autograder.boxes.reading_desks import Desk
 from autograder.boxes.sandbox import why_impossible
+from autograder.grading.grading_errors import GradingError
 from autograder.grading.rebuilding import submission_desk
 from autograder.grading.rebuilding.notebook_parsing import answer_to, parse
 from autograder.grading.rebuilding.submission_desk import (
-    DeskFailed,
     checked,
     document_of,
     read_notebook,
@@ -184,7 +184,7 @@ def test_a_lost_desk_is_no_file_s_fault(monkeypatch: pytest.MonkeyPatch) -> None
     monkeypatch.setattr(Desk, "ask", ask)
     assert read_notebook(notebook(""))[1] == 0
     lost = [ChannelClosed("killed")] * 9
-    with pytest.raises(DeskFailed, match=r"killed.*short of memory"):
+    with pytest.raises(GradingError, match=r"killed.*short of memory"):
         read_notebook(notebook(""))
 
 
@@ -195,7 +195,7 @@ def test_a_desk_that_cannot_read_a_sample_reads_no_student_s_file(
     monkeypatch.setattr(submission_desk._desk, "_desk", None)
     monkeypatch.setattr(desk_of_boxes, "Desk", lambda _: hostile)
     monkeypatch.setattr(hostile, "close", lambda: None)
-    with pytest.raises(DeskFailed, match="not even a sample"):
+    with pytest.raises(GradingError, match="not even a sample"):
         read_notebook(notebook(""))
 
 

@@ -9,8 +9,9 @@ from click.testing import CliRunner
 
 from autograder import cli
 from autograder.boxes import sandbox
+from autograder.grading.grading_errors import GradingError
 from autograder.grading.running import execution_backends
-from autograder.grading.running.execution_backends import UNBOXED_NOTE, SandboxMissing
+from autograder.grading.running.execution_backends import UNBOXED_NOTE
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -58,7 +59,7 @@ def test_a_class_of_which_nothing_is_executed_needs_none(
     monkeypatch.setattr(sandbox, "why_impossible", lambda: WHY)
     assert tiny.grade(judge=with_fake_judge).reused == 1
     tiny.submit("bob", 7)
-    with pytest.raises(SandboxMissing):
+    with pytest.raises(GradingError, match=f"cannot be isolated .*{WHY}"):
         tiny.grade(judge=with_fake_judge)
     assert tiny.scores("ada") == {"lab_1_2-talker": 10, "lab_1_2-listener": 10}
 
@@ -77,7 +78,7 @@ def test_a_result_without_a_sandbox_never_stands_for_one_with(tiny: TinyClass, w
 def test_the_configuration_can_say_so_too(tiny: TinyClass) -> None:
     from autograder.grading.classes.class_directory import ClassDirectory
 
-    with pytest.raises(SandboxMissing, match="unsafe_no_sandbox"):
+    with pytest.raises(GradingError, match="unsafe_no_sandbox"):
         execution_backends.require_sandbox(ClassDirectory(tiny.path))
     config = tiny.path / "nbgrader_config.py"
     config.write_text(config.read_text() + "\nc.WireExecute.unsafe_no_sandbox = True\n")

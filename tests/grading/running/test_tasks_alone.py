@@ -10,7 +10,7 @@ import pytest
 from fake_link import FakeLink, honest, joined, make_dispatcher, students, tasks_of_six, troubled
 from tiny_class import FakeEngine, TinyClass
 
-from autograder.grading.grading_errors import NoWorkers
+from autograder.grading.grading_errors import GradingError
 from autograder.grading.running import task_dispatcher
 from autograder.grading.running.task_dispatcher import ATTEMPTS
 from autograder.grading.running.worker_messages import Answered, Asked, Give, Left, News, Offer
@@ -198,6 +198,6 @@ def test_who_waits_to_be_alone_when_the_last_worker_is_gone_is_not_done(tasks: l
     dispatcher = make_dispatcher(link)
     dispatcher.await_workers()
     done: list[Done] = []
-    with pytest.raises(NoWorkers, match="What was graded so far is kept"):
+    with pytest.raises(GradingError, match="What was graded so far is kept"):
         done.extend(dispatcher.execute_all(tasks))
     assert students(done) == [task.student for task in tasks[1:]]
