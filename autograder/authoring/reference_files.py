@@ -118,7 +118,7 @@ def _judged(exercise_id: str, text: str, *, record: bool) -> tuple[Report, str]:
             with JudgeProcess(folder.path / "judge", seed=secrets.token_hex(8)) as judge:
                 judge.open(exercise_id, record=record)
                 output = _run(file, judge.socket_path)
-                return judge.close_report(), output
+                return judge.close(), output
         except JudgeDied as error:
             raise CannotRecord(f"{exercise_id}: {error}") from error
         except subprocess.TimeoutExpired as error:

@@ -31,8 +31,6 @@ if TYPE_CHECKING:
     from pathlib import Path
     from types import TracebackType
 
-    from autograder.verdict import Verdict
-
 
 START_LIMIT = 60.0
 """Time limit in seconds of wall time for starting a judge, which takes well under one second on an idle machine."""
@@ -62,7 +60,7 @@ connected socket for the grader's orders; the caller closes both.
 
 
 class JudgeProcess:
-    """A judge that the grader controls. Only verdicts that :meth:`close` returns become grades."""
+    """A judge that the grader controls. Only verdicts in the reports of :meth:`close` become grades."""
 
     def __init__(self, socket_path: Path, *, seed: str, start: Start | None = None) -> None:
         """Prepare a judge. Entering the context starts it.
@@ -117,16 +115,8 @@ class JudgeProcess:
         seed = f"{self._seed}:{exercise_id}"
         self._order(Open(exercise_id, seed, record, self.workspaces, self.keeps_evidence, self.is_boxed))
 
-    def close(self) -> Verdict | None:
-        """End the opened check. Return its verdict; None if the notebook did not request the check or got no verdict.
-
-        Raises:
-            JudgeDied: The judge does not run any more.
-        """
-        return self.close_report().verdict
-
-    def close_report(self) -> Report:
-        """End the opened check. Return the whole report, which says why if there is no verdict.
+    def close(self) -> Report:
+        """End the opened check, and return its report.
 
         Raises:
             JudgeDied: The judge does not run any more, or its answer is not a report.
@@ -176,11 +166,6 @@ class _Child:
             pass_fds=(listener, orders),
             start_new_session=True,
         )
-
-    @property
-    def pid(self) -> int:
-        """The judge's process id."""
-        return self._process.pid
 
     def end(self) -> None:
         # The judge exits by itself when its socket for orders is closed.

@@ -42,7 +42,7 @@ class FakeJudge:
             frames = [(frame.filename, frame.name) for frame in traceback.extract_stack()]
             Path(stack).write_text(json.dumps(frames), encoding="utf-8")
 
-    def close_report(self) -> Report:
+    def close(self) -> Report:
         if self._said is None:
             return Report()
         if self._said == "die":

@@ -190,7 +190,7 @@ def test_the_evidence_of_a_notebook_has_an_end_however_many_checks_are_flooded(
         def open(self, exercise_id: str) -> None:
             pass
 
-        def close_report(self) -> Report:
+        def close(self) -> Report:
             return Report(evidence=bytes(40))
 
         def __enter__(self) -> Any:

@@ -78,7 +78,7 @@ def verdict_in_notebook(exercise_id: str, file: Path, seed: str) -> bytes:
             with JudgeProcess(Path(folder) / "judge", seed=seed, start=start) as judge:
                 judge.open(exercise.id)
                 _run(file, judge.socket_path, exercise.limit + SPARE, judges)
-                report = judge.close_report()
+                report = judge.close()
         except JudgeDied as error:
             return to_json(not_checked(exercise.id, exercise.title, exercise.points, str(error)))
     if report.crowded:

@@ -78,17 +78,17 @@ def test_a_check_that_nobody_opened_is_refused(judge: JudgeProcess) -> None:
     kernel = Kernel(judge)
     kernel.say(say="check", exercise="lab_1_2.talker")
     assert kernel.hear()["say"] == "refused"
-    assert judge.close() is None
+    assert judge.close().verdict is None
 
 
 def test_the_evidence_comes_with_the_verdict_where_it_is_asked_for(judge: JudgeProcess) -> None:
     judge.open("lab_1_2.talker")
     Kernel(judge).fail_at_once("lab_1_2.talker")
-    assert judge.close_report().evidence == b""
+    assert judge.close().evidence == b""
     judge.keeps_evidence = True
     judge.open("lab_1_2.talker")
     told = Kernel(judge).fail_at_once("lab_1_2.talker")
-    report = judge.close_report()
+    report = judge.close()
     kept = evidence_files.unpack(report.evidence)
     assert "evidence" not in told
     assert report.verdict == replace(kept.verdict, timeline=report.verdict.timeline if report.verdict else ())
@@ -103,7 +103,7 @@ def test_evidence_that_cannot_be_packed_costs_no_verdict(tmp_path: Path) -> None
         judge.keeps_evidence = True
         judge.open("lab_1_2.talker")
         Kernel(judge).fail_at_once("lab_1_2.talker")
-        report = judge.close_report()
+        report = judge.close()
     assert report.verdict is not None
     assert report.evidence == b""
 
@@ -112,7 +112,7 @@ def test_an_opened_check_counts_and_a_second_one_does_not(judge: JudgeProcess) -
     judge.open("lab_1_2.talker")
     told = Kernel(judge).fail_at_once("lab_1_2.talker")
     assert Kernel(judge).fail_at_once("lab_1_2.talker")["say"] == "refused"
-    verdict = judge.close()
+    verdict = judge.close().verdict
     assert verdict is not None
     assert verdict.score == 0
     assert verdict.diagnosis is not None
@@ -127,13 +127,13 @@ def test_a_submission_in_its_box_hears_no_verdict(judge: JudgeProcess) -> None:
     judge.is_boxed = True
     judge.open("lab_1_2.talker")
     assert Kernel(judge).fail_at_once("lab_1_2.talker")["verdict"] is None
-    assert judge.close() is not None
+    assert judge.close().verdict is not None
 
 
 def test_a_notebook_that_denies_to_have_met_the_judge_is_judged_all_the_same(judge: JudgeProcess) -> None:
     judge.open("inspecting_topics.mismatch")
     Kernel(judge).fail_at_once("inspecting_topics.mismatch", met=False)
-    verdict = judge.close()
+    verdict = judge.close().verdict
     assert verdict is not None
     assert verdict.score == 0
 
@@ -141,12 +141,12 @@ def test_a_notebook_that_denies_to_have_met_the_judge_is_judged_all_the_same(jud
 def test_another_exercise_than_the_opened_one_is_refused(judge: JudgeProcess) -> None:
     judge.open("lab_1_2.talker")
     assert Kernel(judge).fail_at_once("lab_1_2.listener")["say"] == "refused"
-    assert judge.close() is None
+    assert judge.close().verdict is None
 
 
 def test_a_cell_that_never_asked_has_no_verdict(judge: JudgeProcess) -> None:
     judge.open("lab_1_2.talker")
-    assert judge.close() is None
+    assert judge.close().verdict is None
 
 
 def test_garbage_brings_no_verdict_and_no_harm(judge: JudgeProcess) -> None:
@@ -154,10 +154,10 @@ def test_garbage_brings_no_verdict_and_no_harm(judge: JudgeProcess) -> None:
     kernel = Kernel(judge)
     kernel._socket.sendall(b"\xff\xff garbage\n")
     kernel.hang_up()
-    assert judge.close() is None
+    assert judge.close().verdict is None
     judge.open("lab_1_2.talker")
     assert Kernel(judge).fail_at_once("lab_1_2.talker")["say"] == "verdict"
-    assert judge.close() is not None
+    assert judge.close().verdict is not None
 
 
 def test_a_kernel_that_goes_away_in_the_middle_gets_no_points(judge: JudgeProcess) -> None:
@@ -166,14 +166,14 @@ def test_a_kernel_that_goes_away_in_the_middle_gets_no_points(judge: JudgeProces
     kernel.say(say="check", exercise="lab_1_2.talker")
     assert kernel.hear()["say"] == "begin"
     kernel.hang_up()
-    verdict = judge.close()
+    verdict = judge.close().verdict
     assert verdict is None or verdict.score == 0
 
 
 def test_a_judge_that_dies_is_reported_and_never_a_verdict(judge: JudgeProcess) -> None:
     judge.open("lab_1_2.talker")
     assert isinstance(judge._process, _Child)
-    os.kill(judge._process.pid, signal.SIGKILL)
+    os.kill(judge._process._process.pid, signal.SIGKILL)
     with pytest.raises(JudgeDied):
         judge.close()
 
@@ -215,4 +215,4 @@ def test_a_judge_that_says_no_report_has_died(tmp_path: Path, monkeypatch: pytes
     process = JudgeProcess(tmp_path / "judge", seed="a seed")
     monkeypatch.setattr(process, "_order", lambda _: b'{"verdict": 10}\n')
     with pytest.raises(JudgeDied, match="is not a report"):
-        process.close_report()
+        process.close()

@@ -47,7 +47,7 @@ def kernel_of(judge: JudgeProcess, kind: str = "function") -> Lines:
 
 
 def verdict_of(judge: JudgeProcess) -> Verdict:
-    report = judge.close_report()
+    report = judge.close()
     assert report.verdict is not None, report.trouble
     return report.verdict
 
@@ -91,7 +91,7 @@ def test_a_notebook_that_goes_away_has_no_verdict(judge: JudgeProcess) -> None:
     kernel = kernel_of(judge)
     kernel.say(Source("ros2_ws"))
     kernel.close()
-    assert judge.close() is None
+    assert judge.close().verdict is None
 
 
 def test_a_subject_that_is_no_path_is_told_so(judge: JudgeProcess) -> None:
@@ -107,7 +107,7 @@ def test_a_grader_s_side_that_is_gone_is_no_verdict(judge: JudgeProcess) -> None
         kernel = kernel_of(judge)
         kernel.hear(Collect)
         kernel.say(Sources("ros2_ws"))
-        report = judge.close_report()
+        report = judge.close()
         assert report.verdict is None
         assert "gone" in report.trouble
     finally:

@@ -67,7 +67,7 @@ def a_judge(*, seed: str = "a test", change: str = "") -> Iterator[Callable[[str
             def checked(exercise: str, subject: object) -> Verdict:
                 judge.open(exercise)
                 check(exercise, subject)
-                verdict = judge.close()
+                verdict = judge.close().verdict
                 assert verdict is not None
                 return verdict
 

@@ -68,7 +68,7 @@ def judged(judge: JudgeProcess, exercise: str, path: Path) -> Verdict:
     kernel.hear(Collect)
     send_sources(kernel.say, path)
     kernel.hear(Judged)
-    report = judge.close_report()
+    report = judge.close()
     if report.verdict is None:
         raise RuntimeError(report.trouble or "the judge has no verdict")
     return report.verdict

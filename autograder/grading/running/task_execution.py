@@ -210,7 +210,7 @@ class _Judges:
         self._judge.open(exercise_id)
 
     def close(self) -> Verdict | None:
-        report = self._judge.close_report()
+        report = self._judge.close()
         if report.verdict is None and report.trouble:
             raise (Unfinished if report.unfinished else RuntimeError)(report.trouble)
         if sum(map(len, self.evidence.values())) + len(report.evidence) <= MOST_EVIDENCE and report.evidence:
