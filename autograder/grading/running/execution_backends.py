@@ -20,7 +20,7 @@ import psutil
 
 from autograder.boxes.run_limits import BUILD_LIMITS, Limits
 from autograder.grading.grading_errors import GradingError
-from autograder.grading.running.process_link import client_of, this_machine
+from autograder.grading.running.process_link import ProcessLink
 from autograder.grading.running.task_dispatcher import Dispatcher, Done
 from autograder.grading.running.worker_messages import JUDGE
 from autograder.safe_files import HeldFolder, sweep
@@ -119,7 +119,8 @@ def execute_all(
         boxed: True if the tasks are executed in boxes.
     """
     slots = workers or at_once(cores(), psutil.virtual_memory().available)
-    with this_machine(scratch, slots, boxed=boxed) as machine:
+    words = (str(scratch), str(slots), *(["boxed"] if boxed else []))
+    with ProcessLink("autograder.grading.running.order_executor", *words, scratch=scratch) as machine:
         dispatcher = Dispatcher(machine, "", judge=judge, boxed=boxed, tell=lambda _: None)
         yield from dispatch(dispatcher, tasks, on_start)
 
@@ -156,7 +157,7 @@ def connected(
     Raises:
         GradingError: Dask is not installed, no scheduler answers at this address, or no worker can execute tasks.
     """
-    with client_of(address) as link:
+    with ProcessLink("autograder.grading.cluster.dask_client", address, scratch=None) as link:
         pool = Dispatcher(link, address, judge=judge, boxed=boxed, tell=tell)
         pool.await_workers()
         yield pool

@@ -136,24 +136,3 @@ class ProcessLink:
             lines = self._log.read().decode(errors="replace").strip().splitlines()
             return f" ({lines[-1][:300]})" if lines else ""
         return ""
-
-
-def this_machine(scratch: Path, slots: int, *, boxed: bool) -> ProcessLink:
-    """Return the connection to a new executor process on this machine.
-
-    Args:
-        scratch: The folder in which submissions run.
-        slots: The number of notebooks to execute at the same time.
-        boxed: True if notebooks are executed in boxes.
-    """
-    words = [str(scratch), str(slots), *(["boxed"] if boxed else [])]
-    return ProcessLink("autograder.grading.running.order_executor", *words, scratch=scratch)
-
-
-def client_of(address: str) -> ProcessLink:
-    """Return the connection to a new process that is the client of a Dask cluster.
-
-    Args:
-        address: The scheduler's address.
-    """
-    return ProcessLink("autograder.grading.cluster.dask_client", address, scratch=None)

@@ -49,8 +49,8 @@ class FakeMachine:
         self.seen: list[tuple[str, bool, int]] = []
         """Of each execution: the student, whether it had its share of memory only, how many ran with it."""
 
-    def __call__(self, scratch: Path, slots: int, **_: object) -> FakeMachine:
-        self._news.put(Joined(ADDRESS, ADDRESS, msgspec.json.encode(Offer("", slots, ""))))
+    def __call__(self, module: str, folder: str, slots: str, *_: str, scratch: Path) -> FakeMachine:
+        self._news.put(Joined(ADDRESS, ADDRESS, msgspec.json.encode(Offer("", int(slots), ""))))
         return self
 
     def __enter__(self) -> FakeMachine:
@@ -98,7 +98,7 @@ def run(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Any:
         cells: int = 0,
     ) -> Any:
         machine = FakeMachine(answer, together)
-        monkeypatch.setattr(execution_backends, "this_machine", machine)
+        monkeypatch.setattr(execution_backends, "ProcessLink", machine)
         # A worker is not told the name of the student: the notebook has it, too.
         tasks = [Task(student, "lab", student, (Cell(""),) * cells, "0", "1") for student in students]
         done = list(execution_backends.execute_all(tasks, tmp_path / "scratch" / "x", workers))
