@@ -36,14 +36,14 @@ def main() -> None:
         print(f"autograder: {error}", file=sys.stderr)
         sys.exit(2)
     except ImportError as error:
-        missing = why_missing(error)
+        missing = _why_missing(error)
         if not missing:
             raise
         print(f"autograder: {missing}", file=sys.stderr)
         sys.exit(2)
 
 
-def why_missing(error: ImportError) -> str:
+def _why_missing(error: ImportError) -> str:
     """Return what to type to get a module that this installation left out; empty for any other module."""
     top = (error.name or "").partition(".")[0]
     if top == "autograder" and not Path(__file__).with_name("grading").is_dir():

@@ -72,11 +72,11 @@ def descendants(pid: int) -> list[int]:
 
 
 def known(processes: Iterable[int]) -> set[Known]:
-    """Return processes with their start times; :func:`send` then never reaches a later process with the same id."""
+    """Return processes with their start times, so that no signal reaches a later process with the same id."""
     return {(pid, _started_at(pid)) for pid in processes}
 
 
-def send(processes: Iterable[Known], number: int) -> None:
+def _send(processes: Iterable[Known], number: int) -> None:
     """Send a signal to the given processes. Skip processes that have ended."""
     for process in processes:
         _signal(process, number)
@@ -89,7 +89,7 @@ def kill(processes: Iterable[Known]) -> None:
     """
     processes = list(processes)
     for number in (signal.SIGSTOP, signal.SIGKILL):
-        send(processes, number)
+        _send(processes, number)
 
 
 def end_each(processes: Iterable[int], number: int, within: float) -> None:
@@ -167,7 +167,7 @@ def end_below(pid: int) -> None:
     """
     left: set[Known] = set()
     while living := known(one for one in descendants(pid) if _lives(one)) - left:
-        send(living, signal.SIGSTOP)
+        _send(living, signal.SIGSTOP)
         left |= {process for process in living if not _signal(process, signal.SIGKILL)}
         # The first process of a sandbox can end only after all processes of the sandbox were waited for
         # (pid_namespaces(7)). Some were started from outside, and their parent has ended: they are now children of this

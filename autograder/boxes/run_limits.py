@@ -160,14 +160,10 @@ def open_files_of_a_box(wanted: int) -> int:
     return wanted if own == resource.RLIM_INFINITY else min(wanted, own // 2)
 
 
-def until(deadline: float) -> Left:
-    """Return a function that returns the seconds left until a moment on the monotonic clock."""
-    return lambda: deadline - time.monotonic()
-
-
 def wall_time(seconds: float) -> Left:
     """Start a time limit of this many seconds of wall time. Return a function that returns the seconds left."""
-    return until(time.monotonic() + seconds)
+    deadline = time.monotonic() + seconds
+    return lambda: deadline - time.monotonic()
 
 
 def first_of(*lefts: Left) -> Left:

@@ -88,7 +88,7 @@ def box_arguments(
         "--uid", str(USER_ID), "--gid", str(USER_ID), "--hostname", "box",
         "--cap-drop", "ALL", "--die-with-parent", "--clearenv",
     ]  # fmt: skip
-    words += system()
+    words += _system()
     words += ["--ro-bind", str(scratch / ETC), "/etc"]
     for name in ETC_FOLDERS:
         words += ["--ro-bind-try", f"/etc/{name}", f"/etc/{name}"]
@@ -172,7 +172,7 @@ def _can_be_written_below(folder: Path) -> bool:
     )
 
 
-def system() -> list[str]:
+def _system() -> list[str]:
     """Return the programs and libraries of the system, as arguments for bubblewrap."""
     words: list[str] = []
     for name in SYSTEM:

@@ -74,7 +74,7 @@ def build(root: Path, *, check: bool = False, points: Points = exercise_points) 
     texts = {chapter_path(root, master): release_text(notebook_of(named)) for master, named in cells.items()}
     for master, named in cells.items():
         texts |= solution_files(master, named)
-    front = readme(root, chapter_path(root, next(iter(cells))))
+    front = _readme(root, chapter_path(root, next(iter(cells))))
     if front is not None:
         texts[root / README] = front
     found: dict[str, list[Path]] = {"written": [], "unchanged": [], "stale": [], "edited": []}
@@ -170,7 +170,7 @@ _BADGES_BLOCK = re2.compile(r"(?s)(<!-- badges -->\n).*?(<!-- end of badges -->)
 _CLONE_LINE = re2.compile(r"(git clone )\S+( )")
 
 
-def readme(root: Path, notebook: Path) -> str | None:
+def _readme(root: Path, notebook: Path) -> str | None:
     """Return README.md with the address of the repository and badges filled in; None if it has no marks for the badges.
 
     The badges are for the repository's tests, and for services that open a notebook.

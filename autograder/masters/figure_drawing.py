@@ -54,7 +54,7 @@ def stale_figures(root: Path) -> list[Path]:
     return found
 
 
-def draw(figures: Sequence[Path], chromium: str) -> None:
+def _draw(figures: Sequence[Path], chromium: str) -> None:
     """Draw a PNG next to each SVG.
 
     Args:
@@ -134,7 +134,7 @@ def main() -> int:
         )
         return 2
     if figures and chromium:
-        draw(figures, chromium)
+        _draw(figures, chromium)
     for svg in figures:
         print(f"drawn  {svg.with_suffix('.png')}")
     return 0

@@ -103,7 +103,7 @@ def _use(prefixes: list[Path], made: Build) -> str:
             if folder not in sys.path:
                 sys.path.insert(0, folder)
         if prefix.name not in sys.modules:
-            load_libraries(prefix)
+            _load_libraries(prefix)
     importlib.invalidate_caches()
     old = sorted({*stale, *elsewhere})
     if not old:
@@ -111,7 +111,7 @@ def _use(prefixes: list[Path], made: Build) -> str:
     return f"This kernel uses another version of {', '.join(old)}: restart the kernel to use the new one."
 
 
-def load_libraries(prefix: Path) -> None:
+def _load_libraries(prefix: Path) -> None:
     """Load the libraries of a package into this process, so that code that opens them by name finds them.
 
     Raises:

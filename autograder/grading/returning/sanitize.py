@@ -127,7 +127,7 @@ def _make_text_harmless(cell: NotebookNode, pictures: PixelBudget) -> None:
         cell.source = harmless_markdown(cell.source, _figures(cell))
         if not pictures.fit(_pictures_of(cell)):
             cell.pop("attachments", None)
-            cell.source = as_typed(_PICTURE.sub("picture left out: too large", cell.source))
+            cell.source = _as_typed(_PICTURE.sub("picture left out: too large", cell.source))
     elif cell.cell_type == CellType.RAW:
         _show_as_typed(cell)
 
@@ -136,9 +136,9 @@ def _show_as_typed(cell: NotebookNode) -> None:
     if cell.cell_type == CellType.CODE:
         cell.metadata["magics_language"] = "text"  # so that nbconvert shows the code without highlighting
     elif cell.cell_type == CellType.RAW:
-        cell.update(nbformat_nodes.cell(CellType.MARKDOWN, as_typed(cell.source)) | {"id": cell.id})
+        cell.update(nbformat_nodes.cell(CellType.MARKDOWN, _as_typed(cell.source)) | {"id": cell.id})
     else:
-        cell.source = as_typed(cell.source)
+        cell.source = _as_typed(cell.source)
 
 
 def _pictures_of(cell: NotebookNode) -> list[str]:
@@ -167,12 +167,12 @@ def harmless_markdown(source: str, figures: tuple[str, ...] = ()) -> str:
         figures: The names of the bitmaps attached to the cell, each of which may be shown once.
     """
     if len(source) > LONGEST_MARKDOWN:
-        return as_typed(source)
+        return _as_typed(source)
     try:
         renderer = _InspectingRenderer(figures)
         rendered = MarkdownWithMath(renderer=renderer).render(source)
         if escape_direction_marks(plain := unescape(rendered)) != plain:
-            return as_typed(source)  # an HTML entity changes the writing direction
+            return _as_typed(source)  # an HTML entity changes the writing direction
         cleaned = clean(rendered)
         if renderer.is_plain and cleaned.count("&lt;") == rendered.count("&lt;"):
             return source
@@ -181,12 +181,12 @@ def harmless_markdown(source: str, figures: tuple[str, ...] = ()) -> str:
         block = f"<div>{in_one_line}</div>"
         # Store the block only if nbconvert shows it unchanged.
         shown = MarkdownWithMath(renderer=IPythonRenderer(escape=False)).render(block)
-        return block if shown.strip() == block else as_typed(source)
+        return block if shown.strip() == block else _as_typed(source)
     except Exception:  # a parser may raise any error for a hostile text, for example because of deep nesting
-        return as_typed(source)
+        return _as_typed(source)
 
 
-def as_typed(source: str) -> str:
+def _as_typed(source: str) -> str:
     """Return Markdown that shows ``source`` unchanged, as a code block; very long text is cut."""
     fence = "`" * (3 + max((len(run) for run in re2.findall(r"`+", source)), default=0))
     return f"{fence}text\n{_cut(source, LONGEST_MARKDOWN)}\n{fence}"
