@@ -85,7 +85,7 @@ class Lines:
         return cls(connection)
 
     @classmethod
-    def with_parent(cls, largest: int = sys.maxsize) -> Self:
+    def with_parent(cls) -> Self:
         """Connect to the parent process, which started this process with a socket as its standard input.
 
         Children of this process get an empty standard input instead. So the connection ends when this process ends.
@@ -94,7 +94,7 @@ class Lines:
         nothing = os.open(os.devnull, os.O_RDONLY)
         os.dup2(nothing, 0)
         os.close(nothing)
-        return cls(connection, largest)
+        return cls(connection, sys.maxsize)
 
     def say(self, message: Message) -> None:
         """Send one message.

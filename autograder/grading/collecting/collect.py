@@ -112,14 +112,9 @@ class CollectReport:
         return 2 if self.having(LineState.NOT_PLACED) else 0
 
 
-def show(report: CollectReport, console: Console | None = None) -> None:
-    """Print which files were placed and which were not, with the reasons.
-
-    Args:
-        report: The result of collecting.
-        console: The console to print on; by default standard output.
-    """
-    console = console or Console()
+def show(report: CollectReport) -> None:
+    """Print which files were placed and which were not, with the reasons."""
+    console = Console()
     for text in _lines(report):
         style = "yellow" if text.startswith(LineState.NOT_PLACED) else ""
         plain_line(console, printable(text), style)

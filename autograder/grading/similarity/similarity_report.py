@@ -36,15 +36,14 @@ if TYPE_CHECKING:
     from autograder.grading.similarity.similar_pairs import Pair, SimilarPairs
 
 
-def show(found: SimilarPairs, page: Path, console: Console | None = None) -> None:
+def show(found: SimilarPairs, page: Path) -> None:
     """Print the pairs, a line for each file that was not compared, and the path of the page.
 
     Args:
         found: The result of the search.
         page: The path of the page with the pairs side by side.
-        console: The console to print on; by default standard output.
     """
-    console = console or Console()
+    console = Console()
 
     def line(text: str, style: str = "") -> None:
         plain_line(console, printable(text), style)
