@@ -24,14 +24,14 @@ _MARKS = r"\n(?:[ ~^]*\n)?"
 
 
 @dataclass(frozen=True)
-class ForeignCode:
-    """One kind of code from other sources, with the exception that it raises.
+class KnownTraceback:
+    """A traceback with a known cause, such as the exception that copied code raises.
 
     Attributes:
         pattern: The pattern to search for in the traceback (multi-line). ``text`` and ``next_step`` may use its named
-            groups, and ``{here}`` for the package with this course's interfaces.
-        text: The cause, in a sentence for the student that names the origin of the code.
-        next_step: What to write in this course.
+            groups, and ``{here}`` for the packages with this course's interfaces.
+        text: The cause, in a sentence for the student. For copied code, the sentence names the origin of the code.
+        next_step: What to do now. For copied code, what to write in this course.
         key: The diagnosis key.
     """
 
@@ -72,14 +72,14 @@ _TYPES = r"\w*Ints|SetBool|Trigger|Empty|Fibonacci|WalkTo"
 _PARTS = "Request|Response|Goal|Result|Feedback"
 
 ROWS = (
-    ForeignCode(
+    KnownTraceback(
         r"Context\.init\(\) must only be called once",
         "rclpy.init() was called although ROS was already started.",
         "Call rclpy.init() once per process. In a notebook, start_ros() has done it: leave out rclpy.init() and each "
         "main() that calls it, and spin a node with `with spinning(your_node):`.",
         "init_twice",
     ),
-    ForeignCode(
+    KnownTraceback(
         # This matches code for rclpy 7.2 and later: contexts and entities in `with`, new names, arithmetic with
         # durations.
         r"\b(?:init\(|with \().*\n(?:[ ~^]*\n)?"
@@ -97,7 +97,7 @@ ROWS = (
         "newer_api",
     ),
     *(
-        ForeignCode(
+        KnownTraceback(
             rf"\brospy\.(?P<name>{names})\b.*{_MARKS}NameError: name 'rospy' is not defined"
             rf"|AttributeError: module 'rclpy' has no attribute '(?P<missed>{names})'",
             "{name}{missed} comes from ROS 1 or from C++, and this course uses ROS 2 in Python.",
@@ -105,13 +105,13 @@ ROWS = (
         )
         for names, here in _HERE.items()
     ),
-    ForeignCode(
+    KnownTraceback(
         # Copied code may also look for rospy's functions in the node, as in self.loginfo(...).
         rf"AttributeError: '\w+' object has no attribute '(?P<name>{_LOG})'",
         "{name} belongs to ROS 1, and this course uses ROS 2.",
         _HERE[_LOG],
     ),
-    ForeignCode(
+    KnownTraceback(
         r"(?:ModuleNotFoundError: No module named|NameError: name) '(?P<name>rospy|roslib|actionlib|rospkg)\b",
         "{name} belongs to ROS 1, and this course uses ROS 2, whose Python module is rclpy.",
         "Write `import rclpy` and `from rclpy.node import Node`. A node is a class, class YourNode(Node), with "
@@ -119,28 +119,28 @@ ROWS = (
         "self.create_timer(0.5, self.tick) in place of a loop with a rate, and self.get_logger().info(...) for the "
         "log. Begin with the lab's own code.",
     ),
-    ForeignCode(
+    KnownTraceback(
         r"TypeError: Node\.create_(?:publisher|subscription)\(\) got an unexpected keyword argument "
         r"'(?P<name>queue_size|latch|tcp_nodelay|buff_size|data_class|callback_args)'",
         "{name}= belongs to ROS 1, and this course uses ROS 2.",
         "First the type, then the name, and the depth as a plain number at the end: create_publisher(String, "
         "'chatter', 10), create_subscription(String, 'chatter', self.on_message, 10).",
     ),
-    ForeignCode(
+    KnownTraceback(
         r"rclpy_resolve_name\(\): incompatible function arguments(?:.*\n)*?Invoked with: <[^>]*>, "
         r"<class '(?:\w+\.)*(?P<type>\w+)'>",
         "The type {type} is where the name belongs. ROS 1 has this order of arguments.",
         "In ROS 2 the type comes first, then the name in quotation marks: create_publisher({type}, 'chatter', 10), "
         "create_subscription({type}, 'chatter', self.on_message, 10).",
     ),
-    ForeignCode(
+    KnownTraceback(
         rf"(?:ImportError: cannot import name|NameError: name) '(?P<type>{_TYPES})(?P<part>{_PARTS})'",
         "In ROS 1 and in C++, the {part} of {type} has its own name. In ROS 2 with Python, it is an attribute of "
         "{type}.",
         "Import only {type}, and write the {part} with a dot: {type}.{part}.",
     ),
     *(
-        ForeignCode(
+        KnownTraceback(
             rf"(?:ImportError: cannot import name '(?P<name>\w+)' from '(?P<package>{packages})' "
             rf"|AttributeError: module '(?P<of>{packages})' has no attribute '(?P<missed>[A-Z]\w*)'"
             rf"|ModuleNotFoundError: No module named '(?P<before>{packages})\.(?P<last>[A-Z]\w*)')",
@@ -156,7 +156,7 @@ ROWS = (
             (r"\w+_interfaces", "srv", " (.action in place of .srv for an action)"),
         )
     ),
-    ForeignCode(
+    KnownTraceback(
         r"ModuleNotFoundError: No module named '(?P<name>example_interfaces|action_tutorials_interfaces"
         r"|tutorial_interfaces|custom_interfaces|custom_action_interfaces|action_tutorials|beginner_tutorials)\b",
         "{name} belongs to other tutorials, and this course does not have it.",
@@ -164,7 +164,7 @@ ROWS = (
         "Trigger in std_srvs.srv. `ros2 interface show` lists the fields, which may have other names.",
         "module_not_found",
     ),
-    ForeignCode(
+    KnownTraceback(
         r"RuntimeError: (?:no running event loop|There is no current event loop)"
         r"|RuntimeError: asyncio\.run\(\) cannot be called from a running event loop"
         r"|RuntimeError: This event loop is already running|RuntimeError: Task got bad yield"
@@ -173,12 +173,12 @@ ROWS = (
         "Leave asyncio out. To pause or to repeat something, write self.create_timer(0.5, self.tick). To go on when an "
         "answer arrives, write future.add_done_callback(self.on_answer), with the future that call_async returned.",
     ),
-    ForeignCode(
+    KnownTraceback(
         r"NameError: name '(?P<name>this|true|false|null|NULL|nullptr|undefined)' is not defined",
         "{name} is a word of another language.",
         "In Python, write self instead of this, and True, False or None with these capitals.",
     ),
-    ForeignCode(
+    KnownTraceback(
         r"(?:ModuleNotFoundError: No module named|NameError: name) '(?:rclcpp|RCLCPP_\w+)\b"
         r"|AttributeError: '\w+' object has no attribute '(?:create_wall_timer|async_(?:send_\w+|get_result"
         r"|cancel_goal))'"
@@ -199,7 +199,7 @@ def packages(names: Iterable[str]) -> str:
     return " or ".join(sorted(set(names))) or "the package that the lab imports from"
 
 
-def recognized(traceback: str, here: str) -> ForeignCode | None:
+def recognized(traceback: str, here: str) -> KnownTraceback | None:
     """Return the row that a traceback matches, with its texts filled in; None if it matches no row.
 
     Args:

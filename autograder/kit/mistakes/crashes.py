@@ -15,9 +15,8 @@ from autograder.kit.mistakes.python_errors import MARKS, Name, is_a_library, mea
 from autograder.kit.model import Advice, Mistake
 
 if TYPE_CHECKING:
-    from autograder.foreign_code import ForeignCode
+    from autograder.foreign_code import KnownTraceback
     from autograder.kit.evidence import Event, Evidence, Part
-    from autograder.kit.mistakes.known_crashes import Crash
 
 
 _NO_CRASH = re2.compile(
@@ -40,7 +39,7 @@ def traceback_of(evidence: Evidence) -> str:
     return next((text for text in crashes if not meant(text)), crashes[0] if crashes else "")
 
 
-def _recogniser(crash: Crash | ForeignCode) -> Mistake:
+def _recogniser(crash: KnownTraceback) -> Mistake:
     compiled = re2.compile(f"(?m){crash.pattern}")
 
     def recognise(evidence: Evidence) -> Advice | None:
