@@ -4,6 +4,7 @@ import base64
 import re
 from typing import Any
 
+import nbformat
 import pytest
 from nbconvert.filters.ansi import ansi2html
 
@@ -142,25 +143,42 @@ def test_a_display_is_updated_in_place() -> None:
     assert [o["data"]["text/plain"] for o in collected.outputs()] == ["2"]
 
 
-def test_messages_of_any_form_do_no_harm() -> None:
+ANYTHING: tuple[Any, ...] = (
+    None,
+    3,
+    {},
+    [],
+    ["a", "b"],
+    {"a": 1},
+    "a",
+    "\ud800",
+    base64.b64encode(b"p").decode(),
+)
+
+
+@pytest.mark.parametrize("field", ANYTHING, ids=repr)
+@pytest.mark.parametrize("kind", ["stream", "display_data", "execute_result", "error"])
+def test_outputs_are_valid_whatever_the_form_of_the_messages(kind: str, field: Any) -> None:
+    """A notebook is made of the outputs, and their form is not checked there."""
     collected = collector()
-    for kind in (
-        "stream",
-        "display_data",
-        "execute_result",
-        "error",
-        "update_display_data",
-        "clear_output",
-        "?",
+    data = {"text/plain": field, "image/png": field, "text/html": field}
+    for content in (
+        {},
+        {"name": field, "text": field, "ename": field, "evalue": field, "traceback": field, "data": field},
+        {"text": "a", "traceback": [field], "data": data, "metadata": field, "execution_count": field},
+        {"data": data, "output_type": field, "other": field, "transient": field},
+        {"data": data, "metadata": data, "transient": {"display_id": field}},
     ):
-        for content in (
-            {},
-            {"data": 3, "text": {}, "traceback": "x", "transient": []},
-            {"data": {"text/plain": None}},
-        ):
-            collected.handle(kind, content)
+        collected.handle(kind, content)
+        collected.handle("update_display_data", content)
+    assert collected.outputs()
     for output in collected.outputs():
-        assert output["output_type"] in {"stream", "display_data", "execute_result", "error"}
+        assert output["output_type"] == kind
+        nbformat.validate(output, ref=kind, version=4)
+    assert all(isinstance(text, str) for text in all_texts(collected))
+    for unknown in ("?", "clear_output"):
+        collected.handle(unknown, {"data": data})
+    assert collected.outputs() == ()
 
 
 def test_a_lone_surrogate_becomes_writable_text() -> None:
