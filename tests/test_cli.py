@@ -12,13 +12,14 @@ from pathlib import Path
 
 import pytest
 
-from autograder.authoring.answer_bank import answer_named, answers_folder
+from autograder.authoring.answer_bank import answers_folder
 from autograder.boxes.sandbox import why_impossible
 from autograder.cli import GROUPS
 from autograder.cli.student_commands import show
 from autograder.kit.reported_texts import AT_PACE
 from autograder.verdict import not_checked
 from environment.python_child import SAFE_PATH, TYPED_PYTHONPATH, installed_program
+from tests.measure.bank import answer_named
 
 TALKER = answers_folder("lab_1_2.talker")
 LISTENER = answers_folder("lab_1_2.listener")

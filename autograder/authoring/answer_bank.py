@@ -148,23 +148,9 @@ def answers(of: Sequence[str] = ()) -> Iterator[Answer]:
             yield Answer(exercise_id, one.file, command, diagnoses, base, edit, one.entry.says)
 
 
-def answer_named(name: str) -> Answer:
-    """Return the answer with a name such as ``lab_1_2.talker/wrong/topic_name.py``.
-
-    Raises:
-        StopIteration: The answer does not exist.
-    """
-    return next(answer for answer in answers() if answer.name == name)
-
-
 def answers_folder(exercise_id: str) -> Path:
     """Return the folder with the answers to an exercise."""
     return exercises.path(exercise_id).with_suffix(".answers")
-
-
-def longest_first(wanted: Iterable[Answer]) -> list[Answer]:
-    """Sort answers so that slow ones start first. Otherwise a slow answer could run alone at the end."""
-    return sorted(wanted, key=lambda answer: -exercises.get(answer.exercise).limit)
 
 
 _JUDGING_LIMIT = 240.0

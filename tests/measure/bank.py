@@ -10,12 +10,13 @@ import sys
 import time
 from typing import TYPE_CHECKING
 
-from autograder.authoring.answer_bank import Answer, Turn, answers, judge_all, longest_first, warm_up
+from autograder import exercises
+from autograder.authoring.answer_bank import Answer, Turn, answers, judge_all, warm_up
 from autograder.verdict import to_json
 
 if TYPE_CHECKING:
     import argparse
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Sequence
 
     from autograder.verdict import Verdict
 
@@ -29,6 +30,20 @@ def of_answers(parser: argparse.ArgumentParser, *, jobs: int = 14) -> None:
 def chosen(only: Sequence[str]) -> list[Answer]:
     """The answers with one of these parts in their names; all where there is none."""
     return [answer for answer in answers() if not only or any(part in answer.name for part in only)]
+
+
+def answer_named(name: str) -> Answer:
+    """Return the answer with a name such as ``lab_1_2.talker/wrong/topic_name.py``.
+
+    Raises:
+        StopIteration: The answer does not exist.
+    """
+    return next(answer for answer in answers() if answer.name == name)
+
+
+def longest_first(wanted: Iterable[Answer]) -> list[Answer]:
+    """Sort answers so that slow ones start first. Otherwise a slow answer could run alone at the end."""
+    return sorted(wanted, key=lambda answer: -exercises.get(answer.exercise).limit)
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:

@@ -22,7 +22,7 @@ import msgspec
 
 from autograder import course, exercises
 from autograder.appeals.replaying import CannotReplay, replay
-from autograder.authoring.answer_bank import Answer, Turn, answers, judge_all, longest_first, warm_up
+from autograder.authoring.answer_bank import Answer, Turn, answers, judge_all, warm_up
 from autograder.judge import evidence_files
 from autograder.judge.evidence_files import Kept, evidence_of, packed, plain, restored, unpack
 from autograder.verdict import State, to_json
@@ -230,7 +230,7 @@ def make(wanted: Sequence[Answer], *, jobs: int) -> list[str]:
         warm_up()
         for exercise_id in {answer.exercise for answer in wanted}:
             stimulus.digest(exercise_id)  # once, before all the forks
-        turns = [Turn(Seen(answer, Path(folder)), "evidence") for answer in longest_first(wanted)]
+        turns = [Turn(Seen(answer, Path(folder)), "evidence") for answer in bank.longest_first(wanted)]
         judge_all(turns, jobs=jobs, done=done, failed=failed)
     for exercise_id in exercises.all_ids():
         _write(exercise_id, made.get(exercise_id, {}))

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import json
 
-from autograder.authoring.answer_bank import answer_named
 from tests.measure import evidence, history
+from tests.measure.bank import answer_named
 
 ANSWER = answer_named("lab_1_2.talker/right/usual.py")
 LINE = evidence.kept(ANSWER.exercise)[ANSWER.name]

@@ -10,7 +10,7 @@ import pytest
 sys.path.insert(0, str(Path(__file__).parents[1]))
 from checked import a_judge
 
-from autograder.authoring.answer_bank import answer_named
+from tests.measure.bank import answer_named
 
 pytestmark = [pytest.mark.ros, pytest.mark.slow]
 
