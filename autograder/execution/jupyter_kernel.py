@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Protocol
 import msgspec
 
 from autograder.boxes.box_connection import NoSandbox
-from autograder.boxes.limit_guards import INTERVAL, NoGuard
+from autograder.boxes.limit_guards import INTERVAL
 from autograder.boxes.run_limits import Ended, wall_time
 from autograder.execution.kernel_desk_messages import (
     FURTHER_BYTES,
@@ -72,7 +72,21 @@ class Channels:
 
 
 class NotebookProcesses(Protocol):
-    """The part of :class:`autograder.execution.notebook_processes.BoxedProcesses` that a kernel needs."""
+    """The part of :class:`autograder.execution.notebook_processes.BoxedProcesses` that a kernel needs.
+
+    Attributes:
+        folder: The notebook's folder, in which a folder for the kernel's sockets is made. Only the desk's box sees
+            the sockets. The path must be short, because the name of a Unix socket has at most 107 characters.
+        limits: The limits of the notebook.
+    """
+
+    folder: Path
+    limits: Limits
+
+    @property
+    def guard(self) -> Guard:
+        """Reports if a limit of the box is exceeded."""
+        ...
 
     def start_kernel(self, channels: Channels) -> ForkedProcess:
         """Start the kernel's process."""
@@ -87,39 +101,27 @@ class Kernel:
     """A running kernel.
 
     Args:
-        folder: A folder for the sockets. Its path must be short, as Unix socket names have at most 107 characters.
-            Only the desk's box sees what is made there.
         processes: Starts the processes.
-        limits: ``start_seconds``, ``interrupt_grace`` and ``notebook_output_bytes`` are used.
         outputs: Receives the outputs.
-        guard: Reports if a limit of the box is exceeded.
 
     Raises:
         KernelFailed: The process could not be started.
     """
 
-    def __init__(
-        self,
-        folder: Path,
-        processes: NotebookProcesses,
-        limits: Limits,
-        outputs: NotebookOutputs,
-        guard: Guard | None = None,
-    ) -> None:
-        self._limits = limits
-        self._guard = guard or NoGuard()
+    def __init__(self, processes: NotebookProcesses, outputs: NotebookOutputs) -> None:
+        self._limits, self._guard = processes.limits, processes.guard
         self._outputs = outputs
         self._sent = self._answered = -1
         self._cells: set[int] = set()
         self._desk_failed = self._desk_lost = False
         self._log, log = _log_pipe()
-        sockets = folder / "kernel"
+        sockets = processes.folder / "kernel"
         sockets.mkdir()
         shell, iopub = (_listener(sockets / f"k-{number}") for number in (SHELL, IOPUB))
         own, orders = socket.socketpair()
         own.settimeout(_DESK_SECONDS)
         self._desk_says = own
-        self._lines = Lines(own, MOST_ESCAPED * limits.notebook_output_bytes + FURTHER_BYTES)
+        self._lines = Lines(own, MOST_ESCAPED * self._limits.notebook_output_bytes + FURTHER_BYTES)
         given = (shell.fileno(), iopub.fileno(), log, orders.fileno())
         channels = Channels(sockets, secrets.token_hex(32), *given)
         with contextlib.ExitStack() as started:

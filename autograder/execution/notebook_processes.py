@@ -24,6 +24,7 @@ from autograder.boxes.visible_host import (
     kernel_environment,
 )
 from autograder.execution.kernel_desk_messages import Setting
+from autograder.messages.judge_messages import SOCKET_VARIABLE
 from autograder.safe_files import write_files
 
 if TYPE_CHECKING:
@@ -45,16 +46,28 @@ Each program writes its files into a small scratch of its own box.
 
 
 @dataclass(frozen=True)
-class JudgeSetting:
-    """The settings of a judge's process. The grader passes them, because boxes do not import the judge.
+class NotebookSetting:
+    """The settings of the processes of one notebook.
+
+    They include the judge's settings, because this part of the package does not import the judge.
 
     Attributes:
-        environment: More environment variables.
-        readable: Folders that only a judge may see, such as the one with the reference outputs.
+        folder: A folder that nothing else uses. Its path must be short, because it will contain Unix sockets.
+        limits: The limits for the kernel and everything that it starts.
+        files: The files next to the notebook.
+        variables: More environment variables for the kernel.
+        judges_variables: More environment variables for the judge.
+        judges_folders: Folders that only a judge may see, such as the one with the reference outputs.
+        programs: True to make a second network, for programs. Without boxes this changes nothing.
     """
 
-    environment: Mapping[str, str] = field(default_factory=dict)
-    readable: Sequence[Path] = ()
+    folder: Path
+    limits: Limits
+    files: Mapping[str, bytes] = field(default_factory=dict)
+    variables: Mapping[str, str] = field(default_factory=dict)
+    judges_variables: Mapping[str, str] = field(default_factory=dict)
+    judges_folders: Sequence[Path] = ()
+    programs: bool = False
 
 
 class BoxedProcesses:
@@ -65,52 +78,36 @@ class BoxedProcesses:
 
     Args:
         addresses: The addresses of the fork servers.
-        folder: A folder that nothing else uses. Its path must be short, because it will contain Unix sockets.
-        files: The files next to the notebook.
-        variables: More environment variables for the kernel.
-        socket_variable: The environment variable that tells the kernel the path of the judge's socket.
-        judge: The settings for the judge's process.
-        limits: The limits for the kernel and everything that it starts.
-        programs: True to make a second network, for programs.
+        setting: The settings of the processes.
 
     Raises:
         NoSandbox: The namespaces could not be made.
     """
 
-    def __init__(
-        self,
-        addresses: Addresses,
-        folder: Path,
-        files: Mapping[str, bytes],
-        variables: Mapping[str, str],
-        socket_variable: str,
-        judge: JudgeSetting,
-        limits: Limits,
-        *,
-        programs: bool = False,
-    ) -> None:
-        self._addresses, self._judge, self._limits = addresses, judge, limits
+    def __init__(self, addresses: Addresses, setting: NotebookSetting) -> None:
+        self._addresses, self._setting = addresses, setting
+        self.folder, self.limits = setting.folder, setting.limits
         self._open = contextlib.ExitStack()
         self._judges = itertools.count(1)
-        self.shared = folder / "run"
+        self.shared = self.folder / "run"
         """The folder that the student's box sees, read-only, at the path ``SHARED_FOLDER``."""
         self.shared.mkdir()
         self.judge_socket = self.shared / _JUDGE
         """The path of the judge's socket, as the grader sees it."""
-        self._variables = {**variables, socket_variable: str(SHARED_FOLDER / _JUDGE)}
-        self.guard = BoxGuard(limits)
+        self._variables = {**setting.variables, SOCKET_VARIABLE: str(SHARED_FOLDER / _JUDGE)}
+        self.guard = BoxGuard(self.limits)
         self._open.callback(self.guard.close)
         try:
             self.enclosure = self._open.enter_context(
                 Enclosure(
-                    addresses.supervisors, folder / "box", files=files,
-                    scratch_bytes=limits.scratch_bytes, scratch_inodes=limits.scratch_files, guard=self.guard,
+                    addresses.supervisors, self.folder / "box", files=setting.files, guard=self.guard,
+                    scratch_bytes=self.limits.scratch_bytes, scratch_inodes=self.limits.scratch_files,
                 )
             )  # fmt: skip
-            self.programs = self.enclosure if not programs else self._open.enter_context(
+            self.programs = self.enclosure if not setting.programs else self._open.enter_context(
                 Enclosure(
-                    addresses.supervisors, folder / "programs",
-                    scratch_bytes=_PROGRAMS_SCRATCH_BYTES, scratch_inodes=_PROGRAMS_SCRATCH_FILES, guard=self.guard,
+                    addresses.supervisors, self.folder / "programs", guard=self.guard,
+                    scratch_bytes=_PROGRAMS_SCRATCH_BYTES, scratch_inodes=_PROGRAMS_SCRATCH_FILES,
                 )
             )  # fmt: skip
         except BaseException:
@@ -138,7 +135,7 @@ class BoxedProcesses:
     def start_desk(self, channels: Channels) -> ForkedProcess:
         """Start the kernel's desk: another child of the same fork server enters a separate box."""
         box = self.enclosure.box("desk", [Bind(channels.folder, DESK_FOLDER)], scratch=False)
-        entrance = _desk_entrance(channels, DESK_FOLDER, self._limits, boxed=True)
+        entrance = _desk_entrance(channels, DESK_FOLDER, self.limits, boxed=True)
         return ForkedProcess(self._addresses.kernels, entrance, [channels.orders], box)
 
     def start_judge(self, listener: int, orders: int, *, of_programs: bool = False) -> ForkedProcess:
@@ -151,14 +148,14 @@ class BoxedProcesses:
         """
         enclosure = self.programs if of_programs else self.enclosure
         name = f"{_JUDGE} {next(self._judges)}"
-        box = enclosure.box(name, [Bind(path) for path in self._judge.readable], scratch=False)
+        box = enclosure.box(name, [Bind(path) for path in self._setting.judges_folders], scratch=False)
         return enclosure.enter(
             box,
             self._addresses.judges,
             [listener, orders],
             cwd=HOME,
-            environment=box_environment(self._judge.environment),
-            rlimits=self._limits.of_the_judge,
+            environment=box_environment(self._setting.judges_variables),
+            rlimits=self.limits.of_the_judge,
         )
 
     def __enter__(self) -> Self:
@@ -175,26 +172,15 @@ class UnboxedProcesses:
     :class:`BoxedProcesses`.
     """
 
-    def __init__(
-        self,
-        addresses: Addresses,
-        folder: Path,
-        files: Mapping[str, bytes],
-        variables: Mapping[str, str],
-        socket_variable: str,
-        judge: JudgeSetting,
-        limits: Limits,
-        *,
-        programs: bool = False,
-    ) -> None:
-        del programs  # without boxes, all processes are on the host's network
-        self._addresses, self._folder, self._judge, self._limits = addresses, folder, judge, limits
+    def __init__(self, addresses: Addresses, setting: NotebookSetting) -> None:
+        self._addresses, self._judges_variables = addresses, setting.judges_variables
+        self.folder, self.limits = setting.folder, setting.limits
         self.guard = NoGuard()
-        self.judge_socket = folder / _JUDGE
+        self.judge_socket = self.folder / _JUDGE
         """The path of the socket on which the judge listens."""
         self._started: list[ForkedProcess] = []
-        self._cwd = write_files(files, folder / "work")
-        self._variables = {**variables, socket_variable: str(self.judge_socket)}
+        self._cwd = write_files(setting.files, self.folder / "work")
+        self._variables = {**setting.variables, SOCKET_VARIABLE: str(self.judge_socket)}
 
     def abandon(self) -> None:
         """Kill the processes, and do not wait for their end; see :meth:`BoxedProcesses.abandon`."""
@@ -205,7 +191,7 @@ class UnboxedProcesses:
         """Start the kernel as a fork of the fork server."""
         entrance = Entrance(
             cwd=str(self._cwd),
-            environment=kernel_environment(self._folder, self._variables),
+            environment=kernel_environment(self.folder, self._variables),
             boxed=False,
             call={"key": channels.key, "address": str(channels.folder / "k")},
         )
@@ -213,15 +199,15 @@ class UnboxedProcesses:
 
     def start_desk(self, channels: Channels) -> ForkedProcess:
         """Start the kernel's desk as another child of the same fork server."""
-        entrance = _desk_entrance(channels, channels.folder, self._limits, boxed=False)
+        entrance = _desk_entrance(channels, channels.folder, self.limits, boxed=False)
         return self._start(self._addresses.kernels, entrance, [channels.orders])
 
     def start_judge(self, listener: int, orders: int, *, of_programs: bool = False) -> ForkedProcess:
         """Start a judge as a fork of the judges' fork server."""
         del of_programs
-        environment = kernel_environment(self._folder / "of-the-judge", self._judge.environment)
+        environment = kernel_environment(self.folder / "of-the-judge", self._judges_variables)
         entrance = Entrance(
-            cwd=str(self._folder), environment=environment, boxed=False, rlimits=self._limits.of_the_judge
+            cwd=str(self.folder), environment=environment, boxed=False, rlimits=self.limits.of_the_judge
         )
         return self._start(self._addresses.judges, entrance, [listener, orders])
 

@@ -30,9 +30,7 @@ from autograder.verdict import State, Verdict
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
-    from pathlib import Path
 
-    from autograder.boxes.limit_guards import Guard
     from autograder.boxes.run_limits import Limits
 
 
@@ -61,9 +59,6 @@ def run_notebook(
     *,
     judge: contextlib.AbstractContextManager[Judge],
     processes: NotebookProcesses,
-    folder: Path,
-    limits: Limits,
-    guard: Guard | None = None,
     patient: Patient = wall_time,
 ) -> Execution:
     """Execute a notebook in a separate kernel.
@@ -71,10 +66,7 @@ def run_notebook(
     Args:
         cells: The cells of the rebuilt notebook.
         judge: The judge, a context manager. It starts while the kernel starts, and ends before this function returns.
-        processes: Starts the processes of the kernel and its desk.
-        folder: The folder for the kernel's sockets. Its path must be short.
-        limits: The limits of the notebook.
-        guard: Reports if a limit of the box is exceeded.
+        processes: Starts the processes of the kernel and its desk, within the notebook's limits.
         patient: Turns a cell's time limit into a deadline, which may stretch while the machine is busy.
 
     Returns:
@@ -82,10 +74,10 @@ def run_notebook(
         ``trouble`` says why, and the checks that this affects are "not checked".
     """
     began = time.monotonic()
-    run = _Run(cells, limits, patient)
+    run = _Run(cells, processes.limits, patient)
     try:
         with (
-            contextlib.closing(Kernel(folder, processes, limits, run.outputs, guard)) as kernel,
+            contextlib.closing(Kernel(processes, run.outputs)) as kernel,
             judge as ready,
         ):
             kernel.await_ready()

@@ -18,7 +18,7 @@ from autograder.boxes.fork_server import ForkServers
 from autograder.boxes.run_limits import Ended, Limits
 from autograder.boxes.sandbox import why_impossible
 from autograder.execution.executed_cells import Cell, CellCheck, Execution
-from autograder.execution.notebook_processes import BoxedProcesses, JudgeSetting, UnboxedProcesses
+from autograder.execution.notebook_processes import BoxedProcesses, NotebookSetting, UnboxedProcesses
 from autograder.execution.notebook_runner import run_notebook
 from autograder.judge import controlled_judge
 from autograder.safe_files import scratch_folder
@@ -59,15 +59,12 @@ def run(request: pytest.FixtureRequest, tmp_path: Path, boxed: Addresses) -> Ite
             limits = Limits(**{"cell_seconds": 30.0, "interrupt_grace": 1.0, **changed})  # type: ignore[arg-type]
             with (
                 scratch_folder(tmp_path) as folder,
-                BoxedProcesses(boxed, folder, {}, {}, "JUDGE", JudgeSetting(), limits) as place,
+                BoxedProcesses(boxed, NotebookSetting(folder, limits)) as place,
             ):
                 execution = run_notebook(
                     [Cell(source), CHECK],
                     judge=contextlib.nullcontext(SilentJudge()),
                     processes=place,
-                    folder=folder,
-                    limits=limits,
-                    guard=place.guard,
                 )
                 return replace(execution, cpu_seconds=place.guard.cpu_seconds)
 
@@ -298,7 +295,8 @@ def test_a_judge_has_a_limit_of_memory(kind: type[BoxedProcesses | UnboxedProces
         own, its_own, socket.socket(socket.AF_UNIX) as listener, scratch_folder(tmp_path) as folder,
         ForkServers(controlled_judge.__name__, boxed=boxed) as warm,
         kind(
-            warm.addresses, folder, {}, {}, "JUDGE", JudgeSetting(controlled_judge.environment(boxed=boxed)), limits,
+            warm.addresses,
+            NotebookSetting(folder, limits, judges_variables=controlled_judge.environment(boxed=boxed)),
         ) as place,
     ):  # fmt: skip
         listener.bind(str(place.judge_socket))

@@ -20,8 +20,9 @@ from autograder.boxes.run_limits import Limits
 from autograder.boxes.sandbox import Enclosure
 from autograder.boxes.visible_host import Bind, installation
 from autograder.execution.executed_cells import Cell
-from autograder.execution.notebook_processes import BoxedProcesses, JudgeSetting
+from autograder.execution.notebook_processes import BoxedProcesses, NotebookSetting
 from autograder.execution.notebook_runner import run_notebook
+from autograder.messages.judge_messages import SOCKET_VARIABLE
 from autograder.safe_files import scratch_folder
 from environment.place import Place
 
@@ -50,17 +51,12 @@ def ask(request: pytest.FixtureRequest, tmp_path: Path, boxed: Addresses) -> Ask
         limits = Limits(cell_seconds=30)
         with (
             scratch_folder(tmp_path) as folder,
-            BoxedProcesses(
-                boxed, folder, {"data/a.txt": b"hello"}, {}, "JUDGE", JudgeSetting(), limits
-            ) as place,
+            BoxedProcesses(boxed, NotebookSetting(folder, limits, {"data/a.txt": b"hello"})) as place,
         ):
             run = run_notebook(
                 [Cell(source.format(code=code))],
                 judge=contextlib.nullcontext(SilentJudge()),
                 processes=place,
-                folder=folder,
-                limits=limits,
-                guard=place.guard,
             ).cells[0]
         return answer("".join(output.get("text", "") for output in run.outputs) or run.error)
 
@@ -145,8 +141,8 @@ def test_no_variable_of_the_host(ask: Ask) -> None:
     known = (
         "PATH", "LANG", "LANGUAGE", "TZ", "HOME", "USER", "TMPDIR", "PWD", "IPYTHONDIR", "JUPYTER_", "LD_LIBRARY_PATH",
         "VIRTUAL_ENV", "PYTHON", "LC_", "ROS_", "RMW_", "RCUTILS_", "AMENT_", "CMAKE_PREFIX", "COLCON_PREFIX", "CONDA_",
-        "FASTDDS_", "JUDGE", "_", "CLICOLOR", "FORCE_COLOR", "GIT_PAGER", "PAGER", "TERM", "MPLBACKEND", "PYDEVD",
-        "SHLVL", "KERNEL_", "JPY", "OPENBLAS_", "OMP_", "MKL_",
+        "FASTDDS_", SOCKET_VARIABLE, "_", "CLICOLOR", "FORCE_COLOR", "GIT_PAGER", "PAGER", "TERM", "MPLBACKEND",
+        "PYDEVD", "SHLVL", "KERNEL_", "JPY", "OPENBLAS_", "OMP_", "MKL_",
     )  # fmt: skip
     for code in ("answer = sorted(os.environ)", "answer = open('/proc/self/environ').read().split(chr(0))"):
         assert [name for name in ask(code) if name and not name.startswith(known)] == []

@@ -17,7 +17,7 @@ from autograder.boxes.fork_server import INSIDE, ForkServer
 from autograder.boxes.run_limits import Ended, Limits
 from autograder.execution.executed_cells import Cell, CellCheck, Execution, NotebookOutputs
 from autograder.execution.kernel_desk_messages import admitted_answer
-from autograder.execution.notebook_processes import BoxedProcesses, JudgeSetting, UnboxedProcesses
+from autograder.execution.notebook_processes import BoxedProcesses, NotebookSetting, UnboxedProcesses
 from autograder.execution.notebook_runner import run_notebook
 from autograder.safe_files import scratch_folder
 from autograder.verdict import State, Verdict
@@ -64,15 +64,12 @@ def run(
     kind = BoxedProcesses if boxed else UnboxedProcesses
     with (
         scratch_folder(folder) as made,
-        kind(addresses, made, {}, {}, "JUDGE", JudgeSetting(), limits) as place,
+        kind(addresses, NotebookSetting(made, limits)) as place,
     ):
         return run_notebook(
             [Cell(cell) if isinstance(cell, str) else cell for cell in cells],
             judge=contextlib.nullcontext(SayingJudge()),
             processes=place,
-            folder=made,
-            limits=limits,
-            guard=place.guard,
         )
 
 
@@ -139,8 +136,6 @@ def test_a_desk_reaches_nothing_not_even_without_a_box(
 
 
 def test_a_desk_that_the_system_has_killed_is_the_graders_trouble(boxed: Addresses, tmp_path: Path) -> None:
-    limits = Limits()
-
     class Killed(BoxedProcesses):
         def start_desk(self, channels: Channels) -> ForkedProcess:
             self.desk = super().start_desk(channels)
@@ -152,10 +147,10 @@ def test_a_desk_that_the_system_has_killed_is_the_graders_trouble(boxed: Address
 
     with (
         scratch_folder(tmp_path) as folder,
-        Killed(boxed, folder, {}, {}, "JUDGE", JudgeSetting(), limits) as place,
+        Killed(boxed, NotebookSetting(folder, Limits())) as place,
     ):
         judge = contextlib.nullcontext(KillingJudge())
-        execution = run_notebook([CHECK], judge=judge, processes=place, folder=folder, limits=limits)
+        execution = run_notebook([CHECK], judge=judge, processes=place)
     assert "is gone" in execution.trouble
     assert execution.verdicts[0].state is State.NOT_CHECKED
 

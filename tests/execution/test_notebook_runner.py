@@ -16,7 +16,7 @@ from autograder.boxes.box_connection import NoSandbox
 from autograder.boxes.fork_server import Addresses
 from autograder.boxes.run_limits import Ended, Left, Limits, Patient, wall_time
 from autograder.execution.executed_cells import Cell, CellCheck, CellType, Execution
-from autograder.execution.notebook_processes import BoxedProcesses, JudgeSetting, UnboxedProcesses
+from autograder.execution.notebook_processes import BoxedProcesses, NotebookSetting, UnboxedProcesses
 from autograder.execution.notebook_runner import Unfinished, run_notebook
 from autograder.safe_files import scratch_folder
 from autograder.verdict import State, Verdict
@@ -60,17 +60,14 @@ def run(request: pytest.FixtureRequest, tmp_path: Path, boxed: Addresses, unboxe
         def judge() -> Iterator[SayingJudge]:
             yield SayingJudge(says)
 
-        holds = Limits(**limits)  # type: ignore[arg-type]
         with (
             scratch_folder(tmp_path) as folder,
-            kind(addresses, folder, {}, {}, "JUDGE", JudgeSetting(), holds) as place,
+            kind(addresses, NotebookSetting(folder, Limits(**limits))) as place,  # type: ignore[arg-type]
         ):
             return run_notebook(
                 [Cell(cell) if isinstance(cell, str) else cell for cell in cells],
                 judge=judge(),
                 processes=place,
-                folder=folder,
-                limits=holds,
                 patient=patient,
             )
 
@@ -281,14 +278,8 @@ def test_the_kernel_knows_nothing_of_the_hosts_variables(run: Run, monkeypatch: 
 
 def test_a_kernel_that_cannot_start_is_the_graders_trouble(tmp_path: Path) -> None:
     nobody = Addresses("", str(tmp_path / "nobody"), "")
-    place = UnboxedProcesses(nobody, tmp_path, {}, {}, "JUDGE", JudgeSetting(), Limits())
-    execution = run_notebook(
-        [check()],
-        judge=contextlib.nullcontext(SayingJudge(passed())),
-        processes=place,
-        folder=tmp_path,
-        limits=Limits(),
-    )
+    place = UnboxedProcesses(nobody, NotebookSetting(tmp_path, Limits()))
+    execution = run_notebook([check()], judge=contextlib.nullcontext(SayingJudge(passed())), processes=place)
     assert "could not be started" in execution.trouble
     assert execution.verdicts[0].state is State.NOT_CHECKED
 
@@ -298,14 +289,8 @@ def test_a_kernel_without_a_box_is_no_fault_of_the_judge(tmp_path: Path) -> None
         def start_kernel(self, channels: Channels) -> NoReturn:
             raise NoSandbox("no room for a box")
 
-    place = NoKernel(Addresses("", "", ""), tmp_path, {}, {}, "JUDGE", JudgeSetting(), Limits())
-    execution = run_notebook(
-        [check()],
-        judge=contextlib.nullcontext(SayingJudge(passed())),
-        processes=place,
-        folder=tmp_path,
-        limits=Limits(),
-    )
+    place = NoKernel(Addresses("", "", ""), NotebookSetting(tmp_path, Limits()))
+    execution = run_notebook([check()], judge=contextlib.nullcontext(SayingJudge(passed())), processes=place)
     assert execution.trouble == "the kernel could not be started: no room for a box"
 
 

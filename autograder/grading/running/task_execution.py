@@ -20,7 +20,7 @@ from autograder.boxes.visible_host import kernel_environment
 from autograder.execution.notebook_processes import (
     SHARED_FOLDER,
     BoxedProcesses,
-    JudgeSetting,
+    NotebookSetting,
     UnboxedProcesses,
 )
 from autograder.execution.notebook_runner import Unfinished, run_notebook
@@ -28,7 +28,6 @@ from autograder.grading.returning.rendering_time import too_costly
 from autograder.judge import controlled_judge
 from autograder.judge.machine_fitness import Patience
 from autograder.judge.ros_setup import boxed_ros_environment, lease_domain, ros_environment
-from autograder.messages.judge_messages import SOCKET_VARIABLE
 from autograder.safe_files import scratch_folder
 from autograder.workspaces.boxed_jobs import BoxedJobs
 from autograder.workspaces.builds import build_cache, students_builds
@@ -93,19 +92,16 @@ def _execute(
     boxed = task.boxed
     kind: type[BoxedProcesses] | type[UnboxedProcesses] = BoxedProcesses if boxed else UnboxedProcesses
     paths = _make_paths(task, folder)
-    place = kind(
-        addresses,
+    setting = NotebookSetting(
         folder,
+        task.limits,
         task.files,
         {**_ros_variables(stack, boxed=boxed), **paths.variables()},
-        SOCKET_VARIABLE,
-        JudgeSetting(
-            controlled_judge.environment(boxed=boxed),
-            [*controlled_judge.readable(), paths.judges_folder],
-        ),
-        task.limits,
+        judges_variables=controlled_judge.environment(boxed=boxed),
+        judges_folders=[*controlled_judge.readable(), paths.judges_folder],
         programs=bool(paths.runners),
     )
+    place = kind(addresses, setting)
     stack.enter_context(place)
     began(place)
     stack.enter_context(_workspace_service(paths, place, addresses))
@@ -120,15 +116,7 @@ def _execute(
 
     first = next((cell.check.exercise for cell in task.cells if cell.check and not cell.check.asserts), "")
     judges = _Judges(made, paths.runners, first)
-    execution = run_notebook(
-        task.cells,
-        judge=judges,
-        processes=place,
-        folder=folder,
-        limits=task.limits,
-        guard=place.guard,
-        patient=_patiently,
-    )
+    execution = run_notebook(task.cells, judge=judges, processes=place, patient=_patiently)
     short_of_memory = place.guard.reason() is Ended.OUT_OF_MEMORY
     crowded_out = task.limits.beside and (
         short_of_memory or judges.crowded or _a_check_was_stopped(task.cells, execution)
