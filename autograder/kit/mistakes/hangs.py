@@ -173,7 +173,8 @@ _HANGS: tuple[tuple[str, Recognise, str, str], ...] = (
         lambda found: bool(_stuck_callback(found)),
         "Your callback {callback}() was called and never returned: it loops, sleeps or waits. Meanwhile the node "
         "does nothing else.",
-        "Let a callback do one short step and return. For work that is repeated, make a timer (create_timer). Do not "
+        "Let a callback do one short step and return. To go on when an answer arrives, give its future a function: "
+        "future.add_done_callback(your_function). For work that is repeated, make a timer (create_timer). Do not "
         "use `while True` or time.sleep in callbacks.",
     ),
     (

@@ -93,8 +93,8 @@ KNOWN = (
     ),
     KnownTraceback(
         r"no signature found for builtin",
-        "A callback is a built-in function such as list.append or deque.append. rclpy cannot find out which "
-        "arguments a built-in function takes.",
+        "A callback is one of the built-in functions, such as deque.append, of which rclpy cannot find out which "
+        "arguments they take.",
         "Put the built-in function into a lambda: lambda message: your_list.append(message).",
         "builtin_callback",
     ),
@@ -159,8 +159,9 @@ KNOWN = (
         "Your code set a field to a value that this field cannot hold: {what:a wrong type, or a number that is too "
         "large}.",
         "Print the value and type(value) before the line that sets the field. int(...) converts a value to a whole "
-        "number, float(...) to a number with a decimal point, and str(...) to a string. If a field consists of three "
-        "numbers, set each one separately: command.linear.x = 0.5.",
+        "number, float(...) to a number with a decimal point, and str(...) to a string. For large whole "
+        "numbers use no float, because it keeps only about 16 digits. If a field consists of three numbers, set each "
+        "one separately: command.linear.x = 0.5.",
         "field_type",
     ),
     KnownTraceback(

@@ -153,8 +153,8 @@ class Calls:
             "wrong_sum_reported",
             self._another_sum,
             "The service's last answer was {0[0]}, but your program said “{0[1]}”.",
-            "Report the field `sum` of the last answer unchanged, with all its digits. Do not report a sum that you "
-            "computed yourself.",
+            "Report the field `sum` of the last answer unchanged, with all its digits. Do not report an earlier answer "
+            "or a sum that you computed yourself.",
         )
         for one in (another, Mistake("sum_not_reported", self._sum_not_said)):
             yield common.only_if_ended(one)
@@ -197,6 +197,7 @@ class Calls:
             NOT_RETURNED,
             WAIT.too_short(),
             ANSWER_NOT_AWAITED,
+            ANSWER_NOT_USED,
             OWN_LATE,
             mistake(
                 "no_call",
@@ -215,15 +216,24 @@ class Calls:
 
 
 def _does_not_wait_for_answers(evidence: Evidence) -> bool:
+    served = ClientSeen(evidence).served
+    return any(ended_before_its_answer(part) or _gave_up_on_its_answer(part, served) for part in served)
+
+
+def _uses_no_answer(evidence: Evidence) -> int | None:
+    """Return an answer with which the client did nothing; None if it used all of them.
+
+    The client may not have waited for the answer, or may have waited for it and then refused it.
+    """
     served, calls = ClientSeen(evidence).served, ClientSeen(evidence.reference).calls
     # One of the answers comes late. A client that made all its calls nevertheless has waited for the late answer.
     waits = any(len(requests(part)) >= calls for part in served if part.of("response"))
-    return any(
-        ended_before_its_answer(part)
-        or _gave_up_on_its_answer(part, served)
-        or (((calls > 1 and not waits) or part.traceback) and _made_nothing_of_its_answer(part))
+    unused = (
+        part
         for part in served
+        if ((calls > 1 and not waits) or part.traceback) and _made_nothing_of_its_answer(part)
     )
+    return next((answers(part)[0] for part in unused), None)
 
 
 def _gave_up_on_its_answer(part: Part, served: Sequence[Part]) -> bool:
@@ -261,6 +271,14 @@ ANSWER_NOT_AWAITED = mistake(
     "Your client called the service, but did not wait for the answer, which may take a second.",
     "Wait for the future that call_async returned, with rclpy.spin_until_future_complete(your_node, your_future, "
     "timeout_sec=5.0). Check its done() before you read its result().",
+)
+ANSWER_NOT_USED = mistake(
+    "result_read_too_early",
+    _uses_no_answer,
+    "The service answered {}, and your client ended without using this answer.",
+    "Wait for the future that call_async returned, with rclpy.spin_until_future_complete(your_node, your_future, "
+    "timeout_sec=5.0). Check its done() before you read its result(). If your client waits, look at the condition "
+    "after that: a sum may be 0 or negative.",
 )
 
 

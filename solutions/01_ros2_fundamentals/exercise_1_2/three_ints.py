@@ -90,18 +90,20 @@ adder.asks("limit", 1, "Ends clearly when there is no service", service_calls.gi
 
 @adder.mistake("first_answer_ignored", certain=True)
 def first_answer_ignored(seen: ClientSeen, _: ClientSeen) -> Advice | None:
-    """The second call carries a + b as computed by the client."""
+    """The first call is right, and its answer is not in the second."""
     part = seen.evidence.part(BIASED)
     made = requests(part)
     if len(made) < 2:
         return None
-    a, b, c = part.inputs["numbers"]
     first = answers(part)[0]
-    if pair(made[1]) != sorted((a + b, c)) or pair(made[1]) == sorted((first, c)):
+    # With another sign it is used, but wrongly.
+    used = abs(first) in map(abs, pair(made[1]))
+    if used or pair(made[0]) != sorted(part.inputs["numbers"][:2]):
         return None
+    one, other = (made[1].data["fields"][name] for name in "ab")
     return Advice(
-        f"The service answered {first} to the first call, but your second call does not use that answer: it adds up "
-        "on its own.",
+        f"The service answered {first} to the first call, but your second call does not use that answer: it asks for "
+        f"{one} + {other}.",
         "Put what the service answered first into the second call, and add nothing up yourself. In a notebook, that is "
         "what the first `ask` returned.",
     )

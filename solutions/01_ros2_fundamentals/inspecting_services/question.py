@@ -260,7 +260,7 @@ def says_that_there_is_none(seen: Evidence, _: Evidence) -> Finding:
     expected = f"says {giving_up.NOT_AVAILABLE} and ends by itself"
     if not names_it(seen.part(LATE)) and not finds_another(seen, seen).passed:
         # A subject that finds nothing in any run has not shown that it looked.
-        return Finding(False, expected, "found no service in the other runs")
+        return Finding(False, expected, "no other run shows that it finds a service")
     if part.ending and (wrong_ones := named_for_none(seen)):
         return Finding(False, expected, f"named {', '.join(wrong_ones)}")
     wrong = giving_up.objection(part, found_in(seen))

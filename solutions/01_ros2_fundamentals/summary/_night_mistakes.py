@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from summary._night import before_the_lamp, commands, goals, lamps, near_messages, published
+from summary._night import before_the_lamp, commands, goals, lamps, near_messages, published, too_soon
 
 from autograder.kit.mistakes.unfinished import STEP_MISSING
 from autograder.kit.rules import another_rate
@@ -25,7 +25,7 @@ MISTAKES: tuple[tuple[str, Callable[[Part, Part], object], str, str, dict[str, A
     (
         "keeps_driving",
         lambda seen, expected: (many := published(seen.of("message"))) > len(commands(expected)) and many,
-        "Your node published {} commands; a round has twelve. A robot that is told to drive gives up its walk.",
+        "Your node published {} commands; a round has twelve.",
         "Count the commands, and end the timer at the twelfth: self.timer.cancel().",
         {"certain": True},
     ),
@@ -34,6 +34,21 @@ MISTAKES: tuple[tuple[str, Callable[[Part, Part], object], str, str, dict[str, A
         lambda seen, expected: lamps(seen) and before_the_lamp(seen) < len(commands(expected)),
         "Your node asked for the lamp before the round was over.",
         "Count the commands in the callback of the timer, and call the service there, when the count is twelve.",
+        {},
+    ),
+    (
+        "lamp_switched_off",
+        lambda seen, _: False in lamps(seen),
+        "Your node switched the lamp off: the field data of its request was False.",
+        "Write SetBool.Request(data=True), because a field that you do not set is False.",
+        {"certain": True},
+    ),
+    (
+        "goal_too_early",
+        too_soon,
+        "Your node sent the goal of its walk before the lamp had answered.",
+        "Send the goal in the callback that ROS calls with the lamp's answer, and hand this callback over without "
+        "parentheses: answered.add_done_callback(your_callback).",
         {},
     ),
     (
@@ -68,8 +83,8 @@ MISTAKES: tuple[tuple[str, Callable[[Part, Part], object], str, str, dict[str, A
         "cancel_missing",
         lambda seen, _: seen.of("result") and not seen.of("cancel"),
         "Your node never asked to cancel its walk, although less than one metre was left.",
-        "Call goal_handle.cancel_goal_async(), with its parentheses, if distance < 1.0. If no feedback arrives, pass "
-        "feedback_callback=... to send_goal_async.",
+        "Keep the goal handle, which is the answer to the goal, and call its cancel_goal_async(), with parentheses, "
+        "if distance < 1.0. If no feedback arrives, pass feedback_callback=... to send_goal_async.",
         {"late": True},
     ),
     (

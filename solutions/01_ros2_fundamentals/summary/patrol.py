@@ -89,7 +89,7 @@ EXERCISE = patrol.exercise(
     text={
         "Publish a `Twist` with `linear.x = 0.4` and `angular.z = 1.0`": "round rate",
         "Twelve commands make one round.": "round",
-        "At the twelfth, cancel `self.timer`, and call `switch_lamp(self)`": "round lamp",
+        "At the twelfth, cancel `self.timer`, and call the function `switch_lamp` of step 2": "round lamp",
         "`switch_lamp` calls the service `lamp`, once, to switch the lamp on.": "lamp",
         "When the lamp has answered, send the goal x = 4.0, y = 2.0, the door, to the action `walk_to`, once.": "door",
         "Pass `patrol.on_feedback` for the feedback": "cancel",
