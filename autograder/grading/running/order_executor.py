@@ -134,22 +134,22 @@ class _Running:
 
     def __init__(self) -> None:
         self._changing = threading.Lock()
-        self._place: BoxedProcesses | UnboxedProcesses | None = None
+        self._processes: BoxedProcesses | UnboxedProcesses | None = None
         self._ended = False
 
-    def began(self, place: BoxedProcesses | UnboxedProcesses) -> None:
+    def began(self, processes: BoxedProcesses | UnboxedProcesses) -> None:
         """Remember the boxes of the order, so that :meth:`end` can end them."""
         with self._changing:
-            self._place = place
+            self._processes = processes
             if self._ended:
-                place.abandon()
+                processes.abandon()
 
     def end(self) -> None:
         """End every process in the boxes, so that the execution of the order fails."""
         with self._changing:
             self._ended = True
-            if self._place is not None:
-                self._place.abandon()
+            if self._processes is not None:
+                self._processes.abandon()
 
 
 def main(arguments: list[str]) -> None:

@@ -101,14 +101,14 @@ def _execute(
         judges_folders=[*controlled_judge.readable(), paths.judges_folder],
         programs=bool(paths.runners),
     )
-    place = kind(addresses, setting)
-    stack.enter_context(place)
-    began(place)
-    stack.enter_context(_workspace_service(paths, place, addresses))
+    processes = kind(addresses, setting)
+    stack.enter_context(processes)
+    began(processes)
+    stack.enter_context(_workspace_service(paths, processes, addresses))
 
     def made(of_programs: bool) -> Any:
-        start = functools.partial(place.start_judge, of_programs=of_programs)
-        process = judge(place.judge_socket, seed=task.seed, start=start)
+        start = functools.partial(processes.start_judge, of_programs=of_programs)
+        process = judge(processes.judge_socket, seed=task.seed, start=start)
         process.workspaces = str(paths.judges_socket)
         process.keeps_evidence = True
         process.is_boxed = boxed
@@ -116,13 +116,13 @@ def _execute(
 
     first = next((cell.check.exercise for cell in task.cells if cell.check and not cell.check.asserts), "")
     judges = _Judges(made, paths.runners, first)
-    execution = run_notebook(task.cells, judge=judges, processes=place, patient=_patiently)
-    short_of_memory = place.guard.reason() is Ended.OUT_OF_MEMORY
+    execution = run_notebook(task.cells, judge=judges, processes=processes, patient=_patiently)
+    short_of_memory = processes.guard.reason() is Ended.OUT_OF_MEMORY
     crowded_out = task.limits.beside and (
         short_of_memory or judges.crowded or _a_check_was_stopped(task.cells, execution)
     )
     return replace(
-        execution, crowded_out=crowded_out, cpu_seconds=place.guard.cpu_seconds, evidence=judges.evidence
+        execution, crowded_out=crowded_out, cpu_seconds=processes.guard.cpu_seconds, evidence=judges.evidence
     )
 
 
@@ -260,28 +260,28 @@ def _make_paths(task: Task, folder: Path) -> _Paths:
 
 
 def _workspace_service(
-    paths: _Paths, place: BoxedProcesses | UnboxedProcesses, addresses: Addresses
+    paths: _Paths, processes: BoxedProcesses | UnboxedProcesses, addresses: Addresses
 ) -> WorkspaceService:
     """Return the workspace service of a notebook, for use in a ``with`` block that lasts as long as the notebook runs.
 
     Args:
         paths: The result of :func:`_make_paths`.
-        place: The boxes of the notebook.
+        processes: The processes of the notebook, and their boxes.
         addresses: The addresses of the fork servers.
     """
     folder = paths.folder / "work-of-jobs"
     folder.mkdir()
     jobs: BoxedJobs | PlainJobs
     builds, ahead = build_cache.graders_root(), None
-    if isinstance(place, BoxedProcesses):
-        jobs = BoxedJobs(addresses.supervisors, place.programs, folder, addresses.programs)
+    if isinstance(processes, BoxedProcesses):
+        jobs = BoxedJobs(addresses.supervisors, processes.programs, folder, addresses.programs)
         ros = boxed_ros_environment()
-        _furnish(place.shared)
+        _furnish(processes.shared)
         if paths.runners:
             build_ahead(builds, jobs)
         builds, ahead = folder / "builds", builds
         builds.mkdir(mode=0o700)
-        sockets = ServiceSockets(paths.judges_socket, place.shared / _BUILDS)
+        sockets = ServiceSockets(paths.judges_socket, processes.shared / _BUILDS)
     else:
         jobs = PlainJobs(kernel_environment(folder / "home", {}), handed_in=True)
         ros = ros_environment()
