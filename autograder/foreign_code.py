@@ -38,7 +38,7 @@ class KnownTraceback:
     pattern: str
     text: str
     next_step: str
-    key: str = KEY
+    key: str
 
 
 _LOG = "log(?:debug|info|warn|err|fatal)(?:_once|_throttle)?"
@@ -102,6 +102,7 @@ ROWS = (
             rf"|AttributeError: module 'rclpy' has no attribute '(?P<missed>{names})'",
             "{name}{missed} comes from ROS 1 or from C++, and this course uses ROS 2 in Python.",
             here,
+            KEY,
         )
         for names, here in _HERE.items()
     ),
@@ -110,6 +111,7 @@ ROWS = (
         rf"AttributeError: '\w+' object has no attribute '(?P<name>{_LOG})'",
         "{name} belongs to ROS 1, and this course uses ROS 2.",
         _HERE[_LOG],
+        KEY,
     ),
     KnownTraceback(
         r"(?:ModuleNotFoundError: No module named|NameError: name) '(?P<name>rospy|roslib|actionlib|rospkg)\b",
@@ -118,6 +120,7 @@ ROWS = (
         "self.create_publisher(String, 'chatter', 10), self.create_subscription(...), self.create_service(...), "
         "self.create_timer(0.5, self.tick) in place of a loop with a rate, and self.get_logger().info(...) for the "
         "log. Begin with the lab's own code.",
+        KEY,
     ),
     KnownTraceback(
         r"TypeError: Node\.create_(?:publisher|subscription)\(\) got an unexpected keyword argument "
@@ -125,6 +128,7 @@ ROWS = (
         "{name}= belongs to ROS 1, and this course uses ROS 2.",
         "First the type, then the name, and the depth as a plain number at the end: create_publisher(String, "
         "'chatter', 10), create_subscription(String, 'chatter', self.on_message, 10).",
+        KEY,
     ),
     KnownTraceback(
         r"rclpy_resolve_name\(\): incompatible function arguments(?:.*\n)*?Invoked with: <[^>]*>, "
@@ -132,12 +136,14 @@ ROWS = (
         "The type {type} is where the name belongs. ROS 1 has this order of arguments.",
         "In ROS 2 the type comes first, then the name in quotation marks: create_publisher({type}, 'chatter', 10), "
         "create_subscription({type}, 'chatter', self.on_message, 10).",
+        KEY,
     ),
     KnownTraceback(
         rf"(?:ImportError: cannot import name|NameError: name) '(?P<type>{_TYPES})(?P<part>{_PARTS})'",
         "In ROS 1 and in C++, the {part} of {type} has its own name. In ROS 2 with Python, it is an attribute of "
         "{type}.",
         "Import only {type}, and write the {part} with a dot: {type}.{part}.",
+        KEY,
     ),
     *(
         KnownTraceback(
@@ -172,11 +178,13 @@ ROWS = (
         "This code waits with asyncio. But ROS runs callbacks in its own executor, which is not an asyncio event loop.",
         "Leave asyncio out. To pause or to repeat something, write self.create_timer(0.5, self.tick). To go on when an "
         "answer arrives, write future.add_done_callback(self.on_answer), with the future that call_async returned.",
+        KEY,
     ),
     KnownTraceback(
         r"NameError: name '(?P<name>this|true|false|null|NULL|nullptr|undefined)' is not defined",
         "{name} is a word of another language.",
         "In Python, write self instead of this, and True, False or None with these capitals.",
+        KEY,
     ),
     KnownTraceback(
         r"(?:ModuleNotFoundError: No module named|NameError: name) '(?:rclcpp|RCLCPP_\w+)\b"
@@ -189,6 +197,7 @@ ROWS = (
         "angle brackets, as in self.create_publisher(String, 'chatter', 10). A timer is create_timer(0.5, self.tick), "
         "a log line is self.get_logger().info('hello'). The names of asynchronous methods end in async, as in "
         "call_async.",
+        KEY,
     ),
 )
 """All rows. More specific patterns come first, because the first match counts."""

@@ -249,7 +249,7 @@ def test_the_messages_of_a_check_in_a_terminal(tmp_path: Path) -> None:
         found = list(make_reader(stream).iter_messages(topics=["/chatter"]))
     schemas = {(schema.name, schema.encoding) for schema, _, _ in found if schema}
     assert schemas == {("std_msgs/msg/String", "jsonschema")}
-    # A program runs from its start on, so the judge may miss its first messages, in which case it counts on from later.
+    # A program publishes from its start on, so the judge may miss its first messages.
     first, second = (int(json.loads(m.data)["data"].removeprefix("Hello, world! ")) for _, _, m in found[:2])
     assert second == first + 1
 

@@ -93,8 +93,8 @@ KNOWN = (
     ),
     KnownTraceback(
         r"no signature found for builtin",
-        "A callback is one of the built-in functions, such as deque.append, of which rclpy cannot find out which "
-        "arguments they take.",
+        "A callback is a built-in function, such as deque.append. rclpy cannot find out which arguments this function "
+        "takes.",
         "Put the built-in function into a lambda: lambda message: your_list.append(message).",
         "builtin_callback",
     ),

@@ -265,20 +265,21 @@ def _made_nothing_of_its_answer(part: Part) -> bool:
     return answers(part)[0] != 0 and all(number in own for number in told)
 
 
+_WAIT_FOR_THE_ANSWER = (
+    "Wait for the future that call_async returned, with rclpy.spin_until_future_complete(your_node, your_future, "
+    "timeout_sec=5.0). Check its done() before you read its result()."
+)
 ANSWER_NOT_AWAITED = mistake(
     "result_read_too_early",
     _does_not_wait_for_answers,
     "Your client called the service, but did not wait for the answer, which may take a second.",
-    "Wait for the future that call_async returned, with rclpy.spin_until_future_complete(your_node, your_future, "
-    "timeout_sec=5.0). Check its done() before you read its result().",
+    _WAIT_FOR_THE_ANSWER,
 )
 ANSWER_NOT_USED = mistake(
     "result_read_too_early",
     _uses_no_answer,
     "The service answered {}, and your client ended without using this answer.",
-    "Wait for the future that call_async returned, with rclpy.spin_until_future_complete(your_node, your_future, "
-    "timeout_sec=5.0). Check its done() before you read its result(). If your client waits, look at the condition "
-    "after that: a sum may be 0 or negative.",
+    f"{_WAIT_FOR_THE_ANSWER} If your client waits, look at the condition after that: a sum may be 0 or negative.",
 )
 
 
