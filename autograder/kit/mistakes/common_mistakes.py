@@ -203,7 +203,7 @@ def _was_spun(part: Part, role: str) -> bool:
 def _awaits_in_vain(evidence: Evidence) -> bool:
     """Return True if, in a run that did not end, the subject waits for an answer that has come.
 
-    It still spins, but did nothing after its last answer.
+    The subject still spins, but did nothing after its last answer.
     """
     return any(part.ending is None and something_spins(part) and _left_an_answer(part) for part in evidence)
 
