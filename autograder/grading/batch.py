@@ -19,23 +19,23 @@ from typing import TYPE_CHECKING
 from rich.console import Console
 
 from autograder.grading.batch_work import AskedFor, Work, due_dates, find_work, without_grade, would_change
+from autograder.grading.class_checks import changed_master_warnings, check_configuration, limits_of
 from autograder.grading.class_store import ClassStore
 from autograder.grading.classes import gradebook_reading
-from autograder.grading.classes.class_checks import changed_master_warnings, check_configuration, limits_of
 from autograder.grading.classes.class_directory import ClassDirectory, Submission
 from autograder.grading.classes.gradebook_reading import SubmissionEntry
-from autograder.grading.classes.submission_times import handed_in_at
+from autograder.grading.collecting.submission_times import handed_in_at
 from autograder.grading.collecting.submitted_folder import misplaced_files, rename_decomposed_folders
+from autograder.grading.course_version import course_version
 from autograder.grading.grading_errors import MasterUnusable, is_disk_full
-from autograder.grading.rebuilding.course_version import course_version
-from autograder.grading.rebuilding.source_points import check_release, read_released
-from autograder.grading.rebuilding.submission_fingerprints import Fingerprints
 from autograder.grading.reporting.grade_report import GradeReport
 from autograder.grading.running import execution_backends
 from autograder.grading.running.batch_progress import BatchProgress, Timings, plain_line
 from autograder.grading.table.roster import enter_roster, read_roster
 from autograder.grading.table.rows import rows_of, write_csv
 from autograder.grading.table.weighted_rows import read_what_counts, true_rows
+from autograder.grading.tasks.source_points import check_release, read_released
+from autograder.grading.tasks.submission_fingerprints import Fingerprints
 from environment.installation import COMMAND
 
 # Some modules are imported inside functions, because they import nbgrader, which takes a second.
@@ -44,10 +44,10 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from autograder.execution.executed_cells import Execution
-    from autograder.grading.classes.result_writer import Writer
     from autograder.grading.grading_task import Task
+    from autograder.grading.reporting.class_table import Difference
+    from autograder.grading.result_writer import Writer
     from autograder.grading.running.execution_backends import Execute
-    from autograder.grading.table.class_table import Difference
     from autograder.grading.table.roster import Roster
 
 
@@ -153,7 +153,7 @@ class _Batch:
 
     @functools.cached_property
     def _writer(self) -> Writer:
-        from autograder.grading.classes.result_writer import Writer
+        from autograder.grading.result_writer import Writer
 
         return Writer(self._directory, self._store)
 
@@ -287,9 +287,7 @@ class _Batch:
             written=self._written,
             seconds=seconds,
             timings=self._timings,
-            note=execution_backends.UNBOXED_NOTE
-            if execution_backends.is_sandbox_off(self._directory)
-            else "",
+            note=execution_backends.UNBOXED_NOTE if self._directory.is_sandbox_off else "",
             gradebook=gradebook_reading.gradebook_file(url),
             due=due_dates(self._directory, self._asked.assignments or self._cells),
         )
@@ -335,7 +333,7 @@ class _Batch:
                     yield task
 
     def _tasks_of(self, submission: Submission) -> list[Task]:
-        from autograder.grading.rebuilding.task_making import tasks_of
+        from autograder.grading.tasks.task_making import tasks_of
 
         with self._timings.measure("rebuild"):
             return tasks_of(self._directory, submission)
@@ -357,7 +355,7 @@ class _Batch:
             work.rows = rows
             work.results.clear()
             return
-        from autograder.grading.classes.result_writer import NotWritten
+        from autograder.grading.result_writer import NotWritten
 
         try:
             with self._timings.measure("gradebook"):

@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING
 import pytest
 
 from autograder.grading import batch
-from autograder.grading.rebuilding import submission_desk, task_making
+from autograder.grading.rebuilding import submission_desk
+from autograder.grading.tasks import task_making
 
 sys.path.insert(0, str(Path(__file__).parent))
 sys.path.insert(0, str(Path(__file__).parent / "collecting"))

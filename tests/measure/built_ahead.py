@@ -14,11 +14,11 @@ from unittest import mock
 
 from autograder import course, exercises
 from autograder.boxes.fork_server import ForkServers
-from autograder.grading.classes.sample_class import _without_markers
 from autograder.grading.grading_task import Task
-from autograder.grading.rebuilding.task_making import cells_of
+from autograder.grading.new_classes.sample_class import _without_markers
 from autograder.grading.running import task_execution
 from autograder.grading.running.worker_messages import JUDGE
+from autograder.grading.tasks.task_making import cells_of
 from autograder.judge import controlled_judge
 from autograder.judge.ros_setup import boxed_ros_environment
 from autograder.masters.master_files import lab_name, masters

@@ -15,8 +15,8 @@ from autograder.cli import cli
 from autograder.grading import batch
 from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.class_directory import ClassDirectory
-from autograder.grading.rebuilding import task_making
 from autograder.grading.running import execution_backends
+from autograder.grading.tasks import task_making
 
 if TYPE_CHECKING:
     import pytest
