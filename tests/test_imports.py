@@ -62,7 +62,7 @@ GRADING_FROM_BELOW = (
     *("rebuilding", "classes", "returning", "running", "cluster"),
     *("table", "export", "class_records", "class_store", "class_checks"),
     *("collecting", "tasks", "similarity", "result_writer", "reporting", "appeal_writing"),
-    *("batch_work", "batch", "nbgrader_commands", "new_classes"),
+    *("batch_work", "batch_steps", "batch", "nbgrader_commands", "new_classes"),
 )
 MOST_FILES = 15
 """In one folder of the package: a stranger must be able to read their names."""
