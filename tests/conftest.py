@@ -39,7 +39,7 @@ LONGEST = (
     "tests/attacks",
     "tests/authoring/test_notebooks.py",
     "tests/grading/cluster/test_cluster.py",
-    "tests/grading/classes/test_sample_class.py",
+    "tests/grading/new_classes/test_sample_class.py",
     "tests/authoring/test_reference_files.py",
     "tests/grading/day/test_killed_at_random.py",
     "tests/benchmarks/test_short_run.py",

@@ -116,9 +116,9 @@ def report(
 ) -> None:
     """Write a page about the class FOLDER: points, mistakes, exercises and each student's progress."""
     from autograder.grading.classes.class_directory import ClassDirectory
+    from autograder.grading.reporting.class_table import read_table
     from autograder.grading.reporting.grade_report import table_json
     from autograder.grading.reporting.report_page import write_report
-    from autograder.grading.table.class_table import read_table
 
     if as_json and without_names:
         fail(
@@ -175,7 +175,7 @@ def compare(folder: Path, before: str, after: str, as_json: bool) -> None:
     """
     from autograder.grading.class_store import ClassStore
     from autograder.grading.classes.class_directory import ClassDirectory
-    from autograder.grading.table import class_table
+    from autograder.grading.reporting import class_table
 
     with grading_errors(), ClassStore(ClassDirectory(folder)) as store:
         old, new, found = class_table.compare(store, before, after)

@@ -18,7 +18,7 @@ from autograder.appeals import appeal_file
 from autograder.cli import cli
 from autograder.grading.appeal_writing import write_appeal
 from autograder.grading.class_store import ClassStore
-from autograder.grading.classes.class_directory import ClassDirectory
+from autograder.grading.classes.class_directory import ClassDirectory, switch_sandbox_off
 from autograder.grading.grading_errors import GradingError
 from autograder.grading.running import execution_backends, task_execution
 from autograder.judge import evidence_files, one_check
@@ -184,7 +184,7 @@ def test_what_a_judge_hands_over_comes_from_the_worker_and_from_no_notebook(
 ) -> None:
     """Through real workers: the notebook writes where it can, and only the judge's words are kept."""
     monkeypatch.setattr(execution_backends, "require_sandbox", lambda _: None)
-    execution_backends.switch_sandbox_off(tiny.path)
+    switch_sandbox_off(tiny.path)
     tiny.submit("ada", "10 if print('evidence') is None else 0", 1)
     tiny.grade(jobs=1, judge=with_fake_judge, console=QUIET)
     assert kept(tiny) == {ID: b"lab_1_2.talker said 10", "lab_1_2.listener": b"lab_1_2.listener said 1"}
