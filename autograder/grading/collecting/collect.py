@@ -11,7 +11,7 @@ from rich.console import Console
 from autograder.cards.readable_text import printable
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.collecting.collected_csv import Table
-from autograder.grading.collecting.collected_files import Arrival, Delivery, Inbox, LineState
+from autograder.grading.collecting.collected_files import SHORT_KEY, Arrival, Delivery, Inbox, LineState
 from autograder.grading.collecting.download_desk_process import is_archive
 from autograder.grading.collecting.downloaded_files import (
     Archives,
@@ -176,7 +176,7 @@ class _Collecting:
 
     def run(self, sources: Sequence[Path]) -> CollectReport:
         """Take files into the inbox, decide about all files in it, and update ``submitted`` and the table."""
-        edits, self._notes = self._table.take_edits()
+        edits, self._notes = self._table.take_edits(self._inbox.keys)
         self._submitted.take_in()
         delivery = self._receive(sources)
         before = {one.label for one in self._table.waiting()}
@@ -242,7 +242,7 @@ class _Collecting:
                 continue
             arrival, data = _taken(file, receiving)
             arrival = replace(arrival, levels=source.levels, is_own=source.is_own)
-            if not is_archive(arrival.name, data):
+            if arrival.refused or not is_archive(arrival.name, data):
                 yield arrival
                 continue
             yield replace(arrival, is_archive=True)
@@ -265,7 +265,9 @@ class _Collecting:
             if one.state == LineState.PLACED:
                 state, reason = results[one.place]
                 one = replace(one, state=state, reason=reason)
-            waits = one.state == LineState.NOT_PLACED and (not keys or f"{one.label} {one.key}" not in before)
+            waits = one.state == LineState.NOT_PLACED and (
+                not keys or f"{one.label} {one.key[:SHORT_KEY]}" not in before
+            )
             if one.key in keys or one.state == LineState.PLACED or waits:
                 outcomes.append(replace(one, when=one.when and one.when.astimezone(zone)))
         here = {one.assignment for one in counting if one.key in keys or not keys}
