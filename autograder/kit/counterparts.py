@@ -73,8 +73,11 @@ class ActionCaller(Protocol):
     def await_server(self, within: float) -> bool:
         """Wait until the client can send goals; False if no matching server appears in ``within`` seconds."""
 
-    def send_goal(self, **fields: Any) -> int:
-        """Send a goal, and request the result once the goal is accepted. Return the number of the goal."""
+    def send_goal(self, number: int | None = None, /, **fields: Any) -> int:
+        """Send a goal, and request the result once the goal is accepted. Return the number of the goal.
+
+        The number of an earlier goal must not be given again; by default goals are counted from 0.
+        """
 
     def cancel(self, goal: int) -> None:
         """Request to cancel a goal."""

@@ -253,7 +253,7 @@ class RecordedActionClient(Client):
     ) -> None:
         self._parts_of = f"{at or action}/_action"
         super().__init__(wire, recorder, action, f"{self._parts_of}/send_goal", server_is_gone)
-        self._goals: list[UUID] = []
+        self._goals: dict[int, UUID] = {}
         node, self._parts = wire.node, interface(type_name).Impl
         # The feedback subscription is made before the clients. Endpoints are announced in order, so a server that has
         # discovered the clients has also discovered this subscription, and no feedback is lost.
@@ -267,10 +267,10 @@ class RecordedActionClient(Client):
         self._cancel = node.create_client(CancelGoal, f"{self._parts_of}/cancel_goal")
         self._result = node.create_client(self._parts.GetResultService, f"{self._parts_of}/get_result")
 
-    def send_goal(self, **fields: Any) -> int:
-        """Send a goal with these fields. Return the goal's number, counted from 0."""
-        number = len(self._goals)
-        self._goals.append(UUID(uuid=list(uuid.uuid4().bytes)))
+    def send_goal(self, number: int | None = None, /, **fields: Any) -> int:
+        """Send a goal with these fields. Return the goal's number, by default counted from 0."""
+        number = len(self._goals) if number is None else number
+        self._goals[number] = UUID(uuid=list(uuid.uuid4().bytes))
         request = self._parts.SendGoalService.Request(goal_id=self._goals[number])
         filled(request.goal, fields)
         self._recorder.record("goal_sent", self._name, goal=number, fields=dict(fields))
@@ -318,9 +318,8 @@ class RecordedActionClient(Client):
         self._recorder.record(kind, self._name, goal=goal, arrived=time.time(), **data)
 
     def _hear(self, message: Any, info: Any) -> None:
-        known = [_goal_text(goal) for goal in self._goals]
-        heard = _goal_text(message.goal_id)
-        number = known.index(heard) if heard in known else -1
+        known = {_goal_text(goal): number for number, goal in self._goals.items()}
+        number = known.get(_goal_text(message.goal_id), -1)
         # Record the time of sending (rmw_message_info_t), which does not depend on how busy the judge is.
         sent = info["source_timestamp"] / 1e9
         self._recorder.record(

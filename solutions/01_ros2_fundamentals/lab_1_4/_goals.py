@@ -19,18 +19,19 @@ BAD_ORDERS = "bad orders"
 ORDERS = (5, 4)
 """Orders of the goal alone, which is sent again after the cancel; the seed decides. Either has enough numbers to show
 feedback that leaves some out."""
-LARGE_ORDER = 25
-"""The order of the goal that goes on beside the others: its last number does not fit into 16 bits."""
+LARGE_ORDER = 40
+"""The order of the goal that goes on beside the others. Its last numbers fit neither into 16 bits nor into the 24 of a
+short float, and are not those of the golden ratio with a few digits."""
 SMALLEST = (1, 0, 1, 0, 1, 1, 1, 1, 0, 1)
 """Orders that take no time, one after another: the edge of what there is, and enough for a server that dies of many."""
 SINGLE = 0
 """The order of a single number. A server may also answer it with both numbers that it begins with."""
 LAST_ORDER = 2
 """The order of the two goals after the bad ones, and of two equal ones that are sent at once."""
+SMALL = 20
+"""Numbers of that goal after which the others that run beside it are over."""
 NEXT_ORDER = 3
 """The order of the goal that is sent as soon as the server has agreed to cancel the one before it."""
-OLDER_ORDER = 5
-"""The order of the goal beside which a younger one is canceled."""
 NO_TIME = 0.009
 """Seconds between two feedback messages that no pause makes: the shortest that a person would write is longer, and in a
 notebook none is made shorter than that. Two goals that never pause take turns of Python's 0.005 s."""
@@ -48,7 +49,7 @@ FIRST_TOO_LARGE = 47
 ALONE = 0
 TINY = range(1, 1 + len(SMALLEST))
 TWINS = range(TINY.stop, TINY.stop + 2)
-LONG, BESIDE, AGAIN, LONG_ALONE, NEXT, OLDER, YOUNGER = range(TWINS.stop, TWINS.stop + 7)
+LONG, BESIDE, AGAIN, LONG_AGAIN, NEXT = range(TWINS.stop, TWINS.stop + 5)
 """The goals of the first part by their numbers. In the second part the last two are good, those before them are bad."""
 LONG_ORDER = 46
 """The order of the goals that are canceled: the largest that there is."""
@@ -122,13 +123,13 @@ def ended_by_a_younger(part: Part) -> FibonacciGoal | None:
 def to_be_canceled(evidence: Evidence) -> FibonacciGoal:
     """Return the goal that is canceled: next to a newer one, or alone if the server ended it for that one."""
     part = evidence.part(GOALS)
-    return goal(part, LONG_ALONE if ended_by_a_younger(part) else LONG)
+    return goal(part, LONG_AGAIN if ended_by_a_younger(part) else LONG)
 
 
 def canceled_later(part: Part) -> list[FibonacciGoal]:
-    """The goals that were canceled after the first one: one to which a new goal came, and one beside an older goal."""
-    sent = [goal(part, number) for number in (LONG_ALONE, YOUNGER)]
-    return [] if ended_by_a_younger(part) else [seen for seen in sent if seen.accepted]
+    """The goal that was canceled after the first one, beside an older goal, and while a new one came."""
+    later = goal(part, LONG_AGAIN)
+    return [later] if later.accepted and not ended_by_a_younger(part) else []
 
 
 def takes_no_time(part: Part) -> bool:
@@ -246,6 +247,13 @@ def feedback_slip(evidence: Evidence, seen: FibonacciGoal) -> str:
 
 def _first_messages(seen: FibonacciGoal) -> str:
     return ", ".join(map(str, seen.partials[:4]))
+
+
+def is_wrong_when_large(evidence: Evidence, seen: FibonacciGoal) -> bool:
+    """True if a goal is right as long as another one may run beside it, and its large numbers are wrong."""
+    wanted = expected_sequence(evidence, int(seen.order or 0))
+    right_so_far = len(wanted) > SMALL and seen.sequence[:SMALL] == wanted[:SMALL]
+    return seen.status == SUCCEEDED and right_so_far and seen.sequence != wanted
 
 
 def is_beginning(numbers: Sequence[int], start: Sequence[int]) -> bool:

@@ -14,13 +14,11 @@ from lab_1_4._goals import (
     GOALS,
     LAST_ORDER,
     LONG,
-    LONG_ALONE,
+    LONG_AGAIN,
     NEXT,
-    OLDER,
     ORDERS,
     ROUNDS_LEFT,
     TWINS,
-    YOUNGER,
     FibonacciGoal,
     all_goals,
     canceled_later,
@@ -32,6 +30,7 @@ from lab_1_4._goals import (
     goal,
     goals_alone,
     is_beginning,
+    is_wrong_when_large,
     objection,
     paced_goals_alone,
     takes_no_time,
@@ -79,8 +78,12 @@ def serves(evidence: Evidence) -> Finding:
 
 @of_one_server
 def counts(evidence: Evidence) -> Finding:
-    """Every good goal that has the server to itself succeeds with the reference's sequence."""
-    goals = goals_alone(evidence)
+    """Every good goal that has the server to itself succeeds with the reference's sequence.
+
+    So does the large goal, as far as the numbers go that come when the others are over.
+    """
+    beside = goal(evidence.part(GOALS), BESIDE)
+    goals = [*goals_alone(evidence), *([beside] if is_wrong_when_large(evidence, beside) else [])]
     wrong = [_told(evidence, seen, text) for seen in goals if (text := objection(evidence, seen))]
     expected = f"succeeds with {expected_sequence(evidence, max(ORDERS))} for order {max(ORDERS)}, and so on"
     return _all_right(goals, wrong, expected)
@@ -103,7 +106,7 @@ def gives_feedback(evidence: Evidence) -> Finding:
     So does that of the large goal, if two at once do not disturb each other.
     """
     goals, beside = paced_goals_alone(evidence), goal(evidence.part(GOALS), BESIDE)
-    if beside.over and not fault_beside_another(evidence, beside):
+    if beside.over and not (objection(evidence, beside) or feedback_slip(evidence, beside)):
         goals.append(beside)
     wrong = [_told(evidence, seen, text) for seen in goals if (text := feedback_objection(evidence, seen))]
     if tells_at_the_end(evidence.part(GOALS)):
@@ -117,15 +120,11 @@ def serves_two_at_once(evidence: Evidence) -> Finding:
     part = evidence.part(GOALS)
     twins, beside = [goal(part, number) for number in TWINS], goal(part, BESIDE)
     wrong = [text for one in twins if one.order is not None and (text := objection(evidence, one))]
-    others = (beside, goal(part, NEXT), goal(part, OLDER))
+    others = (beside, goal(part, NEXT))
     wrong += [
         text for one in others if one.order is not None and (text := fault_beside_another(evidence, one))
     ]
-    wrong += [
-        objection(evidence, one)
-        for one in (goal(part, LONG_ALONE), goal(part, YOUNGER))
-        if one.accepted is False
-    ]
+    wrong += [objection(evidence, one) for one in [goal(part, LONG_AGAIN)] if one.accepted is False]
     wrong += [
         f"order {one.order}, which was to be canceled: status {status_text(one.status)}"
         for one in goes_on_beside_another(part)
@@ -148,7 +147,8 @@ def goes_on_beside_another(part: Part) -> list[FibonacciGoal]:
 
 
 def fault_beside_another(evidence: Evidence, seen: FibonacciGoal) -> str:
-    return objection(evidence, seen) or feedback_slip(evidence, seen)
+    fault = objection(evidence, seen) or feedback_slip(evidence, seen)
+    return "" if is_wrong_when_large(evidence, seen) else fault
 
 
 @of_one_server
