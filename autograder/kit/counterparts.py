@@ -67,7 +67,7 @@ class ActionCaller(Protocol):
     """A client with which the judge sends goals to one action. Its goals are numbered from 0.
 
     It records the events ``servers``, ``goal_sent``, ``goal_answer``, ``feedback_heard``, ``cancel_sent``,
-    ``cancel_answer`` and ``result_heard``. All but ``servers`` contain the number of the goal.
+    ``cancel_answer``, ``goal_ended`` and ``result_heard``. All but ``servers`` contain the number of the goal.
     """
 
     def await_server(self, within: float) -> bool:

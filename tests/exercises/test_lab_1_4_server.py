@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 from lab_1_4 import _server_criteria as criteria
 from lab_1_4 import server as lab_1_4_server
-from lab_1_4._goals import AGAIN, ALONE, BAD_ORDERS, BESIDE, GOALS, LONG, LONG_AGAIN, NEXT
+from lab_1_4._goals import AGAIN, ALONE, BAD_ORDERS, BESIDE, GOALS, LONG, LONG_ALONE, NEXT, YOUNGER
 
 from autograder.kit.evidence import Event, Evidence, Part, Reference
 
@@ -136,7 +136,7 @@ def test_a_policy_of_one_goal_at_a_time_costs_the_points_of_two_at_once_only() -
     refused = evidence([*alone, *canceled([0, 1, 1, 2, 3]), *goal(BESIDE, 4, accepted=False), *again])
     assert failed(refused) == {"two"}
     *older, result = goal(LONG, 20, feedback=[[0, 1, 1]], status=6, sequence=[])
-    later = [replace(e, data={**e.data, "goal": LONG_AGAIN}) for e in canceled([0, 1, 1, 2, 3])]
+    later = [replace(e, data={**e.data, "goal": LONG_ALONE}) for e in canceled([0, 1, 1, 2, 3])]
     ended = evidence([*alone, *older, *goal(BESIDE, 4), result, *again, *later])
     assert failed(ended) == {"two"}
     assert next(m.key for m in lab_1_4_server.EXERCISE.mistakes if m.recognise(ended)) == "older_goal_ended"
@@ -151,15 +151,15 @@ def later(number: int, **changed: Any) -> list[Event]:
 @pytest.mark.parametrize(
     ("more", "lost", "key"),
     [
-        ([*later(LONG_AGAIN), *goal(NEXT, 3)], set(), ""),
+        ([*later(YOUNGER), *later(LONG_ALONE), *goal(NEXT, 3)], set(), ""),
         # A busy judge may come too late for a quick server, and then asks for nothing more.
-        (later(LONG_AGAIN, cancel=False, return_code=3, status=4), set(), ""),
-        ([*later(LONG_AGAIN)[:-3], later(LONG_AGAIN)[-1]], set(), ""),
-        (later(LONG_AGAIN, cancel=False)[:-1], {"cancel"}, ""),
-        (later(LONG_AGAIN, accepted=False), {"two"}, "goal_rejected"),
-        ([*later(LONG_AGAIN)[:-1], *goal(NEXT, 3, status=6, sequence=[])], {"two"}, "goals_mixed_up"),
-        ([*later(LONG_AGAIN)[:-1], *goal(NEXT, 3)], {"two"}, "goals_mixed_up"),
-        ([*later(LONG_AGAIN), *goal(NEXT, 5, feedback=[[0, 1, 1], FIBONACCI])], {"two"}, "goals_mixed_up"),
+        (later(LONG_ALONE, cancel=False, return_code=3, status=4), set(), ""),
+        ([*later(LONG_ALONE)[:-3], later(LONG_ALONE)[-1]], set(), ""),
+        (later(LONG_ALONE, cancel=False)[:-1], {"cancel"}, ""),
+        (later(LONG_ALONE, accepted=False), {"two"}, "goal_rejected"),
+        ([*later(LONG_ALONE)[:-1], *goal(NEXT, 3, status=6, sequence=[])], {"two"}, "goals_mixed_up"),
+        ([*later(YOUNGER)[:-1], *later(LONG_ALONE), *goal(NEXT, 3)], {"two"}, "goals_mixed_up"),
+        ([*later(LONG_ALONE), *goal(NEXT, 5, feedback=[[0, 1, 1], FIBONACCI])], {"two"}, "goals_mixed_up"),
     ],
 )
 def test_each_goal_is_canceled_for_itself(more: list[Event], lost: set[str], key: str) -> None:
@@ -173,8 +173,8 @@ def test_each_goal_is_canceled_for_itself(more: list[Event], lost: set[str], key
 def test_a_goal_that_is_canceled_only_if_it_is_alone_is_mixed_up_and_not_ignored() -> None:
     ignored = goal(LONG, 20, feedback=[[0, 1, 1], [0, 1, 1, 2]], cancel=True, sequence=FIBONACCI)
     right = [*goal(ALONE, 5), *goal(BESIDE, 4), *goal(AGAIN, 3)]
-    alone = evidence([*right, *ignored, *later(LONG_AGAIN)])
-    never = evidence([*right, *ignored, *later(LONG_AGAIN, status=4)])
+    alone = evidence([*right, *ignored, *later(LONG_ALONE)])
+    never = evidence([*right, *ignored, *later(LONG_ALONE, status=4)])
     for seen, key in ((alone, "goals_mixed_up"), (never, "cancel_ignored")):
         assert next(m.key for m in lab_1_4_server.EXERCISE.mistakes if m.recognise(seen)) == key
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
@@ -16,10 +16,12 @@ if TYPE_CHECKING:
 
 GOALS = "goals"
 BAD_ORDERS = "bad orders"
+CANCELED_ALONE = "a goal alone is canceled"
+"""The run that is made only if two goals at once have ended the server before it was asked to cancel one."""
 ORDERS = (5, 4)
 """Orders of the goal alone, which is sent again after the cancel; the seed decides. Either has enough numbers to show
 feedback that leaves some out."""
-LARGE_ORDER = 40
+LARGE_ORDER = 37
 """The order of the goal that goes on beside the others. Its last numbers fit neither into 16 bits nor into the 24 of a
 short float, and are not those of the golden ratio with a few digits."""
 SMALLEST = (1, 0, 1, 0, 1, 1, 1, 1, 0, 1)
@@ -49,7 +51,7 @@ FIRST_TOO_LARGE = 47
 ALONE = 0
 TINY = range(1, 1 + len(SMALLEST))
 TWINS = range(TINY.stop, TINY.stop + 2)
-LONG, BESIDE, AGAIN, LONG_AGAIN, NEXT = range(TWINS.stop, TWINS.stop + 5)
+LONG, BESIDE, AGAIN, LONG_ALONE, NEXT, YOUNGER = range(TWINS.stop, TWINS.stop + 6)
 """The goals of the first part by their numbers. In the second part the last two are good, those before them are bad."""
 LONG_ORDER = 46
 """The order of the goals that are canceled: the largest that there is."""
@@ -122,14 +124,29 @@ def ended_by_a_younger(part: Part) -> FibonacciGoal | None:
 
 def to_be_canceled(evidence: Evidence) -> FibonacciGoal:
     """Return the goal that is canceled: next to a newer one, or alone if the server ended it for that one."""
-    part = evidence.part(GOALS)
-    return goal(part, LONG_AGAIN if ended_by_a_younger(part) else LONG)
+    part, alone = evidence.part(GOALS), evidence.part(CANCELED_ALONE)
+    if alone.events:
+        return goal(alone, LONG_ALONE)
+    return goal(part, LONG_ALONE if ended_by_a_younger(part) else LONG)
 
 
 def canceled_later(part: Part) -> list[FibonacciGoal]:
-    """The goal that was canceled after the first one, beside an older goal, and while a new one came."""
-    later = goal(part, LONG_AGAIN)
-    return [later] if later.accepted and not ended_by_a_younger(part) else []
+    """The goals that were canceled after the first one: one beside an older goal, and one to which a new goal came."""
+    sent = [goal(part, number) for number in (YOUNGER, LONG_ALONE)]
+    return [] if ended_by_a_younger(part) else [seen for seen in sent if seen.accepted]
+
+
+def before_any_cancel(part: Part) -> Part:
+    """The events before the judge asked to cancel a goal."""
+    kinds = [event.kind for event in part.events]
+    return replace(part, events=part.events[: kinds.index("cancel_sent")]) if "cancel_sent" in kinds else part
+
+
+def died_of_two(part: Part) -> bool:
+    """True if the server ended with an exception when two goals were sent at once."""
+    seen = before_any_cancel(part)
+    two_at_once = goal(seen, TWINS[0]).order is not None
+    return two_at_once and seen.ending is not None and bool(seen.traceback)
 
 
 def takes_no_time(part: Part) -> bool:

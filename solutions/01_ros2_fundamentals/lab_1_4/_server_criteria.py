@@ -14,11 +14,12 @@ from lab_1_4._goals import (
     GOALS,
     LAST_ORDER,
     LONG,
-    LONG_AGAIN,
+    LONG_ALONE,
     NEXT,
     ORDERS,
     ROUNDS_LEFT,
     TWINS,
+    YOUNGER,
     FibonacciGoal,
     all_goals,
     canceled_later,
@@ -63,12 +64,17 @@ def of_one_server(judge: Callable[[Evidence], Finding]) -> Callable[[Evidence], 
 
 
 def serves(evidence: Evidence) -> Finding:
-    """One action server of the right name and type, and it accepts a goal."""
+    """One action server of the right name and type, and it accepts a goal.
+
+    A server whose callback raised an exception was there, so the exception costs only the goals.
+    """
     name, type_name = evidence.reference.only("action_server")
     part, expected = evidence.main, f"one server of {name} ({type_name}) that accepts goals"
     if wrong := misfit(evidence, "action_server"):
         return Finding(False, expected, wrong)
     first = goal(part, ALONE)
+    if first.order is not None and part.traceback:
+        return Finding(True, expected, "it is there, and raised an exception")
     if part.ending is not None and not first.over and not first.feedback:
         # The answer of a program that exits with it may or may not get out of it.
         return Finding(False, expected, "it ended with the first goal")
@@ -124,7 +130,11 @@ def serves_two_at_once(evidence: Evidence) -> Finding:
     wrong += [
         text for one in others if one.order is not None and (text := fault_beside_another(evidence, one))
     ]
-    wrong += [objection(evidence, one) for one in [goal(part, LONG_AGAIN)] if one.accepted is False]
+    wrong += [
+        objection(evidence, one)
+        for one in (goal(part, LONG_ALONE), goal(part, YOUNGER))
+        if one.accepted is False
+    ]
     wrong += [
         f"order {one.order}, which was to be canceled: status {status_text(one.status)}"
         for one in goes_on_beside_another(part)

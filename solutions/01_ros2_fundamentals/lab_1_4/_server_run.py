@@ -10,12 +10,13 @@ from lab_1_4._goals import (
     ALONE,
     BAD_ORDERS,
     BESIDE,
+    CANCELED_ALONE,
     FIRST_TOO_LARGE,
     GOALS,
     LARGE_ORDER,
     LAST_ORDER,
     LONG,
-    LONG_AGAIN,
+    LONG_ALONE,
     LONG_ORDER,
     NEXT,
     NEXT_ORDER,
@@ -24,7 +25,9 @@ from lab_1_4._goals import (
     ROUNDS_LEFT,
     SMALLEST,
     TWINS,
+    YOUNGER,
     FibonacciGoal,
+    died_of_two,
     ended_by_a_younger,
     goal,
     is_told_at_the_end,
@@ -68,9 +71,20 @@ AFTERMATH = 0.5
 
 
 def scenario(bench: Bench) -> None:
-    """One run with good goals, one of which is canceled; one run with bad ones."""
+    """One run with good goals, one of which is canceled; one run with bad ones.
+
+    If two goals at once are too much for the server, it gets a goal to cancel alone, in a run of its own.
+    """
     if run(bench, GOALS, send_good_goals):
+        if died_of_two(bench.seen()):
+            run(bench, CANCELED_ALONE, cancel_one)
         run(bench, BAD_ORDERS, send_bad_goals)
+
+
+def cancel_one(bench: Bench, caller: ActionCaller) -> bool:
+    """Cancel a goal that has a new server to itself."""
+    _cancel_another(bench, caller, LONG_ALONE, after=CANCEL_AFTER)
+    return True
 
 
 def run(bench: Bench, name: str, goals: Callable[[Bench, ActionCaller], bool]) -> bool:
@@ -92,8 +106,7 @@ def run(bench: Bench, name: str, goals: Callable[[Bench, ActionCaller], bool]) -
 def send_good_goals(bench: Bench, caller: ActionCaller) -> bool:
     """A goal alone, many small ones, one that is canceled beside a younger one; False as soon as one does not end.
 
-    There are never more than two goals at once, except if the server reads requests beside two: it may have no threads
-    for a third one.
+    There are never more than two goals at once: a server may have no threads for a third one.
     """
     order = bench.random.choice(ORDERS)
     if not one_by_one(bench, caller, order, *SMALLEST):
@@ -109,14 +122,15 @@ def send_good_goals(bench: Bench, caller: ActionCaller) -> bool:
         if not ended(bench, BESIDE, quiet=SILENCE[bench.pace]) or not _once_more(bench, caller, order):
             return False
         # A policy of one goal at a time must not cost the points for canceling.
-        _cancel_another(bench, caller, after=CANCEL_AFTER)
+        _cancel_another(bench, caller, LONG_ALONE, after=CANCEL_AFTER)
         return True
     caller.cancel(LONG)
     honoured = _await_cancel(bench, LONG)
     if goal(bench.seen(), BESIDE).accepted is None:
         return True  # one thread, and it is busy: the younger goal has not been read either
     if _canceled_in_time(bench):
-        _cancel_another(bench, caller, after=1, then=NEXT_ORDER)
+        _wait_half_a_round(bench)
+        _cancel_another(bench, caller, YOUNGER, after=1)
     if not ended(bench, BESIDE, quiet=SILENCE[bench.pace]):
         return False
     # A notebook's node ends with the exception that has aborted a goal: no other goal must lose by that.
@@ -130,12 +144,11 @@ def send_good_goals(bench: Bench, caller: ActionCaller) -> bool:
         # If two threads work on two goals, the cancel request is read only when one of them is done.
         _await_cancel(bench, LONG)
     first = goal(bench.seen(), LONG)
-    if goal(bench.seen(), LONG_AGAIN).order is None:
-        if first.cancel_accepted and first.status != CANCELED and ended(bench, LONG):
-            # It agreed to cancel and went on: is that so alone, too?
-            _cancel_another(bench, caller, after=1)
-        elif _canceled_in_time(bench):
-            _cancel_another(bench, caller, after=1, then=NEXT_ORDER)
+    if first.cancel_accepted and first.status != CANCELED and ended(bench, LONG):
+        # It agreed to cancel and went on: is that so alone, too?
+        _cancel_another(bench, caller, LONG_ALONE, after=1)
+    elif _canceled_in_time(bench):
+        _cancel_another(bench, caller, LONG_ALONE, after=1, then=NEXT_ORDER)
     return True
 
 
@@ -150,25 +163,28 @@ def _canceled_in_time(bench: Bench) -> bool:
     return in_time and bool(goal(bench.seen(), BESIDE).accepted)
 
 
-def _cancel_another(bench: Bench, caller: ActionCaller, *, after: int, then: int | None = None) -> None:
+def _cancel_another(
+    bench: Bench, caller: ActionCaller, number: int, *, after: int, then: int | None = None
+) -> None:
     """Send the largest goal again, and cancel it.
 
     Args:
         bench: The bench of the scenario.
         caller: The judge's client.
+        number: The number of the goal.
         after: Feedback messages after which the cancel is asked for.
         then: The order of a goal that is sent as soon as the server has agreed, before it looks at the request.
     """
-    caller.send_goal(LONG_AGAIN, order=LONG_ORDER)
-    _await_feedback(bench, LONG_AGAIN, after)
-    if goal(bench.seen(), LONG_AGAIN).over:
+    caller.send_goal(number, order=LONG_ORDER)
+    _await_feedback(bench, number, after)
+    if goal(bench.seen(), number).over:
         return
-    caller.cancel(LONG_AGAIN)
+    caller.cancel(number)
     if then is not None:
-        bench.wait_until(lambda e: goal(e.main, LONG_AGAIN).cancel_accepted is not None, QUIET[bench.pace])
+        bench.wait_until(lambda e: goal(e.main, number).cancel_accepted is not None, QUIET[bench.pace])
         if not ended(bench, caller.send_goal(NEXT, order=then)):
             return
-    _await_cancel(bench, LONG_AGAIN)
+    _await_cancel(bench, number)
 
 
 def _wait_half_a_round(bench: Bench) -> None:
