@@ -60,30 +60,31 @@ def _appeal(
     directory: ClassDirectory, store: ClassStore, student: str, exercise_id: str, task: str
 ) -> Appeal:
     again = course_command("grade", directory.path, "--student", student)
-    kept, entered = store.evidence(student, exercise_id), store.entered()
-    if kept is None:
+    stored, entered = store.evidence(student, exercise_id), store.entered()
+    if stored is None:
         raise GradingError(_why_nothing(directory, entered, student, exercise_id, again))
-    known = entered.get((student, kept.assignment))
-    if known is None or known.tasks.get(kept.notebook) != kept.task:
+    record = entered.get((student, stored.assignment))
+    # An appeal is about the grade that the student sees, so the evidence has to be that of the entered points.
+    if record is None or record.tasks.get(stored.notebook) != stored.task:
         raise GradingError(
-            f"The points of {student} for this check of {kept.notebook} are not in the gradebook, for example "
+            f"The points of {student} for this check of {stored.notebook} are not in the gradebook, for example "
             f"because the last run was a `--dry-run`. Enter the points first: {again}"
         )
     try:
-        seen, cells = unpack(kept.checks[exercise_id]), kept.run_cells()
+        evidence, cells = unpack(stored.checks[exercise_id]), stored.run_cells()
     except (NoEvidence, ValueError) as error:
         raise GradingError(
             f"The evidence of {exercise_id} by {student} is damaged ({error}). Judge the check again: {again} --again"
         ) from error
     return Appeal(
         student=student,
-        assignment=kept.assignment,
-        notebook=kept.notebook,
+        assignment=stored.assignment,
+        notebook=stored.notebook,
         task=task,
-        course=kept.course,
+        course=stored.course,
         solution=list(_before(cells, exercise_id)),
-        expected=_expected(exercise_id, seen.reference),
-        seen=seen,
+        expected=_expected(exercise_id, evidence.reference),
+        seen=evidence,
     )
 
 
@@ -110,8 +111,8 @@ def _why_nothing(
     again: str,
 ) -> str:
     for assignment in directory.assignments():
-        known = entered.get((student, assignment))
-        for row in known.rows if known else ():
+        record = entered.get((student, assignment))
+        for row in record.rows if record else ():
             if row.exercise == exercise_id:
                 return (
                     f"No evidence of {exercise_id} by {student} is stored. The state in the table is: {row.state}"
