@@ -153,7 +153,7 @@ def collect(
     """
     from autograder.grading.collecting import collect as collecting
     from autograder.grading.collecting.collect import show
-    from autograder.grading.collecting.submitted_file_names import read_time
+    from autograder.grading.collecting.written_times import read_time
 
     when = read_time(handed_in) if handed_in else None
     if handed_in and when is None:
