@@ -29,7 +29,7 @@ from autograder.grading.collecting.submitted_file_names import Pattern
 from autograder.grading.collecting.submitted_folder import Submitted
 from autograder.grading.grading_errors import GradingError, check_known, course_command
 from autograder.grading.running.batch_progress import plain_line
-from autograder.grading.table.roster import enter_roster, read_roster
+from autograder.grading.table.student_list import enter_roster, read_roster
 from autograder.kit.in_words import counted
 
 if TYPE_CHECKING:
@@ -298,7 +298,7 @@ class _Collecting:
             if one.when is None and one.key in keys and one.student not in untimed[one.assignment]:
                 untimed[one.assignment].append(one.student)
         notes = [*self._notes, *self._directory.named_cells.notes]
-        notes += self._roster.excused_from_nothing(self._directory.assignments(), self._roster.students)
+        notes += self._roster.notices(self._directory.assignments(), {}, self._roster.students)
         if not self._roster.students:
             notes.append(
                 "the class has no students.csv, so students' folders have the names that the LMS uses"

@@ -132,7 +132,7 @@ class _Reading:
             student, assignment, name = arrival.parts
             line = replace(
                 line,
-                students=(student,),
+                students=self.student_of.written(edit.student or student)[0] or (student,),
                 assignment=assignment,
                 notebook=name.removesuffix(SUFFIX),
                 lms=BY_HAND,
