@@ -24,7 +24,6 @@ from autograder.execution.notebook_processes import (
     UnboxedProcesses,
 )
 from autograder.execution.notebook_runner import Unfinished, run_notebook
-from autograder.grading.returning.rendering_time import too_costly
 from autograder.judge import controlled_judge
 from autograder.judge.machine_fitness import Patience
 from autograder.judge.ros_setup import boxed_ros_environment, lease_domain, ros_environment
@@ -75,8 +74,7 @@ def execute(
     """
     with contextlib.ExitStack() as stack:
         folder = stack.enter_context(scratch_folder(scratch))
-        execution = _execute(task, folder, _imported(judge), addresses, stack, began)
-    return replace(execution, as_typed=too_costly(task.cells))
+        return _execute(task, folder, _imported(judge), addresses, stack, began)
 
 
 def _execute(
