@@ -26,6 +26,7 @@ import msgspec
 import re2
 
 from autograder.grading.collecting.lms_lists import GRADESCOPE, parse_list
+from autograder.safe_files import name_as_text
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -61,7 +62,7 @@ _LEFT_BY_PROGRAMS = re2.compile(
 
 def is_left_by_a_program(name: str) -> bool:
     """Return True for the name of a file or folder that a program made, not the student, such as ``.git``."""
-    return bool(_LEFT_BY_PROGRAMS.match(name))
+    return bool(_LEFT_BY_PROGRAMS.match(name_as_text(name)))
 
 
 _SAMPLES = {
