@@ -90,6 +90,7 @@ class Batch:
         self._store = store
         self._console = console
         self._fingerprints = Fingerprints(directory)
+        # Read before any step, so that a class without a usable source is refused while it is unchanged.
         self._released = released = read_released(directory, store, self._fingerprints)
         self._cells = released.cells
         self._what_counts = read_what_counts(directory, released.cells)
@@ -117,9 +118,11 @@ class Batch:
                 is not an assignment or a student.
         """
         assignments = self._asked.assignments
-        asked = {name: found for name, found in self._cells.items() if not assignments or name in assignments}
+        asked = {name: cells for name, cells in self._cells.items() if not assignments or name in assignments}
+        # An assignment that cannot be graded has no cells; `find_work` says so, more exactly than the gradebook.
         if asked or not assignments:
             check_release(self._directory, asked)
+        # A dry run changes neither the gradebook nor the folder ``submitted``.
         if not self._dry_run:
             enter_roster(self._directory)
             self._notices += rename_decomposed_folders(self._directory)
@@ -128,15 +131,15 @@ class Batch:
         for text in changed_master_warnings(self._directory, self._store, assignments or self._cells):
             self._notices.append(text)
             plain_line(self._console, f"note: {text}")
-        found = find_work(
+        work = find_work(
             self._directory, self._asked, self._released, self._roster, self._fingerprints, beside
         )
-        self._works, self._others, self._refused = found.works, found.others, found.refused
-        self._notices += found.notices
+        self._works, self._others, self._refused = work.works, work.others, work.refused
+        self._notices += work.notices
         self._notices += self._roster.excused_from_nothing(
             self._directory.assignments(), self._roster.students
         )
-        return found.works
+        return work.works
 
     def settle(self, works: list[Work]) -> list[Work]:
         """Mark the submissions whose present files have their grades in the gradebook. The others have to be graded."""

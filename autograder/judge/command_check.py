@@ -18,6 +18,7 @@ from autograder.judge.machine_fitness import JudgeFailed
 from autograder.kit.runners import Launches, runner_as_word
 from autograder.messages.judge_messages import Report
 from autograder.verdict import Verdict, not_checked
+from autograder.workspaces.sources import full_disk
 from environment.installation import COMMAND
 from environment.python_child import python_child
 
@@ -76,6 +77,8 @@ def check_and_keep(
         raise CommandNotFound(
             f"the program {command[0]!r} does not exist here: check its spelling, and that it is executable"
         )
+    if is_path(exercise, command, cwd) and (trouble := full_disk(Path(cwd or ".", command[0]))):
+        return not_checked(exercise.id, exercise.title, exercise.points, trouble, key="disk_full"), b""
     chosen = seed or secrets.token_hex(8)
 
     def report() -> bytes:

@@ -120,6 +120,7 @@ def execute_all(
     """
     slots = workers or at_once(cores(), psutil.virtual_memory().available)
     words = (str(scratch), str(slots), *(["boxed"] if boxed else []))
+    # In a process of its own, so that the process with the gradebook loads nothing that executes submissions.
     with ProcessLink("autograder.grading.running.order_executor", *words, scratch=scratch) as machine:
         dispatcher = Dispatcher(machine, "", judge=judge, boxed=boxed, tell=lambda _: None)
         yield from dispatch(dispatcher, tasks, on_start)

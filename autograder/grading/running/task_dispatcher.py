@@ -186,6 +186,7 @@ class Dispatcher:
             self._give_out(jobs, on_start)
             if not (self._flights or self._waiting):
                 return
+            # Without workers the run goes on for a while, because a worker that was started again needs some seconds.
             if self._workers:
                 return_until = None
             elif return_until is None:

@@ -105,11 +105,13 @@ def _execute(
     stack: contextlib.ExitStack,
     began: Callable[[BoxedProcesses | UnboxedProcesses], None],
 ) -> Execution:
+    # Without a supervisor nothing could make the boxes, and a submission must never run outside of one by mistake.
     if task.boxed and not addresses.supervisors:
         raise NoSandbox("this task must run in a box, but no box can be made here")
     boxed = task.boxed
     kind: type[BoxedProcesses] | type[UnboxedProcesses] = BoxedProcesses if boxed else UnboxedProcesses
     paths = _make_paths(task, folder)
+    # The domain is leased before any process starts, because each of them gets it as an environment variable.
     domain = str(stack.enter_context(judge.lease_domain()))
     setting = NotebookSetting(
         folder,
@@ -122,10 +124,12 @@ def _execute(
     )
     processes = kind(addresses, setting)
     stack.enter_context(processes)
+    # From here on an order can be canceled: `began` tells the executor which boxes to end, before they hold a program.
     began(processes)
+    # The service outlives the notebook and ends before the boxes, in which its builds and programs run.
     stack.enter_context(_workspace_service(paths, processes, addresses, judge.ros_variables))
 
-    def made(of_programs: bool) -> Any:
+    def new_judge(of_programs: bool) -> Any:
         start = functools.partial(processes.start_judge, of_programs=of_programs)
         process = judge.make(processes.judge_socket, seed=task.seed, start=start)
         process.workspaces = str(paths.judges_socket)
@@ -133,9 +137,14 @@ def _execute(
         process.is_boxed = boxed
         return process
 
-    first = next((cell.check.exercise for cell in task.cells if cell.check and not cell.check.asserts), "")
-    judges = _Judges(made, paths.runners, first)
+    # The first judge starts while the kernel starts, before a check asks for one: guess from the first check cell
+    # whether the subject will be a program.
+    first_exercise = next(
+        (cell.check.exercise for cell in task.cells if cell.check and not cell.check.asserts), ""
+    )
+    judges = _Judges(new_judge, paths.runners, first_exercise)
     execution = run_notebook(task.cells, judge=judges, processes=processes, patient=judge.patient)
+    # A task that ran alone, and not beside others, has had the whole machine: its result counts, whatever happened.
     short_of_memory = processes.guard.reason() is Ended.OUT_OF_MEMORY
     crowded_out = task.limits.beside and (
         short_of_memory or judges.crowded or _a_check_was_stopped(task.cells, execution)
@@ -152,7 +161,7 @@ def _a_check_was_stopped(cells: Sequence[Cell], execution: Execution) -> bool:
     """
     judged = [cell.check is not None and not cell.check.asserts for cell in cells]
     runs = zip(judged, execution.cells, strict=True)
-    return any(made and run.ended is Ended.TIMED_OUT for made, run in runs)
+    return any(is_judged and run.ended is Ended.TIMED_OUT for is_judged, run in runs)
 
 
 class _Judges:

@@ -60,6 +60,7 @@ def task_of(directory: ClassDirectory, submission: Submission, notebook: str) ->
     prose = [cell.source for cell in master.cells if cell.cell_type == CellType.MARKDOWN]
     demonstrations = bool(directory.config.WireExecute.get("demonstrations", False))
     cells = cells_of(rebuilt, demonstrations=demonstrations, prose=prose)
+    # The seed depends on what was handed in, but the seed is a part of the task, so hash the cells alone.
     work = hashlib.sha256(msgspec.json.encode(cells)).hexdigest()
     pictures = [
         cell["attachments"] for cell in rebuilt.cells if "attachments" in cell and not is_the_masters(cell)
@@ -110,6 +111,7 @@ def cells_of(
             if a text occurs more often than in ``prose``, the additional cells count as the student's, so that limits
             apply to thousands of copies.
     """
+    # A cell that is left out stays, with an empty source: the index of a cell has to be the same everywhere.
     left_out = frozenset() if demonstrations else demonstrations_of(notebook)
     left = Counter(prose)
 
