@@ -33,16 +33,17 @@ MAY_IMPORT = {
     "cards": frozenset({"verdict"}),
     "boxes": frozenset({"process_trees", "safe_files"}),  # what isolates knows nothing of what runs
     "execution": frozenset({"boxes", "messages", "verdict", "process_trees", "safe_files"}),
-    "masters": frozenset({"course", "exercises", "safe_files"}),
+    "masters": frozenset({"course", "exercises", "safe_files", "standard_output"}),
     "mcap_files": frozenset[str](),
-    "known_classes": frozenset[str](),
+    "known_classes": frozenset({"standard_output"}),
     "process_trees": frozenset[str](),
     "safe_files": frozenset[str](),
+    "standard_output": frozenset[str](),
     "appeals": ALL - {"grading", "boxes", "execution", "notebook"},
     "notebook": ALL
     - {"judge", "exercises", "kit", "masters", "boxes", "execution", "grading", "authoring", "appeals"},
     "judge": ALL - {"notebook", "cards", "masters", "boxes", "execution", "grading", "authoring", "appeals"},
-    "__main__": frozenset({"cli", "course"}),
+    "__main__": frozenset({"cli", "course", "standard_output"}),
 }
 
 # The same for the parts of `notebook`: what is below knows nothing of what is above.

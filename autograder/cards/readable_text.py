@@ -8,7 +8,6 @@ that a Python programmer knows (``\x1b``). A long text is cut in the middle, wit
 from __future__ import annotations
 
 import functools
-import json
 import unicodedata
 from dataclasses import dataclass
 
@@ -22,20 +21,6 @@ _COLOR_CODE = re2.compile(r"\x1b\[[0-9;:]*m")
 _HARMLESS_FORMAT = frozenset("\u200c\u200d\u00ad")
 
 _NAMED_ESCAPES = {"\n": "\\n", "\r": "\\r", "\t": "\\t"}
-
-
-def printable(text: str) -> str:
-    """Return ``text`` with escapes for characters that are not printable, such as newlines and terminal codes."""
-    return "".join(c if c.isprintable() else ascii(c)[1:-1] for c in text)
-
-
-def printable_json(text: str) -> str:
-    """Return equivalent JSON in which characters that are not printable, such as terminal codes, are escaped.
-
-    Args:
-        text: JSON on a single line.
-    """
-    return "".join(c if c.isprintable() else json.dumps(c)[1:-1] for c in text)
 
 
 def one_line(text: str, limit: int, *, mark: str = "…") -> str:
