@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 
 import platformdirs
 
-from environment.installation import COMMAND
+from autograder.command_name import COMMAND
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -15,6 +15,7 @@ from nbgrader.utils import compute_checksum
 from rich.console import Console
 
 from autograder import course
+from autograder.command_name import COMMAND
 from autograder.course import SOLUTION
 from autograder.masters.code_cells import exercise_points
 from autograder.masters.master_files import MasterError, chapter_notebooks, chapter_path, masters
@@ -22,7 +23,6 @@ from autograder.masters.notebook_release import release_text
 from autograder.masters.reference_solutions import solution_files
 from autograder.masters.source_notebooks import Points, named_cells, notebook_of, service_links
 from autograder.safe_files import write_whole
-from environment.installation import COMMAND
 
 if TYPE_CHECKING:
     from pathlib import Path
