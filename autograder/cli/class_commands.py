@@ -17,7 +17,7 @@ from autograder.cli.command_results import (
     print_json,
     print_line,
 )
-from environment.installation import COMMAND
+from autograder.command_name import COMMAND
 
 class_folder = click.argument("folder", type=click.Path(path_type=Path))
 only_assignments = click.option(

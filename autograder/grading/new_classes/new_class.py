@@ -18,6 +18,7 @@ from nbgrader.converters import GenerateAssignment
 from nbgrader.coursedir import CourseDirectory
 
 from autograder.boxes.run_limits import Limits
+from autograder.command_name import COMMAND
 from autograder.grading.class_checks import note_origins
 from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.class_directory import (
@@ -34,7 +35,6 @@ from autograder.grading.rebuilding import nbformat_nodes
 from autograder.grading.result_writer import quiet
 from autograder.masters.master_files import MasterError, lab_name, masters, relinked
 from autograder.masters.source_notebooks import source_notebook
-from environment.installation import COMMAND
 
 if TYPE_CHECKING:
     from collections.abc import Container, Iterator, Sequence
