@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import re2
 
 # Matches a code that sets a color or style in a terminal and contains no text (ECMA-48, "SGR").
-_COLOUR_CODE = re2.compile(r"\x1b\[[0-9;:]*m")
+_COLOR_CODE = re2.compile(r"\x1b\[[0-9;:]*m")
 
 # The format characters that are kept: joiners shape Persian words and family emoji. All other format characters are
 # invisible or reorder a line.
@@ -63,7 +63,7 @@ def block(text: str, *, max_lines: int, max_columns: int, mark: str = "…") -> 
     If there are more than ``max_lines`` lines, some of the first and twice as many of the last are kept, because a
     traceback says the most at its end.
     """
-    lines = _COLOUR_CODE.sub("", text).replace("\r\n", "\n").strip("\n").split("\n")
+    lines = _COLOR_CODE.sub("", text).replace("\r\n", "\n").strip("\n").split("\n")
     if len(lines) > max_lines:
         head = max_lines // 3
         tail = max_lines - head - 1

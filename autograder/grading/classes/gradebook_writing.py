@@ -88,12 +88,12 @@ def enter(
         LookupError: The gradebook does not contain the assignment or one of its notebooks.
     """
     with opened(url) as book:
-        found = book.execute(
+        row = book.execute(
             sql("SELECT id, duedate FROM assignment WHERE name = :name"), {"name": assignment}
         ).first()
-        if found is None:
+        if row is None:
             raise LookupError(f"the gradebook has no assignment named {assignment}")
-        assignment_id, due = found
+        assignment_id, due = row
         submission = _submission(book, assignment_id, student, timestamp)
         cells = _cells(book, assignment_id)
         for name, entry in notebooks.items():
@@ -137,24 +137,24 @@ def _submission(book: Connection, assignment: str, student: str, timestamp: date
     """Return the id of a submission in the gradebook, after adding a missing submission and setting its time."""
     if not book.execute(sql("SELECT 1 FROM student WHERE id = :id"), {"id": student}).first():
         book.execute(sql("INSERT INTO student (id) VALUES (:id)"), {"id": student})
-    found = book.execute(
+    existing = book.execute(
         sql("SELECT id FROM submitted_assignment WHERE assignment_id = :a AND student_id = :s"),
         {"a": assignment, "s": student},
     ).scalar()
-    made = found or uuid.uuid4().hex
-    if found is None:
+    identifier = existing or uuid.uuid4().hex
+    if existing is None:
         book.execute(
             sql("INSERT INTO submitted_assignment (id, assignment_id, student_id) VALUES (:id, :a, :s)"),
-            {"id": made, "a": assignment, "s": student},
+            {"id": identifier, "a": assignment, "s": student},
         )
     if timestamp is not None:
         book.execute(
             sql("UPDATE submitted_assignment SET timestamp = :at WHERE id = :id").bindparams(
                 sqlalchemy.bindparam("at", type_=sqlalchemy.DateTime())
             ),
-            {"at": timestamp, "id": made},
+            {"at": timestamp, "id": identifier},
         )
-    return str(made)
+    return str(identifier)
 
 
 def enter_time(url: str, assignment: str, student: str, timestamp: datetime) -> None:
@@ -167,11 +167,11 @@ def enter_time(url: str, assignment: str, student: str, timestamp: datetime) -> 
         timestamp: The time in UTC.
     """
     with opened(url) as book:
-        found = book.execute(
+        assignment_id = book.execute(
             sql("SELECT id FROM assignment WHERE name = :name"), {"name": assignment}
         ).scalar()
-        if found is not None:
-            _submission(book, found, student, timestamp)
+        if assignment_id is not None:
+            _submission(book, assignment_id, student, timestamp)
 
 
 def enter_penalties(url: str, assignment: str, student: str, penalties: Mapping[str, float | None]) -> None:
@@ -252,7 +252,7 @@ def _enter_scores(book: Connection, notebook: str, cells: _Cells, entry: Noteboo
 def _enter_comments(
     book: Connection, notebook: str, cells: _Cells, comments: Mapping[str, str | None]
 ) -> None:
-    known = set(
+    existing = set(
         book.execute(sql("SELECT cell_id FROM comment WHERE notebook_id = :n"), {"n": notebook}).scalars()
     )
     wanted: list[dict[str, object]] = [
@@ -261,12 +261,12 @@ def _enter_comments(
     ]
     _put(
         book,
-        [row for row in wanted if row["cell"] not in known],
+        [row for row in wanted if row["cell"] not in existing],
         "INSERT INTO comment (id, notebook_id, cell_id, auto_comment) VALUES (:id, :n, :cell, :comment)",
     )
     _put(
         book,
-        [row for row in wanted if row["cell"] in known],
+        [row for row in wanted if row["cell"] in existing],
         "UPDATE comment SET auto_comment = :comment WHERE notebook_id = :n AND cell_id = :cell",
     )
 

@@ -90,6 +90,7 @@ def compared_answers(
     """
     longer = [list(islice(words(answer.text[:_LONGEST_TEXT]), LONGEST + 1)) for answer in answers]
     codes = [code[:LONGEST] for code in longer]
+    # Renaming must not hide a copy: names that a student chose become placeholders in all answers of that student.
     names: defaultdict[str, set[str]] = defaultdict(lambda: set(given.names))
     for answer, code in zip(answers, codes, strict=True):
         names[answer.student] |= chosen_names(code)
@@ -101,6 +102,7 @@ def compared_answers(
     for answer, own_signs in zip(answers, signs, strict=True):
         for sequence in _sequences(own_signs):
             holders[sequence].add(answer.student)
+    # What many students wrote is how one writes it, and no hint.
     many = max(_MANY, _MANY_SHARE * students)
     common = {sequence for sequence, who in holders.items() if len(who) >= many} | given.sequences
     return [

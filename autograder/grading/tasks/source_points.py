@@ -13,31 +13,13 @@ import msgspec
 
 from autograder.grading.classes import gradebook_reading
 from autograder.grading.grading_errors import GradingError, MasterUnusable, course_command
+from autograder.grading.grading_task import GradedCell
 from autograder.grading.table.rows import NO_EXERCISE
 
 if TYPE_CHECKING:
     from autograder.grading.class_store import ClassStore
     from autograder.grading.classes.class_directory import ClassDirectory
-    from autograder.grading.rebuilding.submission_fingerprints import Fingerprints
-
-
-@dataclass(frozen=True)
-class GradedCell:
-    """A cell with points in a source notebook.
-
-    Attributes:
-        notebook: The name of the notebook.
-        name: The grade_id of the cell.
-        exercise: The id of the exercise that the cell checks; if there is none, the name of the cell.
-        worth: The maximum points of the cell.
-        by_judge: True if the judge or the cell's own tests give the points; False if a person does.
-    """
-
-    notebook: str
-    name: str
-    exercise: str
-    worth: float
-    by_judge: bool = True
+    from autograder.grading.tasks.submission_fingerprints import Fingerprints
 
 
 @dataclass(frozen=True)
@@ -58,8 +40,8 @@ def read_released(directory: ClassDirectory, store: ClassStore, fingerprints: Fi
     assignments = directory.assignments()
     fingerprint = " ".join(fingerprints.of_sources(assignment) for assignment in assignments)
     with contextlib.suppress(msgspec.MsgspecError):
-        kept = msgspec.json.decode(store.graded_cells(fingerprint), type=dict[str, tuple[GradedCell, ...]])
-        return Released(kept, {})
+        stored = msgspec.json.decode(store.graded_cells(fingerprint), type=dict[str, tuple[GradedCell, ...]])
+        return Released(stored, {})
     cells, unusable = {}, {}
     for assignment in assignments:
         try:
@@ -102,20 +84,20 @@ def _read(directory: ClassDirectory, assignment: str) -> list[GradedCell]:
     from autograder.grading.rebuilding.notebook_rebuilding import grade_id
     from autograder.grading.rebuilding.trusted_master import check_of
 
-    found = []
+    graded_cells = []
     for notebook in directory.notebooks(assignment):
         for cell in directory.master(assignment, notebook).cells:
             name = grade_id(cell)
             if (check := check_of(cell)) is not None:
-                found.append(GradedCell(notebook, name, check.exercise, check.worth))
+                graded_cells.append(GradedCell(notebook, name, check.exercise, check.worth))
             elif is_grade(cell) or is_task(cell):
                 points = float(cell.metadata.nbgrader["points"])
-                found.append(GradedCell(notebook, name, name, points, by_judge=False))
-    names = [cell.exercise for cell in found]
+                graded_cells.append(GradedCell(notebook, name, name, points, by_judge=False))
+    names = [cell.exercise for cell in graded_cells]
     twice = next((name for name in names if [*names, *NO_EXERCISE].count(name) > 1), "")
     if twice:
         raise MasterUnusable(
             f"{directory.path / 'source' / assignment}: two lines in the table of points would have the name "
             f"{twice!r}. Give one of the cells another name (grade_id)."
         )
-    return found
+    return graded_cells

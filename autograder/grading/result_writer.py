@@ -28,15 +28,15 @@ from autograder.grading.classes import gradebook_writing
 from autograder.grading.classes.class_directory import SUFFIX
 from autograder.grading.classes.gradebook_reading import read_entries
 from autograder.grading.classes.gradebook_writing import NotebookEntry
-from autograder.grading.classes.submission_times import companions, handed_in_at
+from autograder.grading.collecting.submission_times import companions, handed_in_at
 from autograder.grading.grading_errors import is_disk_full
 from autograder.grading.grading_task import points, scores_of, unchecked
 from autograder.grading.rebuilding import nbformat_nodes
-from autograder.grading.rebuilding.task_making import LEFT_OUT, task_of
 from autograder.grading.returning import feedback_pages
 from autograder.grading.returning.sanitize import harmless_output, make_harmless
 from autograder.grading.running import execution_backends
 from autograder.grading.table.late_policy import penalties
+from autograder.grading.tasks.task_making import LEFT_OUT, task_of
 from autograder.safe_files import write_whole
 
 if TYPE_CHECKING:
@@ -102,6 +102,7 @@ class Writer:
         try:
             with quiet(self._directory.state):
                 self._convert_and_enter(submission, results)
+            # Read the points back, because a wrong grade is worse than none.
             self._verify(submission, results)
         except NotWritten:
             self.take_back([submission])
@@ -118,6 +119,7 @@ class Writer:
             course=course,
         )
         attempt = Attempt(datetime.now(tz=UTC), submission.assignment, fingerprint, course, rows)
+        # A result with trouble of the grader is an attempt, but not entered as done, so the next run checks it again.
         is_final = not any(execution.trouble for _, execution in results)
         self._store.enter(submission, attempt, entered if is_final else None)
 
@@ -255,6 +257,7 @@ def _convert(
     entries = {}
     for task, execution in results:
         notebook = _graded_notebook(directory, submission, task, execution)
+        # Before the entry is made, because nbgrader, too, cuts outputs before it computes points from them.
         LimitOutput(config=directory.config).preprocess(notebook, {})
         entries[task.notebook] = replace(_notebook_entry(notebook), unchecked=unchecked(task, execution))
         _write_read_only(folder / f"{task.notebook}{SUFFIX}", _notebook_text(notebook))
@@ -335,14 +338,14 @@ def _with_results(nb: NotebookNode, task: Task, execution: Execution) -> Noteboo
 def _with_rubrics(cells: Sequence[NotebookNode]) -> Iterator[NotebookNode]:
     """Yield the cells. Below each answer that a person grades, add a cell with the instructor's notes for grading."""
     for cell in cells:
-        known = cell.metadata.pop("autograder", {})
+        notes = cell.metadata.pop("autograder", {})
         yield cell
-        if known.get("rubric"):
-            text = f"**How this answer is graded**\n\n{known['rubric']}"
-            made = nbformat_nodes.cell(CellType.MARKDOWN, text, f"rubric-{cell.id}"[:64])
-            if known["pictures"]:
-                made["attachments"] = known["pictures"]
-            yield made
+        if notes.get("rubric"):
+            text = f"**How this answer is graded**\n\n{notes['rubric']}"
+            rubric_cell = nbformat_nodes.cell(CellType.MARKDOWN, text, f"rubric-{cell.id}"[:64])
+            if notes["pictures"]:
+                rubric_cell["attachments"] = notes["pictures"]
+            yield rubric_cell
 
 
 def _graded_outputs(
