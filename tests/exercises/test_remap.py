@@ -214,7 +214,7 @@ def _launched(argv: tuple[str, ...], programs: tuple[str, ...] = ()) -> Launched
 
 
 @pytest.mark.parametrize(
-    ("nodes", "told"), [(["/bot", "/bot"], "2 of your nodes are called /bot"), (["/a", "/b"], "")]
+    ("nodes", "told"), [(["/bot", "/bot"], "Two of your nodes are called /bot: name="), (["/a", "/b"], "")]
 )
 def test_two_nodes_of_one_name_are_worth_a_remark(nodes: list[str], told: str) -> None:
     seen = Evidence([Part("launching", {}, [Event(0.0, "interface", "graph", {"nodes": nodes})])], REFERENCE)
