@@ -26,8 +26,8 @@ ALL = frozenset(PARTS)
 MAY_IMPORT = {
     "verdict": frozenset[str](),
     "course": frozenset[str](),
-    "foreign_code": frozenset[str](),
-    "kit": frozenset({"foreign_code", "verdict"}),
+    "known_errors": frozenset[str](),
+    "kit": frozenset({"known_errors", "verdict"}),
     "exercises": frozenset({"course", "kit"}),
     "messages": frozenset({"verdict"}),
     "cards": frozenset({"verdict"}),

@@ -126,12 +126,11 @@ def students(folder: Path, new_list: Path | None, said: dict[str, str], yes: boo
     LIST replaces students.csv in FOLDER; without it, students.csv itself is the new list. A student with a new id keeps
     work, points and records.
     """
-    from autograder.cards.readable_text import printable
     from autograder.grading.collecting.changing_students import change_students
 
     with grading_errors():
         for line in change_students(folder, new_list, said, is_final=yes):
-            click.echo(printable(line))
+            print_line(line)
 
 
 @click.command()
