@@ -51,9 +51,6 @@ class Batch:
 
     Args:
         directory: The class, which this process has locked.
-        store: The store of the class.
-        console: The console for the progress.
-        roster: The students of the class.
         asked: The chosen assignments and students.
         backend: Finds the workers that execute tasks.
         stack: Ends what the run began.
