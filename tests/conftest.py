@@ -161,10 +161,11 @@ def _no_waiting_for_the_disk() -> Iterator[None]:
 
 
 @pytest.fixture(scope="session", autouse=True)
-def _no_journal() -> Iterator[None]:
-    """Checks that tests make are nobody's progress."""
+def _nothing_remembered(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
+    """Checks that tests make are nobody's progress, and their classes are not the user's."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("AUTOGRADER_JOURNAL", "")
+        patch.setenv("XDG_DATA_HOME", str(tmp_path_factory.mktemp("data")))
         yield
 
 

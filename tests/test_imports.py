@@ -35,6 +35,7 @@ MAY_IMPORT = {
     "execution": frozenset({"boxes", "messages", "verdict", "process_trees", "safe_files"}),
     "masters": frozenset({"course", "exercises", "safe_files"}),
     "mcap_files": frozenset[str](),
+    "known_classes": frozenset[str](),
     "process_trees": frozenset[str](),
     "safe_files": frozenset[str](),
     "appeals": ALL - {"grading", "boxes", "execution", "notebook"},

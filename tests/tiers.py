@@ -50,6 +50,8 @@ NIGHTLY = (
     # A class once more by stock nbgrader, and by each student's Validate: the class itself is graded in both tiers.
     "tests/grading/new_classes/test_sample_class.py::test_plain_nbgrader_gives_the_same_points",
     "tests/grading/new_classes/test_sample_class.py::test_validate_tells_a_student_the_truth",
+    # Three programs and all their mistakes, at each missing event; each program's own exercise is tried each day.
+    "tests/judge/test_missing_events.py::test_no_exercise_needs_an_event_to_come_to_a_verdict[lab_1_4.programs]",
     # All notebooks in one folder; two of them are executed each day.
     "tests/masters/test_run_again.py",
     # Recording what builds packages, or a changed exercise; what has changed in truth is recorded in both tiers.

@@ -32,6 +32,8 @@ SLOWLY = 1.5
 """A publisher is slow if its intervals are at least this many times as long as the reference's. It may also be silent
 for this many of its own intervals at the end of the run.
 """
+REPLACED = 3
+"""If this many publishers appear on the topic one after another, the program makes a new one for each message."""
 BURST = 0.3
 """A limit in seconds. If a program published for a shorter time and ended, it may have published everything at once,
 and a busy machine delayed some messages.
@@ -58,6 +60,18 @@ class Publisher:
     def messages(self) -> list[Event]:
         """The messages on the topic, in order."""
         return self.part.of("message", self.topic)
+
+    @cached_property
+    def replaced(self) -> str:
+        """In words, how many publishers the program made one after another; empty if its publisher lasts.
+
+        A subscriber has to discover each of them, so chance decides which messages arrive.
+        """
+        moments = {
+            int(event.moment / BURST): event.data["count"] for event in self.part.of("matched", self.topic)
+        }
+        growing = len(set(moments.values()))
+        return f"{growing} publishers, one after another" if growing >= REPLACED else ""
 
     @cached_property
     def texts(self) -> list[str]:
@@ -206,10 +220,11 @@ def counts(seen: Publisher, expected: Publisher) -> Finding:
     found = ", ".join(map(str, numbers)) if len(numbers) < enough else _around(numbers, _slip(numbers, step))
     if steady and (more := _uncounted(seen, expected)):
         found = f"{counted(more, 'message')} more before {found}"
-    passed = steady and seen.went_on and _starts_right(seen, expected)
+    passed = steady and seen.went_on and _starts_right(seen, expected) and not seen.replaced
     if passed and (lost := seen.number_of_first - 1):
         found += f" after {counted(lost, 'message')} before anybody could hear"
-    return Finding(passed, _row(expected.counters[:5]), found or "no whole number arrived")
+    found = seen.replaced or found or "no whole number arrived"
+    return Finding(passed, _row(expected.counters[:5]), found)
 
 
 def _goes_on_slowly(seen: Publisher, expected: Publisher) -> bool:

@@ -8,8 +8,6 @@ from random import Random
 from typing import TYPE_CHECKING
 
 import pytest
-from exercise_1_3._cancel_evidence import HONOURED
-from exercise_1_3._cancel_scenario import asked_a_moment_late
 from inspecting_services import question
 from inspecting_topics import mismatch
 from lab_1_2 import listener, talker
@@ -256,15 +254,6 @@ def test_who_says_something_of_the_answer_and_then_ends_never_asked_for_the_resu
     evidence = Evidence([part], Reference("lab_1_4.client", {"action_client": {}}, [part]))
     assert ENDED_TOO_EARLY.recognise(evidence) is None
     assert RESULT_NOT_REQUESTED.recognise(evidence) is not None
-
-
-@pytest.mark.parametrize(("feedbacks", "again"), [(5, False), (6, True), (7, True), (8, False)])
-def test_a_request_to_cancel_just_after_the_last_moment_is_asked_for_again(
-    feedbacks: int, again: bool
-) -> None:
-    sent = [Event(0.5 * number, "feedback", "/fibonacci", {}) for number in range(feedbacks)]
-    seen = Part(HONOURED, {}, [*sent, Event(9.0, "cancel", "/fibonacci", {"accepted": True})])
-    assert asked_a_moment_late(seen) is again
 
 
 @pytest.mark.parametrize("slow_to_end", [False, True])

@@ -13,7 +13,7 @@ from zoneinfo import ZoneInfo
 
 from traitlets.config.loader import PyFileConfigLoader
 
-from autograder import course
+from autograder import course, known_classes
 from autograder.grading.classes.class_lock import held
 from autograder.grading.classes.class_secret import create_secret, read_secret
 from autograder.grading.grading_errors import GradingError, NotAClass, clear_disk_errors
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from autograder.grading.rebuilding.cell_matching import NamedCells
 
 
-CONFIG_NAME = "nbgrader_config.py"
+CONFIG_NAME = known_classes.CONFIG_NAME
 STATE_NAME = ".autograder"
 COURSE_NAME = "course"
 """The name of a file in the class's state folder. The file contains the path of the course's top folder, because an
@@ -149,6 +149,7 @@ class ClassDirectory:
 
     @functools.cached_property
     def _as_written(self) -> Config:
+        known_classes.remember(self.path)
         try:
             return PyFileConfigLoader(CONFIG_NAME, path=str(self.path)).load_config()
         except Exception as error:  # the configuration file is a program, so it may raise any error

@@ -11,7 +11,7 @@ from rich.console import Console
 from autograder.cards.readable_text import printable
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.collecting.collected_csv import Table
-from autograder.grading.collecting.collected_files import Arrival, Delivery, Inbox, LineState
+from autograder.grading.collecting.collected_files import SHORT_KEY, Arrival, Delivery, Inbox, LineState
 from autograder.grading.collecting.download_desk_process import is_archive
 from autograder.grading.collecting.downloaded_files import (
     Archives,
@@ -23,7 +23,8 @@ from autograder.grading.collecting.downloaded_files import (
 )
 from autograder.grading.collecting.file_owners import NamedSource, StudentOf
 from autograder.grading.collecting.file_to_grade import ClassFolders, decide
-from autograder.grading.collecting.inbox_lines import NO_LIST, AssignmentOf, entries_of, in_utc, lines_of
+from autograder.grading.collecting.inbox_lines import AssignmentOf, lines_of
+from autograder.grading.collecting.list_times import NO_LIST, entries_of, in_utc
 from autograder.grading.collecting.submitted_file_names import check_names
 from autograder.grading.collecting.submitted_folder import Submitted
 from autograder.grading.grading_errors import GradingError, check_known, course_command
@@ -126,8 +127,14 @@ def _lines(report: CollectReport) -> Iterator[str]:
         late = ", late according to the LMS" if one.late else ""
         again = f", {one.reason}" if one.reason else ""
         yield f"placed       {one.student}/{one.assignment}: {one.label}{when}{late}{again}"
-    for state in (LineState.EARLIER, LineState.BESIDE, LineState.LEFT_OUT, LineState.NOT_PLACED):
-        for one in report.having(state):
+    for state in (
+        LineState.UNCHANGED,
+        LineState.EARLIER,
+        LineState.BESIDE,
+        LineState.LEFT_OUT,
+        LineState.NOT_PLACED,
+    ):
+        for one in (one for one in report.having(state) if one.reason):
             owner = f"{one.student}: " if one.student else ""
             also = (
                 "; the student's notebook was collected, too"
@@ -176,7 +183,7 @@ class _Collecting:
 
     def run(self, sources: Sequence[Path]) -> CollectReport:
         """Take files into the inbox, decide about all files in it, and update ``submitted`` and the table."""
-        edits, self._notes = self._table.take_edits()
+        edits, self._notes = self._table.take_edits(self._inbox.keys)
         self._submitted.take_in()
         delivery = self._receive(sources)
         before = {one.label for one in self._table.waiting()}
@@ -215,8 +222,16 @@ class _Collecting:
                 )
             unique = {(one.label, one.key): one for one in arrivals}
             ordered = tuple(one for _, one in sorted(unique.items()))
-            receiving.delivery = replace(options, arrivals=ordered)
+            assignment = options.assignment or (self._only_assignment() if len(lists) == len(paths) else "")
+            receiving.delivery = replace(options, arrivals=ordered, assignment=assignment)
         return receiving.delivery
+
+    def _only_assignment(self) -> str:
+        """Return the only assignment of which the students in this command's lists have work so far; else empty."""
+        numbers = {(entry.lms, entry.number) for entry in self._entries}
+        lines = self._table.lines()
+        assignments = {one["assignment"] for one in lines if (one["system"], one["number"]) in numbers}
+        return assignments.pop() if len(assignments) == 1 else ""
 
     def _knowing(self) -> StudentOf:
         """Return a ``StudentOf`` that knows students.csv, the lists in the inbox, and the lists of this command."""
@@ -242,7 +257,7 @@ class _Collecting:
                 continue
             arrival, data = _taken(file, receiving)
             arrival = replace(arrival, levels=source.levels, is_own=source.is_own)
-            if not is_archive(arrival.name, data):
+            if arrival.refused or not is_archive(arrival.name, data):
                 yield arrival
                 continue
             yield replace(arrival, is_archive=True)
@@ -259,14 +274,19 @@ class _Collecting:
         before: Collection[str],
     ) -> CollectReport:
         zone, keys = self._directory.time_zone, {one.key for one in delivery.arrivals}
+        contents = {one.content for one in delivery.arrivals}
         counting = [one for one in lines if one.state == LineState.PLACED]
         outcomes = []
         for one in lines:
+            also = ""
             if one.state == LineState.PLACED:
                 state, reason = results[one.place]
-                one = replace(one, state=state, reason=reason)
-            waits = one.state == LineState.NOT_PLACED and (not keys or f"{one.label} {one.key}" not in before)
-            if one.key in keys or one.state == LineState.PLACED or waits:
+                also = one.reason if one.content in contents else ""
+                one = replace(one, state=state, reason=", ".join(filter(None, (reason, also))))
+            waits = one.state == LineState.NOT_PLACED and (
+                not keys or f"{one.label} {one.key[:SHORT_KEY]}" not in before
+            )
+            if one.key in keys or one.state == LineState.PLACED or waits or also:
                 outcomes.append(replace(one, when=one.when and one.when.astimezone(zone)))
         here = {one.assignment for one in counting if one.key in keys or not keys}
         work = {(one.student, one.assignment) for one in self._directory.submissions()[0]}

@@ -37,7 +37,6 @@ from autograder.safe_files import name_as_text
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
-    from datetime import datetime
     from pathlib import Path
 
     from autograder.grading.collecting.collected_files import Arrival
@@ -81,8 +80,6 @@ class StudentOf:
         form: The LMS that the instructor named for all files; empty to find it from the names.
         names: The pattern given with ``--names``; empty if none was given.
         entries: The entries of all lists, which map numbers to students.
-        own: The entries of lists that came with the files. Their times apply to the files.
-        others: The entries of lists that came alone. Their times are used if ``own`` has no time for a file.
     """
 
     def __init__(
@@ -92,15 +89,12 @@ class StudentOf:
         form: str = "",
         names: str = "",
         entries: Iterable[ListEntry] = (),
-        own: Iterable[ListEntry] = (),
-        others: Iterable[ListEntry] = (),
     ) -> None:
         self._roster = roster
         self._is_notebook = is_notebook
         self._form = form
         self._names = read_names(names) if names else None
         self._entries = list(entries)
-        self._timed = (_times(own), _times(others))
         self._by_number = {(one.lms, one.number): one for one in self._entries if one.number}
         # Cached, because many files have the same folder in their path.
         self._identified = functools.cache(self._identify)
@@ -301,12 +295,6 @@ class StudentOf:
         called = " and ".join(str(names[-1]) for names in known.members if names) if known else str(identity)
         return f"no student in the class is called {called or number}: {what_to_do}, or add a line to students.csv"
 
-    def time(self, identity: Identity) -> datetime | None:
-        """Return the time of handing in that the lists have for this number; None if they have none, or several."""
-        number = (identity.lms, identity.number or identity.login)
-        times = next((known[number] for known in self._timed if number in known), set())
-        return next(iter(times)) if len(times) == 1 else None
-
 
 # The names of some downloads look like names of files in Canvas: gradebook_ROS_101_2_2025-10-03-14-05-06.zip, as
 # Blackboard makes it, and lab_1_2_submissions.zip.
@@ -320,14 +308,6 @@ def _is_loose(path: Path) -> bool:
 
 def _distinct(several: Iterable[Iterable[Student]]) -> tuple[Student, ...]:
     return tuple({one.id: one for students in several for one in students}.values())
-
-
-def _times(entries: Iterable[ListEntry]) -> dict[tuple[str, str], set[datetime]]:
-    times: dict[tuple[str, str], set[datetime]] = defaultdict(set)
-    for one in entries:
-        if one.when is not None and one.number:
-            times[one.lms, one.number].add(one.when)
-    return dict(times)
 
 
 _EXPORT = re2.compile(r"^assignment_\d+_export(?: ?\(\d+\)|-\d+)?$")

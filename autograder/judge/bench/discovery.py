@@ -68,7 +68,7 @@ Interface = dict[str, dict[str, str]]
 
 
 def subject_nodes(judge: Node, keeper: str) -> list[NodeName]:
-    """Return the names of all nodes on the domain, each once, except the judge's and the keeper's.
+    """Return the names of all nodes on the domain, except the judge's and the keeper's; a name of two nodes twice.
 
     Args:
         judge: The judge's node.
@@ -80,7 +80,7 @@ def subject_nodes(judge: Node, keeper: str) -> list[NodeName]:
     others = [NodeName(name, space) for name, space in seen if name != own and not name.startswith(UNNAMED)]
     if keeper and (the_one := NodeName(keeper, "/")) in others:
         others.remove(the_one)
-    return sorted(set(others), key=lambda node: (node.name, node.namespace))
+    return sorted(others, key=lambda node: (node.name, node.namespace))
 
 
 def survey(judge: Node) -> Interface:
@@ -91,7 +91,7 @@ def survey(judge: Node) -> Interface:
     found: Interface = {role: {} for role in ROLES}
     for end in topic_ends(judge):
         _add(found[end.role], end.topic, [end.type_name])
-    for node in subject_nodes(judge, keeper=""):
+    for node in set(subject_nodes(judge, keeper="")):
         for role, query in _QUERIES.items():
             for name, types in _ask(query, judge, node):
                 if _is_own_work(role, name):

@@ -129,7 +129,8 @@ KNOWN = (
     ),
     KnownTraceback(
         r"The (?:service|message) type provided is not valid|AttributeError: type object '\w+' has no attribute "
-        r"'_TYPE_SUPPORT'",
+        r"'_TYPE_SUPPORT'|rclpy needs the type of an action"
+        r"|rclpy/action/(?:client|server)\.py\", line \d+, in __init__\nSegmentation fault",
         "rclpy needs the type of a message, a service or an action here, but your code passes something else.",
         "Import the type and pass it as the first of the two: first the type without quotation marks, then the name "
         "of the topic, service or action. (In ROS 1, the name comes first.) Examples: create_publisher(String, "

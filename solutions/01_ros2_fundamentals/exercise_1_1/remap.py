@@ -2,10 +2,16 @@
 
 from __future__ import annotations
 
+from collections import Counter
+from typing import TYPE_CHECKING
+
 from autograder.kit.draft import Draft
 from autograder.kit.model import Advice, Finding
 from autograder.kit.recipes.launch_file import Launched, LaunchFile
 from autograder.kit.runners import Launches
+
+if TYPE_CHECKING:
+    from autograder.kit.evidence import Evidence
 
 OLD_NAME = "chatter"
 """The topic's name in the code of the programs."""
@@ -161,8 +167,21 @@ def one_node_only(seen: Launched, _: Launched) -> Advice | None:
     )
 
 
+def nodes_of_one_name(evidence: Evidence) -> str:
+    """Return a remark if two nodes have the same name."""
+    for survey in evidence.main.of("interface"):
+        for name, count in Counter(survey.data.get("nodes", ())).items():
+            if count > 1:
+                return (
+                    f"{count} of your nodes are called {name}. In a launch file, name=... renames every node of the "
+                    "process, and two nodes of one name cannot be told apart: leave it out, or give each its own."
+                )
+    return ""
+
+
 EXERCISE = remap.exercise(
     limit=400.0,
+    remarks=(nodes_of_one_name,),
     runner=Launches(),
     wraps_commands=True,
     recorded=(),  # how many messages come before the listener is there is up to the machine

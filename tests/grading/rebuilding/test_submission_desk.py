@@ -24,13 +24,22 @@ from autograder.grading.rebuilding.submission_desk import (
     checked,
     document_of,
     read_notebook,
-    why_unreadable,
 )
 from autograder.grading.rebuilding.submitted_notebook import MAX_CELL_CHARACTERS, UnreadableSubmission
 from tests.grading.rebuilding.hostile_desk import CRAFTED, SCRIPT
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
+
+
+def why_unreadable(data: bytes) -> str:
+    """Why a file cannot be read; empty if it can."""
+    try:
+        read_notebook(data)
+    except UnreadableSubmission as error:
+        return str(error)
+    return ""
+
 
 ROOT = Path(__file__).resolve().parents[3]
 HOSTILE = "tests.grading.rebuilding.hostile_desk"
