@@ -150,7 +150,7 @@ class Batch:
         if older:
             self._notices.append(
                 f"{older} submissions had been graded with another version of the course. To see whose points have "
-                f"changed, type `{COMMAND} compare` after the run, or `{COMMAND} grade --dry-run` before a run"
+                f"changed, type `{COMMAND} compare` after the run, or `{COMMAND} grade --dry-run` before a run."
             )
         if self._again:
             self._store.forget_results(work.submission for work in works)
@@ -272,7 +272,7 @@ class Batch:
         judged |= {key: work.rows for key, work in submissions.items() if work.rows is not None}
         for student, assignment in sorted((entries.keys() & self._entered.keys()) - submissions.keys()):
             self._notices.append(
-                f"{student}/{assignment} is no longer in submitted; its points stay in the gradebook"
+                f"{student}/{assignment} is no longer in submitted; its points stay in the gradebook."
             )
         rows = true_rows(
             self._roster.names,

@@ -149,7 +149,7 @@ def find_work(
                 f"{submission.student}/{submission.assignment}: timestamp.txt is ignored, because "
                 f"`{COMMAND} collect` did not write it. To set the time of handing in, first type "
                 f"{course_command('collect', directory.path)}. Then write the time into the column handed_in of "
-                f"this submission's line in {NAME}, and type the same command again"
+                f"this submission's line in {NAME}, and type the same command again."
             )
         (result.works if asked.has(*work.key) else result.others).append(work)
     return result

@@ -108,7 +108,7 @@ def find_similar(directory: ClassDirectory, assignment: str = "") -> SimilarPair
             troubles += handed_in.troubles
             if len(handed_in.students) == 1:
                 notes.append(
-                    f"{notebook}: only one student has submitted this notebook, so there is nothing to compare"
+                    f"{notebook}: only one student has submitted this notebook, so there is nothing to compare."
                 )
             answers = compared_answers(handed_in.answers, given, len(handed_in.students))
             troubles += [
