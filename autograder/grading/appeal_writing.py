@@ -37,7 +37,6 @@ def write_appeal(path: Path, student: str, exercise_id: str, to: Path | None = N
 
     Args:
         path: The class directory.
-        student: The student's id.
         exercise_id: The exercise's id, such as ``"lab_1_2.talker"``.
         to: The path of the appeal file; by default in the class's folder ``appeals``.
 

@@ -51,9 +51,6 @@ class Batch:
 
     Args:
         directory: The class, which this process has locked.
-        store: The store of the class.
-        console: The console for the progress.
-        roster: The students of the class.
         asked: The chosen assignments and students.
         backend: Finds the workers that execute tasks.
         stack: Ends what the run began.
@@ -150,7 +147,7 @@ class Batch:
         if older:
             self._notices.append(
                 f"{older} submissions had been graded with another version of the course. To see whose points have "
-                f"changed, type `{COMMAND} compare` after the run, or `{COMMAND} grade --dry-run` before a run"
+                f"changed, type `{COMMAND} compare` after the run, or `{COMMAND} grade --dry-run` before a run."
             )
         if self._again:
             self._store.forget_results(work.submission for work in works)
@@ -272,7 +269,7 @@ class Batch:
         judged |= {key: work.rows for key, work in submissions.items() if work.rows is not None}
         for student, assignment in sorted((entries.keys() & self._entered.keys()) - submissions.keys()):
             self._notices.append(
-                f"{student}/{assignment} is no longer in submitted; its points stay in the gradebook"
+                f"{student}/{assignment} is no longer in submitted; its points stay in the gradebook."
             )
         rows = true_rows(
             self._roster,

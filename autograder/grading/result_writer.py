@@ -238,7 +238,6 @@ def _convert(
     """Write the notebooks of a submission with their results, and return the entries for the gradebook.
 
     Args:
-        directory: The class.
         submission: The submission that was executed.
         results: Pairs of a task and its result, one for each notebook of the assignment.
         folder: The folder to create for the notebooks. It must not exist yet.

@@ -45,13 +45,7 @@ _STUDENTS_FILES = ("submitted", "autograded", "feedback", "downloaded")
 
 @dataclass(frozen=True)
 class Submission:
-    """The folder with the files that one student submitted for one assignment.
-
-    Attributes:
-        student: The student's id.
-        assignment: The assignment's name.
-        folder: The folder of the submission.
-    """
+    """The folder with the files that one student submitted for one assignment."""
 
     student: str
     assignment: str

@@ -235,7 +235,6 @@ def _write_source(
 
     Args:
         directory: The class. The assignment's folder must exist.
-        name: The name of the assignment.
         notebook: The source notebook, made from the master.
         assignments: The names of all assignments of the class.
 
@@ -260,7 +259,6 @@ def release(directory: ClassDirectory, assignments: Sequence[str] = ()) -> None:
     """Make the notebooks for students in ``release``, as ``nbgrader generate_assignment`` does.
 
     Args:
-        directory: The class.
         assignments: The names of the assignments to release; by default all of the class.
 
     Raises:

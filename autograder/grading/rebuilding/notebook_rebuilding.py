@@ -41,7 +41,6 @@ def rebuild(
 
     Args:
         master: The master, with stubs instead of solutions. Its cells without a grade_id are not used.
-        submitted: The cells of the submission.
         left_out: The number of submitted cells that could not be read.
         others: Other assignments whose graded cells are in the submission.
 

@@ -126,7 +126,6 @@ class Dispatcher:
     """Gives the tasks of one batch to workers.
 
     Args:
-        link: The connection to the workers.
         address: The address of the cluster's scheduler, for messages; empty for this machine.
         judge: The Python class of the judge, as ``module:class``.
         boxed: True if tasks run in sandboxes. Workers that cannot make sandboxes are then rejected.

@@ -81,9 +81,7 @@ def execute(
     """Execute one task.
 
     Args:
-        task: The task.
         scratch: The folder in which the task gets its own folder.
-        judge: The judge of the task.
         addresses: The addresses of the fork servers, which for a boxed task must include the one for supervisors.
         began: Called with the boxes of the task before anything runs in them.
 
@@ -256,7 +254,6 @@ def _make_paths(task: Task, folder: Path) -> _Paths:
     Call this before the boxes of the notebook are made.
 
     Args:
-        task: The notebook.
         folder: A folder that only this notebook uses. Its path must be short, because it will contain a Unix socket.
     """
     checks = [cell.check.exercise for cell in task.cells if cell.check and not cell.check.asserts]

@@ -118,7 +118,6 @@ class Failed(msgspec.Struct, frozen=True, tag=True):
     """A message: an order will get no answer.
 
     Attributes:
-        number: The number of the order.
         reason: Why no answer will come.
         forged: True if the worker sent an answer that an unmodified worker would never send.
     """

@@ -80,7 +80,6 @@ def find_similar(directory: ClassDirectory, assignment: str = "") -> SimilarPair
     """Compare the submissions of a class with each other.
 
     Args:
-        directory: The class.
         assignment: The assignment whose submissions are compared; all assignments if empty.
 
     Raises:
@@ -109,7 +108,7 @@ def find_similar(directory: ClassDirectory, assignment: str = "") -> SimilarPair
             troubles += handed_in.troubles
             if len(handed_in.students) == 1:
                 notes.append(
-                    f"{notebook}: only one student has submitted this notebook, so there is nothing to compare"
+                    f"{notebook}: only one student has submitted this notebook, so there is nothing to compare."
                 )
             answers = compared_answers(handed_in.answers, given, len(handed_in.students))
             troubles += [
@@ -163,8 +162,6 @@ class Pair:
     """Two similar answers.
 
     Attributes:
-        one: The first answer.
-        other: The second answer.
         passages: The common passages, in the order of the first answer.
     """
 

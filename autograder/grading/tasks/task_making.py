@@ -106,7 +106,6 @@ def cells_of(
     """Convert the cells of a rebuilt notebook to the type that the execution uses.
 
     Args:
-        notebook: The notebook.
         demonstrations: False to empty the cells that only show something, so that they are skipped.
         prose: The texts of the master's text cells, and of the grader's remarks. A cell with such a text counts as
             given, not as the student's. But if a text occurs more often than in ``prose``, the additional cells count
