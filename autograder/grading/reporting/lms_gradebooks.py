@@ -170,7 +170,7 @@ def fill_list(
     rows, delimiter = csv_rows(data)
     header = [name.strip() for name in rows[0]] if rows else []
     form = _form_of(header, lms)
-    places = _point_columns(into, header, form, assignments, columns)
+    places = _point_columns(into, rows, form, assignments, columns)
     lines, strangers = _lines_by_student(rows[1:], header, form, table)
     doubtful: list[str] = []
     for student_id, of_student in lines.items():
@@ -185,6 +185,11 @@ def fill_list(
             elif (score := table.score(student_id, name)) is not None:
                 row[place] = f"{score:g}".replace(".", "," if delimiter == ";" else ".")
     notices = []
+    if left_out := [one for one in table.students if one not in lines and table.has_points(one, assignments)]:
+        notices.append(
+            f"the list has no line for {', '.join(left_out)}, so their points are not in it: if they are in the "
+            "course, download the list again"
+        )
     if strangers:
         notices.append(
             f"no student in the class is called {', '.join(strangers)}: their lines stay as they were"
@@ -226,26 +231,70 @@ def _form_of(header: Sequence[str], lms: str) -> ListForm:
 
 def _point_columns(
     into: Path,
-    header: Sequence[str],
+    rows: Sequence[Sequence[str]],
     form: ListForm,
     assignments: Sequence[str],
     columns: Mapping[str, str],
 ) -> dict[str, int]:
     """Return the index of the column for points, by assignment.
 
+    A column of an assignment has the assignment's name, or its title as in ``Lab 1.2: A talker and a listener``.
+
     Raises:
         GradingError: An assignment has no column of its own.
     """
+    header = [name.strip() for name in rows[0]]
     if form.points != EACH:
         if len(assignments) != 1:
             raise GradingError(
                 f"Say which assignment goes into {into}: --assignment NAME ({', '.join(assignments)})."
             )
         return {assignments[0]: [name.lower() for name in header].index(form.points)}
-    places = {name: _column(header, form, name, columns.get(name, name)) for name in assignments}
+    about = {*form.has, *form.sure, *form.names} - {form.points}
+    locked = {name for row in rows[1:2] for name, cell in zip(header, row, strict=False) if _LOCKED in cell}
+    names = [name for name in header if name and name.lower() not in about and name not in locked]
+    found = {
+        one: _columns_called(columns.get(one, one), names, is_exact=one in columns) for one in assignments
+    }
+    if missing := [one for one in assignments if len(found[one]) != 1]:
+        likeliest = {
+            one: process.extractOne(one, names, scorer=fuzz.partial_ratio, processor=_letters)
+            for one in missing
+        }
+        options = " ".join(
+            f'--column "{one}={best[0] if best else "COLUMN"}"' for one, best in likeliest.items()
+        )
+        asked = ", ".join(columns.get(one, one) for one in missing)
+        why = f" {_LOCKED} columns take no points: {', '.join(sorted(locked))}." if locked else ""
+        raise GradingError(
+            f"No column for points is called {asked}, or more than one is. The list has: {', '.join(names) or 'none'}."
+            f"{why} Name one for each, for example: {options}"
+        )
+    places = {one: header.index(name) for one, (name,) in found.items()}
     if len(set(places.values())) < len(places):
         raise GradingError("Two assignments have the same column: give each its own --column.")
     return places
+
+
+_LOCKED = "(read only)"
+"""The mark in the second line of Canvas's list under a column that Canvas computes."""
+
+
+def _columns_called(called: str, names: Sequence[str], *, is_exact: bool) -> list[str]:
+    """Return the columns with a name, by the first way of comparing names that finds any.
+
+    Args:
+        called: The name of a column, or of an assignment.
+        names: The names of all columns for points. Canvas adds a number to them: ``lab_1_2 (815)``.
+        is_exact: True if a person wrote the name, so that it is compared as it is.
+    """
+    for way in (str, _without_number):
+        if found := [name for name in names if way(name) == called]:
+            return found
+    for head in () if is_exact else (_letters, lambda name: _letters(name.partition(":")[0])):
+        if found := [name for name in names if head(name) == _letters(called)]:
+            return found
+    return []
 
 
 def _lines_by_student(
@@ -274,23 +323,6 @@ def _lines_by_student(
         else:
             strangers.append(called)
     return found, strangers
-
-
-def _column(header: Sequence[str], form: ListForm, assignment: str, called: str) -> int:
-    """Return the index of an assignment's column. Canvas adds a number to the name of a column: ``lab_1_2 (815)``.
-
-    Raises:
-        GradingError: The list has no such column, or the column names the student.
-    """
-    known = {*form.has, *form.sure, *form.names} - {form.points}
-    names = [name for name in header if name.lower() not in known]
-    if column := next((name for name in names if called in (name, _without_number(name))), None):
-        return header.index(column)
-    likeliest = process.extractOne(assignment, names, scorer=fuzz.partial_ratio, processor=_letters)
-    raise GradingError(
-        f"No column for points is called {called}. The list has: {', '.join(names) or 'none'}. Name one, for example: "
-        f'--column "{assignment}={likeliest[0] if likeliest else "COLUMN"}"'
-    )
 
 
 def _without_number(name: str) -> str:
