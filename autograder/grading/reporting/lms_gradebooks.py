@@ -39,8 +39,8 @@ class _GradebookLayout:
 
     Attributes:
         purpose: The page of the system on which the file is uploaded.
-        columns: The columns before the points: each name with the key of its content in :func:`_facts`, or an empty
-            text.
+        columns: The columns before the points: each name with a template for its content. In it, ``there`` is the
+            student's number or user name in the system, and ``user`` the id if that is unknown.
         points: A template for the name of an assignment's column, with the assignment's name and maximum points.
         possible: The first cell of the line that contains the maximum points; empty if the file has no such line.
         excused: The word with which the system marks an excused student.
@@ -58,31 +58,45 @@ class _GradebookLayout:
 LAYOUTS = {
     "canvas": _GradebookLayout(
         "Canvas: Grades, Import",
-        {"Student": "name", "ID": "there", "SIS User ID": "", "SIS Login ID": "id", "Section": "section"},
+        {
+            "Student": "{name}",
+            "ID": "{there}",
+            "SIS User ID": "",
+            "SIS Login ID": "{student.id}",
+            "Section": "{student.section}",
+        },
         possible="    Points Possible",
         excused="EX",
     ),
     "moodle": _GradebookLayout(
         "Moodle: Grades, Import, CSV file; map Email address and the assignments",
-        {"First name": "first", "Last name": "last", "ID number": "id", "Email address": "email"},
+        {
+            "First name": "{student.first_name}",
+            "Last name": "{student.last_name}",
+            "ID number": "{student.id}",
+            "Email address": "{student.email}",
+        },
     ),
     "blackboard": _GradebookLayout(
         "Blackboard: Grade Center > Work Offline > Upload",
-        {"Last Name": "last", "First Name": "first", "Username": "user"},
+        {"Last Name": "{student.last_name}", "First Name": "{student.first_name}", "Username": "{user}"},
         points="{name} [Total Pts: {most:g} Score]",
     ),
     "brightspace": _GradebookLayout(
         "Brightspace: Grades > Enter Grades > Import",
-        {"OrgDefinedId": "#id"},
+        {"OrgDefinedId": "#{student.id}"},
         points="{name} Points Grade",
         end={"End-of-Line Indicator": "#"},
     ),
     "sakai": _GradebookLayout(
         "Sakai: Gradebook > Import Grades",
-        {"Student ID": "user", "Student Name": "name"},
+        {"Student ID": "{user}", "Student Name": "{name}"},
         points="{name} [{most:g}]",
     ),
 }
+
+
+_LOCKED = "(read only)"
 
 
 def gradebook(lms: str, table: ClassTable, records: CollectedRecords, assignments: Sequence[str]) -> str:
@@ -95,43 +109,23 @@ def gradebook(lms: str, table: ClassTable, records: CollectedRecords, assignment
         assignments: The assignments, which get a column each.
     """
     layout = LAYOUTS[lms]
-    header: list[str | float] = [*layout.columns]
-    possible: list[str | float] = [layout.possible, *[""] * (len(layout.columns) - 1)]
-    for name in assignments:
-        most = table.max_score(name)
-        header.append(layout.points.format(name=name, most=most))
-        possible.append(most)
-    rows = [[*header, *layout.end], *([possible] if layout.possible else [])]
-    for student in table.students:
-        facts = _facts(table, records, student, lms, assignments)
-        row: list[str | float] = [facts[fact] for fact in layout.columns.values()]
-        for name in assignments:
-            score = blank(table.score(student, name))
-            row.append(layout.excused if layout.excused and table.is_excused(student, name) else score)
-        rows.append([*row, *layout.end.values()])
+    points = {name: table.max_score(name) for name in assignments}
+    titles = [layout.points.format(name=name, most=most) for name, most in points.items()]
+    rows: list[list[str | float]] = [[*layout.columns, *titles, *layout.end]]
+    if layout.possible:
+        rows.append([layout.possible, *[""] * (len(layout.columns) - 1), *points.values()])
+    for student in map(table.roster.students.__getitem__, table.students):
+        collected = (line_from_lms(records, name, student.id, lms) for name in assignments)
+        there = student.lms.get(lms, "") or next((one.number or one.name for one in collected if one), "")
+        name = ", ".join(filter(None, (student.last_name, student.first_name))) or student.id
+        facts = {"student": student, "there": there, "user": there or student.id, "name": name}
+        scores = [
+            layout.excused if table.is_excused(student.id, one) else blank(table.score(student.id, one))
+            for one in assignments
+        ]
+        about = [template.format_map(facts) for template in layout.columns.values()]
+        rows.append([*about, *scores, *layout.end.values()])
     return csv_text(rows)
-
-
-def _facts(
-    table: ClassTable, records: CollectedRecords, id_: str, lms: str, assignments: Sequence[str]
-) -> dict[str, str]:
-    """Return the possible contents of a student's cells, by key. ``there`` and ``user`` come from the LMS."""
-    student = table.roster.students[id_]
-    own = student.lms.get(lms, "")
-    collected = (line_from_lms(records, name, id_, lms) for name in assignments)
-    there = own or next((one.number or one.name for one in collected if one), "")
-    return {
-        "": "",
-        "id": id_,
-        "first": student.first_name,
-        "last": student.last_name,
-        "name": ", ".join(part for part in (student.last_name, student.first_name) if part) or id_,
-        "email": student.email,
-        "section": student.section,
-        "there": there,
-        "user": there or id_,
-        "#id": f"#{id_}",
-    }
 
 
 def line_from_lms(records: CollectedRecords, assignment: str, student: str, lms: str) -> Line | None:
@@ -251,7 +245,8 @@ def _point_columns(
             )
         return {assignments[0]: [name.lower() for name in header].index(form.points)}
     about = {*form.has, *form.sure, *form.names} - {form.points}
-    locked = {name for row in rows[1:2] for name, cell in zip(header, row, strict=False) if _LOCKED in cell}
+    # Canvas marks columns that it computes in the line of the points possible, above which another line may stand.
+    locked = {name for row in rows[1:3] for name, cell in zip(header, row, strict=False) if _LOCKED in cell}
     names = [name for name in header if name and name.lower() not in about and name not in locked]
     found = {
         one: _columns_called(columns.get(one, one), names, is_exact=one in columns) for one in assignments
@@ -274,10 +269,6 @@ def _point_columns(
     if len(set(places.values())) < len(places):
         raise GradingError("Two assignments have the same column: give each its own --column.")
     return places
-
-
-_LOCKED = "(read only)"
-"""The mark in the second line of Canvas's list under a column that Canvas computes."""
 
 
 def _columns_called(called: str, names: Sequence[str], *, is_exact: bool) -> list[str]:
@@ -335,19 +326,12 @@ def _letters(name: str) -> str:
     return re2.sub(r"[\W_]+", "", _without_number(name)).casefold()
 
 
-_KINDS = ("number", "login", "name")
-"""The kinds of values that may identify a student, the most certain first."""
-
-
 def _who(table: ClassTable, form: ListForm, values: Sequence[str]) -> tuple[Student, int] | None:
     """Return the student of a line, and the rank of the matching value; a lower rank is a more certain match."""
-    columns: list[tuple[str, tuple[str, ...]]] = [(value, _KINDS) for value in values]
+    identities = [Identity(form.lms, value, value, value) for value in values]
     if form.is_numbered:
         # A number of the LMS may be another student's id in the class, so the number is compared with ids last.
-        columns = [(values[0], _KINDS[:1]), *columns[1:], (values[0], _KINDS[1:])]
-    for place, (value, kinds) in enumerate(columns):
-        for way in kinds if value else ():
-            found = table.roster.find(Identity(form.lms, **{way: value}))
-            if len(found) == 1:
-                return found[0], place
-    return None
+        number = values[0]
+        identities = [Identity(form.lms, number), *identities[1:], Identity(form.lms, "", number, number)]
+    matches = ((table.roster.find(identity), rank) for rank, identity in enumerate(identities))
+    return next(((found[0], rank) for found, rank in matches if len(found) == 1), None)
