@@ -197,7 +197,7 @@ def heard(answer: Answer) -> dict[str, str]:
     """What was heard of an answer, by where: its traceback, its output and the line of its build."""
     line = kept_evidence.kept(answer.exercise).get(answer.name)
     record = kept_evidence.record_of(answer, line)
-    evidence = kept_evidence.evidence_of(record.seen, evidence_files.load_reference(answer.exercise))
+    evidence = evidence_files.evidence_of(record.seen, evidence_files.load_reference(answer.exercise))
     report = build_report(evidence.main)
     return {
         "program": traceback_of(evidence),
