@@ -18,8 +18,8 @@ from autograder.grading.grading_errors import MasterUnusable, is_disk_full
 from autograder.grading.reporting.grade_report import GradeReport
 from autograder.grading.running import execution_backends
 from autograder.grading.running.batch_progress import BatchProgress, Timings, plain_line
-from autograder.grading.table.roster import enter_roster
 from autograder.grading.table.rows import rows_of, write_csv
+from autograder.grading.table.student_list import enter_roster
 from autograder.grading.table.weighted_rows import read_what_counts, true_rows
 from autograder.grading.tasks.source_points import check_release, read_released
 from autograder.grading.tasks.submission_fingerprints import Fingerprints
@@ -133,9 +133,6 @@ class Batch:
         )
         self._works, self._others, self._refused = work.works, work.others, work.refused
         self._notices += work.notices
-        self._notices += self._roster.excused_from_nothing(
-            self._directory.assignments(), self._roster.students
-        )
         return work.works
 
     def settle(self, works: list[Work]) -> list[Work]:
@@ -275,15 +272,15 @@ class Batch:
                 f"{student}/{assignment} is no longer in submitted; its points stay in the gradebook."
             )
         rows = true_rows(
-            self._roster.names,
+            self._roster,
             self._cells,
             judged,
             entries,
             submissions,
-            excused=self._roster.excused,
             what_counts=self._what_counts,
             zone=self._directory.time_zone,
         )
+        self._notices += self._roster.notices(self._directory.assignments(), entries, self._roster.students)
         changes: list[Difference] = []
         if self._dry_run:
             changes = would_change(self._directory, self._works, entries, self._cells)

@@ -288,7 +288,7 @@ def _finished(master: NotebookNode, cells: list[NotebookNode], remarks: list[str
 
 _MOST_CHARACTERS = 10_000_000
 """The maximum length of all bitmaps attached to a notebook, in base64 characters; a screenshot has about a million."""
-_SHOWN = re2.compile(r"\(attachment:([\w.%+-]+)\)")
+_SHOWN = re2.compile(r"attachment:([\w.%+-]+)")
 
 
 class _ShownPictures:

@@ -30,10 +30,6 @@ LONGEST_REASON = 300
 """The maximum length, in characters, of the desk's reason why a file cannot be read."""
 LONGEST_NAME = 200
 """The maximum length of the name of a cell or picture, in characters."""
-HARMLESS_LENGTH = 6_000
-"""The total length, in characters, up to which the cells that a student wrote are not first rendered as a trial: even
-the slowest text of this length is rendered within the time limit of a page.
-"""
 _LONGEST_SHOWN = 80
 _KINDS = {
     stat.S_ISLNK: "a link",

@@ -23,7 +23,6 @@ from autograder.execution.notebook_processes import (
     UnboxedProcesses,
 )
 from autograder.execution.notebook_runner import Unfinished, run_notebook
-from autograder.grading.returning.rendering_time import too_costly
 from autograder.safe_files import scratch_folder
 from autograder.workspaces.boxed_jobs import BoxedJobs
 from autograder.workspaces.builds import build_cache, students_builds
@@ -91,8 +90,7 @@ def execute(
     """
     with contextlib.ExitStack() as stack:
         folder = stack.enter_context(scratch_folder(scratch))
-        execution = _execute(task, folder, judge, addresses, stack, began)
-    return replace(execution, as_typed=too_costly(task.cells))
+        return _execute(task, folder, judge, addresses, stack, began)
 
 
 def _execute(

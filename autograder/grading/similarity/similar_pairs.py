@@ -16,7 +16,7 @@ from autograder.grading.collecting.submitted_folder import misplaced_files
 from autograder.grading.grading_errors import GradingError, check_known
 from autograder.grading.similarity.own_words import LONGEST, SEQUENCE, GivenCode, compared_answers
 from autograder.grading.similarity.student_answers import given_texts, read_answers
-from autograder.grading.table.roster import read_roster
+from autograder.grading.table.student_list import read_roster
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
