@@ -45,7 +45,7 @@ def change_students(path: Path, new: Path | None, said: Mapping[str, str], *, is
     Args:
         path: The class directory.
         new: The new list, which replaces ``students.csv``; None if ``students.csv`` itself is the new list.
-        said: The new ids of students, by their old ones, where the lists do not show that they are the same.
+        said: The new ids of students, by their old ones, if the lists do not show that both are one student.
         is_final: True to make the changes; False to only return what would change.
 
     Returns:

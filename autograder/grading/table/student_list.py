@@ -1,4 +1,4 @@
-"""Who is in a class, and what a new list of students changes: a student is dropped, joins, or gets another id.
+"""The students of a class, and the changes by a new list: a student is dropped, joins, or gets another id.
 
 The class remembers the list that it used last, in ``.autograder/students.json``. A student is the same person as before
 if an LMS has the same number for both. If the lists contain no numbers, an equal id or address decides.
@@ -52,7 +52,7 @@ class ListChanges:
         unclear: Pairs of a known and a new id whose students have the same name, and may be one person.
         dropped: The ids that are no longer listed.
         added: The new ids.
-        moved: The ids of students in another section than before, each with both sections.
+        moved: The ids of students whose section has changed, each with the old and the new section.
     """
 
     renamed: Mapping[str, str] = field(default_factory=dict)
@@ -83,7 +83,7 @@ def compare(known: KnownStudents, new: Mapping[str, Student], said: Mapping[str,
     for old, student in before.items():
         if old in renamed or old not in new:
             continue
-        # A number that was only corrected makes nobody another person.
+        # If only the number was corrected, the student is still the same person.
         theirs = {owner for number in new[old].numbers for owner in owners[number]} - {old}
         is_other = _differ(student, new[old]) or (theirs and student.name)
         if is_other and not _has_name(student, new[old]) and not _has_address(student, new[old]):
