@@ -76,7 +76,6 @@ def enter(
 
     Args:
         url: The address by which SQLAlchemy opens the gradebook.
-        assignment: The assignment's name.
         student: The student's id. An unknown student is added.
         notebooks: The results by notebook.
         timestamp: The submission time in UTC; None to keep the time that is in the gradebook.
@@ -173,8 +172,6 @@ def enter_time(url: str, assignment: str, student: str, timestamp: datetime) -> 
 
     Args:
         url: The address by which SQLAlchemy opens the gradebook.
-        assignment: The assignment's name.
-        student: The student's id.
         timestamp: The time in UTC.
     """
     with opened(url) as book:
@@ -186,8 +183,6 @@ def enter_penalties(url: str, assignment: str, student: str, penalties: Mapping[
 
     Args:
         url: The address by which SQLAlchemy opens the gradebook.
-        assignment: The assignment's name.
-        student: The student's id.
         penalties: The points to subtract, by notebook; None for no penalty.
     """
     rows: list[dict[str, object]] = [

@@ -21,8 +21,9 @@ from babel.dates import parse_date
 
 from autograder.grading.collecting.collected_files import INBOX_FOLDER, SHORT_KEY, LineState
 from autograder.grading.collecting.file_to_grade import cell_in
-from autograder.grading.collecting.inbox_lines import Edit, in_utc
-from autograder.grading.collecting.submitted_file_names import read_time
+from autograder.grading.collecting.inbox_lines import Edit
+from autograder.grading.collecting.list_times import in_utc
+from autograder.grading.collecting.written_times import read_time
 from autograder.grading.table.spreadsheet_csv import csv_rows, csv_text, defused, original
 from autograder.safe_files import write_whole
 

@@ -236,6 +236,9 @@ class Line:
         assignment: The name of the assignment; empty if it is unknown.
         notebook: The name of the notebook; empty if it is unknown, or if the file is not a notebook.
         when: The time of handing in, in UTC; in a report, in the time zone of the class.
+        unreadable: Why the file cannot be read as a notebook; empty if it can be read, or was not read.
+        first: The first time at which the same file came, in UTC.
+        time_from: The key of the list, or the word ``handed_in`` if a person wrote the time; else empty.
         order: A number that increases with later files of one student, if the system numbers files.
         late: True if the system marks the file as late.
         use: ``yes`` or ``no``, as a person wrote it; empty if no person did.
@@ -272,6 +275,9 @@ class Line:
     is_sure: bool = False
     came_in: frozenset[str] = field(default_factory=frozenset)
     rank: int = 0
+    unreadable: str = ""
+    first: datetime | None = None
+    time_from: str = ""
 
     @property
     def student(self) -> str:

@@ -96,7 +96,7 @@ submission_700000003:
     ],
 )
 def test_a_name_says_whose_it_is(form: str, name: str, who: str, file: str) -> None:
-    found = read_path(name.split("/"), form, lambda _: False)
+    found = read_path(name.split("/"), form)
     assert found is not None
     assert (str(found.identity), found.file) == (who, file)
     assert found.late == ("late" in name.lower())

@@ -18,7 +18,7 @@ from test_true_table import DUE
 
 from autograder.cli import cli
 from autograder.grading.collecting.collect import collect
-from autograder.grading.collecting.lms_lists import EACH, LIST_FORMS
+from autograder.grading.collecting.systems import EACH, LIST_FORMS
 from autograder.grading.grading_errors import GradingError
 from autograder.grading.reporting.export_files import export
 from autograder.grading.reporting.lms_gradebooks import _point_columns
