@@ -12,7 +12,8 @@ from pathlib import Path
 import re2
 
 from autograder import course
-from environment.installation import COMMAND, PACKAGE, installing
+from autograder.command_name import COMMAND
+from environment.installation import PACKAGE, installing
 from environment.python_child import SAFE_PATH
 
 TERMINATED = 143

@@ -16,8 +16,8 @@ from typing import TYPE_CHECKING
 
 import platformdirs
 
+from autograder.command_name import COMMAND
 from autograder.standard_output import printable
-from environment.installation import COMMAND
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

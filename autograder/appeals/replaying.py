@@ -7,9 +7,9 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from autograder import exercises
+from autograder.command_name import COMMAND
 from autograder.judge import evidence_files, one_check
 from autograder.judge.evidence_files import NoEvidence, evidence_of
-from environment.installation import COMMAND
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

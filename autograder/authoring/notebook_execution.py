@@ -19,6 +19,7 @@ from nbconvert import HTMLExporter
 from autograder import standard_output
 from autograder.boxes.run_limits import Ended, Limits
 from autograder.cards.readable_text import TRACEBACK
+from autograder.command_name import COMMAND
 from autograder.execution.executed_cells import CellType
 from autograder.grading.grading_task import Task
 from autograder.grading.rebuilding import nbformat_nodes
@@ -28,7 +29,6 @@ from autograder.grading.tasks.task_making import cells_of
 from autograder.masters.master_files import chapter_path, lab_name, masters
 from autograder.masters.source_notebooks import source_notebook
 from autograder.safe_files import HeldFolder
-from environment.installation import COMMAND
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence

@@ -14,8 +14,8 @@ import click
 
 from autograder.cli.class_commands import class_folder, only_assignments, only_sections
 from autograder.cli.command_results import as_json_option, fail, grading_errors, print_json, print_line
+from autograder.command_name import COMMAND
 from autograder.kit.in_words import counted
-from environment.installation import COMMAND
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import click
 
 from autograder.cli.command_results import CANNOT, NO, as_json_option, fail, need_ros, print_json
-from environment.installation import COMMAND
+from autograder.command_name import COMMAND
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence

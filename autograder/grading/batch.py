@@ -24,7 +24,7 @@ from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.running import execution_backends
 from autograder.grading.running.batch_progress import plain_line
-from autograder.grading.table.roster import read_roster
+from autograder.grading.table.student_list import read_roster
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -14,6 +14,7 @@ import re2
 from nbgrader.utils import compute_checksum
 
 from autograder import course, standard_output
+from autograder.command_name import COMMAND
 from autograder.course import SOLUTION
 from autograder.masters.code_cells import exercise_points
 from autograder.masters.master_files import MasterError, chapter_notebooks, chapter_path, masters
@@ -21,7 +22,6 @@ from autograder.masters.notebook_release import release_text
 from autograder.masters.reference_solutions import solution_files
 from autograder.masters.source_notebooks import Points, named_cells, notebook_of, service_links
 from autograder.safe_files import write_whole
-from environment.installation import COMMAND
 
 if TYPE_CHECKING:
     from pathlib import Path

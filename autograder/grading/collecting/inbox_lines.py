@@ -14,8 +14,8 @@ from autograder.grading.classes.class_directory import SUFFIX
 from autograder.grading.collecting.collected_files import BY_HAND, Line
 from autograder.grading.collecting.file_owners import Owners, StudentOf
 from autograder.grading.collecting.list_times import WAS_READ, ListTimes, entries_of, in_utc
-from autograder.grading.collecting.lms_lists import GRADESCOPE
 from autograder.grading.collecting.submitted_file_names import base_of
+from autograder.grading.collecting.systems import GRADESCOPE
 from autograder.grading.rebuilding.submission_desk import read_notebook
 from autograder.grading.rebuilding.submitted_notebook import UnreadableSubmission
 
@@ -67,13 +67,7 @@ def lines_of(
     read: list[tuple[Delivery, Line]] = []
     for id_, delivery in inbox.deliveries.items():
         # All lists, from any delivery, map numbers to students.
-        student_of = StudentOf(
-            roster,
-            assignments.is_notebook,
-            delivery.form,
-            delivery.names,
-            itertools.chain(*entries.values()),
-        )
+        student_of = StudentOf(roster, delivery.form, delivery.names, itertools.chain(*entries.values()))
         zone = ZoneInfo(delivery.zone) if delivery.zone else directory.time_zone
         lines_there = _Reading(inbox, assignments, student_of, delivery, id_, zone).lines(edits)
         read += [(delivery, line) for line in lines_there]
@@ -107,7 +101,7 @@ class _Reading:
         for arrival in self.delivery.arrivals:
             place, edit = (arrival.source, arrival.parts), edits.get(arrival.key, Edit())
             if arrival.is_archive:
-                is_open = edit.student or not self.student_of.reason_against(self._owners(arrival))
+                is_open = edit.student or not self._doubt(arrival)
                 opened[place] = edit if is_open else None
                 if is_open:
                     continue
@@ -117,6 +111,9 @@ class _Reading:
 
     def _owners(self, arrival: Arrival) -> Owners:
         return self.student_of.owners(arrival.parts, arrival.levels, is_alone=arrival.is_own)
+
+    def _doubt(self, arrival: Arrival) -> str:
+        return self.student_of.doubt(self._owners(arrival), (arrival.parts or (arrival.source,))[0])
 
     def _line(self, arrival: Arrival, edit: Edit, of_archive: Edit) -> Line:
         """Return the line of a file.
@@ -135,7 +132,7 @@ class _Reading:
             student, assignment, name = arrival.parts
             line = replace(
                 line,
-                students=(student,),
+                students=self.student_of.written(edit.student or student)[0] or (student,),
                 assignment=assignment,
                 notebook=name.removesuffix(SUFFIX),
                 lms=BY_HAND,
@@ -155,9 +152,9 @@ class _Reading:
         if written := edit.student or of_archive.student:
             ids, reason = self.student_of.written(written)
         else:
-            reason = self.student_of.reason_against(owners)
-            ids = () if reason else tuple(one.id for (one,) in owners.members)
-        if found := owners.found:
+            reason = self._doubt(arrival)
+            ids = () if reason else tuple(one.id for one in owners.students)
+        if found := owners.facts:
             identity = found.identity
             line = replace(
                 line,
@@ -174,14 +171,14 @@ class _Reading:
             asked = asked or (found.assignment if self.assignments.notebooks(found.assignment) else "")
         # Inside a student's own archive, a name identifies the notebook but not the student.
         name = found.file if found and not arrival.inner else arrival.name
-        named = self.assignments.named(name if owners.members else arrival.name, asked)
+        named = self.assignments.named(name if owners.students else arrival.name, asked)
         came_in = frozenset({f"{self.id}/{arrival.source}"})
         line = replace(line, students=ids, assignment=named, came_in=came_in)
         if arrival.refused:
             is_work = arrival.name.lower().endswith((".ipynb", ".zip")) or not ids
             return replace(line, reason=arrival.refused, is_soft=not is_work)
         if arrival.is_archive:
-            is_nobodys = found is None and not owners.members
+            is_nobodys = found is None and not owners.candidates
             return replace(line, reason=_UNKNOWN_ARCHIVE if is_nobodys and not written else reason)
         data = self.inbox.read(arrival.content)
         if not _is_notebook(arrival.name, data):
@@ -255,10 +252,6 @@ class AssignmentOf:
 
     def __init__(self, directory: ClassDirectory) -> None:
         self._directory = directory
-
-    def is_notebook(self, file: str) -> bool:
-        """Return True if a file with this name is a notebook of the class."""
-        return _stem_of(file).casefold() in self._notebooks
 
     def notebooks(self, assignment: str) -> list[str]:
         """Return the notebooks of an assignment; none if the class has no assignment with this name."""

@@ -104,7 +104,6 @@ class BatchProgress:
     """Counts and shows the notebooks that are done, running, waiting or failed. Any thread may call it.
 
     Args:
-        console: The console for the progress.
         total: The number of notebooks to execute.
         doing: The word for the work in progress, such as "grading".
         did: The word for finished work, such as "graded".

@@ -131,7 +131,6 @@ class _Line:
 
     Attributes:
         number: The line number, from 1; 0 for a note.
-        pieces: The pieces of the line.
         left_out: For a note, the number of lines that were left out.
     """
 
