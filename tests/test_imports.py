@@ -35,7 +35,6 @@ MAY_IMPORT = {
     "execution": frozenset({"boxes", "messages", "verdict", "process_trees", "safe_files"}),
     "masters": frozenset({"course", "exercises", "safe_files", "standard_output"}),
     "mcap_files": frozenset[str](),
-    "known_classes": frozenset({"standard_output"}),
     "process_trees": frozenset[str](),
     "safe_files": frozenset[str](),
     "standard_output": frozenset[str](),
