@@ -26,23 +26,24 @@ ALL = frozenset(PARTS)
 MAY_IMPORT = {
     "verdict": frozenset[str](),
     "course": frozenset[str](),
-    "foreign_code": frozenset[str](),
-    "kit": frozenset({"foreign_code", "verdict"}),
+    "known_errors": frozenset[str](),
+    "kit": frozenset({"known_errors", "verdict"}),
     "exercises": frozenset({"course", "kit"}),
     "messages": frozenset({"verdict"}),
     "cards": frozenset({"verdict"}),
     "boxes": frozenset({"process_trees", "safe_files"}),  # what isolates knows nothing of what runs
     "execution": frozenset({"boxes", "messages", "verdict", "process_trees", "safe_files"}),
-    "masters": frozenset({"course", "exercises", "safe_files"}),
+    "masters": frozenset({"course", "exercises", "safe_files", "standard_output"}),
     "mcap_files": frozenset[str](),
-    "known_classes": frozenset[str](),
+    "known_classes": frozenset({"standard_output"}),
     "process_trees": frozenset[str](),
     "safe_files": frozenset[str](),
+    "standard_output": frozenset[str](),
     "appeals": ALL - {"grading", "boxes", "execution", "notebook"},
     "notebook": ALL
     - {"judge", "exercises", "kit", "masters", "boxes", "execution", "grading", "authoring", "appeals"},
     "judge": ALL - {"notebook", "cards", "masters", "boxes", "execution", "grading", "authoring", "appeals"},
-    "__main__": frozenset({"cli", "course"}),
+    "__main__": frozenset({"cli", "course", "standard_output"}),
     "command_name": frozenset[str](),
 }
 FOR_ALL = frozenset({"command_name"})
@@ -64,7 +65,7 @@ NOTEBOOK_MAY_IMPORT = {
 GRADING_FROM_BELOW = (
     *("grading_errors", "grading_task", "course_version"),
     *("rebuilding", "classes", "returning", "running", "cluster"),
-    *("table", "export", "class_records", "class_store", "class_checks"),
+    *("table", "export", "class_records", "class_forms", "class_store", "class_checks"),
     *("collecting", "tasks", "similarity", "result_writer", "reporting", "appeal_writing"),
     *("batch_work", "batch_steps", "batch", "nbgrader_commands", "new_classes"),
 )

@@ -166,6 +166,7 @@ def clear_disk_errors(path: Path) -> Iterator[None]:
     except GradingError:
         raise
     except Exception as error:
+        # The order matters: SQLite and SQLAlchemy report a full disk as a database error, too.
         if is_disk_full(error):
             raise DiskFull(path) from error
         if isinstance(error, ModuleNotFoundError) and str(error.name).startswith("psycopg"):

@@ -16,7 +16,7 @@ from autograder.dds_discovery import NoFreeDomainError
 from autograder.judge import evidence_files, ros_setup
 from autograder.judge.check_process import Child
 from autograder.judge.machine_fitness import JudgeFailed
-from autograder.kit.runners import Launches
+from autograder.kit.runners import Launches, runner_as_word
 from autograder.messages.judge_messages import Report
 from autograder.verdict import Verdict, not_checked
 from autograder.workspaces.sources import full_disk
@@ -102,10 +102,11 @@ def _as_run(exercise: Exercise, command: Sequence[str], cwd: Path | None) -> Seq
 
     If ``command`` is the path of a workspace or launch file, this is ``python -m autograder.workspaces`` with the path.
     """
-    runner = python_child("-m", "autograder.workspaces", exercise.id).command
-    if is_path(exercise, command, cwd):
-        return [*runner, command[0]]
-    return [*runner, "--", *command] if exercise.wraps_commands else command
+    wraps = exercise.wraps_commands and not is_path(exercise, command, cwd)
+    if exercise.runner is None or not (wraps or is_path(exercise, command, cwd)):
+        return command
+    runner = python_child("-m", "autograder.workspaces", runner_as_word(exercise.runner)).command
+    return [*runner, *(["--"] if wraps else []), *command]
 
 
 def is_path(exercise: Exercise, command: Sequence[str], cwd: Path | None) -> bool:

@@ -25,7 +25,8 @@ from typing import IO, TYPE_CHECKING, Any, NamedTuple
 import msgspec
 import re2
 
-from autograder.grading.collecting.lms_lists import GRADESCOPE, parse_list
+from autograder.grading.collecting.lms_lists import parse_list
+from autograder.grading.collecting.systems import GRADESCOPE
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -53,15 +54,15 @@ def is_archive(name: str, data: bytes) -> bool:
 
 
 _LEFT_BY_PROGRAMS = re2.compile(
-    r"(?i)^(?:__MACOSX|\._.*|\.DS_Store|\.Spotlight-V100|\.Trashes|\.fseventsd|(?:eh)?thumbs\.db|desktop\.ini|"
-    r"\$RECYCLE\.BIN|~\$.*|\.~lock\..*|\.directory|@eaDir|\.git|\.ipynb_checkpoints|__pycache__)$"
+    rb"(?i)^(?:__MACOSX|\._.*|\.DS_Store|\.Spotlight-V100|\.Trashes|\.fseventsd|(?:eh)?thumbs\.db|desktop\.ini|"
+    rb"\$RECYCLE\.BIN|~\$.*|\.~lock\..*|\.directory|@eaDir|\.git|\.ipynb_checkpoints|__pycache__)$"
 )
 """The names of files that operating systems and editors leave next to a student's work."""
 
 
 def is_left_by_a_program(name: str) -> bool:
     """Return True for the name of a file or folder that a program made, not the student, such as ``.git``."""
-    return bool(_LEFT_BY_PROGRAMS.match(name))
+    return bool(_LEFT_BY_PROGRAMS.match(name.encode("utf-8", "replace")))
 
 
 _SAMPLES = {
