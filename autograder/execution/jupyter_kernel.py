@@ -77,7 +77,6 @@ class NotebookProcesses(Protocol):
     Attributes:
         folder: The notebook's folder, in which a folder for the kernel's sockets is made. Only the desk's box sees
             the sockets. The path must be short, because the name of a Unix socket has at most 107 characters.
-        limits: The limits of the notebook.
     """
 
     folder: Path

@@ -78,7 +78,6 @@ def zero_points(check: CellCheck, key: str, reason: str, next_step: str, detail:
 
     Args:
         check: The check that should have been made.
-        key: The key of the diagnosis.
         reason: What happened, in words for the student.
         next_step: What the student should do now.
         detail: Further text, such as the end of a traceback.

@@ -7,6 +7,7 @@ import functools
 import time
 from typing import TYPE_CHECKING
 
+from autograder.command_name import COMMAND
 from autograder.grading.batch_work import Work, due_dates, find_work, without_grade, would_change
 from autograder.grading.class_checks import changed_master_warnings, limits_of
 from autograder.grading.classes import gradebook_reading
@@ -18,12 +19,11 @@ from autograder.grading.grading_errors import MasterUnusable, is_disk_full
 from autograder.grading.reporting.grade_report import GradeReport
 from autograder.grading.running import execution_backends
 from autograder.grading.running.batch_progress import BatchProgress, Timings, plain_line
-from autograder.grading.table.roster import enter_roster
 from autograder.grading.table.rows import rows_of, write_csv
+from autograder.grading.table.student_list import enter_roster
 from autograder.grading.table.weighted_rows import read_what_counts, true_rows
 from autograder.grading.tasks.source_points import check_release, read_released
 from autograder.grading.tasks.submission_fingerprints import Fingerprints
-from environment.installation import COMMAND
 
 # Some modules are imported inside functions, because they import nbgrader, which takes a second.
 
@@ -51,9 +51,6 @@ class Batch:
 
     Args:
         directory: The class, which this process has locked.
-        store: The store of the class.
-        console: The console for the progress.
-        roster: The students of the class.
         asked: The chosen assignments and students.
         backend: Finds the workers that execute tasks.
         stack: Ends what the run began.
@@ -136,9 +133,6 @@ class Batch:
         )
         self._works, self._others, self._refused = work.works, work.others, work.refused
         self._notices += work.notices
-        self._notices += self._roster.excused_from_nothing(
-            self._directory.assignments(), self._roster.students
-        )
         return work.works
 
     def settle(self, works: list[Work]) -> list[Work]:
@@ -153,7 +147,7 @@ class Batch:
         if older:
             self._notices.append(
                 f"{older} submissions had been graded with another version of the course. To see whose points have "
-                f"changed, type `{COMMAND} compare` after the run, or `{COMMAND} grade --dry-run` before a run"
+                f"changed, type `{COMMAND} compare` after the run, or `{COMMAND} grade --dry-run` before a run."
             )
         if self._again:
             self._store.forget_results(work.submission for work in works)
@@ -275,18 +269,18 @@ class Batch:
         judged |= {key: work.rows for key, work in submissions.items() if work.rows is not None}
         for student, assignment in sorted((entries.keys() & self._entered.keys()) - submissions.keys()):
             self._notices.append(
-                f"{student}/{assignment} is no longer in submitted; its points stay in the gradebook"
+                f"{student}/{assignment} is no longer in submitted; its points stay in the gradebook."
             )
         rows = true_rows(
-            self._roster.names,
+            self._roster,
             self._cells,
             judged,
             entries,
             submissions,
-            excused=self._roster.excused,
             what_counts=self._what_counts,
             zone=self._directory.time_zone,
         )
+        self._notices += self._roster.notices(self._directory.assignments(), entries, self._roster.students)
         changes: list[Difference] = []
         if self._dry_run:
             changes = would_change(self._directory, self._works, entries, self._cells)

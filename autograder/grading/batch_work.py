@@ -8,6 +8,7 @@ from datetime import UTC
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from autograder.command_name import COMMAND
 from autograder.grading.classes.class_directory import RefusedFile
 from autograder.grading.classes.gradebook_reading import CellEntry, SubmissionEntry, read_due_dates
 from autograder.grading.collecting.collected_csv import NAME, Table
@@ -15,7 +16,6 @@ from autograder.grading.collecting.submission_times import handed_in_at, is_not_
 from autograder.grading.grading_errors import MasterUnusable, check_known, course_command
 from autograder.grading.reporting.class_table import Difference
 from autograder.grading.table.rows import LATE, Row
-from environment.installation import COMMAND
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
@@ -64,7 +64,6 @@ class Work:
     """The state of a submission during a run.
 
     Attributes:
-        submission: The submission.
         fingerprint: The hash of its files at the beginning of the run.
         notebooks: The names of the assignment's notebooks.
         results: The results by notebook, until they are entered into the gradebook.
@@ -102,7 +101,6 @@ class FoundWork:
     """The submissions of a class, with refused files and notices.
 
     Attributes:
-        works: The chosen submissions.
         others: The other submissions of the class.
         refused: Files and folders that cannot be graded, each with the reason.
         notices: Sentences for the instructor.
@@ -125,10 +123,8 @@ def find_work(
     """Find the submissions of a class, and select the chosen ones.
 
     Args:
-        directory: The class.
         asked: The chosen students and assignments.
         released: The cells with points in the source notebooks.
-        roster: The students of the class.
         fingerprints: Computes the fingerprint of a submission.
         beside: Files in ``submitted`` that lie in a wrong folder.
 
@@ -153,7 +149,7 @@ def find_work(
                 f"{submission.student}/{submission.assignment}: timestamp.txt is ignored, because "
                 f"`{COMMAND} collect` did not write it. To set the time of handing in, first type "
                 f"{course_command('collect', directory.path)}. Then write the time into the column handed_in of "
-                f"this submission's line in {NAME}, and type the same command again"
+                f"this submission's line in {NAME}, and type the same command again."
             )
         (result.works if asked.has(*work.key) else result.others).append(work)
     return result
@@ -195,9 +191,7 @@ def would_change(
     """Return the changes of points that a run would make, by new verdicts or a late penalty.
 
     Args:
-        directory: The class.
         works: The submissions, with the results of the dry run.
-        entries: The entries of the gradebook.
         cells: The cells with points, by assignment.
     """
     changes = []

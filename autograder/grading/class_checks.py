@@ -16,11 +16,11 @@ from typing import TYPE_CHECKING, Any
 
 from autograder import course
 from autograder.boxes.run_limits import Limits
+from autograder.command_name import COMMAND
 from autograder.grading.class_records import Origin
 from autograder.grading.classes.class_directory import CONFIG_NAME
 from autograder.grading.grading_errors import GradingError, course_command
 from autograder.masters.master_files import MasterError
-from environment.installation import COMMAND
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -147,7 +147,6 @@ def note_origins(store: ClassStore, made: Mapping[str, tuple[Path, NotebookNode]
     """Record from which masters new source notebooks were made.
 
     Args:
-        store: The store of the class.
         made: For each assignment, the path of its master and the new source notebook.
     """
     store.note_origins(
@@ -168,7 +167,6 @@ def changed_master_warnings(
     If the class has no record of its masters, return one warning about that.
 
     Args:
-        directory: The class.
         store: The class's store. It records for each source notebook its master, as the master was then.
         assignments: The assignments to be graded.
     """

@@ -238,7 +238,6 @@ def _convert(
     """Write the notebooks of a submission with their results, and return the entries for the gradebook.
 
     Args:
-        directory: The class.
         submission: The submission that was executed.
         results: Pairs of a task and its result, one for each notebook of the assignment.
         folder: The folder to create for the notebooks. It must not exist yet.
@@ -328,7 +327,7 @@ def _with_results(nb: NotebookNode, task: Task, execution: Execution) -> Noteboo
             node.outputs = [nbformat_nodes.output(**output) for output in run.outputs]
             node.outputs += _remark(node, cell, run, task.limits) if execution.cells else []
     # Scripts in outputs are removed here, because nbgrader's formgrader shows notebooks of `autograded/` unchanged.
-    make_harmless(nb, range(len(nb.cells)) if execution.trouble else execution.as_typed)
+    make_harmless(nb, {index for index, cell in enumerate(task.cells) if cell.own})
     nb.cells = list(_with_rubrics(nb.cells))
     if not task.boxed:
         nb.cells.insert(0, nbformat_nodes.cell(CellType.MARKDOWN, f"**{execution_backends.UNBOXED_NOTE}**"))

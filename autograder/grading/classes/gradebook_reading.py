@@ -120,8 +120,22 @@ class SubmissionEntry:
     @property
     def taken_off(self) -> float:
         """The points that the late penalty subtracts: at most all points, because no score becomes negative."""
-        points = sum(cell.score for cells in self.cells.values() for cell in cells.values())
-        return min(self.penalty, max(0.0, points))
+        return min(self.penalty, max(0.0, self._earned))
+
+    @property
+    def points(self) -> float:
+        """The points that are left after the late penalty. The weights of the class are not applied."""
+        return self._earned - self.taken_off
+
+    @property
+    def has_points_by_hand(self) -> bool:
+        """True if a person gave points."""
+        cells = [cell for cells in self.cells.values() for cell in cells.values()]
+        return any(cell.by_hand is not None or cell.extra for cell in cells)
+
+    @property
+    def _earned(self) -> float:
+        return sum(cell.score for cells in self.cells.values() for cell in cells.values())
 
     def why_late(self, zone: tzinfo) -> str:
         """Return the submission time and the due date as text, in a time zone; empty without a late penalty."""

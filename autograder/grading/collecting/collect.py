@@ -6,9 +6,7 @@ from collections import defaultdict
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
-from rich.console import Console
-
-from autograder.cards.readable_text import printable
+from autograder import standard_output
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.collecting.collected_csv import Table
 from autograder.grading.collecting.collected_files import SHORT_KEY, Arrival, Delivery, Inbox, LineState
@@ -23,13 +21,13 @@ from autograder.grading.collecting.downloaded_files import (
 )
 from autograder.grading.collecting.file_owners import NamedSource, StudentOf
 from autograder.grading.collecting.file_to_grade import ClassFolders, decide
-from autograder.grading.collecting.inbox_lines import AssignmentOf, lines_of
+from autograder.grading.collecting.inbox_lines import lines_of
 from autograder.grading.collecting.list_times import NO_LIST, entries_of, in_utc
-from autograder.grading.collecting.submitted_file_names import check_names
+from autograder.grading.collecting.submitted_file_names import Pattern
 from autograder.grading.collecting.submitted_folder import Submitted
 from autograder.grading.grading_errors import GradingError, check_known, course_command
 from autograder.grading.running.batch_progress import plain_line
-from autograder.grading.table.roster import enter_roster, read_roster
+from autograder.grading.table.student_list import enter_roster, read_roster
 from autograder.kit.in_words import counted
 
 if TYPE_CHECKING:
@@ -76,7 +74,7 @@ def collect(
         enter_roster(directory)
         columns = {one for student in read_roster(directory).students.values() for one in student.lms}
         if names:
-            check_names(names, sorted(columns | {"github"}))
+            Pattern(names).check(sorted(columns | {"github"}))
         when = in_utc(handed_in, zone or directory.time_zone)
         options = Delivery((), form, names, str(zone) if zone else "", assignment, when)
         return _Collecting(directory, options).run(sources)
@@ -115,10 +113,10 @@ class CollectReport:
 
 def show(report: CollectReport) -> None:
     """Print which files were placed and which were not, with the reasons."""
-    console = Console()
+    console = standard_output.console()
     for text in _lines(report):
         style = "yellow" if text.startswith(LineState.NOT_PLACED) else ""
-        plain_line(console, printable(text), style)
+        plain_line(console, text, style)
 
 
 def _lines(report: CollectReport) -> Iterator[str]:
@@ -205,14 +203,14 @@ class _Collecting:
         options = self._options
         with self._inbox.receiving() as receiving, Archives(self._directory.state) as archives:
             lists = [path for path in paths if path.suffix.lower() == ".csv" and path.is_file()]
-            own = self._knowing().paths_of_students([path for path in paths if path not in lists])
-            if own:  # next to a student's own file, a list may come from a student, too, so it is not read as a list
-                own, lists = own.union(lists), []
+            is_own = self._knowing().are_of_students([path for path in paths if path not in lists])
+            if is_own:  # next to a student's own file, a list may come from a student, too, so it is not read as a list
+                lists = []
             arrivals = [self._list(file, receiving) for path in lists for file in archives.files_of(path)]
             student_of = self._knowing()
             for path in (path for path in paths if path not in lists):
-                files = tuple(archives.files_of(path, is_opened=path not in own))
-                source = NamedSource(path, files, path in own)
+                files = tuple(archives.files_of(path, is_opened=not is_own))
+                source = NamedSource(path, files, is_own)
                 arrivals += self._source(source, student_of, receiving, archives)
                 note = student_of.note_on(source, options.form or options.names)
                 self._notes += [note] if note else []
@@ -236,9 +234,7 @@ class _Collecting:
     def _knowing(self) -> StudentOf:
         """Return a ``StudentOf`` that knows students.csv, the lists in the inbox, and the lists of this command."""
         known = [entry for entries in entries_of(self._inbox).values() for entry in entries]
-        is_notebook = AssignmentOf(self._directory).is_notebook
-        options = self._options
-        return StudentOf(self._roster, is_notebook, options.form, options.names, [*known, *self._entries])
+        return StudentOf(self._roster, self._options.form, self._options.names, [*known, *self._entries])
 
     def _list(self, file: File, receiving: Receiving) -> Arrival:
         arrival, data = _taken(file, receiving)
@@ -262,7 +258,7 @@ class _Collecting:
                 continue
             yield replace(arrival, is_archive=True)
             owners = student_of.owners(arrival.parts, source.levels, is_alone=source.is_own)
-            whose = tuple(one.id for members in owners.members for one in members) or arrival.parts[:2]
+            whose = tuple(one.id for one in (*owners.students, *owners.candidates)) or arrival.parts[:2]
             for inner in archives.within(arrival, data, self._rooms[whose]):
                 yield _taken(inner, receiving)[0]
 
@@ -300,7 +296,7 @@ class _Collecting:
             if one.when is None and one.key in keys and one.student not in untimed[one.assignment]:
                 untimed[one.assignment].append(one.student)
         notes = [*self._notes, *self._directory.named_cells.notes]
-        notes += self._roster.excused_from_nothing(self._directory.assignments(), self._roster.students)
+        notes += self._roster.notices(self._directory.assignments(), {}, self._roster.students)
         if not self._roster.students:
             notes.append(
                 "the class has no students.csv, so students' folders have the names that the LMS uses"

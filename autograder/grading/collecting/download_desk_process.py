@@ -25,7 +25,8 @@ from typing import IO, TYPE_CHECKING, Any, NamedTuple
 import msgspec
 import re2
 
-from autograder.grading.collecting.lms_lists import GRADESCOPE, parse_list
+from autograder.grading.collecting.lms_lists import parse_list
+from autograder.grading.collecting.systems import GRADESCOPE
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence

@@ -74,7 +74,6 @@ def match(master: Sequence[Known], submitted: Sequence[SubmittedCell]) -> Matche
 
     Args:
         master: The cells of the master, in order.
-        submitted: The submitted cells.
     """
     return _Matching(master, submitted).matches()
 
@@ -259,7 +258,6 @@ class NamedCells:
         """Return the notebooks with the most of the given cell names; none if no notebook has any of the names.
 
         Args:
-            names: The names of cells.
             assignment: The assignment whose notebooks are searched; all assignments if empty.
         """
         shared = {

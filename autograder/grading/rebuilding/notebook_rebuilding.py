@@ -41,7 +41,6 @@ def rebuild(
 
     Args:
         master: The master, with stubs instead of solutions. Its cells without a grade_id are not used.
-        submitted: The cells of the submission.
         left_out: The number of submitted cells that could not be read.
         others: Other assignments whose graded cells are in the submission.
 
@@ -289,7 +288,7 @@ def _finished(master: NotebookNode, cells: list[NotebookNode], remarks: list[str
 
 _MOST_CHARACTERS = 10_000_000
 """The maximum length of all bitmaps attached to a notebook, in base64 characters; a screenshot has about a million."""
-_SHOWN = re2.compile(r"\(attachment:([\w.%+-]+)\)")
+_SHOWN = re2.compile(r"attachment:([\w.%+-]+)")
 
 
 class _ShownPictures:

@@ -23,7 +23,6 @@ from autograder.execution.notebook_processes import (
     UnboxedProcesses,
 )
 from autograder.execution.notebook_runner import Unfinished, run_notebook
-from autograder.grading.returning.rendering_time import too_costly
 from autograder.safe_files import scratch_folder
 from autograder.workspaces.boxed_jobs import BoxedJobs
 from autograder.workspaces.builds import build_cache, students_builds
@@ -82,9 +81,7 @@ def execute(
     """Execute one task.
 
     Args:
-        task: The task.
         scratch: The folder in which the task gets its own folder.
-        judge: The judge of the task.
         addresses: The addresses of the fork servers, which for a boxed task must include the one for supervisors.
         began: Called with the boxes of the task before anything runs in them.
 
@@ -93,8 +90,7 @@ def execute(
     """
     with contextlib.ExitStack() as stack:
         folder = stack.enter_context(scratch_folder(scratch))
-        execution = _execute(task, folder, judge, addresses, stack, began)
-    return replace(execution, as_typed=too_costly(task.cells))
+        return _execute(task, folder, judge, addresses, stack, began)
 
 
 def _execute(
@@ -258,7 +254,6 @@ def _make_paths(task: Task, folder: Path) -> _Paths:
     Call this before the boxes of the notebook are made.
 
     Args:
-        task: The notebook.
         folder: A folder that only this notebook uses. Its path must be short, because it will contain a Unix socket.
     """
     checks = [cell.check.exercise for cell in task.cells if cell.check and not cell.check.asserts]

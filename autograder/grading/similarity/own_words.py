@@ -40,7 +40,6 @@ class ComparedAnswer:
     """An answer, prepared for the comparison.
 
     Attributes:
-        answer: The answer.
         code: The words of the answer.
         signs: The words for the comparison: all names that the student chose are replaced by one sign, and all texts
             that the student chose by another.

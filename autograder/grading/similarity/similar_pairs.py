@@ -16,7 +16,7 @@ from autograder.grading.collecting.submitted_folder import misplaced_files
 from autograder.grading.grading_errors import GradingError, check_known
 from autograder.grading.similarity.own_words import LONGEST, SEQUENCE, GivenCode, compared_answers
 from autograder.grading.similarity.student_answers import given_texts, read_answers
-from autograder.grading.table.roster import read_roster
+from autograder.grading.table.student_list import read_roster
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -80,7 +80,6 @@ def find_similar(directory: ClassDirectory, assignment: str = "") -> SimilarPair
     """Compare the submissions of a class with each other.
 
     Args:
-        directory: The class.
         assignment: The assignment whose submissions are compared; all assignments if empty.
 
     Raises:
@@ -109,7 +108,7 @@ def find_similar(directory: ClassDirectory, assignment: str = "") -> SimilarPair
             troubles += handed_in.troubles
             if len(handed_in.students) == 1:
                 notes.append(
-                    f"{notebook}: only one student has submitted this notebook, so there is nothing to compare"
+                    f"{notebook}: only one student has submitted this notebook, so there is nothing to compare."
                 )
             answers = compared_answers(handed_in.answers, given, len(handed_in.students))
             troubles += [
@@ -163,8 +162,6 @@ class Pair:
     """Two similar answers.
 
     Attributes:
-        one: The first answer.
-        other: The second answer.
         passages: The common passages, in the order of the first answer.
     """
 

@@ -28,9 +28,6 @@ class StudentAnswer:
     """A student's text in one solution cell, or in all cells that the student added.
 
     Attributes:
-        student: The student's id.
-        assignment: The assignment's name.
-        notebook: The notebook's name.
         cell: The name of the cell; ``OWN_CELLS`` for the added cells.
         text: The text of the cell, or of all added cells.
     """

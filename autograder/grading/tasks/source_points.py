@@ -74,7 +74,7 @@ def check_release(directory: ClassDirectory, cells: dict[str, tuple[GradedCell, 
                     f"Enter this version: {course_command(*command, inside=directory.path)}. "
                     "If nbgrader refuses because a student already has points, restore the earlier source, "
                     f"and set points or left-out exercises in {directory.path / 'class.toml'}, which works at "
-                    "any time"
+                    "any time."
                 )
 
 
