@@ -125,7 +125,7 @@ def students(folder: Path, new_list: Path | None, said: dict[str, str], yes: boo
     work, points and records.
     """
     from autograder.cards.readable_text import printable
-    from autograder.grading.collecting.changing_students import change_students
+    from autograder.grading.new_classes.changing_students import change_students
 
     with grading_errors():
         for line in change_students(folder, new_list, said, is_final=yes):

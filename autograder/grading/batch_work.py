@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING
 from autograder.grading.classes.class_directory import RefusedFile
 from autograder.grading.classes.gradebook_reading import CellEntry, SubmissionEntry, read_due_dates
 from autograder.grading.collecting.collected_csv import NAME, Table
-from autograder.grading.collecting.submission_times import handed_in_at, is_not_believed
 from autograder.grading.grading_errors import MasterUnusable, check_known, course_command
 from autograder.grading.reporting.class_table import Difference
 from autograder.grading.table.rows import LATE, Row
+from autograder.grading.tasks.submission_times import handed_in_at, is_not_believed
 from environment.installation import COMMAND
 
 if TYPE_CHECKING:

@@ -151,10 +151,9 @@ def test_no_text_does_anything_once_it_is_harmless(watched: Watched, way: str) -
     live = {}
     for name, entry in BANK.items():
         typed = as_typed(entry["text"], (), PixelBudget())
-        if way == "a page of nbconvert":
-            html = str(markdown2html_mistune(typed))
-        else:
-            html = markdown_to_html({}, typed)
+        html = (
+            str(markdown2html_mistune(typed)) if way == "a page of nbconvert" else markdown_to_html({}, typed)
+        )
         if happened := watched.show(html):
             live[name] = happened
     assert live == {}

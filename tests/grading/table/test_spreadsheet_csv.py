@@ -139,4 +139,6 @@ def test_a_table_is_read_as_excel_in_germany_or_an_old_mac_saves_it(
     data = text.encode(encoding)
     assert csv_rows(data) == ([["id", "first_name"], ["bär", "Jörg"]], separator)
     (tiny.path / "students.csv").write_bytes(data)
-    assert [(one.id, one.name) for one in read_students_csv(tiny.path / "students.csv").students] == [("bär", "Jörg")]
+    assert [(one.id, one.name) for one in read_students_csv(tiny.path / "students.csv").students] == [
+        ("bär", "Jörg")
+    ]
