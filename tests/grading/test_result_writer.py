@@ -186,10 +186,14 @@ def test_what_is_entered_for_a_submission_is_one_transaction(
 ) -> None:
     tiny.submit("ada")
 
-    def fail(*_: object) -> None:
-        raise RuntimeError("in the middle")
+    put = gradebook_writing._put
 
-    monkeypatch.setattr(gradebook_writing, "_enter_comments", fail)
+    def fail(book: Any, rows: Any, statement: str) -> None:
+        if "INTO comment" in statement:
+            raise RuntimeError("in the middle")
+        put(book, rows, statement)
+
+    monkeypatch.setattr(gradebook_writing, "_put", fail)
     report = tiny.grade()
     assert "in the middle" in report.problems[0]
     assert everything(tiny.path)["grade g"] == everything(tiny.path)["student"] == []

@@ -320,7 +320,7 @@ def test_far_too_much_is_not_even_sent(workspace: Path) -> None:
 def test_a_full_disk_is_no_mistake_of_the_sources(
     free: int, said: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(shutil, "disk_usage", lambda _: shutil._ntuple_diskusage(10**10, 10**10 - free, free))  # type: ignore[attr-defined]
+    monkeypatch.setattr(shutil, "disk_usage", lambda _: shutil._ntuple_diskusage(10**10, 10**10 - free, free))
     trouble = sources.full_disk(tmp_path)
     assert said in trouble
     assert bool(trouble) == bool(said)
