@@ -15,8 +15,9 @@ from autograder.cli.command_results import (
     grading_errors,
     need_ros,
     print_json,
+    print_line,
 )
-from environment.installation import COMMAND
+from autograder.command_name import COMMAND
 
 class_folder = click.argument("folder", type=click.Path(path_type=Path))
 only_assignments = click.option(
@@ -59,7 +60,7 @@ def hand_out(place: Path, assignments: tuple[str, ...], as_zip: bool, with_solut
         )
     except (handout.CannotHandOut, OSError) as error:
         fail(str(error))
-    click.echo(
+    print_line(
         f"{made.place}: {made.files} files, {made.size / 1e6:.1f} MB. To try it, type in that folder: {COMMAND} lab"
     )
 
@@ -81,7 +82,8 @@ def new_class(folder: Path, assignments: tuple[str, ...], timezone: ZoneInfo | N
 
     with grading_errors():
         made = classes.new_class(folder, course.root(), assignments=assignments, timezone=str(timezone or ""))
-    click.echo(made.summary())
+    for line in made.summary():
+        print_line(line)
 
 
 @click.command("renew-class")
@@ -94,7 +96,7 @@ def renew_class(folder: Path, assignments: tuple[str, ...]) -> None:
 
     with grading_errors():
         for line in renew(folder, course.root(), assignments):
-            click.echo(line)
+            print_line(line)
 
 
 def _pairs(_context: click.Context, _option: click.Parameter, values: tuple[str, ...]) -> dict[str, str]:
@@ -124,12 +126,11 @@ def students(folder: Path, new_list: Path | None, said: dict[str, str], yes: boo
     LIST replaces students.csv in FOLDER; without it, students.csv itself is the new list. A student with a new id keeps
     work, points and records.
     """
-    from autograder.cards.readable_text import printable
     from autograder.grading.new_classes.changing_students import change_students
 
     with grading_errors():
         for line in change_students(folder, new_list, said, is_final=yes):
-            click.echo(printable(line))
+            print_line(line)
 
 
 @click.command()

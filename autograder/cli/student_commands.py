@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import os
 import sys
-from contextlib import contextmanager, nullcontext
+from contextlib import contextmanager, nullcontext, redirect_stderr
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
 from autograder.cli.command_results import CANNOT, NO, as_json_option, fail, need_ros, print_json
-from environment.installation import COMMAND
+from autograder.command_name import COMMAND
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -136,8 +136,9 @@ def show(verdict: Verdict, *, as_json: bool) -> None:
         print_json(verdict)
         return
     from autograder.cards.text_rendering import card_text
+    from autograder.standard_output import styled
 
-    click.echo(card_text(verdict, color=sys.stdout.isatty()))
+    click.echo(card_text(verdict, color=sys.stdout.isatty()), file=styled(sys.stdout))
 
 
 @click.command(context_settings={"ignore_unknown_options": True})
@@ -149,10 +150,13 @@ def lab(folder: Path | None, arguments: tuple[str, ...]) -> None:
     """Open JupyterLab with the course's notebooks, in a free ROS domain."""
     from autograder import course
     from autograder.dds_discovery import NoFreeDomainError
+    from autograder.standard_output import styled
     from autograder.student.lab import NoSuchFolderError, open_lab
 
     try:
-        open_lab(folder or course.root() / course.CHAPTERS, arguments)
+        # JupyterLab colors its log itself.
+        with redirect_stderr(styled(sys.stderr)):
+            open_lab(folder or course.root() / course.CHAPTERS, arguments)
     except (NoSuchFolderError, NoFreeDomainError, ValueError) as error:
         fail(str(error))
 

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from autograder import exercises
 from autograder.appeals.appeal_file import AppealedCell, AppealedCheck, dump
+from autograder.command_name import COMMAND
 from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.grading_errors import (
@@ -17,7 +18,6 @@ from autograder.grading.grading_errors import (
 from autograder.judge import evidence_files
 from autograder.judge.evidence_files import NoEvidence, unpack
 from autograder.safe_files import write_whole
-from environment.installation import COMMAND
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping

@@ -7,6 +7,7 @@ import functools
 import time
 from typing import TYPE_CHECKING
 
+from autograder.command_name import COMMAND
 from autograder.grading.batch_work import Work, due_dates, find_work, without_grade, would_change
 from autograder.grading.class_checks import changed_master_warnings, limits_of
 from autograder.grading.classes import gradebook_reading
@@ -23,7 +24,6 @@ from autograder.grading.table.weighted_rows import read_what_counts, true_rows
 from autograder.grading.tasks.source_points import check_release, read_released
 from autograder.grading.tasks.submission_fingerprints import Fingerprints
 from autograder.grading.tasks.submission_times import handed_in_at
-from environment.installation import COMMAND
 
 # Some modules are imported inside functions, because they import nbgrader, which takes a second.
 

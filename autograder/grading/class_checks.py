@@ -16,11 +16,11 @@ from typing import TYPE_CHECKING, Any
 
 from autograder import course
 from autograder.boxes.run_limits import Limits
+from autograder.command_name import COMMAND
 from autograder.grading.class_records import Origin
 from autograder.grading.classes.class_directory import CONFIG_NAME
 from autograder.grading.grading_errors import GradingError, course_command
 from autograder.masters.master_files import MasterError
-from environment.installation import COMMAND
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping

@@ -7,7 +7,8 @@ import errno
 import shlex
 from typing import TYPE_CHECKING
 
-from environment.installation import COMMAND, IS_CLONE, ROOT, installing
+from autograder.command_name import COMMAND
+from environment.installation import IS_CLONE, ROOT, installing
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence

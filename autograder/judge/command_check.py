@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import msgspec
 
 from autograder import exercises
+from autograder.command_name import COMMAND
 from autograder.dds_discovery import NoFreeDomainError
 from autograder.judge import evidence_files, ros_setup
 from autograder.judge.check_process import Child
@@ -19,7 +20,6 @@ from autograder.kit.runners import Launches, runner_as_word
 from autograder.messages.judge_messages import Report
 from autograder.verdict import Verdict, not_checked
 from autograder.workspaces.sources import full_disk
-from environment.installation import COMMAND
 from environment.python_child import python_child
 
 if TYPE_CHECKING:

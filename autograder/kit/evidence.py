@@ -10,7 +10,7 @@ from typing import Any
 
 import re2
 
-from environment.installation import COMMAND
+from autograder.command_name import COMMAND
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,7 @@ import re2
 
 from autograder.kit.in_words import counted, first_difference
 from autograder.kit.model import Advice, Finding
-from autograder.kit.rules import sent_times, simulated_times
+from autograder.kit.rules import sent_times, simulated_times, successive
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -32,8 +32,6 @@ SLOWLY = 1.5
 """A publisher is slow if its intervals are at least this many times as long as the reference's. It may also be silent
 for this many of its own intervals at the end of the run.
 """
-REPLACED = 3
-"""If this many publishers appear on the topic one after another, the program makes a new one for each message."""
 BURST = 0.3
 """A limit in seconds. If a program published for a shorter time and ended, it may have published everything at once,
 and a busy machine delayed some messages.
@@ -63,15 +61,9 @@ class Publisher:
 
     @cached_property
     def replaced(self) -> str:
-        """In words, how many publishers the program made one after another; empty if its publisher lasts.
-
-        A subscriber has to discover each of them, so chance decides which messages arrive.
-        """
-        moments = {
-            int(event.moment / BURST): event.data["count"] for event in self.part.of("matched", self.topic)
-        }
-        growing = len(set(moments.values()))
-        return f"{growing} publishers, one after another" if growing >= REPLACED else ""
+        """In words, how many publishers the program made one after another; empty if its publisher lasts."""
+        many = successive(self.part, self.topic)
+        return f"{many} publishers, one after another" if many else ""
 
     @cached_property
     def texts(self) -> list[str]:

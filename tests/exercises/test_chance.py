@@ -6,6 +6,7 @@ import re
 from dataclasses import replace
 from random import Random
 from typing import TYPE_CHECKING
+from unittest.mock import MagicMock
 
 import pytest
 from inspecting_services import question
@@ -270,3 +271,24 @@ def test_who_does_not_wait_for_an_answer_is_told_so_however_slowly_the_program_e
     assert ANSWER_NOT_AWAITED.recognise(evidence)
     right = Part(EXTREME, {}, [asked, given, Event(0.5, "output", "stdout", {"text": "sum: -77777"}), EXITED])
     assert not ANSWER_NOT_AWAITED.recognise(replace(evidence, parts=[quick, right]))
+
+
+def test_the_type_that_another_package_has_too_is_always_asked_for_in_the_same_run(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Otherwise a subject that takes the other package's type would lose other points from check to check."""
+    asked: dict[str, set[str]] = {name: set() for name in (question.LATE, question.OTHER, question.ABSENT)}
+    monkeypatch.setattr(question, "served", lambda _, name, service, __: asked[name].update(service.values()))
+    monkeypatch.setattr(question, "unserved", lambda _, kind, __: asked[question.ABSENT].add(kind))
+    for seed in range(50):
+        question.scenario(MagicMock(random=Random(seed)))
+    twins = set(question.TWIN)
+    assert asked[question.OTHER] == twins
+    assert asked[question.LATE] == asked[question.ABSENT] == question.TEMPTING.keys() - twins
+
+
+def test_one_that_names_another_service_has_not_looked_only_once() -> None:
+    inputs = {"right": "/tower/s1", "type": "std_srvs/srv/Trigger", "others": {"/alcove/s2": "x/srv/Trigger"}}
+    named = [Event(0.2, "output", "stdout", {"text": "/alcove/s2"}), Event(0.4, "subject", "exited", {})]
+    assert not question.gave_up_at_once(Part(question.LATE, inputs, named))
+    assert question.gave_up_at_once(Part(question.LATE, inputs, named[1:]))

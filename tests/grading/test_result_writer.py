@@ -8,7 +8,7 @@ import shutil
 import sqlite3
 from datetime import datetime
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import nbformat
 import pytest
@@ -27,6 +27,9 @@ from autograder.grading.returning.page_exporter import PageExporter
 from autograder.grading.returning.sanitize import make_harmless
 from autograder.grading.tasks.submission_times import handed_in_at
 from autograder.verdict import State, Verdict
+
+if TYPE_CHECKING:
+    from sqlalchemy import Connection
 
 pytestmark = pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning")
 
@@ -188,7 +191,7 @@ def test_what_is_entered_for_a_submission_is_one_transaction(
 
     put = gradebook_writing._put
 
-    def fail(book: Any, rows: Any, statement: str) -> None:
+    def fail(book: Connection, rows: list[dict[str, object]], statement: str) -> None:
         if "INTO comment" in statement:
             raise RuntimeError("in the middle")
         put(book, rows, statement)

@@ -14,12 +14,12 @@ from zoneinfo import ZoneInfo
 from traitlets.config.loader import PyFileConfigLoader
 
 from autograder import course, known_classes
+from autograder.command_name import COMMAND
 from autograder.grading.classes.class_lock import held
 from autograder.grading.classes.class_secret import create_secret, read_secret
 from autograder.grading.grading_errors import GradingError, NotAClass, clear_disk_errors
 from autograder.grading.rebuilding.submitted_notebook import reason_against_file
 from autograder.safe_files import remove_unfinished
-from environment.installation import COMMAND
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator

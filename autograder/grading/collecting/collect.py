@@ -6,9 +6,7 @@ from collections import defaultdict
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
-from rich.console import Console
-
-from autograder.cards.readable_text import printable
+from autograder import standard_output
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.collecting.collected_csv import Table
 from autograder.grading.collecting.collected_files import SHORT_KEY, Arrival, Delivery, Inbox, LineState
@@ -115,10 +113,10 @@ class CollectReport:
 
 def show(report: CollectReport) -> None:
     """Print which files were placed and which were not, with the reasons."""
-    console = Console()
+    console = standard_output.console()
     for text in _lines(report):
         style = "yellow" if text.startswith(LineState.NOT_PLACED) else ""
-        plain_line(console, printable(text), style)
+        plain_line(console, text, style)
 
 
 def _lines(report: CollectReport) -> Iterator[str]:

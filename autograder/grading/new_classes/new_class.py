@@ -18,6 +18,7 @@ from nbgrader.converters import GenerateAssignment
 from nbgrader.coursedir import CourseDirectory
 
 from autograder.boxes.run_limits import Limits
+from autograder.command_name import COMMAND
 from autograder.grading.class_checks import note_origins
 from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.class_directory import (
@@ -34,7 +35,6 @@ from autograder.grading.rebuilding import nbformat_nodes
 from autograder.grading.result_writer import quiet
 from autograder.masters.master_files import MasterError, lab_name, masters, relinked
 from autograder.masters.source_notebooks import source_notebook
-from environment.installation import COMMAND
 
 if TYPE_CHECKING:
     from collections.abc import Container, Iterator, Sequence
@@ -99,18 +99,15 @@ class NewClass:
     assignments: tuple[str, ...]
     timezone: str
 
-    def summary(self) -> str:
+    def summary(self) -> tuple[str, ...]:
         """Return lines for the instructor about the new class and the next steps."""
-        return "\n".join(
-            (
-                f"{self.path} is a class with these assignments: {', '.join(self.assignments)}.",
-                f"The time zone of due dates in formgrader is {self.timezone}: see {CONFIG_NAME}.",
-                f"Hand out       {COMMAND} hand-out FOLDER makes the folder for students",
-                f"Collect        {course_command('collect', self.path)} DOWNLOAD (files as your LMS lets you "
-                "download them)",
-                f"or put notebooks in {self.path / 'submitted'}/<student>/<assignment>/<assignment>.ipynb",
-                f"Then           {course_command('grade', self.path)}",
-            )
+        return (
+            f"{self.path} is a class with these assignments: {', '.join(self.assignments)}.",
+            f"The time zone of due dates in formgrader is {self.timezone}: see {CONFIG_NAME}.",
+            f"Hand out       {COMMAND} hand-out FOLDER makes the folder for students",
+            f"Collect        {course_command('collect', self.path)} DOWNLOAD (the files as you got them from your LMS)",
+            f"or put notebooks in {self.path / 'submitted'}/<student>/<assignment>/<assignment>.ipynb",
+            f"Then           {course_command('grade', self.path)}",
         )
 
 

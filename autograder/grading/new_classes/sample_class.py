@@ -10,9 +10,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import msgspec
-from rich.console import Console
 
-from autograder import course
+from autograder import course, standard_output
 from autograder.boxes import sandbox
 from autograder.execution.executed_cells import CellType
 from autograder.grading.batch import grade
@@ -26,6 +25,7 @@ from autograder.masters.master_files import lab_name, masters
 
 if TYPE_CHECKING:
     from nbformat import NotebookNode
+    from rich.console import Console
 
     from autograder.grading.reporting.grade_report import GradeReport
 
@@ -93,7 +93,7 @@ def demo(path: Path, *, console: Console | None = None) -> GradeReport:
     Raises:
         GradingError: ``path`` contains something other than the sample class, or grading is not possible.
     """
-    console = console or Console()
+    console = console or standard_output.console()
     if sandbox.why_impossible():
         switch_sandbox_off(path)
     _make(path, console)

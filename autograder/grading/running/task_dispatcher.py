@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Protocol
 import msgspec
 
 from autograder.cards.readable_text import paragraph
+from autograder.command_name import COMMAND
 from autograder.grading.course_version import course_version
 from autograder.grading.grading_errors import GradingError
 from autograder.grading.running.worker_messages import (
@@ -38,7 +39,6 @@ from autograder.grading.running.worker_messages import (
     admitted,
     admitted_offer,
 )
-from environment.installation import COMMAND
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator, Iterable, Iterator

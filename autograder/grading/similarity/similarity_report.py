@@ -10,12 +10,12 @@ from itertools import groupby
 from typing import TYPE_CHECKING, Any
 
 from rich import box
-from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from autograder import standard_output
 from autograder.cards.html_rendering import page_templates
-from autograder.cards.readable_text import one_line, printable
+from autograder.cards.readable_text import one_line
 from autograder.grading.grading_errors import clear_place_errors
 from autograder.grading.returning.page_exporter import POLICY
 from autograder.grading.running.batch_progress import plain_line
@@ -43,11 +43,11 @@ def show(found: SimilarPairs, page: Path) -> None:
         found: The result of the search.
         page: The path of the page with the pairs side by side.
     """
-    console = Console()
+    console = standard_output.console()
 
     # Names of files and students come from students, and may contain control characters.
     def line(text: str, style: str = "") -> None:
-        plain_line(console, printable(text), style)
+        plain_line(console, text, style)
 
     if found.pairs:
         console.print(_table(found))
@@ -95,8 +95,8 @@ def _table(found: SimilarPairs) -> Table:
     shown.add_column("own words", justify="right", no_wrap=True)
     for pairs in by_students(found.pairs):
         shown.add_row(
-            Text(printable(", ".join(pairs[0].students))),
-            Text("\n".join(printable(pair.place) for pair in pairs)),
+            Text(", ".join(pairs[0].students)),
+            Text("\n".join(pair.place for pair in pairs)),
             "\n".join(pair.percent for pair in pairs),
             "\n".join(f"{pair.shared} of {pair.one.length} and {pair.other.length}" for pair in pairs),
         )

@@ -68,19 +68,24 @@ Interface = dict[str, dict[str, str]]
 
 
 def subject_nodes(judge: Node, keeper: str) -> list[NodeName]:
-    """Return the names of all nodes on the domain, except the judge's and the keeper's; a name of two nodes twice.
+    """Return the names of all nodes on the domain, each once, except the judge's and the keeper's.
 
     Args:
         judge: The judge's node.
         keeper: The name of the node with which a notebook's check keeps its participant alive; empty if it has none.
             One node with this name is ignored, but a second node with this name belongs to the subject.
     """
+    return sorted(set(every_node(judge, keeper)), key=lambda node: (node.name, node.namespace))
+
+
+def every_node(judge: Node, keeper: str) -> list[NodeName]:
+    """Like :func:`subject_nodes`, but with a name for each node, so that a name of two nodes comes twice."""
     own = judge.get_name()
     seen = judge.get_node_names_and_namespaces()
     others = [NodeName(name, space) for name, space in seen if name != own and not name.startswith(UNNAMED)]
     if keeper and (the_one := NodeName(keeper, "/")) in others:
         others.remove(the_one)
-    return sorted(others, key=lambda node: (node.name, node.namespace))
+    return others
 
 
 def survey(judge: Node) -> Interface:
@@ -91,7 +96,7 @@ def survey(judge: Node) -> Interface:
     found: Interface = {role: {} for role in ROLES}
     for end in topic_ends(judge):
         _add(found[end.role], end.topic, [end.type_name])
-    for node in set(subject_nodes(judge, keeper="")):
+    for node in subject_nodes(judge, keeper=""):
         for role, query in _QUERIES.items():
             for name, types in _ask(query, judge, node):
                 if _is_own_work(role, name):

@@ -336,14 +336,12 @@ class RecordedActionClient(Client):
 
     def _hear_statuses(self, message: Any, info: Any) -> None:
         """Record, for each goal, when the server said for the first time that the goal has ended."""
+        sent = info["source_timestamp"] / 1e9
         for line in message.status_list:
-            number = self._number_of(line.goal_info.goal_id)
-            if line.status in _ENDED and number >= 0 and number not in self._ended:
+            number, status = self._number_of(line.goal_info.goal_id), int(line.status)
+            if status in _ENDED and number >= 0 and number not in self._ended:
                 self._ended.add(number)
-                sent = info["source_timestamp"] / 1e9
-                self._recorder.record(
-                    "goal_ended", self._name, goal=number, status=int(line.status), sent=sent
-                )
+                self._recorder.record("goal_ended", self._name, goal=number, status=status, sent=sent)
 
     def _number_of(self, goal_id: Any) -> int:
         """Return the number of a goal; -1 if the goal is not the judge's."""

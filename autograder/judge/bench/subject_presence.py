@@ -102,7 +102,7 @@ class Presence:
         self._again = MAX_RESTARTS
 
     def nodes(self) -> list[discovery.NodeName]:
-        return list(dict.fromkeys(discovery.subject_nodes(self._node, self._subject.keeper)))
+        return discovery.subject_nodes(self._node, self._subject.keeper)
 
     def counterparts(self) -> list[discovery.NodeName]:
         """Return the subject's nodes that use the judge's topics; all of the subject's nodes if the judge has no topic.
@@ -239,7 +239,7 @@ class Presence:
         Args:
             interface: The endpoints as seen a moment ago. If not given, they are queried now.
         """
-        nodes = [node.full for node in discovery.subject_nodes(self._node, self._subject.keeper)]
+        nodes = sorted(node.full for node in discovery.every_node(self._node, self._subject.keeper))
         ends = [[e.role, e.topic, e.process] for e in discovery.topic_ends(self._node)]
         seen = {"nodes": nodes, "ends": sorted(ends), **(interface or discovery.survey(self._node))}
         surveys = self._recorder.part().of("interface", "graph")

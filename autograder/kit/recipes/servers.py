@@ -168,11 +168,11 @@ class Asks:
         seen, expected = self.seen(evidence), f"one server of {name} ({type_name}) that answers"
         if wrong := common.misfit(evidence, "service"):
             return Finding(False, expected, wrong)
-        if seen.asked and seen.part.traceback:
-            return Finding(True, expected, "it is there, and raised an exception")
-        if seen.part.ending is not None:
+        raised = bool(seen.asked and seen.part.traceback)
+        if seen.part.ending is not None and not raised:
             return Finding(False, expected, "the program ended by itself while the judge called its service")
-        return Finding(bool(seen.answers), expected, "it answers" if seen.answers else "no call was answered")
+        answered = bool(seen.answers)
+        return Finding(answered or raised, expected, "it answers" if answered else "no call was answered")
 
     @property
     def ladder(self) -> tuple[Mistake, ...]:

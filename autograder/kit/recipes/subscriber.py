@@ -21,6 +21,7 @@ from autograder.kit.reported_texts import (
     repeated,
     retold,
 )
+from autograder.kit.rules import successive
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -46,8 +47,6 @@ BEFORE = 1.0
 """Seconds to wait before the first text, to see whether the listener invents a text. For a listener that follows
 simulated time, these are simulated seconds.
 """
-REPLACED = 2
-"""If a listener replaces its subscription this many times, it makes a new subscription for each text."""
 AFTERMATH = 2.5
 """Seconds to wait after the last text, to see whether the listener repeats or invents a text. For a listener that
 follows simulated time, these are simulated seconds.
@@ -259,17 +258,6 @@ def _missing(evidence: Evidence) -> list[Event]:
     return [event for event in silent if event not in at_pace]
 
 
-def _replaced(evidence: Evidence) -> int:
-    """Return how many of the listener's subscriptions were replaced by a new one after the first text was sent."""
-    sent, part = _sent(evidence), evidence.main
-    if not sent:
-        return 0
-    met = [event.data for event in part.of("matched", sent[0].name) if _is_before(part, sent[0], event)]
-    gone = [data["count"] - data.get("now", data["count"]) for data in met]
-    # A subscription that disappears when the program ends is not replaced.
-    return max((gone[i] for i in range(len(met) - 1) if met[-1]["count"] > met[i]["count"]), default=0)
-
-
 def says_every_text(evidence: Evidence) -> Finding:
     """Decide whether the listener reports each text after it was sent."""
     sent, missing = _sent(evidence), _missing(evidence)
@@ -280,10 +268,8 @@ def says_every_text(evidence: Evidence) -> Finding:
         seen += f"; not “{_text(missing[0])}”"
     all_sent = SIMULATED if _is_simulated(evidence) else 1 + AT_PACE + SINGLY
     complete = len(sent) >= all_sent and not missing
-    if complete and (replaced := _replaced(evidence)) >= REPLACED:
-        return Finding(
-            False, "one subscription that receives every string", f"{replaced + 1} one after another"
-        )
+    if complete and (many := successive(evidence.main, topic)):
+        return Finding(False, "one subscription that receives every string", f"{many} one after another")
     if sent and not missing and not complete:
         seen += ", and then it no longer answered the judge"
     return Finding(complete, "every string in its log", seen)
@@ -351,7 +337,7 @@ def _changed_text(evidence: Evidence) -> Advice | None:
 
 def _subscribes_again(evidence: Evidence) -> Advice | None:
     """Return advice if the listener makes a new subscription for each text, so that texts in between are lost."""
-    if not _replaced(evidence):
+    if not successive(evidence.main, evidence.reference.only("subscription")[0]):
         return None
     return Advice(
         "After a string has arrived, your program destroys its subscription and makes a new one. Strings that are "

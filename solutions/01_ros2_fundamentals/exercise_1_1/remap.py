@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from typing import TYPE_CHECKING
 
 from autograder.kit.draft import Draft
@@ -169,14 +168,12 @@ def one_node_only(seen: Launched, _: Launched) -> Advice | None:
 
 def nodes_of_one_name(evidence: Evidence) -> str:
     """Return a remark if two nodes have the same name."""
-    for survey in evidence.main.of("interface"):
-        for name, count in Counter(survey.data.get("nodes", ())).items():
-            if count > 1:
-                return (
-                    f"{count} of your nodes are called {name}. In a launch file, name=... renames every node of the "
-                    "process, and two nodes of one name cannot be told apart: leave it out, or give each its own."
-                )
-    return ""
+    surveys = [event.data.get("nodes", []) for event in evidence.main.of("interface")]
+    twin = next((name for names in surveys for name in names if names.count(name) > 1), "")
+    words = (
+        f"Two of your nodes are called {twin}: name=... in a launch file renames every node of the process."
+    )
+    return words if twin else ""
 
 
 EXERCISE = remap.exercise(

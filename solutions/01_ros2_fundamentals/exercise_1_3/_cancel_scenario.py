@@ -17,7 +17,6 @@ says in both when the third message has come.
 
 from __future__ import annotations
 
-import time
 from typing import TYPE_CHECKING
 
 from exercise_1_3._cancel_evidence import (
@@ -47,8 +46,8 @@ if TYPE_CHECKING:
 
 WITHOUT_CANCEL = 19
 """Feedback messages that are sent to a client that does not cancel: all that a goal of order 20 has."""
-CLOCKS = 5.5
-"""Seconds from the answer to the goal in which a client that goes by a clock may still ask, far too late: the card then
+CLOCKS = 2.5
+"""Seconds after the last feedback in which a client that goes by a clock may still ask, far too late: the card then
 says so."""
 WITH_LATE = 14
 """Feedback messages that are sent in all to one that does, to see that those after its request are not acted on."""
@@ -78,8 +77,6 @@ FIRST_AFTER = 0.25
 """Seconds from the answer to the goal to its first feedback message in real time."""
 LATE_GAP = 0.2
 """Seconds between two feedback messages in real time after the request."""
-SHORTEST_GAP = 0.25
-"""The least seconds between two messages, even if a busy machine has delayed the judge."""
 WINDOW_WAIT = 0.2
 """Seconds that a fast look waits for a cancel after each feedback message inside that window."""
 PROMPT = 0.05
@@ -245,7 +242,7 @@ def send_feedback_until_cancelled(
     bench: Bench, server: ActionCounterpart, sequence: list[int], pause: float
 ) -> bool:
     """Send feedback until a cancel is requested, or until none is left. Return True if a cancel was requested."""
-    began, gap = time.monotonic(), bench.seen().inputs["gap"]
+    gap = bench.seen().inputs["gap"]
     for count in range(WITHOUT_CANCEL + 1):
         if count == FIRST_STATUS:
             say_that_it_runs(bench, server)
@@ -266,32 +263,13 @@ def send_feedback_until_cancelled(
             if server.await_cancel(AT_ONCE):
                 return True
             continue
-        fast, elapsed = bench.pace is Pace.FAST, time.monotonic() - began
-        if server.await_cancel(wait_after(count) if fast else wait_for_next(count, elapsed, gap)):
+        quick = WINDOW_WAIT if FIRST_FEEDBACK <= count <= LAST_FEEDBACK else FEEDBACK_GAP
+        usual = gap if count else FIRST_AFTER
+        if server.await_cancel(quick if bench.pace is Pace.FAST else usual):
             # Nothing that was sent just now has caused it: perhaps a clock did, and it needs the real pace.
             bench.doubt()
             return True
-    return bench.pace is Pace.REAL_TIME and server.await_cancel(max(0.0, CLOCKS - (time.monotonic() - began)))
-
-
-def wait_after(count: int) -> float:
-    """Seconds that a fast look waits for a cancel after so many feedback messages, before it does what comes next."""
-    return WINDOW_WAIT if FIRST_FEEDBACK <= count <= LAST_FEEDBACK else FEEDBACK_GAP
-
-
-def wait_for_next(count: int, elapsed: float, gap: float) -> float:
-    """The same in real time, where messages come at moments of the wall's clock, as those of the lab's server do.
-
-    Args:
-        count: Feedback messages that were sent.
-        elapsed: Seconds since the goal was accepted.
-        gap: Seconds between two messages.
-    """
-    left = FIRST_AFTER + count * gap - elapsed
-    if count + 1 == FIRST_STATUS:
-        # The status takes the rest of the time to the next message.
-        left -= LATE_GAP
-    return max(left, SHORTEST_GAP if count else 0.0)
+    return bench.pace is Pace.REAL_TIME and server.await_cancel(CLOCKS)
 
 
 def say_that_it_runs(bench: Bench, server: ActionCounterpart) -> None:

@@ -49,15 +49,21 @@ if TYPE_CHECKING:
     from autograder.kit.evidence import Evidence, Part
 
 
-def of_one_server(judge: Callable[[Evidence], Finding]) -> Callable[[Evidence], Finding]:
-    """A criterion about goals that fails where two servers share the action's name.
+ENDED = "the program ended by itself"
 
-    Each goal reaches both of them, and chance decides whose answers the client takes.
+
+def of_one_server(judge: Callable[[Evidence], Finding]) -> Callable[[Evidence], Finding]:
+    """A criterion about goals that fails where two servers share the action's name, or the server ended by itself.
+
+    Each goal reaches two servers, and chance decides whose answers the client takes. Chance decides, too, which goals
+    come before a program ends.
     """
 
     @functools.wraps(judge)
     def judged(evidence: Evidence) -> Finding:
-        found, count = judge(evidence), servers(evidence.main)
+        found, count, part = judge(evidence), servers(evidence.main), evidence.main
+        if part.ending is not None and not part.traceback:
+            return Finding(False, found.expected, ENDED)
         return found if count < 2 else Finding(False, found.expected, f"each goal reached {count} servers")
 
     return judged
@@ -73,13 +79,11 @@ def serves(evidence: Evidence) -> Finding:
     if wrong := misfit(evidence, "action_server"):
         return Finding(False, expected, wrong)
     first = goal(part, ALONE)
-    if first.order is not None and part.traceback:
-        return Finding(True, expected, "it is there, and raised an exception")
-    if part.ending is not None and not first.over and not first.feedback:
-        # The answer of a program that exits with it may or may not get out of it.
-        return Finding(False, expected, "it ended with the first goal")
-    taken = bool(first.accepted)
-    return Finding(taken, expected, "it accepts goals" if taken else objection(evidence, first))
+    raised = first.order is not None and bool(part.traceback)
+    if part.ending is not None and not raised:
+        return Finding(False, expected, ENDED)
+    seen = "it accepts goals" if first.accepted else objection(evidence, first)
+    return Finding(bool(first.accepted) or raised, expected, seen)
 
 
 @of_one_server

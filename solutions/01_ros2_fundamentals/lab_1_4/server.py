@@ -113,27 +113,27 @@ server.knows(
 )
 
 
-@server.mistake("older_goal_ended", certain=True)
-def older_goal_ended(seen: Evidence, _: Evidence) -> Advice | None:
-    """When a second goal came, the server ended the older one, or tried to, although no client had asked for that."""
-    part = seen.part(GOALS)
-    texts = [f"{e.data.get('text')}{e.data.get('traceback')}" for e in before_any_cancel(part).events]
-    if any(CANCELED_UNASKED in text for text in texts):
-        return Advice(
-            "When a second goal came, your server called canceled() for the older one. No client had asked to cancel "
-            "that goal, so canceled() raised an error.",
-            "The task asks to serve both goals, each with its own sequence. (A server that gives up a goal by itself "
-            "calls abort(); canceled() is only for a goal whose is_cancel_requested is True.)",
-        )
-    older = ended_by_a_younger(part)
-    if traceback_of(seen) or older is None:
-        return None
-    return Advice(
-        f"When a second goal came, your server ended the older one as {status_text(older.status)}. The task asks it to "
-        "serve both, each with its own sequence.",
-        "Leave out what aborts the goal that is at work when another one is accepted; or let the new one wait until "
-        "the older one has ended.",
-    )
+server.knows(
+    "older_goal_ended",
+    lambda seen, _: any(CANCELED_UNASKED in str(e.data) for e in before_any_cancel(seen.part(GOALS)).events),
+    "When a second goal came, your server called canceled() for the older one. No client had asked to cancel that "
+    "goal, so canceled() raised an error.",
+    "Serve both goals, each with its own sequence. (A server that gives up a goal by itself calls abort().)",
+    certain=True,
+)
+server.knows(
+    "older_goal_ended",
+    lambda seen, _: (
+        not traceback_of(seen)
+        and (older := ended_by_a_younger(seen.part(GOALS)))
+        and status_text(older.status)
+    ),
+    "When a second goal came, your server ended the older one as {}. The task asks it to serve both, each "
+    "with its own sequence.",
+    "Leave out what aborts the goal that is at work when another one is accepted; or let the new one wait until the "
+    "older one has ended.",
+    certain=True,
+)
 
 
 @server.mistake("goals_mixed_up")
@@ -196,9 +196,9 @@ def wrong_feedback(seen: Evidence, _: Evidence) -> Advice | None:
     if not wrong:
         return None
     return Advice(
-        f"The feedback does not grow by one number each time ({wrong[0][1]}).",
+        f"The feedback is not one more number each time, up to the last number of the sequence ({wrong[0][1]}).",
         "Publish in each turn of the loop, right after you have appended a number: all numbers found so far, in "
-        "partial_sequence.",
+        "partial_sequence. End the loop when the sequence is complete: for order 4 it has five numbers.",
     )
 
 
@@ -249,13 +249,10 @@ def bad_order_accepted(seen: Evidence, _: Evidence) -> Advice | None:
 
 def feedback_after_the_end(evidence: Evidence) -> str:
     """Return a remark if the server sent feedback after it had said that the goal was over."""
-    for event in evidence.part(GOALS).of("goal_ended"):
-        if goal(evidence.part(GOALS), int(event.data["goal"])).sent_after(event.data["sent"]):
-            return (
-                "Your server publishes feedback after it has ended the goal with succeed() or canceled(). Later "
-                "releases of ROS drop such feedback, so publish first."
-            )
-    return ""
+    part = evidence.part(GOALS)
+    ends = [(goal(part, int(event.data["goal"])), event.data["sent"]) for event in part.of("goal_ended")]
+    words = "Your server publishes feedback after it has ended the goal. Later releases of ROS drop such feedback."
+    return words if any(one.sent_after(end) for one, end in ends) else ""
 
 
 EXERCISE = server.exercise(
