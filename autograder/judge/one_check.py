@@ -291,7 +291,7 @@ def diagnose(exercise: Exercise, evidence: Evidence) -> tuple[Diagnosis, str]:
             _cut(of_its_kind(shortened(visible(words)), in_a_notebook), 2 * MAX_WORDS)
             for words in (advice.text, advice.next_step)
         )
-        return Diagnosis(mistake.key, text, next_step), advice.traceback
+        return Diagnosis(advice.key or mistake.key, text, next_step), advice.traceback
     unknown = Diagnosis(
         UNKNOWN,
         "The judge does not recognize this mistake.",

@@ -70,11 +70,14 @@ class Advice:
         next_step: What the student should do now.
         traceback: The traceback that shows the mistake, for the card; empty if the mistake was recognized from
             something else.
+        key: The key of the mistake if only the recording of the exercise has it; empty for the key of the
+            :class:`Mistake`.
     """
 
     text: str
     next_step: str
     traceback: str = ""
+    key: str = ""
 
 
 @dataclass(frozen=True)
@@ -234,6 +237,12 @@ class Bench(Protocol):
 
     def note_its_log(self) -> None:
         """Record, for the reference output, each text that the subject logs, but only once."""
+
+    def note(self, name: str, **data: Any) -> None:
+        """Record an event of the kind ``noted``: a fact that the scenario derives from what it has seen so far.
+
+        Use this for facts that are the same in each run, although the events behind them are not.
+        """
 
     def seen(self) -> Part:
         """Return the events of this part that were recorded so far."""

@@ -246,6 +246,9 @@ class TestBench:
         self._presence.subscriptions[at] = subscription
         self._open.callback(self._wire.node.destroy_subscription, subscription.subscription)
 
+    def note(self, name: str, **data: Any) -> None:
+        self._recorder.record("noted", name, **data)
+
     def seen(self) -> Part:
         return self._recorder.part()
 

@@ -1,0 +1,197 @@
+"""A recipe in which the reference solution decides what is right: the author declares only inputs and outputs.
+
+While the reference output is recorded, the solution is given several drawings of the inputs. A check draws one of them,
+gives the same inputs to the subject, and compares the outputs step by step. So the rule of the task is written once, in
+the solution.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
+from random import Random
+from typing import TYPE_CHECKING, Any
+
+from autograder.kit.draft import OWN, Draft
+from autograder.kit.model import Advice, Finding, Mistake
+from autograder.kit.recipes.own_scenario import QUIET, Met, OwnScenario, meet, pick
+from autograder.kit.recipes.relay import To
+from autograder.kit.rules import in_words, same
+
+if TYPE_CHECKING:
+    from autograder.kit.evidence import Event, Evidence, Part
+    from autograder.kit.model import Bench, Exercise
+
+__all__ = ["SameAsSolution", "To"]
+
+DRAWINGS = 8
+"""The number of drawings of the inputs in a recording."""
+PAUSE = 0.75
+"""Seconds of the subject's time after each input. Whatever the input changes must be published by then."""
+TOLERANCE = 1e-3
+POINTS = 10.0
+"""The points of an exercise whose author does not say how many it is worth."""
+_HAS = {"publisher": "Publishes on the right topics", "subscription": "Subscribes to the right topics"}
+_HAS |= {"service": "Serves the right services", "client": "Has the right clients"}
+
+
+class _Drawn(OwnScenario):
+    """A subject that was given one drawing of the inputs; it is compared with the solution in the same drawing."""
+
+    def expected(self, evidence: Evidence) -> Part:
+        """Return the record of the solution in the drawing that the subject was given."""
+        recorded = evidence.reference.parts
+        return evidence.reference.part(evidence.main.name) if recorded else evidence.main
+
+    @property
+    def ladder(self) -> tuple[Mistake, ...]:
+        """The common mistakes, and first of all an exercise's own: that it does the same as a recorded wrong answer."""
+        proven = Mistake(
+            "variant", lambda evidence: self._same_as_a_variant(evidence, simulated=True), certain=True
+        )
+        likely = Mistake("variant", self._same_as_a_variant)
+        ladder = super().ladder
+        at = ladder.index(OWN)
+        return (*ladder[:at], proven, likely, *ladder[at:])
+
+    def _same_as_a_variant(self, evidence: Evidence, *, simulated: bool = False) -> Advice | None:
+        mine, right = _noted(evidence.main), _noted(self.expected(evidence))
+        if simulated and any(event.sim is None for event in evidence.main.of("noted")):
+            return None
+        for variant in evidence.reference.variants:
+            part = next((part for part in variant.parts if part.name == evidence.main.name), None)
+            if part and mine and same(mine, _noted(part), TOLERANCE) and not same(mine, right, TOLERANCE):
+                return Advice(variant.text, variant.next_step, key=variant.key)
+        return None
+
+
+def _noted(part: Part) -> list[Any]:
+    return [[event.name, event.data["step"], event.data["values"]] for event in part.of("noted")]
+
+
+class SameAsSolution:
+    """An exercise about a node that must do what the reference solution does with the same inputs.
+
+    After each input the judge notes the outputs of this step: for a topic, the last message since the step before; for
+    a service that the input calls, its answer.
+
+    Args:
+        exercise_id: The lab's folder and the file's name, such as ``"lab_2_5.agent"``.
+        title: The title of the card, naming the lab and the subject.
+        task: One sentence that states the task.
+        gives: Draws the steps: each is an input, :class:`To` a topic or service, or a number of seconds of the
+            subject's time without an input. It must draw the same number of steps each time.
+        tells: For each topic or service of the subject, the path of the field that is compared, such as ``"data"`` or
+            ``"linear.x"``; a tuple of paths if there are several.
+        every: True to compare all messages of a step, not only the last: for a node that answers each input.
+        pause: Seconds of the subject's time after each input.
+        tolerance: The absolute or relative tolerance for numbers.
+        roles: The roles of the subject's endpoints, the most telling first.
+        points: The points of the exercise. All criteria are worth the same.
+
+    Example::
+
+        EXERCISE = SameAsSolution(
+            "lab_8_1.brake",
+            "A rule · The brake",
+            "Drive, but stand still in front of a wall.",
+            gives=lambda random: [To("/distance", random.choice((0.2, 0.9))) for _ in range(12)],
+            tells={"/cmd_vel": ("linear.x", "angular.z")},
+        ).exercise()
+    """
+
+    def __init__(
+        self,
+        exercise_id: str,
+        title: str,
+        task: str,
+        *,
+        gives: Callable[[Random], Sequence[To | float]],
+        tells: Mapping[str, str | tuple[str, ...]],
+        every: bool = False,
+        pause: float = PAUSE,
+        tolerance: float = TOLERANCE,
+        roles: Sequence[str] = ("publisher", "subscription"),
+        points: float = POINTS,
+    ) -> None:
+        self._id, self._gives, self._every, self._pause, self._tolerance = (
+            exercise_id,
+            gives,
+            every,
+            pause,
+            tolerance,
+        )
+        self._tells = {name: (paths,) if isinstance(paths, str) else paths for name, paths in tells.items()}
+        self._draft = Draft(exercise_id, title, task, subject := _Drawn(self._scenario, *roles))
+        share = points / (len(roles) + len(self._tells))
+        for role in roles:
+            self._draft.asks(role, share, _HAS[role], subject.has(role))
+        for name, paths in self._tells.items():
+            what = " and ".join(path for path in paths if path != "data")
+            title = f"Says the right {what or 'value'} on {name}"
+            self._draft.criterion(name.strip("/"), share, title)(partial(self._agrees, name))
+        self.knows = self._draft.knows
+
+    def exercise(self, **more: Any) -> Exercise:
+        """Return the finished exercise. For ``more`` see :meth:`autograder.kit.draft.Draft.exercise`."""
+        return self._draft.exercise(recorded=("noted",), **more)
+
+    def _scenario(self, bench: Bench) -> None:
+        is_recording = not bench.reference.parts
+        for drawing in range(DRAWINGS) if is_recording else [bench.random.randrange(DRAWINGS)]:
+            steps = self._gives(Random(f"{self._id} {drawing}"))
+            meet(bench, f"drawing {drawing}", partial(self._plays, steps))
+
+    def _plays(self, steps: Sequence[To | float], met: Met) -> bool:
+        """Give the subject all steps. Return False as soon as the subject does not answer."""
+        ends = met.bench.reference.interface
+        speakers = dict(zip(sorted(ends.get("subscription", {})), met.speakers, strict=True))
+        callers = dict(zip(sorted(ends.get("service", {})), met.callers, strict=True))
+        for number, step in enumerate([self._pause, *steps]):
+            before = len(met.bench.seen().events)
+            if isinstance(step, To):
+                whole = step.value if isinstance(step.value, Mapping) else {"data": step.value}
+                if step.name in speakers:
+                    speakers[step.name].send(**whole)
+                elif step.name in callers:
+                    callers[step.name].ask(whole)
+                    if not callers[step.name].await_answers(QUIET[met.bench.pace]):
+                        return False
+                else:
+                    raise ValueError(f"gives: {step.name!r} is not one of {', '.join([*speakers, *callers])}")
+                met.bench.settle()
+            if not met.bench.run_time(self._pause if isinstance(step, To) else step):
+                return False
+            met.bench.settle()
+            self._note(met.bench, number, step, met.bench.seen().events[before:])
+        return True
+
+    def _note(self, bench: Bench, number: int, step: To | float, events: Sequence[Event]) -> None:
+        given = step.name if isinstance(step, To) else f"{step:g} s without an input"
+        for name, paths in self._tells.items():
+            told = [e.data["fields"] for e in events if e.kind in ("message", "answered") and e.name == name]
+            values = [[pick(fields, path) for path in paths] for fields in told]
+            bench.note(name, step=number, given=given, values=values if self._every else values[-1:])
+
+    def _agrees(self, name: str, seen: Part, expected: Part) -> Finding:
+        """Decide whether all outputs on a topic, or of a service, are the solution's. Show the first that is not."""
+        mine, theirs = seen.of("noted", name), expected.of("noted", name)
+        for made, due in zip(mine, theirs, strict=False):
+            if not same(made.data["values"], due.data["values"], self._tolerance):
+                return Finding(False, self._in_words(name, due), self._in_words(name, made))
+        if len(mine) < len(theirs):
+            return Finding(
+                False, self._in_words(name, theirs[len(mine)]), "nothing: your node did not get that far"
+            )
+        return Finding(True, right := f"the same as the solution in all {len(theirs)} steps", right)
+
+    def _in_words(self, name: str, noted: Event) -> str:
+        paths, (step, given) = self._tells[name], (noted.data["step"], noted.data["given"])
+        told = [
+            in_words(values)
+            if paths == ("data",)
+            else in_words([f"{p} = {in_words([v])}" for p, v in zip(paths, values, strict=True)])
+            for values in noted.data["values"]
+        ]
+        after = f"after step {step} ({given})" if step else "at the start"
+        return f"{'; '.join(told) or 'nothing'} {after}"
