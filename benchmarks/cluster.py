@@ -23,7 +23,7 @@ import msgspec
 from autograder import course
 from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.class_directory import ClassDirectory
-from autograder.grading.rebuilding.task_making import tasks_of
+from autograder.grading.tasks.task_making import tasks_of
 from autograder.safe_files import fresh_folder
 from benchmarks.classes import make_class
 from benchmarks.machine import Machine, Watch, machine

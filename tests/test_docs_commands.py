@@ -48,7 +48,7 @@ RUN_BY = {
     "./course check": "test_cli.py::test_a_right_answer_ends_with_0_and_a_wrong_one_with_1",
     "./course collect": GUIDE,
     "./course compare": GUIDE,
-    "./course demo": "grading/classes/test_sample_class.py::test_every_sample_earns_what_it_must",
+    "./course demo": "grading/new_classes/test_sample_class.py::test_every_sample_earns_what_it_must",
     "./course doctor": "environment/test_doctor.py::test_this_machine_has_all_that_the_course_needs",
     "./course execute": "test_second_chapter.py::test_its_notebooks_are_executed",
     "./course export": GUIDE,

@@ -35,6 +35,7 @@ MAY_IMPORT = {
     "execution": frozenset({"boxes", "messages", "verdict", "process_trees", "safe_files"}),
     "masters": frozenset({"course", "exercises", "safe_files"}),
     "mcap_files": frozenset[str](),
+    "known_classes": frozenset[str](),
     "process_trees": frozenset[str](),
     "safe_files": frozenset[str](),
     "appeals": ALL - {"grading", "boxes", "execution", "notebook"},
@@ -56,6 +57,14 @@ NOTEBOOK_MAY_IMPORT = {
     "robot_node": frozenset({"robot_drivers", "robot_motion"}),
     "live_robot": frozenset({"nodes", "observing", "robot_drivers", "robot_motion", "robot_node"}),
 }
+# The folders and files of `grading`, from the bottom up: each imports, also for types, only what stands before it.
+GRADING_FROM_BELOW = (
+    *("grading_errors", "grading_task", "course_version"),
+    *("rebuilding", "classes", "returning", "running", "cluster"),
+    *("table", "export", "class_records", "class_store", "class_checks"),
+    *("collecting", "tasks", "similarity", "result_writer", "reporting", "appeal_writing"),
+    *("batch_work", "batch_steps", "batch", "nbgrader_commands", "new_classes"),
+)
 MOST_FILES = 15
 """In one folder of the package: a stranger must be able to read their names."""
 
@@ -140,6 +149,32 @@ def test_a_part_of_the_notebook_imports_only_what_is_below(part: str) -> None:
     assert not wrong, "\n".join(wrong)
 
 
+def arrows_up(folder: Path, from_below: tuple[str, ...]) -> list[str]:
+    """Return the imports in a folder of the package, also those for types, of what stands later in an order.
+
+    Args:
+        folder: The folder.
+        from_below: The names of everything in the folder, in the order.
+    """
+    return [
+        f"{path.relative_to(folder)}:{line} imports {name}"
+        for path, line, name in imports(folder)
+        if name.startswith(f"{PACKAGE.name}.{folder.name}.")
+        and from_below.index(path.relative_to(folder).parts[0].removesuffix(".py"))
+        < from_below.index(name.split(".")[2])
+    ]
+
+
+def test_nothing_in_grading_imports_what_is_above_it() -> None:
+    folder = PACKAGE / "grading"
+    parts = {
+        path.stem for path in folder.iterdir() if path.suffix == ".py" or (path / "__init__.py").exists()
+    }
+    assert sorted(GRADING_FROM_BELOW) == sorted(parts - {"__init__"})
+    assert not arrows_up(folder, GRADING_FROM_BELOW)
+    assert arrows_up(folder, GRADING_FROM_BELOW[::-1])
+
+
 def test_what_was_handed_in_is_parsed_by_a_desk_alone() -> None:
     of_the_class = {
         "rebuilding/cell_matching.py",
@@ -171,6 +206,13 @@ def test_the_process_with_the_gradebook_imports_nothing_that_executes_a_submissi
     assert "autograder.grading.running.process_link" in reached
     assert [name for name in sorted(reached - but) if name.startswith(executing)] == []
     assert "autograder.grading.running.order_executor" not in reached
+
+
+def test_a_task_gets_its_judge_from_the_executor() -> None:
+    importing = [
+        name for path, _, name in imports(PACKAGE / "grading/running") if path.stem == "task_execution"
+    ]
+    assert [name for name in importing if name.startswith("autograder.judge")] == []
 
 
 def test_the_grader_reads_no_master() -> None:

@@ -22,9 +22,9 @@ from autograder.cards.readable_text import TRACEBACK
 from autograder.execution.executed_cells import CellType
 from autograder.grading.grading_task import Task
 from autograder.grading.rebuilding import nbformat_nodes
-from autograder.grading.rebuilding.task_making import cells_of
 from autograder.grading.running import execution_backends
 from autograder.grading.running.batch_progress import BatchProgress, plain_line
+from autograder.grading.tasks.task_making import cells_of
 from autograder.masters.master_files import chapter_path, lab_name, masters
 from autograder.masters.source_notebooks import source_notebook
 from autograder.safe_files import HeldFolder

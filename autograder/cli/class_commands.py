@@ -77,7 +77,7 @@ def hand_out(place: Path, assignments: tuple[str, ...], as_zip: bool, with_solut
 def new_class(folder: Path, assignments: tuple[str, ...], timezone: ZoneInfo | None) -> None:
     """Make an nbgrader course directory in FOLDER, ready for submissions."""
     from autograder import course
-    from autograder.grading.classes import new_class as classes
+    from autograder.grading.new_classes import new_class as classes
 
     with grading_errors():
         made = classes.new_class(folder, course.root(), assignments=assignments, timezone=str(timezone or ""))
@@ -90,7 +90,7 @@ def new_class(folder: Path, assignments: tuple[str, ...], timezone: ZoneInfo | N
 def renew_class(folder: Path, assignments: tuple[str, ...]) -> None:
     """Update the source notebooks of the class FOLDER to the present course, and keep copies of the old ones."""
     from autograder import course
-    from autograder.grading.classes.new_class import renew
+    from autograder.grading.new_classes.new_class import renew
 
     with grading_errors():
         for line in renew(folder, course.root(), assignments):
@@ -212,7 +212,7 @@ def grade(
 ) -> None:
     """Grade the submissions in the class directory FOLDER."""
     from autograder.grading import batch
-    from autograder.grading.running import execution_backends
+    from autograder.grading.classes.class_directory import switch_sandbox_off
 
     if scheduler is not None and jobs is not None:
         fail(
@@ -221,7 +221,7 @@ def grade(
     if scheduler is None:
         need_ros()
     if unsafe_no_sandbox:
-        execution_backends.switch_sandbox_off(folder)
+        switch_sandbox_off(folder)
     try:
         with grading_errors():
             report = batch.grade(
@@ -282,7 +282,7 @@ def worker(scheduler: str | None, jobs: int | None, name: str | None, unsafe_no_
 @click.argument("folder", type=click.Path(path_type=Path), default=Path("demo-class"))
 def demo(folder: Path) -> None:
     """Make a sample class, grade it and show the result."""
-    from autograder.grading.classes import sample_class
+    from autograder.grading.new_classes import sample_class
 
     with grading_errors():
         report = sample_class.demo(folder)

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 
 import click
 
-from autograder.cli import result_commands
 from autograder.cli.command_results import CANNOT, NO, as_json_option, fail, need_ros, print_json
 from environment.installation import COMMAND
 
@@ -48,18 +47,12 @@ _notebooks = click.option(
     is_flag=True,
     help="Run COMMAND in the sandbox in which submissions of a class run. It can read only the current folder.",
 )
-@click.option(
-    "--mcap",
-    type=click.Path(path_type=Path),
-    help="Also write the messages that the judge saw into this file.",
-)
 def check(
     exercise: str | None,
     command: tuple[str, ...],
     as_json: bool,
     seed: str | None,
     boxed: bool,
-    mcap: Path | None,
 ) -> None:
     """Run a command as the subject of an exercise and print the verdict."""
     from autograder import course, exercises
@@ -80,15 +73,13 @@ def check(
             f"no command to check: write it after two dashes, such as {COMMAND} check {exercise} -- python3 my_file.py"
             + (f" (it is called with {wanted.arguments})" if wanted.arguments else "")
         )
-    if mcap is not None:
-        result_commands.require_mcap_suffix(mcap)
     need_ros()
     from autograder.judge.command_check import CommandNotFound, check_and_keep
     from autograder.standard_output import stray_lines_on_stderr
 
     try:
         with _box(command) if boxed else nullcontext() as box, stray_lines_on_stderr():
-            verdict, evidence = check_and_keep(exercise, command, seed=seed, box=box)
+            verdict, _ = check_and_keep(exercise, command, seed=seed, box=box)
     except CommandNotFound as error:
         fail(str(error))
     # With --box, the program is another person's, so its result does not count as the user's progress.
@@ -97,10 +88,6 @@ def check(
 
         check_journal.note_check(verdict)
     show(verdict, as_json=as_json)
-    if mcap is not None and evidence:
-        from autograder.judge.evidence_files import unpack
-
-        click.echo(result_commands.save_messages(unpack(evidence), mcap), err=as_json)
     sys.exit({"passed": 0, "failed": NO}.get(verdict.state, CANNOT))
 
 

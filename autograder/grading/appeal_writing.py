@@ -1,12 +1,11 @@
-"""Writes the appeal file of one check: the student's cells, the judge's evidence, and the verdict."""
+"""Writes the appeal file of one check: the student's cells and page, the judge's evidence, and the verdict."""
 
 from __future__ import annotations
 
-import json
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from autograder import exercises
-from autograder.appeals.appeal_file import Appeal, AppealedCell, dump
+from autograder.appeals.appeal_file import AppealedCell, AppealedCheck, dump
 from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.grading_errors import (
@@ -29,6 +28,8 @@ if TYPE_CHECKING:
 
 FOLDER = "appeals"
 """The name of a class's folder for appeal files."""
+_MAX_PAGE = 8_000_000
+"""The maximum size in bytes of a feedback page in an appeal file. A larger one is only in the class."""
 
 
 def write_appeal(path: Path, student: str, exercise_id: str, to: Path | None = None) -> Path:
@@ -49,16 +50,16 @@ def write_appeal(path: Path, student: str, exercise_id: str, to: Path | None = N
     except (exercises.UnknownExercise, exercises.BrokenExercise) as error:
         raise GradingError(f"{error} `{COMMAND} check` lists the exercises.") from error
     with clear_disk_errors(directory.path), ClassStore(directory) as store:
-        content = dump(_appeal(directory, store, student, exercise_id, task))
-        to = (to or directory.path / FOLDER / f"{student}-{exercise_id}.json").absolute()
+        content = _content(directory, store, student, exercise_id, task)
+        to = (to or directory.path / FOLDER / f"{student}-{exercise_id}.zip").absolute()
         with clear_place_errors(to, "-o"):
             write_whole(to, content)
     return to
 
 
-def _appeal(
+def _content(
     directory: ClassDirectory, store: ClassStore, student: str, exercise_id: str, task: str
-) -> Appeal:
+) -> bytes:
     again = course_command("grade", directory.path, "--student", student)
     kept, entered = store.evidence(student, exercise_id), store.entered()
     if kept is None:
@@ -75,16 +76,15 @@ def _appeal(
         raise GradingError(
             f"The evidence of {exercise_id} by {student} is damaged ({error}). Judge the check again: {again} --again"
         ) from error
-    return Appeal(
-        student=student,
-        assignment=kept.assignment,
-        notebook=kept.notebook,
-        task=task,
-        course=kept.course,
-        solution=list(_before(cells, exercise_id)),
-        expected=_expected(exercise_id, seen.reference),
-        seen=seen,
-    )
+    solution = list(_before(cells, exercise_id))
+    check = AppealedCheck(student, kept.assignment, kept.notebook, task, kept.course, solution)
+    page = directory.path / "feedback" / student / kept.assignment / f"{kept.notebook}.html"
+    others = {}
+    if page.is_file() and page.stat().st_size < _MAX_PAGE:
+        others["page.html"] = page.read_bytes()
+    if evidence_files.reference_digest(exercise_id) == seen.reference:
+        others["expected.json"] = exercises.reference_path(exercise_id).read_bytes()
+    return dump(check, kept.checks[exercise_id], others)
 
 
 def _before(cells: list[RunCell], exercise_id: str) -> Iterator[AppealedCell]:
@@ -94,12 +94,6 @@ def _before(cells: list[RunCell], exercise_id: str) -> Iterator[AppealedCell]:
             return
         if not cell.checks:
             yield AppealedCell(cell.name, cell.text.splitlines())
-
-
-def _expected(exercise_id: str, digest: str) -> Any:
-    if evidence_files.reference_digest(exercise_id) != digest:
-        return None
-    return json.loads(exercises.reference_path(exercise_id).read_text(encoding="utf-8"))
 
 
 def _why_nothing(

@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING
 
 from autograder.grading.classes.class_directory import RefusedFile
 from autograder.grading.classes.gradebook_reading import CellEntry, SubmissionEntry, read_due_dates
-from autograder.grading.classes.submission_times import handed_in_at, is_not_believed
 from autograder.grading.collecting.collected_csv import NAME, Table
+from autograder.grading.collecting.submission_times import handed_in_at, is_not_believed
 from autograder.grading.grading_errors import MasterUnusable, check_known, course_command
-from autograder.grading.table.class_table import Difference
+from autograder.grading.reporting.class_table import Difference
 from autograder.grading.table.rows import LATE, Row
 from environment.installation import COMMAND
 
@@ -24,10 +24,10 @@ if TYPE_CHECKING:
     from autograder.execution.executed_cells import Execution
     from autograder.grading.classes.class_directory import ClassDirectory, Submission
     from autograder.grading.classes.gradebook_reading import Entries
-    from autograder.grading.grading_task import Task
-    from autograder.grading.rebuilding.source_points import GradedCell, Released
-    from autograder.grading.rebuilding.submission_fingerprints import Fingerprints
+    from autograder.grading.grading_task import GradedCell, Task
     from autograder.grading.table.roster import Roster
+    from autograder.grading.tasks.source_points import Released
+    from autograder.grading.tasks.submission_fingerprints import Fingerprints
 
 
 @dataclass(frozen=True)

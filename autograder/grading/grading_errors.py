@@ -175,9 +175,10 @@ def clear_disk_errors(path: Path) -> Iterator[None]:
         said = said_by_database(error)
         if said:
             raise GradebookTrouble(path, said) from error
-        if isinstance(error, PermissionError):
+        if isinstance(error, OSError) and error.errno in (errno.EACCES, errno.EPERM, errno.EROFS):
             raise GradingError(
-                f"You do not have the right to read or write {error.filename or path}. Check the file's owner and mode."
+                f"You do not have the right to read or write {error.filename or path}: {error.strerror}. Check its "
+                "owner, its mode, and whether its disk is mounted for reading only."
             ) from error
         raise
 

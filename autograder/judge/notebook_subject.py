@@ -108,7 +108,7 @@ class NotebookSubject:
         """Have the notebook make the node (if the subject is a class) or call the function."""
         self._run += 1
         self._recorder = recorder
-        self._end = recorder.end_of_this_part()
+        self._end = recorder.end
         self._marker, self._may_make_more, self._ended = None, False, False
         self._stopped.clear()
         fresh, self._fresh = self._fresh, False

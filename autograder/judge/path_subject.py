@@ -104,7 +104,7 @@ class PathSubject(InOwnProcesses):
         del options
         self._run += 1
         self._recorder = recorder
-        self._end = recorder.end_of_this_part()
+        self._end = recorder.end
         self._ended.clear()
         self._stopped.clear()
         self._built.clear()

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from autograder.dds_discovery import DOMAIN_VARIABLE, DomainClaim, claim_free_domain, domain_from_environment
+from autograder.known_classes import is_known
 from autograder.student import check_journal
 
 if TYPE_CHECKING:
@@ -71,7 +72,10 @@ def open_lab(folder: Path, arguments: Sequence[str] = ()) -> None:
     os.environ[check_journal.VARIABLE] = str(check_journal.journal_path(Path.cwd()))
     os.environ[_BUILD_TYPE] = os.environ.get(_BUILD_TYPE) or "Release"
     from jupyterlab.labapp import LabApp
+    from nbgrader.apps import NbGrader
 
+    # For *Validate*, which would run the configuration file of the folder.
+    NbGrader.load_cwd_config = is_known(Path.cwd())
     try:
         # JupyterLab runs in this process, because the claim on the domain ends with this process.
         LabApp.launch_instance([*START_PAGE, NOTHING_TO_SAVE, *QUIET, *_start_folder(Path.cwd()), *arguments])

@@ -20,8 +20,8 @@ from tiny_class import LISTENER, TALKER, FakeEngine, TinyClass, make_tiny_class
 
 from autograder.grading.classes import gradebook_reading
 from autograder.grading.classes.class_directory import ClassDirectory
-from autograder.grading.classes.new_class import release
 from autograder.grading.grading_errors import GradingError
+from autograder.grading.new_classes.new_class import release
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

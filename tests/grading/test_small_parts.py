@@ -16,15 +16,11 @@ import pytest
 from autograder.boxes.run_limits import Ended
 from autograder.cards.readable_text import printable
 from autograder.execution.executed_cells import Cell, CellCheck, CellRun, Execution
-from autograder.grading.classes.class_directory import (
-    create_secret,
-    read_secret,
-    reason_against_name,
-    seed_for,
-)
-from autograder.grading.classes.new_class import NewClass
+from autograder.grading.classes.class_directory import reason_against_name
+from autograder.grading.classes.class_secret import create_secret, read_secret, seed_for
 from autograder.grading.grading_errors import DiskFull, NotAClass, is_disk_full
 from autograder.grading.grading_task import Task, points
+from autograder.grading.new_classes.new_class import NewClass
 from autograder.grading.table.rows import Row, write_csv
 from autograder.safe_files import write_whole
 from autograder.verdict import State, Verdict

@@ -124,7 +124,6 @@ def test_the_end_of_a_run_is_known_behind_all_that_was_sent_before(monkeypatch: 
     monkeypatch.setattr(PathSubject, "_say", lambda *_: None)
     nobody: Any = None
     subject, recorder = PathSubject(nobody, "lab_1_1.hello", ""), Recorder()
-    recorder.begin("part", {})
     recorder.take_in = lambda: recorder.record("log", "/rosout", text="hello")
     subject.start(recorder, (), {})
     subject._take(ProgramExited(run=1, code=0))

@@ -29,7 +29,6 @@ def _part(work: Callable[[CommandSubject, Recorder], None], program: str) -> Par
 
     def judge() -> None:
         recorder = Recorder()
-        recorder.begin("part", {})
         recorder.take_in = lambda: recorder.record("message", "/sent")
         subject = CommandSubject([sys.executable, "-u", "-c", program])
         subject.begin(1)

@@ -18,7 +18,7 @@ from jupyterlab.labapp import LabApp
 from jupyterlab_server.config import get_page_config
 from nbgrader.server_extensions.validate_assignment.handlers import ValidateAssignmentHandler
 
-from autograder import exercises
+from autograder import exercises, known_classes
 from autograder.dds_discovery import claim_free_domain
 from autograder.student import check_journal
 from autograder.student.lab import (
@@ -94,6 +94,18 @@ def test_the_session_has_a_free_domain_of_its_own_and_stays_on_this_host(
 def test_students_build_interfaces_as_a_check_does(started: list[Started], tmp_path: Path) -> None:
     open_lab(tmp_path)
     assert started[0].environ["CMAKE_BUILD_TYPE"] == "Release"
+
+
+def test_validate_runs_the_configuration_only_of_a_known_class(
+    started: list[Started], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path / "data"))
+    (tmp_path / "nbgrader_config.py").write_text("c.Exchange.root = 'from the folder'")
+    open_lab(tmp_path)
+    assert not started[0].validate.Exchange
+    known_classes.remember(tmp_path)
+    open_lab(tmp_path)
+    assert started[1].validate.Exchange.root == "from the folder"
 
 
 def test_two_sessions_have_two_domains(

@@ -18,8 +18,8 @@ import dask
 from distributed import Worker, WorkerPlugin, get_worker
 
 from autograder.boxes.sandbox import why_impossible
+from autograder.grading.course_version import course_version
 from autograder.grading.grading_errors import GradingError
-from autograder.grading.rebuilding.course_version import course_version
 from autograder.grading.running.execution_backends import check_address, cores
 from autograder.grading.running.order_executor import Executor
 from autograder.grading.running.worker_messages import Offer

@@ -242,7 +242,7 @@ class _Collecting:
                 continue
             arrival, data = _taken(file, receiving)
             arrival = replace(arrival, levels=source.levels, is_own=source.is_own)
-            if not is_archive(arrival.name, data):
+            if arrival.refused or not is_archive(arrival.name, data):
                 yield arrival
                 continue
             yield replace(arrival, is_archive=True)

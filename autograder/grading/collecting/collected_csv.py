@@ -8,8 +8,6 @@ was open in a spreadsheet while another ``collect`` wrote a new table.
 from __future__ import annotations
 
 import contextlib
-import csv
-import io
 from collections import Counter, defaultdict
 from dataclasses import dataclass, replace
 from datetime import datetime
@@ -24,7 +22,7 @@ from autograder.grading.collecting.collected_files import INBOX_FOLDER, LineStat
 from autograder.grading.collecting.file_to_grade import cell_in
 from autograder.grading.collecting.inbox_lines import Edit, in_utc
 from autograder.grading.collecting.submitted_file_names import read_time
-from autograder.grading.table.spreadsheet_csv import csv_rows, defused, original
+from autograder.grading.table.spreadsheet_csv import csv_rows, csv_text, defused, original
 from autograder.safe_files import write_whole
 
 if TYPE_CHECKING:
@@ -212,12 +210,10 @@ class Table:
             write_whole(self.path, data)
 
     def _text(self, number: int, rows: Iterable[Sequence[str]]) -> bytes:
-        text = io.StringIO(newline="")
         symbol = self._locale.number_symbols.get("latn", {}).get("decimal", ".")
-        writer = csv.writer(text, delimiter=";" if symbol == "," else ",", lineterminator="\r\n")
-        writer.writerow([*COLUMNS[:-1], f"{COLUMNS[-1]} (table {number})"])
-        writer.writerows(rows)
-        return text.getvalue().encode("utf-8-sig", "replace")
+        header = [*COLUMNS[:-1], f"{COLUMNS[-1]} (table {number})"]
+        text = csv_text([header, *rows], ";" if symbol == "," else ",", "\r\n")
+        return text.encode("utf-8-sig", "replace")
 
     def _row(self, several: Sequence[Line], edit: Edit) -> list[str]:
         """Return the row for a file. For the work of a group, ``several`` has a line for each student."""

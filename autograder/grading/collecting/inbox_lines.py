@@ -182,7 +182,8 @@ class _Reading:
             is_work = arrival.name.lower().endswith((".ipynb", ".zip")) or not ids
             return replace(line, reason=arrival.refused, is_soft=not is_work)
         if arrival.is_archive:
-            return replace(line, reason=reason)
+            is_nobodys = found is None and not owners.members
+            return replace(line, reason=_UNKNOWN_ARCHIVE if is_nobodys and not written else reason)
         data = self.inbox.read(arrival.content)
         if not _is_notebook(arrival.name, data):
             return _no_notebook(line, arrival)
@@ -213,6 +214,11 @@ class _Reading:
 
 _LMS_PAGES = ("index.html", "grades.csv", GRADESCOPE)
 """The names of files that an LMS adds to a download."""
+_OF_ONE_STUDENT = "If one student sent it, the folder has to be named after this student"
+_UNKNOWN_ARCHIVE = (
+    "the archive's name identifies no student. If it is a whole download, unpack it, and collect the folder. "
+    f"{_OF_ONE_STUDENT}"
+)
 _OTHER_ARCHIVES = (".rar", ".7z", ".gz", ".bz2", ".xz", ".zst")
 
 
@@ -221,8 +227,9 @@ def _no_notebook(line: Line, arrival: Arrival) -> Line:
     if arrival.name in _LMS_PAGES and not arrival.inner and not line.students:
         return replace(line, assignment="", reason="the file is a page of the LMS", is_soft=True, lms="list")
     if arrival.name.lower().endswith(_OTHER_ARCHIVES):
-        what = "archives of this kind are not opened: unpack the file into a folder named"
-        return replace(line, reason=f"{what} {line.student or 'STUDENT'}, and collect the folder")
+        into = f" into a folder named {line.student}" if line.student else ""
+        reason = f"archives of this kind are not opened: unpack the file{into}, and collect the folder"
+        return replace(line, reason=reason if into else f"{reason}. {_OF_ONE_STUDENT}")
     return replace(line, reason="it is not a notebook", is_soft=True)
 
 

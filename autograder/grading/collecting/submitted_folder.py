@@ -14,7 +14,6 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from autograder.grading.classes.class_directory import SUFFIX, ClassDirectory, RefusedFile
-from autograder.grading.classes.submission_times import TIMESTAMP, timestamp_text
 from autograder.grading.collecting.collected_files import (
     BY_HAND,
     Arrival,
@@ -24,6 +23,7 @@ from autograder.grading.collecting.collected_files import (
     Inbox,
     LineState,
 )
+from autograder.grading.collecting.submission_times import TIMESTAMP, timestamp_text
 from autograder.grading.rebuilding.submitted_notebook import UnreadableSubmission, read_bytes
 from autograder.safe_files import write_whole
 from environment.installation import COMMAND

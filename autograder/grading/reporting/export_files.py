@@ -21,8 +21,8 @@ from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.collecting.collected_files import CollectedRecords
 from autograder.grading.collecting.submitted_file_names import read_lms_name
 from autograder.grading.grading_errors import GradingError, check_known, clear_place_errors, course_command
+from autograder.grading.reporting.class_table import ClassTable, read_table
 from autograder.grading.reporting.lms_gradebooks import LAYOUTS, fill_list, gradebook, line_from_lms
-from autograder.grading.table.class_table import ClassTable, read_table
 from autograder.grading.table.rows import COLUMNS, DROPPED, LATE, csv_cells
 from autograder.grading.table.spreadsheet_csv import blank, csv_text
 from autograder.kit.in_words import counted

@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from autograder.grading.classes.class_directory import RefusedFile
-    from autograder.grading.table.class_table import ClassTable, Difference
+    from autograder.grading.reporting.class_table import ClassTable, Difference
 
 
 _FORM = 2

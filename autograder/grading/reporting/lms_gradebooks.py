@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from autograder.grading.collecting.collected_files import CollectedRecords, Line
-    from autograder.grading.table.class_table import ClassTable
+    from autograder.grading.reporting.class_table import ClassTable
     from autograder.grading.table.roster import Student
 
 

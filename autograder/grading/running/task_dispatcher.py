@@ -17,10 +17,12 @@ from typing import TYPE_CHECKING, Protocol
 
 import msgspec
 
+from autograder.cards.readable_text import paragraph
+from autograder.grading.course_version import course_version
 from autograder.grading.grading_errors import GradingError
-from autograder.grading.rebuilding.course_version import course_version
 from autograder.grading.running.worker_messages import (
     ADDRESS,
+    LONGEST_WORDS,
     Answered,
     Asked,
     Broken,
@@ -35,7 +37,6 @@ from autograder.grading.running.worker_messages import (
     Unfit,
     admitted,
     admitted_offer,
-    printable,
 )
 from environment.installation import COMMAND
 
@@ -310,8 +311,8 @@ class Dispatcher:
             self._workers[address] = _Worker(name, offer.slots)
 
     def _refuse(self, address: str, name: str, reason: str) -> None:
-        called = printable(address if name == address else f"{name[:100]} ({address})")
-        reason = printable(reason)
+        called = paragraph(address if name == address else f"{name[:100]} ({address})", LONGEST_WORDS)
+        reason = paragraph(reason, LONGEST_WORDS)
         self._refused[address] = f"{called}: {reason}"
         self._tell(f"The worker {called} gets no work: {reason}.")
 

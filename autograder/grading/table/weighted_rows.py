@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
     from autograder.grading.classes.class_directory import ClassDirectory
     from autograder.grading.classes.gradebook_reading import CellEntry, Entries, SubmissionEntry
-    from autograder.grading.rebuilding.source_points import GradedCell
+    from autograder.grading.grading_task import GradedCell
 
     Judged = Mapping[tuple[str, str], Sequence[Row]]
     """The judge's results for each submission, by student and assignment."""

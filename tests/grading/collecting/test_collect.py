@@ -22,10 +22,10 @@ from downloads import ROSTER, write_zip, zipped
 
 from autograder.cli import cli
 from autograder.grading.classes.class_directory import ClassDirectory
-from autograder.grading.classes.submission_times import is_not_believed, read_timestamp
 from autograder.grading.collecting.collect import collect
 from autograder.grading.collecting.collected_csv import Table
 from autograder.grading.collecting.collected_files import Inbox, LineState
+from autograder.grading.collecting.submission_times import is_not_believed, read_timestamp
 from autograder.grading.grading_errors import GradingError
 
 if TYPE_CHECKING:

@@ -22,8 +22,8 @@ from autograder.cli import cli
 from autograder.execution.executed_cells import Execution
 from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.class_directory import ClassDirectory, Submission
-from autograder.grading.rebuilding.task_making import tasks_of
 from autograder.grading.running import execution_backends
+from autograder.grading.tasks.task_making import tasks_of
 from autograder.judge import evidence_files, one_check
 from autograder.kit.evidence import Evidence
 

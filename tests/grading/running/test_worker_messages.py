@@ -12,7 +12,6 @@ from tiny_class import FakeEngine, TinyClass
 from autograder.boxes.run_limits import Ended
 from autograder.execution.executed_cells import CellRun, Execution
 from autograder.grading.classes.class_directory import ClassDirectory
-from autograder.grading.rebuilding.task_making import tasks_of
 from autograder.grading.running.worker_messages import (
     LARGEST_ANSWER,
     LARGEST_OFFER,
@@ -21,6 +20,7 @@ from autograder.grading.running.worker_messages import (
     admitted,
     admitted_offer,
 )
+from autograder.grading.tasks.task_making import tasks_of
 from autograder.verdict import State
 
 if TYPE_CHECKING:

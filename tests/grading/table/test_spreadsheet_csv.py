@@ -52,6 +52,9 @@ pytestmark = pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning")
         ("a|  @b", "a|'  @b"),
         ("a;＝1", "a;'＝1"),
         ("a|−1;﹢2", "a|'−1;'﹢2"),
+        ("x,+1,y", "x,'+1,y"),
+        ('a,"=1', "a,'\"=1"),
+        ('a; "=1', "a;' \"=1"),
         ("", ""),
         ("   ", "   "),
         ("'=1", "'=1"),
@@ -75,7 +78,7 @@ def test_every_column_of_the_grades_is_defused(tmp_path: Path) -> None:
     write_csv(tmp_path / "grades.csv", [row])
     _, *rows = csv.reader(io.StringIO((tmp_path / "grades.csv").read_text()))
     assert rows == [
-        ["'=s", "'+a", "'-e", "1", "2", "'@st", "'=d e", '\'=HYPERLINK("x"),  =2', "-1", "", "", "", "'=n"]
+        ["'=s", "'+a", "'-e", "1", "2", "'@st", "'=d e", "'=HYPERLINK(\"x\"),'  =2", "-1", "", "", "", "'=n"]
     ]
 
 
@@ -95,7 +98,7 @@ def test_plain_nbgrader_export_is_defused_too(tiny: TinyClass, fake_engine: Fake
     rows = list(csv.DictReader(io.StringIO((tiny.path / "nbgrader_export.csv").read_text("utf-8-sig"))))
     wanted = ("student_id", "last_name", "email", "score", "max_score")
     assert {tuple(row[name] for name in wanted) for row in rows} == {
-        ("'-ada", "'=cmd,\" +1", "'@x", "14", "20"),
+        ("'-ada", "'=cmd,'\" +1", "'@x", "14", "20"),
         ("ben", "", "", "", "20"),
     }
 

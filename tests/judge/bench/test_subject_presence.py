@@ -38,7 +38,6 @@ def _presence(
     monkeypatch.setattr(discovery, "subject_nodes", lambda *_: nodes)
     monkeypatch.setattr(discovery, "topic_ends", lambda *_: [])
     recorder = Recorder()
-    recorder.begin("a part", {})
     seen = cast("Subject", subject)
     return Presence(cast("Any", None), recorder, seen, Pace.FAST, announced=lambda: announced), recorder
 

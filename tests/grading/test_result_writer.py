@@ -17,10 +17,11 @@ from nbgrader.preprocessors import AssignLatePenalties, GetGrades, SaveAutoGrade
 from tiny_class import LISTENER, TALKER, FakeEngine, TinyClass
 
 from autograder.execution.executed_cells import CellCheck
-from autograder.grading.classes import gradebook_writing, result_writer
+from autograder.grading import result_writer
+from autograder.grading.classes import gradebook_writing
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.classes.gradebook_reading import read_entries
-from autograder.grading.classes.submission_times import handed_in_at
+from autograder.grading.collecting.submission_times import handed_in_at
 from autograder.grading.grading_task import points
 from autograder.grading.returning.feedback_pages import mark_waiting
 from autograder.grading.returning.page_exporter import PageExporter

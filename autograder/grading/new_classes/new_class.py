@@ -18,20 +18,20 @@ from nbgrader.converters import GenerateAssignment
 from nbgrader.coursedir import CourseDirectory
 
 from autograder.boxes.run_limits import Limits
+from autograder.grading.class_checks import note_origins
 from autograder.grading.class_store import ClassStore
-from autograder.grading.classes.class_checks import note_origins
 from autograder.grading.classes.class_directory import (
     CONFIG_NAME,
     COURSE_NAME,
     STATE_NAME,
     SUFFIX,
     ClassDirectory,
-    create_secret,
     refuse_students_folder,
 )
-from autograder.grading.classes.result_writer import quiet
+from autograder.grading.classes.class_secret import create_secret
 from autograder.grading.grading_errors import GradingError, clear_disk_errors, course_command
 from autograder.grading.rebuilding import nbformat_nodes
+from autograder.grading.result_writer import quiet
 from autograder.masters.master_files import MasterError, lab_name, masters, relinked
 from autograder.masters.source_notebooks import source_notebook
 from environment.installation import COMMAND

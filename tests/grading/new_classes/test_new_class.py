@@ -13,8 +13,8 @@ from tiny_class import MASTER, TinyClass, write_master
 
 from autograder.course import root
 from autograder.grading.classes.class_directory import ClassDirectory
-from autograder.grading.classes.new_class import machine_timezone, new_class
 from autograder.grading.grading_errors import DiskFull, GradingError
+from autograder.grading.new_classes.new_class import machine_timezone, new_class
 
 
 @pytest.fixture

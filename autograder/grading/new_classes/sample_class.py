@@ -16,13 +16,12 @@ from autograder import course
 from autograder.boxes import sandbox
 from autograder.execution.executed_cells import CellType
 from autograder.grading.batch import grade
-from autograder.grading.classes.class_directory import CONFIG_NAME, STATE_NAME, SUFFIX
-from autograder.grading.classes.new_class import CONFIG, new_class
+from autograder.grading.classes.class_directory import CONFIG_NAME, STATE_NAME, SUFFIX, switch_sandbox_off
 from autograder.grading.grading_errors import GradingError
+from autograder.grading.new_classes.new_class import CONFIG, new_class
 from autograder.grading.rebuilding import nbformat_nodes
 from autograder.grading.rebuilding.notebook_rebuilding import grade_id
 from autograder.grading.reporting.grade_report import show
-from autograder.grading.running import execution_backends
 from autograder.masters.master_files import lab_name, masters
 
 if TYPE_CHECKING:
@@ -96,7 +95,7 @@ def demo(path: Path, *, console: Console | None = None) -> GradeReport:
     """
     console = console or Console()
     if sandbox.why_impossible():
-        execution_backends.switch_sandbox_off(path)
+        switch_sandbox_off(path)
     _make(path, console)
     report = grade(path)
     show(report, console)

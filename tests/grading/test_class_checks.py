@@ -11,7 +11,7 @@ from nbgrader.converters import NbGraderException
 from test_nbgrader_and_ours import nbgrader_autograde, nbgrader_generate_feedback
 from tiny_class import TALKER, FakeEngine, TinyClass
 
-from autograder.grading.classes.class_checks import check_configuration
+from autograder.grading.class_checks import check_configuration
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.grading_errors import GradingError
 

@@ -10,9 +10,9 @@ import pytest
 
 from autograder import course
 from autograder.grading.cluster import dask_worker
-from autograder.grading.rebuilding import submission_fingerprints
-from autograder.grading.rebuilding.course_version import counted_files, course_version
+from autograder.grading.course_version import counted_files, course_version
 from autograder.grading.running import task_dispatcher
+from autograder.grading.tasks import submission_fingerprints
 
 ROOT = Path(__file__).resolve().parents[3]
 # What git keeps of these counts. That list is not taken from the code under test.

@@ -13,31 +13,13 @@ import msgspec
 
 from autograder.grading.classes import gradebook_reading
 from autograder.grading.grading_errors import GradingError, MasterUnusable, course_command
+from autograder.grading.grading_task import GradedCell
 from autograder.grading.table.rows import NO_EXERCISE
 
 if TYPE_CHECKING:
     from autograder.grading.class_store import ClassStore
     from autograder.grading.classes.class_directory import ClassDirectory
-    from autograder.grading.rebuilding.submission_fingerprints import Fingerprints
-
-
-@dataclass(frozen=True)
-class GradedCell:
-    """A cell with points in a source notebook.
-
-    Attributes:
-        notebook: The name of the notebook.
-        name: The grade_id of the cell.
-        exercise: The id of the exercise that the cell checks; if there is none, the name of the cell.
-        worth: The maximum points of the cell.
-        by_judge: True if the judge or the cell's own tests give the points; False if a person does.
-    """
-
-    notebook: str
-    name: str
-    exercise: str
-    worth: float
-    by_judge: bool = True
+    from autograder.grading.tasks.submission_fingerprints import Fingerprints
 
 
 @dataclass(frozen=True)

@@ -12,10 +12,9 @@ import hashlib
 from typing import TYPE_CHECKING
 
 from autograder.grading.classes.class_directory import CONFIG_NAME, SUFFIX
-from autograder.grading.classes.submission_times import TIMESTAMP
-from autograder.grading.rebuilding.course_version import course_version
+from autograder.grading.collecting.submission_times import TIMESTAMP
+from autograder.grading.course_version import course_version
 from autograder.grading.rebuilding.submitted_notebook import UnreadableSubmission, read_bytes
-from autograder.grading.running import execution_backends
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -41,7 +40,7 @@ class Fingerprints:
             [
                 self.of_sources(submission.assignment),
                 self._directory.secret.hex(),
-                str(execution_backends.is_sandbox_off(self._directory)),
+                str(self._directory.is_sandbox_off),
                 submission.student,
                 *(_content(file) for file in (*files, submission.folder / TIMESTAMP)),
             ]

@@ -12,10 +12,11 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 
 from autograder.execution.executed_cells import Cell, CellType
-from autograder.grading.classes.class_checks import limits_of
-from autograder.grading.classes.class_directory import SUFFIX, ClassDirectory, Submission, seed_for
+from autograder.grading.class_checks import limits_of
+from autograder.grading.classes.class_directory import SUFFIX, ClassDirectory, Submission
+from autograder.grading.classes.class_secret import seed_for
+from autograder.grading.course_version import course_version
 from autograder.grading.grading_task import Task
-from autograder.grading.rebuilding.course_version import course_version
 from autograder.grading.rebuilding.notebook_rebuilding import (
     grade_id,
     is_of_another,
@@ -26,7 +27,6 @@ from autograder.grading.rebuilding.notebook_rebuilding import (
 from autograder.grading.rebuilding.submission_desk import read_notebook
 from autograder.grading.rebuilding.submitted_notebook import UnreadableSubmission, read_bytes
 from autograder.grading.rebuilding.trusted_master import check_of
-from autograder.grading.running import execution_backends
 from autograder.masters.master_cells import CellRole
 
 if TYPE_CHECKING:
@@ -76,7 +76,7 @@ def task_of(directory: ClassDirectory, submission: Submission, notebook: str) ->
         problem=problem,
         remarks=() if problem else tuple(rebuilt.metadata["autograder"]["remarks"]),
         pictures=hashlib.sha256(msgspec.json.encode(pictures)).hexdigest() if pictures else "",
-        boxed=not execution_backends.is_sandbox_off(directory),
+        boxed=not directory.is_sandbox_off,
     )
     return task, rebuilt
 

@@ -10,11 +10,11 @@ from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.gradebook_reading import Entries, read_entries
 from autograder.grading.collecting.collected_csv import Table, Waiting
 from autograder.grading.grading_errors import GradingError, MasterUnusable
-from autograder.grading.rebuilding.source_points import read_released
-from autograder.grading.rebuilding.submission_fingerprints import Fingerprints
 from autograder.grading.table.roster import Roster, Student, read_roster
 from autograder.grading.table.rows import DROPPED, EXCUSED, NOT_SUBMITTED, Row, total
 from autograder.grading.table.weighted_rows import read_what_counts, true_rows
+from autograder.grading.tasks.source_points import read_released
+from autograder.grading.tasks.submission_fingerprints import Fingerprints
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Mapping, Sequence

@@ -11,8 +11,8 @@ import pytest
 from autograder.grading.collecting.collected_files import CollectedRecords
 from autograder.grading.reporting import class_statistics as figures
 from autograder.grading.reporting import export_files
+from autograder.grading.reporting.class_table import ClassTable
 from autograder.grading.reporting.lms_gradebooks import gradebook
-from autograder.grading.table.class_table import ClassTable
 from autograder.grading.table.roster import Roster, Student
 from autograder.grading.table.rows import Row
 
