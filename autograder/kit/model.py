@@ -12,7 +12,7 @@ from enum import StrEnum
 from typing import TYPE_CHECKING, Any, Protocol
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Callable, Container, Mapping, Sequence
     from random import Random
 
     from autograder.kit.counterparts import ActionCaller, ActionCounterpart, Caller, Server, Speaker
@@ -197,6 +197,8 @@ class Bench(Protocol):
         answer: Callable[[Mapping[str, Any]], Mapping[str, Any]],
         *,
         hold: int = 0,
+        late: Mapping[int, float] = ...,
+        never: Container[int] = (),
     ) -> Server:
         """Serve a service, and record each request and response.
 
@@ -206,6 +208,9 @@ class Bench(Protocol):
             answer: Returns the fields of the response, given the fields of the request.
             hold: The number of the request, counted from 1, that is not answered until :meth:`Server.release` is
                 called; 0 for none.
+            late: The requests that are answered late, with the delay in seconds of the subject's time. The answers are
+                sent while :meth:`run_time` lets time pass.
+            never: The requests that are never answered.
         """
 
     def call(self, service: str, type_name: str) -> Caller:

@@ -7,12 +7,15 @@ the solution.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Container, Mapping, Sequence
+from dataclasses import dataclass, field
 from functools import partial
 from random import Random
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from autograder.kit.draft import OWN, Draft
+from autograder.kit.in_words import counted
 from autograder.kit.model import Advice, Finding, Mistake, Pace
 from autograder.kit.recipes.own_scenario import QUIET, Met, OwnScenario, meet, pick
 from autograder.kit.recipes.relay import To
@@ -22,13 +25,16 @@ if TYPE_CHECKING:
     from autograder.kit.evidence import Event, Evidence, Part
     from autograder.kit.model import Bench, Exercise
 
-__all__ = ["SameAsSolution", "To"]
+__all__ = ["SameAsSolution", "Serves", "To"]
 
 DRAWINGS = 8
 """The number of drawings of the inputs in a recording."""
 PAUSE = 0.75
 """Seconds of the subject's time after each input. Whatever the input changes must be published by then."""
 TOLERANCE = 1e-3
+ONE_MISSING_IN = 10
+"""Of a list of this many messages, one more or one fewer may come: a timer may begin a little earlier or later."""
+NOTHING: Mapping[str, Any] = MappingProxyType({})
 POINTS = 10.0
 """The points of an exercise whose author does not say how many it is worth."""
 
@@ -67,6 +73,21 @@ def _noted(part: Part) -> list[Any]:
     return [[event.name, event.data["step"], event.data["values"]] for event in part.of("noted")]
 
 
+@dataclass(frozen=True)
+class Serves:
+    """A service of the judge that the subject calls.
+
+    Attributes:
+        answer: Draws the fields of an answer.
+        late: The requests, counted from 1, that are answered late, with the delay in seconds of the subject's time.
+        never: The requests that are never answered.
+    """
+
+    answer: Callable[[Random], Mapping[str, Any]]
+    late: Mapping[int, float] = field(default_factory=dict)
+    never: Container[int] = ()
+
+
 class SameAsSolution:
     """An exercise about a node that must do what the reference solution does with the same inputs.
 
@@ -81,6 +102,9 @@ class SameAsSolution:
             subject's time without an input. It must draw the same number of steps each time.
         tells: For each topic or service of the subject, the path of the field that is compared, such as ``"data"`` or
             ``"linear.x"``; a tuple of paths if there are several.
+        lists: The same for topics of which all messages are compared, in order, however they are spread over the steps.
+            The last ones may be missing, or be more.
+        serves: The services that the subject calls.
         every: True to compare all messages of a step, not only the last: for a node that answers each input.
         pause: Seconds of the subject's time after each input.
         tolerance: The absolute or relative tolerance for numbers.
@@ -105,28 +129,25 @@ class SameAsSolution:
         task: str,
         *,
         gives: Callable[[Random], Sequence[To | float]],
-        tells: Mapping[str, str | tuple[str, ...]],
+        tells: Mapping[str, str | tuple[str, ...]] = NOTHING,
+        lists: Mapping[str, str | tuple[str, ...]] = NOTHING,
+        serves: Mapping[str, Serves] = NOTHING,
         every: bool = False,
         pause: float = PAUSE,
         tolerance: float = TOLERANCE,
         roles: Sequence[str] = ("publisher", "subscription"),
         points: float = POINTS,
     ) -> None:
-        self._id, self._gives, self._every, self._pause, self._tolerance = (
-            exercise_id,
-            gives,
-            every,
-            pause,
-            tolerance,
-        )
-        self._tells = {name: (paths,) if isinstance(paths, str) else paths for name, paths in tells.items()}
+        self._id, self._gives, self._serves = exercise_id, gives, serves
+        self._every, self._pause, self._tolerance = every, pause, tolerance
+        self._paths = {n: (p,) if isinstance(p, str) else p for n, p in {**tells, **lists}.items()}
+        self._lists = lists.keys()
         self._draft = Draft(exercise_id, title, task, _Drawn(self._scenario, *roles))
-        share = points / len(self._tells)
-        for name, paths in self._tells.items():
+        for name, paths in self._paths.items():
             what = " and ".join(path for path in paths if path != "data")
             title = f"Says the right {what or 'value'} on {name}"
-            self._draft.criterion(name.strip("/"), share, title)(partial(self._agrees, name))
-        self.knows = self._draft.knows
+            agrees = partial(self._same_list if name in lists else self._same_steps, name)
+            self._draft.criterion(name.strip("/"), points / len(self._paths), title)(agrees)
 
     def exercise(self, **more: Any) -> Exercise:
         """Return the finished exercise. For ``more`` see :meth:`autograder.kit.draft.Draft.exercise`."""
@@ -135,8 +156,13 @@ class SameAsSolution:
     def _scenario(self, bench: Bench) -> None:
         is_recording = not bench.reference.parts
         for drawing in range(DRAWINGS) if is_recording else [bench.random.randrange(DRAWINGS)]:
-            steps = self._gives(Random(f"{self._id} {drawing}"))
-            meet(bench, f"drawing {drawing}", partial(self._plays, steps))
+            drawn = Random(f"{self._id} {drawing}")
+            steps = self._gives(drawn)
+            meet(bench, f"drawing {drawing}", partial(self._plays, steps), partial(self._serve, bench, drawn))
+
+    def _serve(self, bench: Bench, drawn: Random, service: str, kind: str) -> None:
+        how = self._serves[service]
+        bench.serve(service, kind, lambda _: how.answer(drawn), late=how.late, never=how.never)
 
     def _plays(self, steps: Sequence[To | float], met: Met) -> bool:
         """Give the subject all steps. Return False as soon as the subject does not answer."""
@@ -157,38 +183,70 @@ class SameAsSolution:
                     raise ValueError(f"gives: {step.name!r} is not one of {', '.join([*speakers, *callers])}")
                 met.bench.settle()
             if not met.bench.run_time(self._pause if isinstance(step, To) else step):
+                self._note_lists(met.bench)
                 return False
             met.bench.settle()
             self._note(met.bench, number, step, met.bench.seen().events[before:])
+        self._note_lists(met.bench)
         # In real time nothing has proved so far that the subject's executor is alive.
         return met.bench.pace is Pace.FAST
 
     def _note(self, bench: Bench, number: int, step: To | float, events: Sequence[Event]) -> None:
         given = step.name if isinstance(step, To) else f"{step:g} s without an input"
-        for name, paths in self._tells.items():
-            told = [e.data["fields"] for e in events if e.kind in ("message", "answered") and e.name == name]
-            values = [[pick(fields, path) for path in paths] for fields in told]
+        for name in self._paths.keys() - self._lists:
+            values = self._values(name, events)
             bench.note(name, step=number, given=given, values=values if self._every else values[-1:])
 
-    def _agrees(self, name: str, seen: Part, expected: Part) -> Finding:
-        """Decide whether all outputs on a topic, or of a service, are the solution's. Show the first that is not."""
+    def _note_lists(self, bench: Bench) -> None:
+        for name in self._lists:
+            bench.note(name, step=0, given="", values=self._values(name, bench.seen().events))
+
+    def _values(self, name: str, events: Sequence[Event]) -> list[list[Any]]:
+        told = [e.data["fields"] for e in events if e.kind in ("message", "answered") and e.name == name]
+        return [[pick(fields, path) for path in self._paths[name]] for fields in told]
+
+    def _same_steps(self, name: str, seen: Part, expected: Part) -> Finding:
+        """Decide whether the outputs on a topic, or of a service, are the solution's. Show the first that is not."""
         mine, theirs = seen.of("noted", name), expected.of("noted", name)
         for made, due in zip(mine, theirs, strict=False):
             if not same(made.data["values"], due.data["values"], self._tolerance):
-                return Finding(False, self._in_words(name, due), self._in_words(name, made))
+                return Finding(False, self._at_step(name, due), self._at_step(name, made))
         if len(mine) < len(theirs):
             return Finding(
-                False, self._in_words(name, theirs[len(mine)]), "nothing: your node did not get that far"
+                False, self._at_step(name, theirs[len(mine)]), "nothing: your node did not get that far"
             )
         return Finding(True, right := f"the same as the solution in all {len(theirs)} steps", right)
 
-    def _in_words(self, name: str, noted: Event) -> str:
-        paths, (step, given) = self._tells[name], (noted.data["step"], noted.data["given"])
+    def _same_list(self, name: str, seen: Part, expected: Part) -> Finding:
+        """Decide whether the messages on a topic are the solution's, in order. Show those around a difference."""
+        mine, theirs = _listed(seen, name), _listed(expected, name)
+        both = min(len(mine), len(theirs))
+        differs = next((n for n in range(both) if not same(mine[n], theirs[n], self._tolerance)), both)
+        missing = abs(len(mine) - len(theirs))
+        around = slice(max(0, differs - 2), differs + 2)
+        due, came = (
+            f"{self._in_words(name, listed[around])} ({counted(len(listed), 'message')} in all)"
+            for listed in (theirs, mine)
+        )
+        return Finding(differs == both and missing <= 1 + len(theirs) // ONE_MISSING_IN, due, came)
+
+    def _at_step(self, name: str, noted: Event) -> str:
+        after = (
+            f"after step {noted.data['step']} ({noted.data['given']})"
+            if noted.data["step"]
+            else "at the start"
+        )
+        return f"{self._in_words(name, noted.data['values'])} {after}"
+
+    def _in_words(self, name: str, listed: Sequence[Sequence[Any]]) -> str:
+        paths = self._paths[name]
+        named = ("" if path == "data" else f"{path} = " for path in paths)
+        prefixes = list(named)
         told = [
-            in_words(values)
-            if paths == ("data",)
-            else in_words([f"{p} = {in_words([v])}" for p, v in zip(paths, values, strict=True)])
-            for values in noted.data["values"]
+            ", ".join(p + in_words([v]) for p, v in zip(prefixes, values, strict=True)) for values in listed
         ]
-        after = f"after step {step} ({given})" if step else "at the start"
-        return f"{'; '.join(told) or 'nothing'} {after}"
+        return "; ".join(told) or "nothing"
+
+
+def _listed(part: Part, name: str) -> list[Any]:
+    return [values for event in part.of("noted", name) for values in event.data["values"]]

@@ -71,13 +71,19 @@ def once_met(happens: Callable[[Met], bool]) -> Callable[[Bench], None]:
     return lambda bench: meet(bench, "met", happens)
 
 
-def meet(bench: Bench, part: str, happens: Callable[[Met], bool]) -> None:
+def meet(
+    bench: Bench,
+    part: str,
+    happens: Callable[[Met], bool],
+    serves: Callable[[str, str], object] | None = None,
+) -> None:
     """Run one part of a scenario like :func:`once_met`.
 
     Args:
         bench: The bench of the scenario.
         part: The name of the part.
         happens: As for :func:`once_met`.
+        serves: Called with the name and type of each service that the reference solution calls; it makes the server.
     """
     roles = {role: dict(sorted(ends.items())) for role, ends in bench.reference.interface.items()}
     publishers, heard, services = (roles.get(r, {}) for r in ("publisher", "subscription", "service"))
@@ -86,6 +92,9 @@ def meet(bench: Bench, part: str, happens: Callable[[Met], bool]) -> None:
         bench.listen(topic, kind)
     speakers = [bench.speak(topic, kind) for topic, kind in heard.items()]
     callers = [bench.call(service, kind) for service, kind in services.items()]
+    if serves is not None:
+        for service, kind in roles.get("client", {}).items():
+            serves(service, kind)
     bench.start()
     if all(bench.await_endpoint(role, name) for role, ends in roles.items() for name in ends):
         bench.release()
