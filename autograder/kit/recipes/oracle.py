@@ -25,16 +25,21 @@ if TYPE_CHECKING:
     from autograder.kit.evidence import Event, Evidence, Part
     from autograder.kit.model import Bench, Exercise
 
-__all__ = ["SameAsSolution", "Serves", "To"]
+__all__ = ["SameAsSolution", "Serves", "Sets", "To"]
 
 DRAWINGS = 8
 """The number of drawings of the inputs in a recording."""
 PAUSE = 0.75
 """Seconds of the subject's time after each input. Whatever the input changes must be published by then."""
 TOLERANCE = 1e-3
-ONE_MISSING_IN = 10
-"""Of a list of this many messages, one more or one fewer may come: a timer may begin a little earlier or later."""
+ONE_MISSING_IN = 4
+"""One more or one fewer of this many messages may come, because each node asks and tells at its own moments."""
 NOTHING: Mapping[str, Any] = MappingProxyType({})
+SET = ("set_parameters", "rcl_interfaces/srv/SetParameters")
+DESCRIBE = ("describe_parameters", "rcl_interfaces/srv/DescribeParameters")
+DESCRIBED = ("type", "ranges")
+TYPES = {1: "bool", 2: "integer", 3: "double", 4: "string"}
+"""The types of parameters (rcl_interfaces/msg/ParameterType.msg)."""
 POINTS = 10.0
 """The points of an exercise whose author does not say how many it is worth."""
 
@@ -88,6 +93,30 @@ class Serves:
     never: Container[int] = ()
 
 
+@dataclass(frozen=True)
+class Sets:
+    """A step in which the judge sets a parameter of the subject; the subject takes the value or refuses it.
+
+    Attributes:
+        parameter: The name of the parameter.
+        value: The new value: a number, a text or a truth value.
+        node: The full name of the node; by default the subject's first node.
+    """
+
+    parameter: str
+    value: float | str | bool
+    node: str = ""
+
+    @property
+    def name(self) -> str:
+        """The parameter, with its node if the author named one."""
+        return f"{self.node}.{self.parameter}" if self.node else self.parameter
+
+
+Step = To | Sets | float
+"""What the judge does in a step: it gives an input, sets a parameter, or lets time pass, in seconds."""
+
+
 class SameAsSolution:
     """An exercise about a node that must do what the reference solution does with the same inputs.
 
@@ -105,6 +134,9 @@ class SameAsSolution:
         lists: The same for topics of which all messages are compared, in order, however they are spread over the steps.
             The last ones may be missing, or be more.
         serves: The services that the subject calls.
+        parameters: The names of the parameters whose description (type and range) is compared, and which values of
+            them are taken and which are refused with a reason, if a step :class:`Sets` them.
+        late_after: Seconds of the subject's time after which the judge subscribes, and asks for the last message, too.
         every: True to compare all messages of a step, not only the last: for a node that answers each input.
         pause: Seconds of the subject's time after each input.
         tolerance: The absolute or relative tolerance for numbers.
@@ -128,10 +160,12 @@ class SameAsSolution:
         title: str,
         task: str,
         *,
-        gives: Callable[[Random], Sequence[To | float]],
+        gives: Callable[[Random], Sequence[Step]],
         tells: Mapping[str, str | tuple[str, ...]] = NOTHING,
         lists: Mapping[str, str | tuple[str, ...]] = NOTHING,
         serves: Mapping[str, Serves] = NOTHING,
+        parameters: Sequence[str] = (),
+        late_after: float = 0.0,
         every: bool = False,
         pause: float = PAUSE,
         tolerance: float = TOLERANCE,
@@ -140,12 +174,18 @@ class SameAsSolution:
     ) -> None:
         self._id, self._gives, self._serves = exercise_id, gives, serves
         self._every, self._pause, self._tolerance = every, pause, tolerance
-        self._paths = {n: (p,) if isinstance(p, str) else p for n, p in {**tells, **lists}.items()}
+        self._parameters, self._late_after = parameters, late_after
+        described = dict.fromkeys(parameters, DESCRIBED)
+        self._paths = {
+            n: (p,) if isinstance(p, str) else p for n, p in {**tells, **lists, **described}.items()
+        }
         self._lists = lists.keys()
         self._draft = Draft(exercise_id, title, task, _Drawn(self._scenario, *roles))
         for name, paths in self._paths.items():
             what = " and ".join(path for path in paths if path != "data")
             title = f"Says the right {what or 'value'} on {name}"
+            if name in parameters:
+                title = f"Describes the parameter {name}, takes the right values and refuses the others"
             agrees = partial(self._same_list if name in lists else self._same_steps, name)
             self._draft.criterion(name.strip("/"), points / len(self._paths), title)(agrees)
 
@@ -154,52 +194,103 @@ class SameAsSolution:
         return self._draft.exercise(recorded=("noted",), **more)
 
     def _scenario(self, bench: Bench) -> None:
+        drawings = range(DRAWINGS if self._gives(Random(0)) != self._gives(Random(1)) or self._serves else 1)
         is_recording = not bench.reference.parts
-        for drawing in range(DRAWINGS) if is_recording else [bench.random.randrange(DRAWINGS)]:
+        for drawing in drawings if is_recording else [bench.random.choice(drawings)]:
             drawn = Random(f"{self._id} {drawing}")
             steps = self._gives(drawn)
-            meet(bench, f"drawing {drawing}", partial(self._plays, steps), partial(self._serve, bench, drawn))
+            serve = partial(self._serve, bench, drawn)
+            plays = partial(self._plays, steps)
+            meet(bench, f"drawing {drawing}", plays, serve, listens=not self._late_after)
 
     def _serve(self, bench: Bench, drawn: Random, service: str, kind: str) -> None:
         how = self._serves[service]
         bench.serve(service, kind, lambda _: how.answer(drawn), late=how.late, never=how.never)
 
-    def _plays(self, steps: Sequence[To | float], met: Met) -> bool:
+    def _plays(self, steps: Sequence[Step], met: Met) -> bool:
         """Give the subject all steps. Return False as soon as the subject does not answer."""
-        ends = met.bench.reference.interface
-        speakers = dict(zip(sorted(ends.get("subscription", {})), met.speakers, strict=True))
-        callers = dict(zip(sorted(ends.get("service", {})), met.callers, strict=True))
-        for number, step in enumerate([self._pause, *steps]):
-            before = len(met.bench.seen().events)
-            if isinstance(step, To):
-                whole = step.value if isinstance(step.value, Mapping) else {"data": step.value}
-                if step.name in speakers:
-                    speakers[step.name].send(**whole)
-                elif step.name in callers:
-                    callers[step.name].ask(whole)
-                    if not callers[step.name].await_answers(QUIET[met.bench.pace]):
-                        return False
-                else:
-                    raise ValueError(f"gives: {step.name!r} is not one of {', '.join([*speakers, *callers])}")
-                met.bench.settle()
-            if not met.bench.run_time(self._pause if isinstance(step, To) else step):
-                self._note_lists(met.bench)
-                return False
-            met.bench.settle()
-            self._note(met.bench, number, step, met.bench.seen().events[before:])
-        self._note_lists(met.bench)
-        # In real time nothing has proved so far that the subject's executor is alive.
-        return met.bench.pace is Pace.FAST
-
-    def _note(self, bench: Bench, number: int, step: To | float, events: Sequence[Event]) -> None:
-        given = step.name if isinstance(step, To) else f"{step:g} s without an input"
-        for name in self._paths.keys() - self._lists:
-            values = self._values(name, events)
-            bench.note(name, step=number, given=given, values=values if self._every else values[-1:])
-
-    def _note_lists(self, bench: Bench) -> None:
+        bench = met.bench
+        if self._late_after:
+            bench.run_time(self._late_after)
+            for topic, kind in bench.reference.interface["publisher"].items():
+                bench.listen(topic, kind, latched=True)
+            bench.wait_until(lambda e: bool(e.main.of("mismatch") or e.main.of("message")), QUIET[bench.pace])
+        went_through = self._describe(bench) and all(
+            self._takes(met, number, step) for number, step in enumerate([self._pause, *steps])
+        )
         for name in self._lists:
             bench.note(name, step=0, given="", values=self._values(name, bench.seen().events))
+        # In real time nothing has proved so far that the subject's executor is alive.
+        return went_through and bench.pace is Pace.FAST
+
+    def _takes(self, met: Met, number: int, step: Step) -> bool:
+        """Give the subject one step, and note its outputs. Return False if the subject does not answer."""
+        bench = met.bench
+        before = 0 if number == 0 else len(bench.seen().events)
+        if not isinstance(step, (int, float)):
+            if not self._given(met, step):
+                return False
+            bench.settle()
+        if not bench.run_time(step if isinstance(step, (int, float)) else self._pause):
+            return False
+        bench.settle()
+        events = bench.seen().events[before:]
+        given = f"{step:g} s without an input" if isinstance(step, (int, float)) else step.name
+        if isinstance(step, Sets):
+            given = f"{step.parameter} = {step.value}"
+            result = next(e.data["fields"]["results"][0] for e in events if e.kind == "answered")
+            bench.note(
+                step.parameter,
+                step=number,
+                given=given,
+                values=[[result["successful"], bool(result["reason"])]],
+            )
+        for name in self._paths.keys() - self._lists - set(self._parameters):
+            values = self._values(name, events)
+            bench.note(name, step=number, given=given, values=values if self._every else values[-1:])
+        return True
+
+    def _given(self, met: Met, step: To | Sets) -> bool:
+        """Give the subject an input. Return False if it should answer and does not."""
+        bench, ends = met.bench, met.bench.reference.interface
+        if isinstance(step, Sets):
+            value = {"name": step.parameter, "value": _parameter_value(step.value)}
+            return self._ask(bench, step.node, SET, {"parameters": [value]})
+        speakers = dict(zip(sorted(ends.get("subscription", {})), met.speakers, strict=True))
+        callers = dict(zip(sorted(ends.get("service", {})), met.callers, strict=True))
+        whole = step.value if isinstance(step.value, Mapping) else {"data": step.value}
+        if step.name in callers:
+            callers[step.name].ask(whole)
+            return callers[step.name].await_answers(QUIET[bench.pace])
+        if step.name not in speakers:
+            raise ValueError(f"gives: {step.name!r} is not one of {', '.join([*speakers, *callers])}")
+        speakers[step.name].send(**whole)
+        return True
+
+    def _describe(self, bench: Bench) -> bool:
+        """Note the types and ranges of the parameters. Return False if the subject does not answer."""
+        if not self._parameters:
+            return True
+        if not (bench.await_node() and self._ask(bench, "", DESCRIBE, {"names": [*self._parameters]})):
+            return False
+        described = bench.seen().of("answered")[-1].data["fields"]["descriptors"]
+        for name, one in zip(self._parameters, described, strict=False):
+            ranges = [
+                [r["from_value"], r["to_value"]]
+                for r in (*one["floating_point_range"], *one["integer_range"])
+            ]
+            bench.note(name, step=0, given="", values=[[one["type"], ranges]])
+        return True
+
+    @staticmethod
+    def _ask(bench: Bench, node: str, service: tuple[str, str], request: Mapping[str, Any]) -> bool:
+        nodes = (name for survey in bench.seen().of("interface") for name in survey.data["nodes"])
+        name, kind = service
+        caller = bench.call(f"{node or next(nodes, '')}/{name}", kind)
+        if not caller.await_server(QUIET[bench.pace]):
+            return False
+        caller.ask(request)
+        return caller.await_answers(QUIET[bench.pace])
 
     def _values(self, name: str, events: Sequence[Event]) -> list[list[Any]]:
         told = [e.data["fields"] for e in events if e.kind in ("message", "answered") and e.name == name]
@@ -239,6 +330,8 @@ class SameAsSolution:
         return f"{self._in_words(name, noted.data['values'])} {after}"
 
     def _in_words(self, name: str, listed: Sequence[Sequence[Any]]) -> str:
+        if name in self._parameters:
+            return "; ".join(map(_of_a_parameter, listed)) or "nothing"
         paths = self._paths[name]
         named = ("" if path == "data" else f"{path} = " for path in paths)
         prefixes = list(named)
@@ -250,3 +343,20 @@ class SameAsSolution:
 
 def _listed(part: Part, name: str) -> list[Any]:
     return [values for event in part.of("noted", name) for values in event.data["values"]]
+
+
+def _of_a_parameter(noted: Sequence[Any]) -> str:
+    """Return in words a parameter's noted type and ranges, or how a new value was received."""
+    first, second = noted
+    if isinstance(first, bool):
+        return "taken" if first else f"refused with{'' if second else 'out'} a reason"
+    ranges = " and ".join(f"from {low:g} to {high:g}" for low, high in second) or "without a range"
+    return f"{TYPES.get(first, 'not declared')} {ranges}"
+
+
+def _parameter_value(value: float | str | bool) -> dict[str, Any]:
+    """Return the fields of a rcl_interfaces/msg/ParameterValue."""
+    kind = next(
+        number for number, python in ((1, bool), (2, int), (3, float), (4, str)) if isinstance(value, python)
+    )
+    return {"type": kind, f"{TYPES[kind]}_value": value}

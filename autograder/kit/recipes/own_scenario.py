@@ -76,6 +76,8 @@ def meet(
     part: str,
     happens: Callable[[Met], bool],
     serves: Callable[[str, str], object] | None = None,
+    *,
+    listens: bool = True,
 ) -> None:
     """Run one part of a scenario like :func:`once_met`.
 
@@ -84,11 +86,12 @@ def meet(
         part: The name of the part.
         happens: As for :func:`once_met`.
         serves: Called with the name and type of each service that the reference solution calls; it makes the server.
+        listens: True if the judge subscribes before the subject starts.
     """
     roles = {role: dict(sorted(ends.items())) for role, ends in bench.reference.interface.items()}
     publishers, heard, services = (roles.get(r, {}) for r in ("publisher", "subscription", "service"))
     bench.part(part)
-    for topic, kind in publishers.items():
+    for topic, kind in publishers.items() if listens else ():
         bench.listen(topic, kind)
     speakers = [bench.speak(topic, kind) for topic, kind in heard.items()]
     callers = [bench.call(service, kind) for service, kind in services.items()]
