@@ -16,7 +16,8 @@ from typing import TYPE_CHECKING
 
 import platformdirs
 
-from environment.installation import COMMAND
+from autograder.command_name import COMMAND
+from autograder.standard_output import printable
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -61,4 +62,4 @@ def _mark(folder: Path) -> Path:
 
 if __name__ == "__main__":
     why = reason_against(Path.cwd(), sys.argv[1], sys.argv[2:])
-    sys.exit(f"course: error: {why}" if why else 0)
+    sys.exit(printable(f"course: error: {why}") if why else 0)

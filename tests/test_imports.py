@@ -26,24 +26,28 @@ ALL = frozenset(PARTS)
 MAY_IMPORT = {
     "verdict": frozenset[str](),
     "course": frozenset[str](),
-    "foreign_code": frozenset[str](),
-    "kit": frozenset({"foreign_code", "verdict"}),
+    "known_errors": frozenset[str](),
+    "kit": frozenset({"known_errors", "verdict"}),
     "exercises": frozenset({"course", "kit"}),
     "messages": frozenset({"verdict"}),
     "cards": frozenset({"verdict"}),
     "boxes": frozenset({"process_trees", "safe_files"}),  # what isolates knows nothing of what runs
     "execution": frozenset({"boxes", "messages", "verdict", "process_trees", "safe_files"}),
-    "masters": frozenset({"course", "exercises", "safe_files"}),
+    "masters": frozenset({"course", "exercises", "safe_files", "standard_output"}),
     "mcap_files": frozenset[str](),
-    "known_classes": frozenset[str](),
+    "known_classes": frozenset({"standard_output"}),
     "process_trees": frozenset[str](),
     "safe_files": frozenset[str](),
+    "standard_output": frozenset[str](),
     "appeals": ALL - {"grading", "boxes", "execution", "notebook"},
     "notebook": ALL
     - {"judge", "exercises", "kit", "masters", "boxes", "execution", "grading", "authoring", "appeals"},
     "judge": ALL - {"notebook", "cards", "masters", "boxes", "execution", "grading", "authoring", "appeals"},
-    "__main__": frozenset({"cli", "course"}),
+    "__main__": frozenset({"cli", "course", "standard_output"}),
+    "command_name": frozenset[str](),
 }
+FOR_ALL = frozenset({"command_name"})
+"""What every part may import: the words of messages."""
 
 # The same for the parts of `notebook`: what is below knows nothing of what is above.
 NOTEBOOK_MAY_IMPORT = {
@@ -61,7 +65,7 @@ NOTEBOOK_MAY_IMPORT = {
 GRADING_FROM_BELOW = (
     *("grading_errors", "grading_task", "course_version"),
     *("rebuilding", "classes", "returning", "running", "cluster"),
-    *("table", "export", "class_records", "class_store", "class_checks"),
+    *("table", "export", "class_records", "class_forms", "class_store", "class_checks"),
     *("collecting", "tasks", "similarity", "result_writer", "reporting", "appeal_writing"),
     *("batch_work", "batch_steps", "batch", "nbgrader_commands", "new_classes"),
 )
@@ -126,7 +130,7 @@ def part_of(path: Path) -> str:
 
 @pytest.mark.parametrize("part", sorted(PARTS))
 def test_a_part_imports_only_what_it_may(part: str) -> None:
-    allowed = MAY_IMPORT.get(part, ALL - {"cli"}) | {part}
+    allowed = MAY_IMPORT.get(part, ALL - {"cli"}) | {part} | FOR_ALL
     wrong = [
         f"{path.relative_to(ROOT)}:{line} imports {name}"
         for path, line, name in imports(PACKAGE)
@@ -135,6 +139,13 @@ def test_a_part_imports_only_what_it_may(part: str) -> None:
         if name.split(".")[1] in PARTS and name.split(".")[1] not in allowed
     ]
     assert not wrong, "MAY_IMPORT above says who may import whom:\n" + "\n".join(wrong)
+
+
+def test_one_part_knows_that_a_wheel_has_another_command_than_a_clone() -> None:
+    asking = {
+        part_of(path) for path, _, name in imports(PACKAGE) if name == "environment.installation.COMMAND"
+    }
+    assert asking == {"command_name"}
 
 
 @pytest.mark.parametrize("part", sorted(NOTEBOOK_MAY_IMPORT))

@@ -14,8 +14,8 @@ from zipfile import ZIP_DEFLATED, ZIP_STORED, BadZipFile, ZipFile
 
 import msgspec
 
+from autograder.command_name import COMMAND
 from autograder.judge import evidence_files
-from environment.installation import COMMAND
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -8,15 +8,14 @@ from __future__ import annotations
 import sys
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import TYPE_CHECKING, NoReturn
+from typing import TYPE_CHECKING
 
 import click
 
-from autograder.cards.readable_text import printable
 from autograder.cli.class_commands import class_folder, only_assignments, only_sections
-from autograder.cli.command_results import as_json_option, fail, grading_errors, print_json
+from autograder.cli.command_results import as_json_option, fail, grading_errors, print_json, print_line
+from autograder.command_name import COMMAND
 from autograder.kit.in_words import counted
-from environment.installation import COMMAND
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -94,9 +93,10 @@ def export(
         print_json({"files": files, "notices": done.notices})
         return
     for file, purpose in done.files:
-        click.echo(f"{printable(str(file))}\n    {printable(purpose)}")
+        print_line(str(file))
+        print_line(f"    {purpose}")
     for notice in done.notices:
-        click.echo(f"note: {printable(notice)}")
+        print_line(f"note: {notice}")
 
 
 @click.command()
@@ -129,7 +129,7 @@ def report(
         if as_json:
             print_json(table_json(page, read_table(ClassDirectory(folder), sections)))
         else:
-            click.echo(page)
+            print_line(str(page))
 
 
 @click.command()
@@ -184,7 +184,7 @@ def compare(folder: Path, before: str, after: str, as_json: bool) -> None:
         return
     click.echo(f"{old} → {new}: {counted(len(found), 'difference')}")
     for difference in found:
-        click.echo(printable(difference.line()))
+        print_line(difference.line())
 
 
 @click.command()
@@ -204,7 +204,7 @@ def attempts(folder: Path, student: str, as_json: bool) -> None:
         print_json({"student": student, "attempts": found})
         return
     for attempt in found:
-        click.echo(printable(attempt.line()))
+        print_line(attempt.line())
 
 
 @click.command()
@@ -226,7 +226,7 @@ def appeal(folder: Path, student: str, exercise: str, output: Path | None) -> No
     from autograder.grading.appeal_writing import write_appeal
 
     with grading_errors():
-        click.echo(write_appeal(folder, student, exercise, output))
+        print_line(str(write_appeal(folder, student, exercise, output)))
 
 
 @click.command()
@@ -249,17 +249,17 @@ def replay(file: Path, as_json: bool) -> None:
         again = replaying.replay(appeal.seen)
         lines = list(_lines_of_replay(appeal, again))
     except (appeal_file.BadAppeal, replaying.CannotReplay) as error:
-        _fail_safely(str(error))
+        fail(_cut(str(error)))
     except Exception as error:  # a damaged file may cause any kind of error
-        _fail_safely(
-            f"{file} is not a valid appeal file ({type(error).__name__}: {error}). The file was edited, or comes from "
-            "a different version of the course: use the version that wrote it."
+        fail(
+            f"{file} is not a valid appeal file ({type(error).__name__}: {_cut(str(error))}). The file was edited, or "
+            "comes from a different version of the course: use the version that wrote it."
         )
     if as_json:
         print_json({"student": appeal.check.student, "course": appeal.check.course, "replay": again})
     else:
         for line in lines:
-            click.echo(_shown(line))
+            print_line(_cut(line))
     sys.exit(1 if again.differences else 0)
 
 
@@ -291,14 +291,8 @@ _MAX_LINES = 100
 """The maximum number of differences to print, and also of notes. A damaged file could cause any number of them."""
 
 
-def _fail_safely(message: str) -> NoReturn:
-    """End the command with a message that may quote text from a student's file."""
-    fail(_shown(message))
-
-
-def _shown(line: str) -> str:
-    """Return a line that is safe to print: shortened, and without characters that control a terminal."""
-    return printable(line if len(line) <= _MAX_COLUMNS else f"{line[:_MAX_COLUMNS]}…")
+def _cut(line: str) -> str:
+    return line if len(line) <= _MAX_COLUMNS else f"{line[:_MAX_COLUMNS]}…"
 
 
 RESULT_COMMANDS = (

@@ -16,8 +16,7 @@ from collections.abc import Callable, Generator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rich.console import Console
-
+from autograder import standard_output
 from autograder.grading.batch_steps import Batch
 from autograder.grading.batch_work import AskedFor
 from autograder.grading.class_checks import check_configuration
@@ -25,10 +24,12 @@ from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.running import execution_backends
 from autograder.grading.running.batch_progress import plain_line
-from autograder.grading.table.roster import read_roster
+from autograder.grading.table.student_list import read_roster
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+
+    from rich.console import Console
 
     from autograder.grading.reporting.grade_report import GradeReport
 
@@ -90,7 +91,7 @@ def grade(
         GradingError: The class cannot be graded, for example because another run is grading it, the disk is full, or
             no worker can execute notebooks.
     """
-    console = console or Console(stderr=True)
+    console = console or standard_output.console(stderr=True)
     directory = ClassDirectory(Path(path))
     check_configuration(directory)
     if scheduler is None:

@@ -7,6 +7,7 @@ import functools
 import time
 from typing import TYPE_CHECKING
 
+from autograder.command_name import COMMAND
 from autograder.grading.batch_work import Work, due_dates, find_work, without_grade, would_change
 from autograder.grading.class_checks import changed_master_warnings, limits_of
 from autograder.grading.classes import gradebook_reading
@@ -18,12 +19,11 @@ from autograder.grading.grading_errors import MasterUnusable, is_disk_full
 from autograder.grading.reporting.grade_report import GradeReport
 from autograder.grading.running import execution_backends
 from autograder.grading.running.batch_progress import BatchProgress, Timings, plain_line
-from autograder.grading.table.roster import enter_roster
 from autograder.grading.table.rows import rows_of, write_csv
+from autograder.grading.table.student_list import enter_roster
 from autograder.grading.table.weighted_rows import read_what_counts, true_rows
 from autograder.grading.tasks.source_points import check_release, read_released
 from autograder.grading.tasks.submission_fingerprints import Fingerprints
-from environment.installation import COMMAND
 
 # Some modules are imported inside functions, because they import nbgrader, which takes a second.
 
@@ -51,9 +51,6 @@ class Batch:
 
     Args:
         directory: The class, which this process has locked.
-        store: The store of the class.
-        console: The console for the progress.
-        roster: The students of the class.
         asked: The chosen assignments and students.
         backend: Finds the workers that execute tasks.
         stack: Ends what the run began.
@@ -90,6 +87,7 @@ class Batch:
         self._store = store
         self._console = console
         self._fingerprints = Fingerprints(directory)
+        # Read before any step, so that a class without a usable source is refused while it is unchanged.
         self._released = released = read_released(directory, store, self._fingerprints)
         self._cells = released.cells
         self._what_counts = read_what_counts(directory, released.cells)
@@ -117,9 +115,11 @@ class Batch:
                 is not an assignment or a student.
         """
         assignments = self._asked.assignments
-        asked = {name: found for name, found in self._cells.items() if not assignments or name in assignments}
+        asked = {name: cells for name, cells in self._cells.items() if not assignments or name in assignments}
+        # An assignment that cannot be graded has no cells; `find_work` says so, more exactly than the gradebook.
         if asked or not assignments:
             check_release(self._directory, asked)
+        # A dry run changes neither the gradebook nor the folder ``submitted``.
         if not self._dry_run:
             enter_roster(self._directory)
             self._notices += rename_decomposed_folders(self._directory)
@@ -128,15 +128,12 @@ class Batch:
         for text in changed_master_warnings(self._directory, self._store, assignments or self._cells):
             self._notices.append(text)
             plain_line(self._console, f"note: {text}")
-        found = find_work(
+        work = find_work(
             self._directory, self._asked, self._released, self._roster, self._fingerprints, beside
         )
-        self._works, self._others, self._refused = found.works, found.others, found.refused
-        self._notices += found.notices
-        self._notices += self._roster.excused_from_nothing(
-            self._directory.assignments(), self._roster.students
-        )
-        return found.works
+        self._works, self._others, self._refused = work.works, work.others, work.refused
+        self._notices += work.notices
+        return work.works
 
     def settle(self, works: list[Work]) -> list[Work]:
         """Mark the submissions whose present files have their grades in the gradebook. The others have to be graded."""
@@ -150,7 +147,7 @@ class Batch:
         if older:
             self._notices.append(
                 f"{older} submissions had been graded with another version of the course. To see whose points have "
-                f"changed, type `{COMMAND} compare` after the run, or `{COMMAND} grade --dry-run` before a run"
+                f"changed, type `{COMMAND} compare` after the run, or `{COMMAND} grade --dry-run` before a run."
             )
         if self._again:
             self._store.forget_results(work.submission for work in works)
@@ -272,18 +269,18 @@ class Batch:
         judged |= {key: work.rows for key, work in submissions.items() if work.rows is not None}
         for student, assignment in sorted((entries.keys() & self._entered.keys()) - submissions.keys()):
             self._notices.append(
-                f"{student}/{assignment} is no longer in submitted; its points stay in the gradebook"
+                f"{student}/{assignment} is no longer in submitted; its points stay in the gradebook."
             )
         rows = true_rows(
-            self._roster.names,
+            self._roster,
             self._cells,
             judged,
             entries,
             submissions,
-            excused=self._roster.excused,
             what_counts=self._what_counts,
             zone=self._directory.time_zone,
         )
+        self._notices += self._roster.notices(self._directory.assignments(), entries, self._roster.students)
         changes: list[Difference] = []
         if self._dry_run:
             changes = would_change(self._directory, self._works, entries, self._cells)

@@ -16,11 +16,11 @@ from typing import TYPE_CHECKING, Any
 
 from autograder import course
 from autograder.boxes.run_limits import Limits
+from autograder.command_name import COMMAND
 from autograder.grading.class_records import Origin
 from autograder.grading.classes.class_directory import CONFIG_NAME
 from autograder.grading.grading_errors import GradingError, course_command
 from autograder.masters.master_files import MasterError
-from environment.installation import COMMAND
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -123,16 +123,16 @@ def limits_of(directory: ClassDirectory) -> Limits:
         GradingError: A limit is not a number greater than zero.
     """
     configured = directory.config.WireExecute
-    found: dict[str, Any] = {}
+    limits: dict[str, Any] = {}
     for name in _LIMITS.keys() & configured.keys():
         with contextlib.suppress(TypeError, ValueError, OverflowError):
-            found[name] = _LIMITS[name](configured[name])
-        if not 0 < found.get(name, 0) < math.inf:
+            limits[name] = _LIMITS[name](configured[name])
+        if not 0 < limits.get(name, 0) < math.inf:
             raise GradingError(
                 f"{directory.path / CONFIG_NAME} sets c.WireExecute.{name} to {configured[name]!r}: write a "
                 f"number above zero, such as {getattr(Limits(), name)}."
             )
-    return Limits(**found)
+    return Limits(**limits)
 
 
 def _unsupported_options(config: Config) -> Iterator[str]:
@@ -147,7 +147,6 @@ def note_origins(store: ClassStore, made: Mapping[str, tuple[Path, NotebookNode]
     """Record from which masters new source notebooks were made.
 
     Args:
-        store: The store of the class.
         made: For each assignment, the path of its master and the new source notebook.
     """
     store.note_origins(
@@ -168,12 +167,12 @@ def changed_master_warnings(
     If the class has no record of its masters, return one warning about that.
 
     Args:
-        directory: The class.
         store: The class's store. It records for each source notebook its master, as the master was then.
         assignments: The assignments to be graded.
     """
-    known = store.origins()
-    if not known:
+    # Only what the class recorded when its notebooks were made tells how the masters were then.
+    origins = store.origins()
+    if not origins:
         return [
             "This class was made by an older version, so it is unknown whether the course's tasks have changed "
             "since. The judge expects what the tasks in the course ask for now. Compare a notebook in source with "
@@ -183,7 +182,7 @@ def changed_master_warnings(
     return [
         _changed_master_warning(directory, name)
         for name in assignments
-        if name in known and _has_changed(known[name])
+        if name in origins and _has_changed(origins[name])
     ]
 
 

@@ -60,6 +60,6 @@ def counted_files() -> Iterator[tuple[str, Path]]:
 
 def _files(folder: Path) -> Iterator[Path]:
     for where, folders, files in os.walk(folder):
-        made = {_MADE_BY_PYTHON} | (_MADE_BY_COLCON if "src" in folders else set())
-        folders[:] = sorted(name for name in folders if name not in made and not name.startswith("."))
+        generated = {_MADE_BY_PYTHON} | (_MADE_BY_COLCON if "src" in folders else set())
+        folders[:] = sorted(name for name in folders if name not in generated and not name.startswith("."))
         yield from (Path(where, name) for name in sorted(files) if not name.startswith("."))

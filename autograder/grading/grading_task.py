@@ -90,7 +90,6 @@ class GradedCell:
     """A cell with points in a source notebook.
 
     Attributes:
-        notebook: The name of the notebook.
         name: The grade_id of the cell.
         exercise: The id of the exercise that the cell checks; if there is none, the name of the cell.
         worth: The maximum points of the cell.

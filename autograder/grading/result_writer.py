@@ -102,6 +102,7 @@ class Writer:
         try:
             with quiet(self._directory.state):
                 self._convert_and_enter(submission, results)
+            # Read the points back, because a wrong grade is worse than none.
             self._verify(submission, results)
         except NotWritten:
             self.take_back([submission])
@@ -118,6 +119,7 @@ class Writer:
             course=course,
         )
         attempt = Attempt(datetime.now(tz=UTC), submission.assignment, fingerprint, course, rows)
+        # A result with trouble of the grader is an attempt, but not entered as done, so the next run checks it again.
         is_final = not any(execution.trouble for _, execution in results)
         self._store.enter(submission, attempt, entered if is_final else None)
 
@@ -236,7 +238,6 @@ def _convert(
     """Write the notebooks of a submission with their results, and return the entries for the gradebook.
 
     Args:
-        directory: The class.
         submission: The submission that was executed.
         results: Pairs of a task and its result, one for each notebook of the assignment.
         folder: The folder to create for the notebooks. It must not exist yet.
@@ -255,6 +256,7 @@ def _convert(
     entries = {}
     for task, execution in results:
         notebook = _graded_notebook(directory, submission, task, execution)
+        # Before the entry is made, because nbgrader, too, cuts outputs before it computes points from them.
         LimitOutput(config=directory.config).preprocess(notebook, {})
         entries[task.notebook] = replace(_notebook_entry(notebook), unchecked=unchecked(task, execution))
         _write_read_only(folder / f"{task.notebook}{SUFFIX}", _notebook_text(notebook))
@@ -325,7 +327,7 @@ def _with_results(nb: NotebookNode, task: Task, execution: Execution) -> Noteboo
             node.outputs = [nbformat_nodes.output(**output) for output in run.outputs]
             node.outputs += _remark(node, cell, run, task.limits) if execution.cells else []
     # Scripts in outputs are removed here, because nbgrader's formgrader shows notebooks of `autograded/` unchanged.
-    make_harmless(nb, range(len(nb.cells)) if execution.trouble else execution.as_typed)
+    make_harmless(nb, {index for index, cell in enumerate(task.cells) if cell.own})
     nb.cells = list(_with_rubrics(nb.cells))
     if not task.boxed:
         nb.cells.insert(0, nbformat_nodes.cell(CellType.MARKDOWN, f"**{execution_backends.UNBOXED_NOTE}**"))
@@ -335,14 +337,14 @@ def _with_results(nb: NotebookNode, task: Task, execution: Execution) -> Noteboo
 def _with_rubrics(cells: Sequence[NotebookNode]) -> Iterator[NotebookNode]:
     """Yield the cells. Below each answer that a person grades, add a cell with the instructor's notes for grading."""
     for cell in cells:
-        known = cell.metadata.pop("autograder", {})
+        notes = cell.metadata.pop("autograder", {})
         yield cell
-        if known.get("rubric"):
-            text = f"**How this answer is graded**\n\n{known['rubric']}"
-            made = nbformat_nodes.cell(CellType.MARKDOWN, text, f"rubric-{cell.id}"[:64])
-            if known["pictures"]:
-                made["attachments"] = known["pictures"]
-            yield made
+        if notes.get("rubric"):
+            text = f"**How this answer is graded**\n\n{notes['rubric']}"
+            rubric_cell = nbformat_nodes.cell(CellType.MARKDOWN, text, f"rubric-{cell.id}"[:64])
+            if notes["pictures"]:
+                rubric_cell["attachments"] = notes["pictures"]
+            yield rubric_cell
 
 
 def _graded_outputs(

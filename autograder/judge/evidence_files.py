@@ -22,10 +22,10 @@ from typing import TYPE_CHECKING, Any
 
 import msgspec
 
+from autograder.command_name import COMMAND
 from autograder.exercises import reference_path
 from autograder.kit.evidence import Event, Evidence, Part, Reference, Variant
 from autograder.verdict import Verdict  # noqa: TC001  (msgspec reads the annotations)
-from environment.installation import COMMAND
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -30,6 +30,7 @@ from autograder.kit.evidence import Evidence, Reference
 from autograder.kit.in_words import of_its_kind, shortened, visible
 from autograder.kit.mistakes.package_mistakes import changed_since_build
 from autograder.kit.model import Advice, Exercise, Finding, Mistake, Pace
+from autograder.kit.runners import runner_trouble
 from autograder.verdict import CriterionResult, Diagnosis, State, Verdict
 
 if TYPE_CHECKING:
@@ -123,7 +124,7 @@ def _check(
 
     def next_look(pace: Pace, before: Evidence | None = None) -> Seen:
         try:
-            return look(
+            seen = look(
                 exercise,
                 subject,
                 reference,
@@ -136,6 +137,9 @@ def _check(
             )
         except OutOfTime:
             raise _too_busy(verdict) from None
+        if trouble := runner_trouble(seen.evidence.parts):
+            raise JudgeFailed(f"the course could not prepare the program: {trouble}")
+        return seen
 
     subject.begin(domain_id)
     seen = next_look(Pace.FAST)

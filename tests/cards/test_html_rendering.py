@@ -195,6 +195,17 @@ def test_what_could_not_be_checked_accuses_nobody(load: Callable[[str], Verdict]
             assert accusation not in shown
 
 
+def test_a_check_that_the_student_has_to_ask_for_otherwise_blames_nothing() -> None:
+    asked = not_checked(
+        "lab_1_2.taker", "", 0.0, "No exercise has this name.\nCorrect it.", key="unknown_exercise"
+    )
+    shown = words(Tree(card_html(asked)).root)
+    assert "No exercise has this name." in shown
+    assert "Correct it." in shown
+    assert "trouble" not in shown
+    assert "instructor" not in shown
+
+
 def test_a_pass_is_met_with_a_warm_word_and_no_homework(load: Callable[[str], Verdict]) -> None:
     shown = words(Tree(card_html(load("talker_passed"))).root)
     assert "Well done" in shown

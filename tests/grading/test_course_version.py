@@ -14,7 +14,7 @@ from autograder.grading.course_version import counted_files, course_version
 from autograder.grading.running import task_dispatcher
 from autograder.grading.tasks import submission_fingerprints
 
-ROOT = Path(__file__).resolve().parents[3]
+ROOT = Path(__file__).resolve().parents[2]
 # What git keeps of these counts. That list is not taken from the code under test.
 PLACES = (
     "autograder",

@@ -87,6 +87,15 @@ def test_a_syntax_error_is_found() -> None:
     assert "SyntaxError" in _part(_await_end, "def f(:").traceback
 
 
+def test_the_stack_of_a_crash_in_compiled_code_is_a_traceback() -> None:
+    program = "import ctypes\nprint('before')\ndef crash():\n    ctypes.string_at(0)\ncrash()"
+    part = _part(_await_end, program)
+    first, outermost, *_, last = part.traceback.splitlines()
+    assert (first, last) == ("Traceback (most recent call last):", "Segmentation fault")
+    assert outermost == '  File "<string>", line 5, in <module>'
+    assert [line for line in part.said() if line] == ["before"]
+
+
 def test_endless_output_is_cut_and_the_program_ended() -> None:
     part = _part(_await_ready_then_stop, "while True: print('x' * 1000)")
     assert sum(len(line) for line in part.said()) <= MAX_OUTPUT

@@ -14,12 +14,12 @@ from zoneinfo import ZoneInfo
 from traitlets.config.loader import PyFileConfigLoader
 
 from autograder import course, known_classes
+from autograder.command_name import COMMAND
 from autograder.grading.classes.class_lock import held
 from autograder.grading.classes.class_secret import create_secret, read_secret
 from autograder.grading.grading_errors import GradingError, NotAClass, clear_disk_errors
 from autograder.grading.rebuilding.submitted_notebook import reason_against_file
 from autograder.safe_files import remove_unfinished
-from environment.installation import COMMAND
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -45,13 +45,7 @@ _STUDENTS_FILES = ("submitted", "autograded", "feedback", "downloaded")
 
 @dataclass(frozen=True)
 class Submission:
-    """The folder with the files that one student submitted for one assignment.
-
-    Attributes:
-        student: The student's id.
-        assignment: The assignment's name.
-        folder: The folder of the submission.
-    """
+    """The folder with the files that one student submitted for one assignment."""
 
     student: str
     assignment: str
@@ -218,10 +212,10 @@ class ClassDirectory:
     def files(self, assignment: str) -> dict[str, bytes]:
         """Return the files next to an assignment's source notebooks, by relative path."""
         folder = self.path / "source" / assignment
-        found = (path for path in sorted(folder.rglob("*")) if path.is_file() and path.suffix != SUFFIX)
+        paths = (path for path in sorted(folder.rglob("*")) if path.is_file() and path.suffix != SUFFIX)
         return {
             str(path.relative_to(folder)): path.read_bytes()
-            for path in found
+            for path in paths
             if not any(
                 part.startswith(".") or part == "__pycache__" for part in path.relative_to(folder).parts
             )
@@ -242,11 +236,11 @@ class ClassDirectory:
                     taken.append(Submission(student.name, folder.name, folder))
                     refused += _odd_files(folder / f"{name}{SUFFIX}" for name in notebooks[folder.name])
                 else:
-                    known = ", ".join(notebooks) or "none"
+                    names = ", ".join(notebooks) or "none"
                     refused.append(
                         RefusedFile(
                             folder,
-                            f"the class has no assignment with this name (the class's assignments: {known})",
+                            f"the class has no assignment with this name (the class's assignments: {names})",
                         )
                     )
         return taken, refused
@@ -346,7 +340,7 @@ def _odd_files(paths: Iterable[Path]) -> Iterator[RefusedFile]:
 
 def _folders(parent: Path, refused: list[RefusedFile]) -> list[Path]:
     """Return the folders in ``parent`` with usable names, and add other folders and special files to ``refused``."""
-    found = []
+    folders = []
     for entry in _entries(parent, refused):
         if entry.name.startswith("."):
             continue
@@ -357,10 +351,10 @@ def _folders(parent: Path, refused: list[RefusedFile]) -> list[Path]:
             if reason:
                 refused.append(RefusedFile(entry, f"{reason}; rename the folder"))
             else:
-                found.append(entry)
+                folders.append(entry)
         elif not entry.is_file():
             refused.append(RefusedFile(entry, "the path is neither a folder nor a file; remove it"))
-    return found
+    return folders
 
 
 def _entries(parent: Path, refused: list[RefusedFile]) -> list[Path]:

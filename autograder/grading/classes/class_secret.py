@@ -43,10 +43,6 @@ def seed_for(secret: bytes, student: str, assignment: str, notebook: str, work: 
     """Return the seed of one student's notebook. The judge derives the seed of each exercise from it.
 
     Args:
-        secret: The class secret.
-        student: The student's id.
-        assignment: The assignment's name.
-        notebook: The notebook's name.
         work: A hash of the submitted cells, so that a changed submission gets different inputs. Otherwise a student
             could copy inputs from the feedback into the next submission.
     """

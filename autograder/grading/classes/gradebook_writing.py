@@ -76,7 +76,6 @@ def enter(
 
     Args:
         url: The address by which SQLAlchemy opens the gradebook.
-        assignment: The assignment's name.
         student: The student's id. An unknown student is added.
         notebooks: The results by notebook.
         timestamp: The submission time in UTC; None to keep the time that is in the gradebook.
@@ -88,12 +87,12 @@ def enter(
         LookupError: The gradebook does not contain the assignment or one of its notebooks.
     """
     with opened(url) as book:
-        found = book.execute(
+        row = book.execute(
             sql("SELECT id, duedate FROM assignment WHERE name = :name"), {"name": assignment}
         ).first()
-        if found is None:
+        if row is None:
             raise LookupError(f"the gradebook has no assignment named {assignment}")
-        assignment_id, due = found
+        assignment_id, due = row
         submission = _submission(book, assignment_id, student, timestamp)
         cells = _cells(book, assignment_id)
         for name, entry in notebooks.items():
@@ -137,24 +136,23 @@ def _submission(book: Connection, assignment: str, student: str, timestamp: date
     """Return the id of a submission in the gradebook, after adding a missing submission and setting its time."""
     if not book.execute(sql("SELECT 1 FROM student WHERE id = :id"), {"id": student}).first():
         book.execute(sql("INSERT INTO student (id) VALUES (:id)"), {"id": student})
-    found = book.execute(
-        sql("SELECT id FROM submitted_assignment WHERE assignment_id = :a AND student_id = :s"),
-        {"a": assignment, "s": student},
-    ).scalar()
-    made = found or uuid.uuid4().hex
-    if found is None:
-        book.execute(
-            sql("INSERT INTO submitted_assignment (id, assignment_id, student_id) VALUES (:id, :a, :s)"),
-            {"id": made, "a": assignment, "s": student},
-        )
+    pair = {"a": assignment, "s": student}
+    book.execute(
+        sql(
+            "INSERT INTO submitted_assignment (id, assignment_id, student_id) VALUES (:id, :a, :s)"
+            " ON CONFLICT (assignment_id, student_id) DO NOTHING"
+        ),
+        {"id": uuid.uuid4().hex, **pair},
+    )
     if timestamp is not None:
         book.execute(
-            sql("UPDATE submitted_assignment SET timestamp = :at WHERE id = :id").bindparams(
-                sqlalchemy.bindparam("at", type_=sqlalchemy.DateTime())
-            ),
-            {"at": timestamp, "id": made},
+            sql(
+                "UPDATE submitted_assignment SET timestamp = :at WHERE assignment_id = :a AND student_id = :s"
+            ).bindparams(sqlalchemy.bindparam("at", type_=sqlalchemy.DateTime())),
+            {"at": timestamp, **pair},
         )
-    return str(made)
+    found = sql("SELECT id FROM submitted_assignment WHERE assignment_id = :a AND student_id = :s")
+    return str(book.execute(found, pair).scalar_one())
 
 
 def enter_time(url: str, assignment: str, student: str, timestamp: datetime) -> None:
@@ -162,16 +160,14 @@ def enter_time(url: str, assignment: str, student: str, timestamp: datetime) -> 
 
     Args:
         url: The address by which SQLAlchemy opens the gradebook.
-        assignment: The assignment's name.
-        student: The student's id.
         timestamp: The time in UTC.
     """
     with opened(url) as book:
-        found = book.execute(
+        assignment_id = book.execute(
             sql("SELECT id FROM assignment WHERE name = :name"), {"name": assignment}
         ).scalar()
-        if found is not None:
-            _submission(book, found, student, timestamp)
+        if assignment_id is not None:
+            _submission(book, assignment_id, student, timestamp)
 
 
 def enter_penalties(url: str, assignment: str, student: str, penalties: Mapping[str, float | None]) -> None:
@@ -179,8 +175,6 @@ def enter_penalties(url: str, assignment: str, student: str, penalties: Mapping[
 
     Args:
         url: The address by which SQLAlchemy opens the gradebook.
-        assignment: The assignment's name.
-        student: The student's id.
         penalties: The points to subtract, by notebook; None for no penalty.
     """
     rows: list[dict[str, object]] = [
@@ -197,33 +191,25 @@ def enter_penalties(url: str, assignment: str, student: str, penalties: Mapping[
 
 
 def _enter_notebook(book: Connection, submission: str, cells: _Cells, entry: NotebookEntry) -> None:
-    notebook = book.execute(
-        sql("SELECT id FROM submitted_notebook WHERE assignment_id = :s AND notebook_id = :n"),
-        {"s": submission, "n": cells.notebook},
-    ).scalar()
-    if notebook is None:
-        notebook = uuid.uuid4().hex
-        book.execute(
-            sql(
-                "INSERT INTO submitted_notebook (id, assignment_id, notebook_id, flagged)"
-                " VALUES (:id, :s, :n, :no)"
-            ),
-            {"id": notebook, "s": submission, "n": cells.notebook, "no": False},
-        )
+    pair = {"s": submission, "n": cells.notebook}
     book.execute(
-        sql("UPDATE submitted_notebook SET late_submission_penalty = NULL WHERE id = :id"), {"id": notebook}
+        sql(
+            "INSERT INTO submitted_notebook (id, assignment_id, notebook_id, flagged) VALUES (:id, :s, :n, :no)"
+            " ON CONFLICT (notebook_id, assignment_id) DO UPDATE SET late_submission_penalty = NULL"
+        ),
+        {"id": uuid.uuid4().hex, "no": False, **pair},
     )
-    _enter_scores(book, notebook, cells, entry)
-    _enter_comments(book, notebook, cells, entry.comments)
-
-
-def _enter_scores(book: Connection, notebook: str, cells: _Cells, entry: NotebookEntry) -> None:
+    found = sql("SELECT id FROM submitted_notebook WHERE assignment_id = :s AND notebook_id = :n")
+    notebook = str(book.execute(found, pair).scalar_one())
     scores = entry.scores
-    rows = book.execute(
-        sql("SELECT cell_id, manual_score FROM grade WHERE notebook_id = :n"), {"n": notebook}
-    ).all()
-    by_hand: dict[str, float | None] = {row.cell_id: row.manual_score for row in rows}
-    wanted: list[dict[str, object]] = [
+    by_hand = {
+        row.cell_id
+        for row in book.execute(
+            sql("SELECT cell_id FROM grade WHERE notebook_id = :n AND manual_score IS NOT NULL"),
+            {"n": notebook},
+        )
+    }
+    graded: list[dict[str, object]] = [
         {
             "id": uuid.uuid4().hex,
             "n": notebook,
@@ -231,44 +217,58 @@ def _enter_scores(book: Connection, notebook: str, cells: _Cells, entry: Noteboo
             "score": scores.get(name, 0.0),
             # Mark a cell for review if a person gave points or still has to give them, as nbgrader's SaveAutoGrades
             # does.
-            "look": by_hand.get(cell) is not None or scores.get(name, 0.0) is None or name in entry.unchecked,
+            "look": cell in by_hand or scores.get(name, 0.0) is None or name in entry.unchecked,
         }
         for cell, name in cells.graded
     ]
     _put(
         book,
-        [row for row in wanted if row["cell"] not in by_hand],
+        graded,
         "INSERT INTO grade (id, notebook_id, cell_id, auto_score, needs_manual_grade)"
-        " VALUES (:id, :n, :cell, :score, :look)",
+        " VALUES (:id, :n, :cell, :score, :look) ON CONFLICT (cell_id, notebook_id)"
+        " DO UPDATE SET auto_score = excluded.auto_score, needs_manual_grade = excluded.needs_manual_grade",
     )
-    _put(
-        book,
-        [row for row in wanted if row["cell"] in by_hand],
-        "UPDATE grade SET auto_score = :score, needs_manual_grade = :look"
-        " WHERE notebook_id = :n AND cell_id = :cell",
-    )
-
-
-def _enter_comments(
-    book: Connection, notebook: str, cells: _Cells, comments: Mapping[str, str | None]
-) -> None:
-    known = set(
-        book.execute(sql("SELECT cell_id FROM comment WHERE notebook_id = :n"), {"n": notebook}).scalars()
-    )
-    wanted: list[dict[str, object]] = [
-        {"id": uuid.uuid4().hex, "n": notebook, "cell": cell, "comment": comments.get(name)}
+    commented: list[dict[str, object]] = [
+        {"id": uuid.uuid4().hex, "n": notebook, "cell": cell, "comment": entry.comments.get(name)}
         for cell, name in cells.commented
     ]
     _put(
         book,
-        [row for row in wanted if row["cell"] not in known],
-        "INSERT INTO comment (id, notebook_id, cell_id, auto_comment) VALUES (:id, :n, :cell, :comment)",
+        commented,
+        "INSERT INTO comment (id, notebook_id, cell_id, auto_comment) VALUES (:id, :n, :cell, :comment)"
+        " ON CONFLICT (cell_id, notebook_id) DO UPDATE SET auto_comment = excluded.auto_comment",
     )
-    _put(
-        book,
-        [row for row in wanted if row["cell"] in known],
-        "UPDATE comment SET auto_comment = :comment WHERE notebook_id = :n AND cell_id = :cell",
-    )
+
+
+def rename(url: str, ids: Mapping[str, str]) -> None:
+    """Give students other ids, in one transaction. If both ids have an entry for an assignment, the new one's stays.
+
+    Args:
+        url: The address by which SQLAlchemy opens the gradebook.
+        ids: The new ids by the old ones. No new id may be one of the old ones.
+    """
+    with opened(url) as book:
+        for old, new in ids.items() if has_tables(book) else ():
+            for statement in _RENAME:
+                book.execute(sql(statement), {"old": old, "new": new})
+
+
+_DOUBLE = (
+    "SELECT id FROM submitted_assignment WHERE student_id = :old AND assignment_id IN"
+    " (SELECT assignment_id FROM submitted_assignment WHERE student_id = :new)"
+)
+_OF_DOUBLE = f"SELECT id FROM submitted_notebook WHERE assignment_id IN ({_DOUBLE})"
+_RENAME = (
+    "INSERT INTO student (id, first_name, last_name, email, lms_user_id)"
+    " SELECT CAST(:new AS VARCHAR(128)), first_name, last_name, email, lms_user_id FROM student WHERE id = :old"
+    " ON CONFLICT (id) DO NOTHING",
+    f"DELETE FROM grade WHERE notebook_id IN ({_OF_DOUBLE})",
+    f"DELETE FROM comment WHERE notebook_id IN ({_OF_DOUBLE})",
+    f"DELETE FROM submitted_notebook WHERE assignment_id IN ({_DOUBLE})",
+    f"DELETE FROM submitted_assignment WHERE id IN ({_DOUBLE})",
+    "UPDATE submitted_assignment SET student_id = :new WHERE student_id = :old",
+    "DELETE FROM student WHERE id = :old",
+)
 
 
 def _put(book: Connection, rows: list[dict[str, object]], statement: str) -> None:

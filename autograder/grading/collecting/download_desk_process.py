@@ -23,8 +23,10 @@ from functools import partial
 from typing import IO, TYPE_CHECKING, Any, NamedTuple
 
 import msgspec
+import re2
 
-from autograder.grading.collecting.lms_lists import GRADESCOPE, parse_list
+from autograder.grading.collecting.lms_lists import parse_list
+from autograder.grading.collecting.systems import GRADESCOPE
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -51,16 +53,16 @@ def is_archive(name: str, data: bytes) -> bool:
     return ".zip" in lower or lower.endswith(_TARS) or (plain and data.startswith(b"PK\x03\x04"))
 
 
-_LEFT_BY_PROGRAMS = frozenset(
-    "__macosx .ds_store .git .ipynb_checkpoints __pycache__ thumbs.db ehthumbs.db desktop.ini $recycle.bin "
-    ".spotlight-v100 .trashes .fseventsd @eadir .directory".split()
+_LEFT_BY_PROGRAMS = re2.compile(
+    rb"(?i)^(?:__MACOSX|\._.*|\.DS_Store|\.Spotlight-V100|\.Trashes|\.fseventsd|(?:eh)?thumbs\.db|desktop\.ini|"
+    rb"\$RECYCLE\.BIN|~\$.*|\.~lock\..*|\.directory|@eaDir|\.git|\.ipynb_checkpoints|__pycache__)$"
 )
-"""Names in lower case of files that operating systems and editors leave next to a student's work."""
+"""The names of files that operating systems and editors leave next to a student's work."""
 
 
 def is_left_by_a_program(name: str) -> bool:
     """Return True for the name of a file or folder that a program made, not the student, such as ``.git``."""
-    return name.casefold() in _LEFT_BY_PROGRAMS or name.startswith(("._", ".~lock.", "~$"))
+    return bool(_LEFT_BY_PROGRAMS.match(name.encode("utf-8", "replace")))
 
 
 _SAMPLES = {

@@ -6,16 +6,16 @@ import functools
 import itertools
 from collections import defaultdict
 from dataclasses import dataclass, replace
-from datetime import UTC, datetime
+from datetime import datetime
 from typing import TYPE_CHECKING
 from zoneinfo import ZoneInfo
 
 from autograder.grading.classes.class_directory import SUFFIX
 from autograder.grading.collecting.collected_files import BY_HAND, Line
-from autograder.grading.collecting.downloaded_files import read_list
 from autograder.grading.collecting.file_owners import Owners, StudentOf
-from autograder.grading.collecting.lms_lists import GRADESCOPE, ListEntry
+from autograder.grading.collecting.list_times import WAS_READ, ListTimes, entries_of, in_utc
 from autograder.grading.collecting.submitted_file_names import base_of
+from autograder.grading.collecting.systems import GRADESCOPE
 from autograder.grading.rebuilding.submission_desk import read_notebook
 from autograder.grading.rebuilding.submitted_notebook import UnreadableSubmission
 
@@ -64,24 +64,16 @@ def lines_of(
     """
     assignments = AssignmentOf(directory)
     entries = entries_of(inbox)
-    alone = {id_ for id_, of in inbox.deliveries.items() if all(file.is_list for file in of.arrivals)}
-    found: dict[str, list[Line]] = defaultdict(list)
+    read: list[tuple[Delivery, Line]] = []
     for id_, delivery in inbox.deliveries.items():
-        # All lists, from any delivery, are used to map numbers to students. But the times in a list apply only to files
-        # in the same delivery, because a later list may be about a later file. Only if a list came alone do its times
-        # apply to all files.
-        student_of = StudentOf(
-            roster,
-            assignments.is_notebook,
-            delivery.form,
-            delivery.names,
-            itertools.chain(*entries.values()),
-            entries[id_],
-            [entry for one in alone - {id_} for entry in entries[one]],
-        )
+        # All lists, from any delivery, map numbers to students.
+        student_of = StudentOf(roster, delivery.form, delivery.names, itertools.chain(*entries.values()))
         zone = ZoneInfo(delivery.zone) if delivery.zone else directory.time_zone
-        for line in _Reading(inbox, assignments, student_of, delivery, id_, zone).lines(edits):
-            found[line.key].append(line)
+        lines_there = _Reading(inbox, assignments, student_of, delivery, id_, zone).lines(edits)
+        read += [(delivery, line) for line in lines_there]
+    found: dict[str, list[Line]] = defaultdict(list)
+    for line in ListTimes(inbox, directory.time_zone).applied(read):
+        found[line.key].append(line)
     lines = []
     for several in found.values():
         targets: dict[tuple[str, str], list[Line]] = defaultdict(list)
@@ -109,7 +101,7 @@ class _Reading:
         for arrival in self.delivery.arrivals:
             place, edit = (arrival.source, arrival.parts), edits.get(arrival.key, Edit())
             if arrival.is_archive:
-                is_open = edit.student or not self.student_of.reason_against(self._owners(arrival))
+                is_open = edit.student or not self._doubt(arrival)
                 opened[place] = edit if is_open else None
                 if is_open:
                     continue
@@ -119,6 +111,9 @@ class _Reading:
 
     def _owners(self, arrival: Arrival) -> Owners:
         return self.student_of.owners(arrival.parts, arrival.levels, is_alone=arrival.is_own)
+
+    def _doubt(self, arrival: Arrival) -> str:
+        return self.student_of.doubt(self._owners(arrival), (arrival.parts or (arrival.source,))[0])
 
     def _line(self, arrival: Arrival, edit: Edit, of_archive: Edit) -> Line:
         """Return the line of a file.
@@ -131,13 +126,13 @@ class _Reading:
         rank = bool(self.delivery.assignment) - bool(self.delivery.form or self.delivery.names)
         line = Line(arrival.key, arrival.label, arrival.content, use=edit.use, rank=rank)
         if arrival.is_list:
-            return replace(line, reason="the file was read as a list", is_soft=True, lms="list")
+            return replace(line, reason=WAS_READ, is_soft=True, lms="list")
         if self.delivery.form == BY_HAND:
             # A person put the file into ``submitted``, where its path names the student and the notebook.
             student, assignment, name = arrival.parts
             line = replace(
                 line,
-                students=(student,),
+                students=self.student_of.written(edit.student or student)[0] or (student,),
                 assignment=assignment,
                 notebook=name.removesuffix(SUFFIX),
                 lms=BY_HAND,
@@ -146,7 +141,9 @@ class _Reading:
             )
         else:
             line = self._collected(line, arrival, edit, of_archive)
-        return replace(line, when=datetime.fromisoformat(edit.handed_in)) if edit.handed_in else line
+        if not edit.handed_in:
+            return line
+        return replace(line, when=datetime.fromisoformat(edit.handed_in), time_from="handed_in")
 
     def _collected(self, line: Line, arrival: Arrival, edit: Edit, of_archive: Edit) -> Line:
         """Return the line of a file that came from a system, completed with its students, notebook and time."""
@@ -155,18 +152,17 @@ class _Reading:
         if written := edit.student or of_archive.student:
             ids, reason = self.student_of.written(written)
         else:
-            reason = self.student_of.reason_against(owners)
-            ids = () if reason else tuple(one.id for (one,) in owners.members)
-        if found := owners.found:
+            reason = self._doubt(arrival)
+            ids = () if reason else tuple(one.id for one in owners.students)
+        if found := owners.facts:
             identity = found.identity
-            when = in_utc(found.when or self.student_of.time(identity), self.zone)
             line = replace(
                 line,
                 lms=identity.lms,
                 number=identity.number or (identity.login if identity.name else ""),
                 name=identity.name or identity.login,
                 file="/".join(arrival.parts),
-                when=when or self.delivery.handed_in,
+                when=in_utc(found.when, self.zone),
                 order=found.order,
                 late=found.late,
                 is_sure=owners.is_sure or bool(written),
@@ -175,26 +171,28 @@ class _Reading:
             asked = asked or (found.assignment if self.assignments.notebooks(found.assignment) else "")
         # Inside a student's own archive, a name identifies the notebook but not the student.
         name = found.file if found and not arrival.inner else arrival.name
-        named = self.assignments.named(name if owners.members else arrival.name, asked)
+        named = self.assignments.named(name if owners.students else arrival.name, asked)
         came_in = frozenset({f"{self.id}/{arrival.source}"})
         line = replace(line, students=ids, assignment=named, came_in=came_in)
         if arrival.refused:
             is_work = arrival.name.lower().endswith((".ipynb", ".zip")) or not ids
             return replace(line, reason=arrival.refused, is_soft=not is_work)
         if arrival.is_archive:
-            is_nobodys = found is None and not owners.members
+            is_nobodys = found is None and not owners.candidates
             return replace(line, reason=_UNKNOWN_ARCHIVE if is_nobodys and not written else reason)
         data = self.inbox.read(arrival.content)
         if not _is_notebook(arrival.name, data):
             return _no_notebook(line, arrival)
         if reason:
             return replace(line, reason=reason)
+        cells, unreadable = _cells(data)
+        line = replace(line, unreadable=unreadable)
         if edit.assignment or edit.notebook:
             return self._as_written(line, name, edit, asked)
         try:
-            (assignment, notebook), is_named = self.assignments.target(name, data, asked)
+            (assignment, notebook), is_named = self.assignments.target(name, cells, asked)
         except _NoTarget as error:
-            return replace(line, reason=str(error), is_soft=error.is_left_out)
+            return replace(line, reason=unreadable or str(error), is_soft=error.is_left_out)
         return replace(line, assignment=assignment, notebook=notebook, is_named=is_named)
 
     def _as_written(self, line: Line, name: str, edit: Edit, asked: str) -> Line:
@@ -237,37 +235,12 @@ def _merged(several: Iterable[Line]) -> Line:
     """Return one line for a file that came several times, with the most certain facts and the latest time."""
     lines = sorted(several, key=lambda one: (bool(one.reason), one.is_soft, one.rank, one.label))
     best = lines[0]
-    when = max((one.when for one in lines if one.when), default=None)
+    timed = sorted((one for one in lines if one.when), key=lambda one: one.when or datetime.max)
     came_in = frozenset().union(*(one.came_in for one in lines))
-    return replace(best, when=when, came_in=came_in)
-
-
-def in_utc(when: datetime | None, zone: tzinfo) -> datetime | None:
-    """Return a time in UTC; None for a time in the year 1 or 9999, which may not exist in another time zone."""
-    if when is None:
-        return None
-    try:
-        found = (when if when.tzinfo else when.replace(tzinfo=zone)).astimezone(UTC)
-    except (OverflowError, ValueError):
-        return None
-    return found if 1 < found.year < 9999 else None
-
-
-NO_LIST = (
-    "the file is too large, or not a known list. Known lists are Moodle's grading worksheet, Canvas's gradebook or "
-    "submissions, GitHub Classroom's grades and Gradescope's scores. Write times into the column handed_in of "
-    "collected.csv, and a list of your students into students.csv of the class"
-)
-"""The reason why a list cannot be used."""
-
-
-def entries_of(inbox: Inbox) -> dict[str, list[ListEntry]]:
-    """Return the entries of all lists in the inbox, by delivery."""
-    found: dict[str, list[ListEntry]] = defaultdict(list)
-    for id_, delivery in inbox.deliveries.items():
-        for one in delivery.arrivals:
-            found[id_] += read_list(one.name, inbox.read(one.content)) or [] if one.is_list else []
-    return found
+    best = replace(best, came_in=came_in)
+    if not timed:
+        return best
+    return replace(best, when=timed[-1].when, time_from=timed[-1].time_from, first=timed[0].when)
 
 
 class AssignmentOf:
@@ -279,10 +252,6 @@ class AssignmentOf:
 
     def __init__(self, directory: ClassDirectory) -> None:
         self._directory = directory
-
-    def is_notebook(self, file: str) -> bool:
-        """Return True if a file with this name is a notebook of the class."""
-        return _stem_of(file).casefold() in self._notebooks
 
     def notebooks(self, assignment: str) -> list[str]:
         """Return the notebooks of an assignment; none if the class has no assignment with this name."""
@@ -296,12 +265,12 @@ class AssignmentOf:
         assignments = {assignment for assignment, _ in self._notebooks.get(stem.casefold(), ())}
         return asked or (assignments.pop() if len(assignments) == 1 else "")
 
-    def target(self, name: str, data: bytes, asked: str) -> tuple[Target, bool]:
+    def target(self, name: str, cells: Sequence[SubmittedCell], asked: str) -> tuple[Target, bool]:
         """Return the assignment and the notebook of a file, and whether the file has the notebook's name.
 
         Args:
             name: The name that the student gave the file.
-            data: The content of the file.
+            cells: The cells of the file.
             asked: The assignment that the instructor named; empty to find it.
 
         Raises:
@@ -309,7 +278,6 @@ class AssignmentOf:
                 assignment in the file's name or to ``asked``.
         """
         named = self._notebooks.get(_stem_of(name).casefold(), [])
-        cells = _cells(data)
         names = {cell.grade_id for cell in cells} - {""}
         mixed = self._directory.named_cells.assignments(cells)
         if len(mixed) > 1 and asked not in mixed:
@@ -394,9 +362,9 @@ def _stem_of(name: str) -> str:
     return base_of(name[:end] if end > 0 else name.rpartition(".")[0] or name)
 
 
-def _cells(data: bytes) -> Sequence[SubmittedCell]:
-    """Return a notebook's cells; none if it cannot be read."""
+def _cells(data: bytes) -> tuple[Sequence[SubmittedCell], str]:
+    """Return a notebook's cells; and if it cannot be read, no cells and the reason."""
     try:
-        return read_notebook(data)[0]
-    except UnreadableSubmission:
-        return ()
+        return read_notebook(data)[0], ""
+    except UnreadableSubmission as error:
+        return (), str(error)

@@ -13,6 +13,7 @@ from collections import defaultdict
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from autograder.command_name import COMMAND
 from autograder.grading.classes.class_directory import SUFFIX, ClassDirectory, RefusedFile
 from autograder.grading.collecting.collected_files import (
     BY_HAND,
@@ -26,7 +27,6 @@ from autograder.grading.collecting.collected_files import (
 from autograder.grading.collecting.submission_times import TIMESTAMP, timestamp_text
 from autograder.grading.rebuilding.submitted_notebook import UnreadableSubmission, read_bytes
 from autograder.safe_files import write_whole
-from environment.installation import COMMAND
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Mapping

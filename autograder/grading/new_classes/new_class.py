@@ -18,6 +18,7 @@ from nbgrader.converters import GenerateAssignment
 from nbgrader.coursedir import CourseDirectory
 
 from autograder.boxes.run_limits import Limits
+from autograder.command_name import COMMAND
 from autograder.grading.class_checks import note_origins
 from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.class_directory import (
@@ -34,7 +35,6 @@ from autograder.grading.rebuilding import nbformat_nodes
 from autograder.grading.result_writer import quiet
 from autograder.masters.master_files import MasterError, lab_name, masters, relinked
 from autograder.masters.source_notebooks import source_notebook
-from environment.installation import COMMAND
 
 if TYPE_CHECKING:
     from collections.abc import Container, Iterator, Sequence
@@ -99,18 +99,15 @@ class NewClass:
     assignments: tuple[str, ...]
     timezone: str
 
-    def summary(self) -> str:
+    def summary(self) -> tuple[str, ...]:
         """Return lines for the instructor about the new class and the next steps."""
-        return "\n".join(
-            (
-                f"{self.path} is a class with these assignments: {', '.join(self.assignments)}.",
-                f"The time zone of due dates in formgrader is {self.timezone}: see {CONFIG_NAME}.",
-                f"Hand out       {COMMAND} hand-out FOLDER makes the folder for students",
-                f"Collect        {course_command('collect', self.path)} DOWNLOAD (files as your LMS lets you "
-                "download them)",
-                f"or put notebooks in {self.path / 'submitted'}/<student>/<assignment>/<assignment>.ipynb",
-                f"Then           {course_command('grade', self.path)}",
-            )
+        return (
+            f"{self.path} is a class with these assignments: {', '.join(self.assignments)}.",
+            f"The time zone of due dates in formgrader is {self.timezone}: see {CONFIG_NAME}.",
+            f"Hand out       {COMMAND} hand-out FOLDER makes the folder for students",
+            f"Collect        {course_command('collect', self.path)} DOWNLOAD (the files as you got them from your LMS)",
+            f"or put notebooks in {self.path / 'submitted'}/<student>/<assignment>/<assignment>.ipynb",
+            f"Then           {course_command('grade', self.path)}",
         )
 
 
@@ -199,16 +196,16 @@ def _sources_of(course_root: Path, wanted: Sequence[str]) -> Sources:
         GradingError: An assignment does not exist, or its master cannot be used.
     """
     try:
-        known = {lab_name(master): master for master in masters(course_root)}
+        labs = {lab_name(master): master for master in masters(course_root)}
         for name in wanted:
-            if name not in known:
-                raise GradingError(f"The course has no lab named {name}. Its labs are: {', '.join(known)}.")
-        made = {name: (known[name], source_notebook(known[name])) for name in wanted or known}
+            if name not in labs:
+                raise GradingError(f"The course has no lab named {name}. Its labs are: {', '.join(labs)}.")
+        sources = {name: (labs[name], source_notebook(labs[name])) for name in wanted or labs}
     except MasterError as error:
         raise GradingError(str(error)) from error
     return {
         name: (master, notebook)
-        for name, (master, notebook) in made.items()
+        for name, (master, notebook) in sources.items()
         if wanted or any(cell.metadata.get("nbgrader", {}).get("grade") for cell in notebook.cells)
     }
 
@@ -238,7 +235,6 @@ def _write_source(
 
     Args:
         directory: The class. The assignment's folder must exist.
-        name: The name of the assignment.
         notebook: The source notebook, made from the master.
         assignments: The names of all assignments of the class.
 
@@ -249,6 +245,7 @@ def _write_source(
     def in_a_class(other: str) -> str:
         return f"../{other}/{other}.ipynb" if other in assignments else ""
 
+    # The caller still needs the notebook as the master makes it: its digest is recorded as the origin.
     linked = copy.deepcopy(notebook)
     for cell in linked.cells:
         if cell.cell_type == "markdown":
@@ -262,7 +259,6 @@ def release(directory: ClassDirectory, assignments: Sequence[str] = ()) -> None:
     """Make the notebooks for students in ``release``, as ``nbgrader generate_assignment`` does.
 
     Args:
-        directory: The class.
         assignments: The names of the assignments to release; by default all of the class.
 
     Raises:
@@ -300,35 +296,35 @@ def renew(path: Path, course_root: Path, assignments: Sequence[str] = ()) -> lis
         OSError: The notebooks could not be written. After any error, the notebooks in ``source`` are unchanged.
     """
     directory = ClassDirectory(path)
-    there = directory.assignments()
+    names = directory.assignments()
     for name in assignments:
-        if name not in there:
+        if name not in names:
             raise GradingError(
-                f"The class has no assignment {name}. The assignments of the class are: {', '.join(there)}."
+                f"The class has no assignment {name}. The assignments of the class are: {', '.join(names)}."
             )
-    made = {name: one for name, one in _sources_of(course_root, assignments).items() if name in there}
-    if not made:
+    sources = {name: one for name, one in _sources_of(course_root, assignments).items() if name in names}
+    if not sources:
         raise GradingError(
-            f"The class has only assignments that the course does not have: {', '.join(there)}."
+            f"The class has only assignments that the course does not have: {', '.join(names)}."
         )
-    kept = directory.state / "sources-before" / f"{datetime.now(tz=UTC):%Y-%m-%dT%H-%M-%S.%f}"
+    backup = directory.state / "sources-before" / f"{datetime.now(tz=UTC):%Y-%m-%dT%H-%M-%S.%f}"
     with directory.lock(), ClassStore(directory) as store:
-        for name in made:
-            shutil.copytree(directory.path / "source" / name, kept / name)
+        for name in sources:
+            shutil.copytree(directory.path / "source" / name, backup / name)
         try:
-            for name, (_, notebook) in made.items():
-                _write_source(directory, name, notebook, there)
-            release(directory, list(made))
+            for name, (_, notebook) in sources.items():
+                _write_source(directory, name, notebook, names)
+            release(directory, list(sources))
         except BaseException:  # restore the earlier notebooks after any error, also after Ctrl-C
-            for name in made:
-                shutil.copytree(kept / name, directory.path / "source" / name, dirs_exist_ok=True)
+            for name in sources:
+                shutil.copytree(backup / name, directory.path / "source" / name, dirs_exist_ok=True)
             raise
-        note_origins(store, made)
+        note_origins(store, sources)
     lines = [
         f"{name}: updated from the course; give students the new version: {directory.path / 'release' / name}"
-        for name in made
+        for name in sources
     ]
-    return [*lines, f"the earlier source notebooks are in {kept}"]
+    return [*lines, f"the earlier source notebooks are in {backup}"]
 
 
 @contextlib.contextmanager

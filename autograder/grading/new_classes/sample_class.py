@@ -10,9 +10,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import msgspec
-from rich.console import Console
 
-from autograder import course
+from autograder import course, standard_output
 from autograder.boxes import sandbox
 from autograder.execution.executed_cells import CellType
 from autograder.grading.batch import grade
@@ -26,6 +25,7 @@ from autograder.masters.master_files import lab_name, masters
 
 if TYPE_CHECKING:
     from nbformat import NotebookNode
+    from rich.console import Console
 
     from autograder.grading.reporting.grade_report import GradeReport
 
@@ -93,7 +93,7 @@ def demo(path: Path, *, console: Console | None = None) -> GradeReport:
     Raises:
         GradingError: ``path`` contains something other than the sample class, or grading is not possible.
     """
-    console = console or Console()
+    console = console or standard_output.console()
     if sandbox.why_impossible():
         switch_sandbox_off(path)
     _make(path, console)
@@ -147,15 +147,17 @@ def made_notebook(path: Path, wanted: SampleNotebook) -> NotebookNode:
         wanted: The description of the notebook.
     """
     name = f"{wanted.assignment}{SUFFIX}"
-    made = nbformat_nodes.read((path / "release" / wanted.assignment / name).read_text(encoding="utf-8"))
+    notebook = nbformat_nodes.read((path / "release" / wanted.assignment / name).read_text(encoding="utf-8"))
     right: dict[str, str] = {}
     if not wanted.unsolved:
         source = nbformat_nodes.read((path / "source" / wanted.assignment / name).read_text(encoding="utf-8"))
         right = {grade_id(cell): _without_markers(cell.source) for cell in source.cells}
     answers = {name: answer for file in wanted.bank for name, answer in _bank_answers(file).items()}
     answers |= {name: _Answer(text.strip(), ()) for name, text in wanted.answers.items()}
-    made.cells = [changed for cell in made.cells for changed in _changed(cell, wanted, right, answers)]
-    return made
+    notebook.cells = [
+        changed for cell in notebook.cells for changed in _changed(cell, wanted, right, answers)
+    ]
+    return notebook
 
 
 def _changed(
@@ -186,17 +188,17 @@ def _changed(
 def _bank_answers(file: str) -> dict[str, _Answer]:
     """Read a sample answer from a file in which each cell begins with ``# %% extra`` or ``# %% solution NAME``."""
     text = (course.root() / BANK / file).read_text(encoding="utf-8")
-    found: dict[str, _Answer] = {}
+    answers: dict[str, _Answer] = {}
     extra: list[str] = []
     for part in text.split("# %% ")[1:]:
         head, _, source = part.partition("\n")
         kind, _, name = head.strip().partition(" ")
         if kind == "solution":
-            found[name] = _Answer(source.strip(), tuple(extra))
+            answers[name] = _Answer(source.strip(), tuple(extra))
             extra = []
         else:
             extra.append(source.strip())
-    return found
+    return answers
 
 
 def _without_markers(source: str) -> str:

@@ -102,15 +102,6 @@ def checked(document: bytes) -> tuple[Sequence[SubmittedCell], int]:
     return read.cells, read.left_out
 
 
-def why_unreadable(data: bytes) -> str:
-    """Return why a file cannot be read as a notebook, in words for the student; empty if it can be read."""
-    try:
-        read_notebook(data)
-    except UnreadableSubmission as error:
-        return str(error)
-    return ""
-
-
 def _rehearse(desk: Desk) -> None:
     """Let a new desk read a sample, to find out whether this machine, and not a student's file, causes failures."""
     try:

@@ -10,8 +10,9 @@ from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.gradebook_reading import Entries, read_entries
 from autograder.grading.collecting.collected_csv import Table, Waiting
 from autograder.grading.grading_errors import GradingError, MasterUnusable
-from autograder.grading.table.roster import Roster, Student, read_roster
+from autograder.grading.table.roster import Roster, Student
 from autograder.grading.table.rows import DROPPED, EXCUSED, NOT_SUBMITTED, Row, total
+from autograder.grading.table.student_list import read_roster
 from autograder.grading.table.weighted_rows import read_what_counts, true_rows
 from autograder.grading.tasks.source_points import read_released
 from autograder.grading.tasks.submission_fingerprints import Fingerprints
@@ -159,22 +160,13 @@ def read_table(directory: ClassDirectory, sections: Sequence[str] = ()) -> Class
             stale.append("/".join(key))
     roster = read_roster(directory)
     what_counts = read_what_counts(directory, cells)
-    rows = true_rows(
-        roster.names,
-        cells,
-        judged,
-        entries,
-        found,
-        excused=roster.excused,
-        what_counts=what_counts,
-        zone=directory.time_zone,
-    )
+    rows = true_rows(roster, cells, judged, entries, found, what_counts=what_counts, zone=directory.time_zone)
     unplaced = tuple(Table(directory).waiting())
     others = [Student(row.student) for row in rows if row.student not in roster.students]
     whole = Roster([*roster.students.values(), *others])
     table = ClassTable(tuple(rows), whole, entries, tuple(stale), unplaced, released.unusable)
     shown = table.only(roster.of_sections(sections)) if sections else table
-    return replace(shown, notices=tuple(whole.excused_from_nothing(directory.assignments(), shown.students)))
+    return replace(shown, notices=tuple(roster.notices(directory.assignments(), entries, shown.students)))
 
 
 @dataclass(frozen=True)

@@ -276,9 +276,7 @@ def _page_name(file: str, lms: str, page: PurePath, *, is_one: bool) -> str:
     """
     parts = PurePosixPath(file).parts
     place, found = next(
-        (place, found)
-        for place in range(len(parts))
-        if (found := read_lms_name(parts, place, lms, lambda _: False))
+        (place, found) for place in range(len(parts)) if (found := read_lms_name(parts, place, lms))
     )
     above, given = "".join(f"{one}/" for one in parts[:place]), parts[place]
     if lms == "canvas":

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 import re2
 from rapidfuzz import fuzz, process
 
-from autograder.grading.collecting.lms_lists import EACH, LIST_FORMS, ListForm
+from autograder.grading.collecting.systems import EACH, LIST_FORMS, ListForm
 from autograder.grading.grading_errors import GradingError
 from autograder.grading.rebuilding.submitted_notebook import UnreadableSubmission, read_bytes
 from autograder.grading.table.roster import Identity

@@ -44,7 +44,6 @@ def on_this_machine(directory: ClassDirectory, jobs: int | None, judge: str) -> 
     """Yield a function that executes tasks on this machine.
 
     Args:
-        directory: The class.
         jobs: The number of notebooks to execute at the same time; None for as many as processors and memory allow.
         judge: The Python class that makes a judge, as ``module:class``; empty for the real judge.
 
@@ -68,7 +67,6 @@ def on_cluster(
     """Yield a function that executes tasks on the workers of a Dask cluster.
 
     Args:
-        directory: The class.
         scheduler: The scheduler's address.
         judge: The Python class that makes a judge, as ``module:class``; empty for the real judge.
         tell: Called with a sentence for the instructor.
@@ -120,6 +118,7 @@ def execute_all(
     """
     slots = workers or at_once(cores(), psutil.virtual_memory().available)
     words = (str(scratch), str(slots), *(["boxed"] if boxed else []))
+    # In a process of its own, so that the process with the gradebook loads nothing that executes submissions.
     with ProcessLink("autograder.grading.running.order_executor", *words, scratch=scratch) as machine:
         dispatcher = Dispatcher(machine, "", judge=judge, boxed=boxed, tell=lambda _: None)
         yield from dispatch(dispatcher, tasks, on_start)

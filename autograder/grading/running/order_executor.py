@@ -108,6 +108,7 @@ class Executor:
         running = _Running()
         with self._changing:
             self._running[key] = running
+            # `stop` ended the orders that it knew; this one came while it did so.
             if self._stopped:
                 running.end()
         try:
@@ -116,6 +117,7 @@ class Executor:
                 task, self._scratch, judge, self.fork_servers(boxed=task.boxed), running.began
             )
             answer = msgspec.json.encode(execution)
+        # Whatever failed concerns this order alone: the dispatcher decides whether it runs again.
         except Exception as error:
             answer = msgspec.json.encode(task.in_trouble(f"{type(error).__name__}: {error}"))
         finally:
@@ -140,8 +142,8 @@ class Executor:
             for running in self._running.values():
                 running.end()
             self._changing.wait_for(lambda: not self._running, LAST_SECONDS)
-            for kept in self._fork_servers.values():
-                kept.stop()
+            for servers in self._fork_servers.values():
+                servers.stop()
 
     def fork_servers(self, *, boxed: bool) -> Addresses:
         """Start the fork servers if they do not run, and return their addresses. Do not wait for their imports.
@@ -150,18 +152,18 @@ class Executor:
             boxed: True to include the fork server for the supervisors of boxes.
         """
         with self._changing:
-            kept = self._fork_servers.get(boxed)
-            if kept is None or not kept.alive:
-                if kept is not None:
-                    kept.stop()
-                kept = self._fork_servers[boxed] = ForkServers(
+            servers = self._fork_servers.get(boxed)
+            if servers is None or not servers.alive:
+                if servers is not None:
+                    servers.stop()
+                servers = self._fork_servers[boxed] = ForkServers(
                     controlled_judge.__name__,
                     boxed=boxed,
                     environment=_ros_variables(boxed=boxed),
                     of_judges=course.variables(),
                     interfaces=course.interface_modules(),
                 )
-            return kept.addresses
+            return servers.addresses
 
 
 class _Running:

@@ -23,7 +23,6 @@ from autograder.execution.notebook_processes import (
     UnboxedProcesses,
 )
 from autograder.execution.notebook_runner import Unfinished, run_notebook
-from autograder.grading.returning.rendering_time import too_costly
 from autograder.safe_files import scratch_folder
 from autograder.workspaces.boxed_jobs import BoxedJobs
 from autograder.workspaces.builds import build_cache, students_builds
@@ -82,9 +81,7 @@ def execute(
     """Execute one task.
 
     Args:
-        task: The task.
         scratch: The folder in which the task gets its own folder.
-        judge: The judge of the task.
         addresses: The addresses of the fork servers, which for a boxed task must include the one for supervisors.
         began: Called with the boxes of the task before anything runs in them.
 
@@ -93,8 +90,7 @@ def execute(
     """
     with contextlib.ExitStack() as stack:
         folder = stack.enter_context(scratch_folder(scratch))
-        execution = _execute(task, folder, judge, addresses, stack, began)
-    return replace(execution, as_typed=too_costly(task.cells))
+        return _execute(task, folder, judge, addresses, stack, began)
 
 
 def _execute(
@@ -105,11 +101,13 @@ def _execute(
     stack: contextlib.ExitStack,
     began: Callable[[BoxedProcesses | UnboxedProcesses], None],
 ) -> Execution:
+    # Without a supervisor nothing could make the boxes, and a submission must never run outside of one by mistake.
     if task.boxed and not addresses.supervisors:
         raise NoSandbox("this task must run in a box, but no box can be made here")
     boxed = task.boxed
     kind: type[BoxedProcesses] | type[UnboxedProcesses] = BoxedProcesses if boxed else UnboxedProcesses
     paths = _make_paths(task, folder)
+    # The domain is leased before any process starts, because each of them gets it as an environment variable.
     domain = str(stack.enter_context(judge.lease_domain()))
     setting = NotebookSetting(
         folder,
@@ -122,10 +120,12 @@ def _execute(
     )
     processes = kind(addresses, setting)
     stack.enter_context(processes)
+    # From here on an order can be canceled: `began` tells the executor which boxes to end, before they hold a program.
     began(processes)
+    # The service outlives the notebook and ends before the boxes, in which its builds and programs run.
     stack.enter_context(_workspace_service(paths, processes, addresses, judge.ros_variables))
 
-    def made(of_programs: bool) -> Any:
+    def new_judge(of_programs: bool) -> Any:
         start = functools.partial(processes.start_judge, of_programs=of_programs)
         process = judge.make(processes.judge_socket, seed=task.seed, start=start)
         process.workspaces = str(paths.judges_socket)
@@ -133,9 +133,14 @@ def _execute(
         process.is_boxed = boxed
         return process
 
-    first = next((cell.check.exercise for cell in task.cells if cell.check and not cell.check.asserts), "")
-    judges = _Judges(made, paths.runners, first)
+    # The first judge starts while the kernel starts, before a check asks for one: guess from the first check cell
+    # whether the subject will be a program.
+    first_exercise = next(
+        (cell.check.exercise for cell in task.cells if cell.check and not cell.check.asserts), ""
+    )
+    judges = _Judges(new_judge, paths.runners, first_exercise)
     execution = run_notebook(task.cells, judge=judges, processes=processes, patient=judge.patient)
+    # A task that ran alone, and not beside others, has had the whole machine: its result counts, whatever happened.
     short_of_memory = processes.guard.reason() is Ended.OUT_OF_MEMORY
     crowded_out = task.limits.beside and (
         short_of_memory or judges.crowded or _a_check_was_stopped(task.cells, execution)
@@ -152,7 +157,7 @@ def _a_check_was_stopped(cells: Sequence[Cell], execution: Execution) -> bool:
     """
     judged = [cell.check is not None and not cell.check.asserts for cell in cells]
     runs = zip(judged, execution.cells, strict=True)
-    return any(made and run.ended is Ended.TIMED_OUT for made, run in runs)
+    return any(is_judged and run.ended is Ended.TIMED_OUT for is_judged, run in runs)
 
 
 class _Judges:
@@ -249,7 +254,6 @@ def _make_paths(task: Task, folder: Path) -> _Paths:
     Call this before the boxes of the notebook are made.
 
     Args:
-        task: The notebook.
         folder: A folder that only this notebook uses. Its path must be short, because it will contain a Unix socket.
     """
     checks = [cell.check.exercise for cell in task.cells if cell.check and not cell.check.asserts]

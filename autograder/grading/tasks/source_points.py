@@ -40,8 +40,8 @@ def read_released(directory: ClassDirectory, store: ClassStore, fingerprints: Fi
     assignments = directory.assignments()
     fingerprint = " ".join(fingerprints.of_sources(assignment) for assignment in assignments)
     with contextlib.suppress(msgspec.MsgspecError):
-        kept = msgspec.json.decode(store.graded_cells(fingerprint), type=dict[str, tuple[GradedCell, ...]])
-        return Released(kept, {})
+        stored = msgspec.json.decode(store.graded_cells(fingerprint), type=dict[str, tuple[GradedCell, ...]])
+        return Released(stored, {})
     cells, unusable = {}, {}
     for assignment in assignments:
         try:
@@ -74,7 +74,7 @@ def check_release(directory: ClassDirectory, cells: dict[str, tuple[GradedCell, 
                     f"Enter this version: {course_command(*command, inside=directory.path)}. "
                     "If nbgrader refuses because a student already has points, restore the earlier source, "
                     f"and set points or left-out exercises in {directory.path / 'class.toml'}, which works at "
-                    "any time"
+                    "any time."
                 )
 
 
@@ -84,20 +84,20 @@ def _read(directory: ClassDirectory, assignment: str) -> list[GradedCell]:
     from autograder.grading.rebuilding.notebook_rebuilding import grade_id
     from autograder.grading.rebuilding.trusted_master import check_of
 
-    found = []
+    graded_cells = []
     for notebook in directory.notebooks(assignment):
         for cell in directory.master(assignment, notebook).cells:
             name = grade_id(cell)
             if (check := check_of(cell)) is not None:
-                found.append(GradedCell(notebook, name, check.exercise, check.worth))
+                graded_cells.append(GradedCell(notebook, name, check.exercise, check.worth))
             elif is_grade(cell) or is_task(cell):
                 points = float(cell.metadata.nbgrader["points"])
-                found.append(GradedCell(notebook, name, name, points, by_judge=False))
-    names = [cell.exercise for cell in found]
+                graded_cells.append(GradedCell(notebook, name, name, points, by_judge=False))
+    names = [cell.exercise for cell in graded_cells]
     twice = next((name for name in names if [*names, *NO_EXERCISE].count(name) > 1), "")
     if twice:
         raise MasterUnusable(
             f"{directory.path / 'source' / assignment}: two lines in the table of points would have the name "
             f"{twice!r}. Give one of the cells another name (grade_id)."
         )
-    return found
+    return graded_cells

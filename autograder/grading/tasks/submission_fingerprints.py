@@ -24,11 +24,7 @@ if TYPE_CHECKING:
 
 
 class Fingerprints:
-    """Computes the fingerprints of a class's submissions.
-
-    Args:
-        directory: The class.
-    """
+    """Computes the fingerprints of a class's submissions."""
 
     def __init__(self, directory: ClassDirectory) -> None:
         self._directory = directory

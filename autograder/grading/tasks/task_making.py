@@ -58,8 +58,10 @@ def task_of(directory: ClassDirectory, submission: Submission, notebook: str) ->
     master = directory.master(assignment, notebook)
     rebuilt, problem = _rebuilt(directory, submission, notebook, master)
     prose = [cell.source for cell in master.cells if cell.cell_type == CellType.MARKDOWN]
+    prose += [cell.source for cell in rebuilt.cells[:1] if rebuilt.metadata["autograder"]["remarks"]]
     demonstrations = bool(directory.config.WireExecute.get("demonstrations", False))
     cells = cells_of(rebuilt, demonstrations=demonstrations, prose=prose)
+    # The seed depends on what was handed in, but the seed is a part of the task, so hash the cells alone.
     work = hashlib.sha256(msgspec.json.encode(cells)).hexdigest()
     pictures = [
         cell["attachments"] for cell in rebuilt.cells if "attachments" in cell and not is_the_masters(cell)
@@ -104,12 +106,12 @@ def cells_of(
     """Convert the cells of a rebuilt notebook to the type that the execution uses.
 
     Args:
-        notebook: The notebook.
         demonstrations: False to empty the cells that only show something, so that they are skipped.
-        prose: The texts of the master's text cells. A cell with such a text counts as given, not as the student's. But
-            if a text occurs more often than in ``prose``, the additional cells count as the student's, so that limits
-            apply to thousands of copies.
+        prose: The texts of the master's text cells, and of the grader's remarks. A cell with such a text counts as
+            given, not as the student's. But if a text occurs more often than in ``prose``, the additional cells count
+            as the student's, so that a page does not render thousands of copies.
     """
+    # A cell that is left out stays, with an empty source: the index of a cell has to be the same everywhere.
     left_out = frozenset() if demonstrations else demonstrations_of(notebook)
     left = Counter(prose)
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from autograder import course
 from autograder.cards import html_rendering
 from autograder.messages import judge_messages as messages
-from autograder.notebook.cell_output import notebook_shell
+from autograder.notebook.cell_output import notebook_shell, say
 from autograder.notebook.cell_runs import raise_if_stale
 from autograder.notebook.checking.card_display import (
     CardDisplay,
@@ -25,6 +25,7 @@ from autograder.notebook.checking.subject_runs import PathRun, SubjectRun, Tell,
 from autograder.notebook.nodes.ros_session import prepare_environment
 from autograder.student import check_journal
 from autograder.verdict import Verdict, not_checked
+from autograder.workspaces.sources import full_disk
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -100,6 +101,8 @@ def _plainly_interrupted() -> Iterator[None]:
 
 
 def _ask(exercise: str, subject: Any, progress: Progress) -> Verdict | None:
+    if is_live() and is_path(subject) and (trouble := full_disk(subject)):
+        return not_checked(exercise, exercise, 0.0, trouble, key="disk_full")
     try:
         link = JudgeLink()
     except JudgeUnreachable as error:
@@ -208,7 +211,8 @@ def _chapter_ended_by(verdict: Verdict) -> tuple[str, float, float] | None:
     """Return the title, points and completion time of the chapter that this check completed; None if there is none."""
     journal = check_journal.session_journal_path()
     before = check_journal.best(check_journal.entries(journal))
-    check_journal.note_check(verdict, journal)
+    if not check_journal.note_check(verdict, journal) and journal is not None:
+        say(f"This check is not in your progress, because {journal} cannot be written: is the disk full?")
     if journal is None or not verdict.passed:
         return None
     after = check_journal.best(check_journal.entries(journal))

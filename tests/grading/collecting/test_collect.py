@@ -450,7 +450,7 @@ def test_what_unpacks_to_gigabytes_is_held_as_small_as_it_came(klass: TinyClass,
     download = write_zip(tmp_path / "d.zip", files)
     tracemalloc.start()
     try:
-        assert placed(collect(klass.path, [download])).keys() == {"ada", "ben"}
+        assert placed(collect(klass.path, [download])).keys() == {"ada"}
         assert tracemalloc.get_traced_memory()[1] < 40_000_000
     finally:
         tracemalloc.stop()

@@ -254,7 +254,9 @@ def test_a_time_that_no_clock_shows_is_none(klass: TinyClass, tmp_path: Path, wh
         "Identifier,Full name,Grade,Last modified (submission)\n"
         f"Participant 2,Ben Bär,,{when}\nParticipant 3,Zoë Zuse,,2025-10-03T12:00Z\n"
     )
-    report = collect(klass.path, [in_moodle(klass, tmp_path / "m.zip", {"lab_1_2.ipynb": b"{}"}), times])
+    report = collect(
+        klass.path, [in_moodle(klass, tmp_path / "m.zip", {"lab_1_2.ipynb": work(klass).encode()}), times]
+    )
     assert {one.student: one.when and one.when.year for one in report.having(LineState.PLACED)} == {
         "ben": None,
         "zoe": 2025,

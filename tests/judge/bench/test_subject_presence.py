@@ -35,7 +35,7 @@ def _presence(
 ) -> tuple[Presence, Recorder]:
     """A subject's presence on a graph that shows this, and where it is written down."""
     monkeypatch.setattr(discovery, "survey", survey)
-    monkeypatch.setattr(discovery, "subject_nodes", lambda *_: nodes)
+    monkeypatch.setattr(discovery, "every_node", lambda *_: nodes)
     monkeypatch.setattr(discovery, "topic_ends", lambda *_: [])
     recorder = Recorder()
     seen = cast("Subject", subject)

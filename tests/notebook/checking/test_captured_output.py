@@ -12,6 +12,7 @@ from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
 import pytest
+from rclpy.logging import get_logger
 from rclpy.node import Node
 from std_msgs.msg import String
 
@@ -138,6 +139,19 @@ def test_a_stream_that_lets_nobody_change_it_is_heard_by_its_name(
     assert told == ["hello"]
     assert own.getvalue() == "a demonstration\n"
     assert sys.stdout is own
+
+
+def test_a_log_line_that_nobody_is_shown_is_not_told(told: list[str]) -> None:
+    log = get_logger("listener")
+
+    def say() -> None:
+        log.debug("below the level")
+        for text in ("one", "two"):
+            log.info(text, once=True)
+
+    with CapturedOutput(lambda line, _: told.append(line)):
+        in_a_thread(say)
+    assert told == ["one"]
 
 
 @pytest.mark.ros

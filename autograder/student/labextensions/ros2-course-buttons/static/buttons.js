@@ -10,7 +10,8 @@ window._JUPYTERLAB["ros2-course-buttons"] = (() => {
 
   const CHECK = /^check\((["'])([^"']+)\1,\s*(.+?)\s*\)\s*$/m;
   const NEXT = /Next: \[[^\]]*\]\(([^)#]+\.ipynb)\)/;
-  const ENDED = ["restarting", "autorestarting", "terminating", "dead"]; // states of a kernel
+  const CRASHED = ["autorestarting", "dead"]; // states of a kernel that nobody has ended
+  const ENDED = ["restarting", "terminating", ...CRASHED];
   const NAME = /^[A-Za-z_]\w*$/;
 
   // For each key, metres a second ahead and radians a second to the left.
@@ -97,7 +98,7 @@ window._JUPYTERLAB["ros2-course-buttons"] = (() => {
       }
 
       // A check ends with its kernel, or when its page is closed: its card must not say for ever that it goes on.
-      function endCards(panel, why) {
+      function endCards(panel, whyOf) {
         for (const cell of panel.content.widgets) {
           const outputs = cell.model.type === "code" ? cell.model.outputs : [];
           for (let at = 0; at < outputs.length; at++) {
@@ -107,6 +108,7 @@ window._JUPYTERLAB["ros2-course-buttons"] = (() => {
             const page = new DOMParser().parseFromString(html, "text/html");
             const card = page.querySelector(".agc-waiting");
             if (!card) continue;
+            const why = whyOf(cell);
             card.classList.replace("agc-waiting", "agc-over");
             card.querySelector(".agc-state").textContent = why;
             card.setAttribute("aria-label", why);
@@ -115,13 +117,30 @@ window._JUPYTERLAB["ros2-course-buttons"] = (() => {
         }
       }
 
+      // Why a check has no result whose kernel has ended. If the check itself ends it, a third one would, too.
+      const crashed = new WeakSet(); // the cells whose check has ended with a crash
+      function whyEnded(cell, crash) {
+        const ended = "The kernel ended during this check";
+        const again = crash && crashed.has(cell.model);
+        if (crash) crashed.add(cell.model);
+        if (!again) return `${ended}, so there is no result: check again.`;
+        return `${ended} again, so your code ends it. Look at the cell that defines ${CHECK.exec(text(cell))?.[3]}, and at what `
+          + "that code calls: exit(), os._exit(), a call of itself without an end, or a library that crashes.";
+      }
+
       function endCardsWithKernel(panel) {
         const { context, sessionContext } = panel;
+        let crash = false;
         sessionContext.statusChanged.connect((_, status) => {
-          if (ENDED.includes(status)) endCards(panel, "The kernel ended during this check, so there is no result: check again.");
+          crash ||= CRASHED.includes(status);
+          // JupyterLab says "restarting" first if a kernel has crashed, too, and "autorestarting" just after.
+          if (ENDED.includes(status)) setTimeout(() => {
+            endCards(panel, cell => whyEnded(cell, crash));
+            crash = false;
+          });
         });
         Promise.all([context.ready, sessionContext.ready]).then(
-          () => endCards(panel, "The notebook was closed during this check, so there is no result: check again."),
+          () => endCards(panel, () => "The notebook was closed during this check, so there is no result: check again."),
         );
       }
 

@@ -1,4 +1,4 @@
-"""Right: sleeps for two seconds in the main thread, as the course text hints, which is four or five feedbacks."""
+"""Wrong: sleeps for two seconds in the main thread instead of counting messages."""
 import threading
 import time
 

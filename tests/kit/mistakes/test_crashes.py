@@ -27,25 +27,25 @@ SAID = {
     "NameError: name 'time' is not defined": "Write import time",
     "NameError: name 'std_msgs' is not defined": "String instead of std_msgs.msg.String",
     "NameError: name 'self' is not defined": "such as node or client",
-    "NameError: name 'count' is not defined. Did you mean: 'self.count'?": "write self.count",
+    "NameError: name 'count' is not defined. Did you mean: 'self.count'?": "Write self.count",
     "NameError: name 'comand' is not defined. Did you mean: 'command'?": "it knows command",
     "NameError: name 'publisher' is not defined": "also in the line that sets it",
     "NameError: name 'linear' is not defined": "A Twist has two parts",
     "UnboundLocalError: local variable 'i' referenced before assignment": "write self.i",
     "AttributeError: 'Talker' object has no attribute 'cuont'. Did you mean: 'count'?": "write count.",
     "AttributeError: 'Talker' object has no attribute 'Counter'": "Talker has no Counter at this point",
+    "AttributeError: 'Talker' object has no attribute 'publisher'. Did you mean: 'publishers'?": "self.publisher = ...",
+    "AttributeError: 'Fibonacci_GetResult_Response' object has no attribute 'sequence'": "answer.result.sequence",
+    "rclpy._rclpy_pybind11.InvalidHandle: cannot use Destroyable because destruction was requested": "destroy_node()",
     "AttributeError: 'Timer' object has no attribute 'publish'": "has the type Timer",
     "AttributeError: 'NoneType' object has no attribute 'order'": "has run before this line",
     "TypeError: 'NoneType' object is not iterable": "such as the append of a list",
     "AttributeError: 'function' object has no attribute 'add_done_callback'": "a method that your code did not call",
     "TypeError: 'method' object is not iterable": "Write parentheses after the method's name",
     "AttributeError: type object 'GoalResponse' has no attribute 'Accept'": "written in capital letters",
-    "AttributeError: property 'speed' of 'Robot' object has no setter": "speed of Robot can be read but not set",
-    "AttributeError: partially initialized module 'random' has no attribute 'x'": "Rename your file",
     'TypeError: can only concatenate str (not "NoneType") to str': "Put the value into an f-string",
     "TypeError: unsupported operand type(s) for +: 'int' and 'str'": "convert the string to a number",
     "TypeError: 'Fibonacci_Result' object is not iterable": "answer.result.sequence",
-    "TypeError: 'dict' object is not callable": "names[key]",
     "TypeError: Talker is not a Node: write class Talker(Node)": "Write class Talker(Node):",
     "TypeError: rclpy_logging_rcutils_log(): incompatible function arguments. The": "info(f'{message.data}')",
     "TypeError: ask() missing 3 required positional arguments: 'a', 'b', and 'patience_sec'": "call of ask with its",
@@ -117,7 +117,7 @@ def test_the_card_names_what_to_mend(last: str) -> None:
         (
             "self.create_subscription(String, 'chatter', None, 10)",
             "RuntimeError: Subscription.__init__(): callback should be either be callable with one argument",
-            "Apart from self, a timer's callback has no parameter, and a subscription's callback has one, the message",
+            "the callback does not take exactly one message",
         ),
         (
             "total = fut.result().sum",
@@ -205,21 +205,6 @@ def test_only_what_a_callback_raised_is_called_an_exception_in_a_callback() -> N
     head, _, executor = IN_THE_EXECUTOR.partition('  File "/venv')
     for traceback in (IN_THE_EXECUTOR, head + executor.splitlines()[-1]):
         assert "rclpy.spin(Talker())" in told(traceback)
-
-
-GENERATOR = "ValueError: generator already executing"
-
-
-def test_a_spin_inside_a_callback_is_told_only_where_a_callback_spins() -> None:
-    in_a_thread = (
-        'Traceback (most recent call last):\n  File "talker.py", line 3, in run\n    rclpy.spin(node)\n'
-    )
-    nested = IN_A_CALLBACK.replace("1 / 0", "rclpy.spin(other)").replace(
-        "ZeroDivisionError: division by zero", ""
-    )
-    assert diagnosed(f"{nested}{GENERATOR}") == "nested_spin"
-    assert diagnosed(f"{in_a_thread}{GENERATOR}") == "crashed"
-    assert "Two threads spin the same executor at the same time" in told(f"{in_a_thread}{GENERATOR}")
 
 
 def test_what_ros_raised_of_a_notebooks_node_names_the_node_and_no_traceback_that_is_not_there() -> None:

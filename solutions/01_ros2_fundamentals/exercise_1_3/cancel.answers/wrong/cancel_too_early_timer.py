@@ -1,4 +1,4 @@
-"""Right: the course text's client with what real Jazzy needs; its timer cancels once, after 1.8 s."""
+"""Wrong: the course text's client with what real Jazzy needs; its timer cancels once, after 1.8 s."""
 import rclpy
 from action_msgs.msg import GoalStatus
 from rclpy.action import ActionClient
