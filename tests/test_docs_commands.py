@@ -72,6 +72,7 @@ RUN_BY = {
     "./course setup": f"{_SCRIPT}test_setup_always_looks_again_and_runs_nothing_else",
     "./course similar": GUIDE,
     "./course site": "authoring/test_site.py::test_every_lab_has_a_page_and_every_page_is_small_and_loads_nothing",
+    "./course students": GUIDE,
     "./course test": f"{_SCRIPT}test_test_runs_every_check_and_the_tests_last",
     "./course try-exercise": ADDING,
     "./course worker": "grading/cluster/test_cluster_worker.py::test_it_says_what_it_offers_and_ends_when_it_is_told",

@@ -167,10 +167,15 @@ def last_error(detail: str) -> str:
     return next((line for line in lines if line and not _FORM_OF_CALL.match(line)), "")
 
 
-def students_line(detail: str) -> TracebackLine | None:
+def students_line(detail: str, advice: str = "") -> TracebackLine | None:
     """Return the last line of the student's own code in the last traceback of a text.
 
     Return None if there is no such line, or if the line only calls ``spin``: the mistake is then in a callback.
+
+    Args:
+        detail: The text with the traceback.
+        advice: What the card says about it. A line that it quotes is returned rather than a later one, which may belong
+            to a function that the student was given.
     """
     lines = detail.splitlines()
     error = last_error(detail)
@@ -185,7 +190,8 @@ def students_line(detail: str) -> TracebackLine | None:
         if frame and _is_students(frame["file"]):
             after = lines[number + 1] if number + 1 < len(lines) else ""
             quote = after.strip() if after.startswith("    ") and not _FRAME.match(after) else ""
-            found = (frame["file"], frame["line"], quote)
+            if found is None or not found[2] or found[2] not in advice:
+                found = (frame["file"], frame["line"], quote)
         elif frame and _CALLED_BY_ROS in frame["file"]:
             found = None
     if found is None:

@@ -26,6 +26,7 @@ from autograder.judge.machine_fitness import (
     TooBusy,
     delivers,
 )
+from autograder.judge.parting_point import parting_point
 from autograder.kit.evidence import Evidence, Reference
 from autograder.kit.in_words import of_its_kind, shortened, visible
 from autograder.kit.mistakes.package_mistakes import changed_since_build
@@ -34,7 +35,7 @@ from autograder.kit.runners import runner_trouble
 from autograder.verdict import CriterionResult, Diagnosis, State, Verdict
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping
+    from collections.abc import Callable, Iterator, Mapping, Sequence
 
     from autograder.judge.subject import Subject
     from autograder.kit.evidence import Event
@@ -256,7 +257,7 @@ def judge(exercise: Exercise, evidence: Evidence, seed: str) -> Verdict:
         for finding in [_with_name(c.judge(evidence), lost.get(c.name))]
     )
     passed = all(criterion.passed for criterion in criteria)
-    diagnosis, traceback = (None, "") if passed else diagnose(exercise, evidence)
+    diagnosis, traceback = (None, "") if passed else diagnose(exercise, evidence, criteria)
     told = (diagnosis.text if diagnosis else "", *(one.seen for one in criteria if not one.passed))
     remarks = (*exercise.remarks, *([changed_since_build] if exercise.runner else []))
     return Verdict(
@@ -281,8 +282,13 @@ def _with_name(finding: Finding, wrong: Event | None) -> Finding:
     return Finding(False, f"the name {wrong.name}", f"the name {wrong.data['real']}")
 
 
-def diagnose(exercise: Exercise, evidence: Evidence) -> tuple[Diagnosis, str]:
+def diagnose(
+    exercise: Exercise, evidence: Evidence, criteria: Sequence[CriterionResult] = ()
+) -> tuple[Diagnosis, str]:
     """Return the diagnosis of the first known mistake in the evidence, and the traceback that shows it, if any.
+
+    If no mistake is known, the diagnosis says where the run leaves the reference solution's. If that is not clear
+    either, it quotes the first criterion that is not met.
 
     Another traceback is not returned. It may come from another run and from a correct line, but a student would take it
     for the mistake.
@@ -296,12 +302,12 @@ def diagnose(exercise: Exercise, evidence: Evidence) -> tuple[Diagnosis, str]:
             for words in (advice.text, advice.next_step)
         )
         return Diagnosis(advice.key or mistake.key, text, next_step), advice.traceback
-    unknown = Diagnosis(
-        UNKNOWN,
-        "The judge does not recognize this mistake.",
-        "Compare what was expected with what was seen, criterion by criterion.",
-    )
-    return unknown, ""
+    failed = next((one for one in criteria if not one.passed), None)
+    seen = f"“{failed.title}” is not met: {failed.seen}. Asked: {failed.expected}." if failed else ""
+    text = of_its_kind(shortened(visible(parting_point(evidence) or seen)), evidence.in_a_notebook)
+    return Diagnosis(
+        UNKNOWN, _cut(text, 2 * MAX_WORDS), "Find the line of your code that does this, and change it."
+    ), ""
 
 
 def _recognised(exercise: Exercise, evidence: Evidence) -> tuple[Mistake, Advice] | None:

@@ -33,6 +33,9 @@ MAX_LABEL = 200
 EXPECTED = 5
 """The maximum number of missing messages that a failed card shows for each topic, beginning with the first."""
 
+ASKED = " (asked)"
+"""The end of the name of the lane that shows what was expected and did not come, apart from what the subject sent."""
+
 _INPUTS = ("sent", "asked")
 """The kinds of events that are inputs for the subject: the judge sent a message, or called the subject's service."""
 
@@ -104,9 +107,9 @@ def _of_part(
     shown = [
         event
         for event in _under_real_names(part)
-        if event.kind in _KINDS and not _began(event) and (event.kind != "output" or id(event) in told)
+        if event.kind in KINDS and not _began(event) and (event.kind != "output" or id(event) in told)
     ]
-    lanes = _lanes(shown)
+    lanes = lane_names(shown)
     unlike = _first_unlike(shown, part, reference)
     found = [
         (
@@ -115,11 +118,11 @@ def _of_part(
             Moment(
                 t=_time(event, start),
                 lane=lane,
-                direction=_KINDS[event.kind].direction,
-                label=_label(event),
+                direction=KINDS[event.kind].direction,
+                label=label_of(event),
                 part=title,
                 simulated=start is not None,
-                key=_KINDS[event.kind].key
+                key=KINDS[event.kind].key
                 or event is unlike
                 or id(event) in told
                 or (event.kind == "subject" and event.name == "raised"),
@@ -153,7 +156,7 @@ def _began(event: Event) -> bool:
     return event.kind == "subject" and event.name in ("started", "constructed")
 
 
-def _without_echoes(events: Iterable[Event]) -> Iterator[Event]:
+def without_echoes(events: Iterable[Event]) -> Iterator[Event]:
     """Yield all events except the judge's own messages that its own subscription has received."""
     on_their_way: Counter[str] = Counter()
     for event in events:
@@ -170,18 +173,18 @@ def _without_echoes(events: Iterable[Event]) -> Iterator[Event]:
 def _under_real_names(part: Part) -> Iterator[Event]:
     """Yield the events with the names that the subject gave to topics, services and actions."""
     real = {event.name: event.data["real"] for event in part.of("misnamed")}
-    for event in _without_echoes(part.events):
+    for event in without_echoes(part.events):
         yield replace(event, name=real[event.name]) if event.name in real else event
 
 
-def _lanes(events: Sequence[Event]) -> list[str]:
+def lane_names(events: Sequence[Event]) -> list[str]:
     """Return the lane of each event: the topic, service or action, with the number of the goal if there are several."""
     number: dict[str, int] = {}
     numbers = []
     for event in events:
         if event.kind == "goal":
             number[event.name] = number.get(event.name, -1) + 1
-        own = event.data.get("goal") if _KINDS[event.kind].numbered else None
+        own = event.data.get("goal") if KINDS[event.kind].numbered else None
         numbers.append(own if isinstance(own, int) and own >= 0 else number.get(event.name, 0))
     several = {event.name for event, number in zip(events, numbers, strict=True) if number > 0}
     return [
@@ -238,12 +241,12 @@ def _missed(part: Part, reference: Reference, title: str, start: float | None) -
     known = next(
         (one for one in reference.parts if one.name == part.name and one.inputs == part.inputs), None
     )
-    if known is None or not _given_the_same(part, known):
+    if known is None or not given_the_same(part, known):
         return
     inputs = [_time(event, start) for event in part.events if event.kind in _INPUTS]
     expected = [pair for pair in _after_inputs(known) if pair[1].sim is not None]
     for topic in dict.fromkeys(event.name for _, event, _ in expected):
-        came = [(_time(event, start), _label(event)) for event in part.of("message", topic)]
+        came = [(_time(event, start), label_of(event)) for event in part.of("message", topic)]
         due = [one for one in expected if one[1].name == topic]
         if len(due) < 2:
             continue  # no interval
@@ -255,16 +258,18 @@ def _missed(part: Part, reference: Reference, title: str, start: float | None) -
         first = came or [(_time(event, start), "") for event in part.of("log")]
         shift = (first[0][0] if first else 0.0) - due[0][1].moment
         said = [
-            (inputs[given - 1] + after if given else event.moment + shift, _label(event))
+            (inputs[given - 1] + after if given else event.moment + shift, label_of(event))
             for given, event, after in due
             if given <= len(inputs)
         ]
         missed = _not_come(said, came, near, carried=not inputs)
         for place, (t, label) in enumerate(missed[:EXPECTED]):
-            yield Moment(round(t, 3), topic, "expected", label, title, start is not None, key=place == 0)
+            yield Moment(
+                round(t, 3), f"{topic}{ASKED}", "expected", label, title, start is not None, key=place == 0
+            )
 
 
-def _given_the_same(part: Part, known: Part) -> bool:
+def given_the_same(part: Part, known: Part) -> bool:
     """Return True if the subject got the inputs that the reference solution got. Random inputs may differ.
 
     If the subject ended early, only the inputs that it got before are compared.
@@ -357,7 +362,7 @@ class _Kind(NamedTuple):
 
 
 _HEARD, _SENT, _NOTE = "from_subject", "to_subject", "note"
-_KINDS = {
+KINDS = {
     "message": _Kind(_HEARD),
     "sent": _Kind(_SENT),
     "request": _Kind(_HEARD),
@@ -389,6 +394,7 @@ _KINDS = {
 }
 
 
-def _label(event: Event) -> str:
-    text = _KINDS[event.kind].label(event)
+def label_of(event: Event) -> str:
+    """Return the label of an event's dot, cut to :data:`MAX_LABEL` characters."""
+    text = KINDS[event.kind].label(event)
     return text if len(text) <= MAX_LABEL else f"{text[: MAX_LABEL - 1]}…"

@@ -74,7 +74,7 @@ def test_a_service_comes_late_once_more_if_nothing_shows_that_its_client_would_h
 ) -> None:
     came: list[float] = []
 
-    def called_late(_: Any, run: Run, calls: int, seconds: float) -> bool:
+    def called_late(_: Any, run: Run, calls: int, seconds: float, again: float) -> bool:
         came.append(seconds)
         return True
 
@@ -83,7 +83,7 @@ def test_a_service_comes_late_once_more_if_nothing_shows_that_its_client_would_h
     monkeypatch.setattr(service_runs, "unserved", lambda *_: None)
     monkeypatch.setattr(service_runs, "may_be_impatient", lambda _: impatient)
     asked = Part(LATE, {}, [Event(0.0, "request", "/add_two_ints", {})])
-    bench = MagicMock(pace=Pace.FAST, random=Random(0), seen=lambda: asked)
+    bench = MagicMock(pace=Pace.FAST, random=Random(0), seen=lambda: asked, before=None)
     service_runs.scenario(bench, [Run(LATE, (1, 2)), Run(BIASED, (1, 2))], (3, 4), calls=1)
     assert came == lateness
     assert [call.args for call in bench.again.mock_calls] == [(LATE,)] * impatient

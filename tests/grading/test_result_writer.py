@@ -8,7 +8,7 @@ import shutil
 import sqlite3
 from datetime import datetime
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import nbformat
 import pytest
@@ -27,6 +27,9 @@ from autograder.grading.returning.feedback_pages import mark_waiting
 from autograder.grading.returning.page_exporter import PageExporter
 from autograder.grading.returning.sanitize import make_harmless
 from autograder.verdict import State, Verdict
+
+if TYPE_CHECKING:
+    from sqlalchemy import Connection
 
 pytestmark = pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning")
 
@@ -186,10 +189,14 @@ def test_what_is_entered_for_a_submission_is_one_transaction(
 ) -> None:
     tiny.submit("ada")
 
-    def fail(*_: object) -> None:
-        raise RuntimeError("in the middle")
+    put = gradebook_writing._put
 
-    monkeypatch.setattr(gradebook_writing, "_enter_comments", fail)
+    def fail(book: Connection, rows: list[dict[str, object]], statement: str) -> None:
+        if "INTO comment" in statement:
+            raise RuntimeError("in the middle")
+        put(book, rows, statement)
+
+    monkeypatch.setattr(gradebook_writing, "_put", fail)
     report = tiny.grade()
     assert "in the middle" in report.problems[0]
     assert everything(tiny.path)["grade g"] == everything(tiny.path)["student"] == []

@@ -7,6 +7,7 @@ ids. The file ``.autograder/renaming.json`` says which pass is being made, so th
 
 from __future__ import annotations
 
+import contextlib
 from typing import TYPE_CHECKING
 
 import msgspec
@@ -21,7 +22,7 @@ from autograder.grading.collecting.collected_files import INBOX_FOLDER, Collecte
 from autograder.grading.collecting.submitted_folder import Submitted
 from autograder.grading.grading_errors import GradingError, check_known, course_command
 from autograder.grading.table.roster import NAME
-from autograder.grading.table.student_list import RENAMING, accept_list, compare, read_known
+from autograder.grading.table.student_list import RENAMING, accept_list, compare, enter_roster, read_known
 from autograder.grading.table.students_csv import read_students_csv
 from autograder.kit.in_words import counted
 from autograder.safe_files import remove_tree, write_whole
@@ -58,6 +59,9 @@ def change_students(path: Path, new: Path | None, said: Mapping[str, str], *, is
         if is_final and (directory.state / RENAMING).exists():
             _rename(directory, msgspec.json.decode((directory.state / RENAMING).read_bytes(), type=_Renaming))
             lines.append("An interrupted change of ids is finished now.")
+        if new:  # remember the present list, unless it has changes that were not made yet
+            with contextlib.suppress(GradingError):
+                enter_roster(directory)
         place = new or directory.path / NAME
         file = read_students_csv(place)
         if not file.students:

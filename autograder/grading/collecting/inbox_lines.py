@@ -20,7 +20,7 @@ from autograder.grading.rebuilding.submission_desk import read_notebook
 from autograder.grading.rebuilding.submitted_notebook import UnreadableSubmission
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping, Sequence
+    from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
     from datetime import tzinfo
 
     from autograder.grading.classes.class_directory import ClassDirectory
@@ -130,15 +130,10 @@ class _Reading:
         if self.delivery.form == BY_HAND:
             # A person put the file into ``submitted``, where its path names the student and the notebook.
             student, assignment, name = arrival.parts
-            line = replace(
-                line,
-                students=self.student_of.written(edit.student or student)[0] or (student,),
-                assignment=assignment,
-                notebook=name.removesuffix(SUFFIX),
-                lms=BY_HAND,
-                file=arrival.path,
-                is_sure=True,
-            )
+            owners = self.student_of.written(edit.student or student)[0] or (student,)
+            notebook = name.removesuffix(SUFFIX)
+            line = replace(line, students=owners, assignment=assignment, notebook=notebook)
+            line = replace(line, lms=BY_HAND, file=arrival.path, is_sure=True)
         else:
             line = self._collected(line, arrival, edit, of_archive)
         if not edit.handed_in:
@@ -189,11 +184,7 @@ class _Reading:
         line = replace(line, unreadable=unreadable)
         if edit.assignment or edit.notebook:
             return self._as_written(line, name, edit, asked)
-        try:
-            (assignment, notebook), is_named = self.assignments.target(name, cells, asked)
-        except _NoTarget as error:
-            return replace(line, reason=unreadable or str(error), is_soft=error.is_left_out)
-        return replace(line, assignment=assignment, notebook=notebook, is_named=is_named)
+        return self.assignments.completed(line, name, cells, asked)
 
     def _as_written(self, line: Line, name: str, edit: Edit, asked: str) -> Line:
         """Return the line completed with the notebook that a person wrote."""
@@ -265,62 +256,50 @@ class AssignmentOf:
         assignments = {assignment for assignment, _ in self._notebooks.get(stem.casefold(), ())}
         return asked or (assignments.pop() if len(assignments) == 1 else "")
 
-    def target(self, name: str, cells: Sequence[SubmittedCell], asked: str) -> tuple[Target, bool]:
-        """Return the assignment and the notebook of a file, and whether the file has the notebook's name.
+    def completed(self, line: Line, name: str, cells: Sequence[SubmittedCell], asked: str) -> Line:
+        """Return the line with its assignment and notebook, or with the reason why they are not certain.
 
         Args:
+            line: The line of a notebook.
             name: The name that the student gave the file.
             cells: The cells of the file.
             asked: The assignment that the instructor named; empty to find it.
-
-        Raises:
-            _NoTarget: The notebook is unclear, or the cells belong to several assignments, or they do not belong to the
-                assignment in the file's name or to ``asked``.
         """
         named = self._notebooks.get(_stem_of(name).casefold(), [])
-        names = {cell.grade_id for cell in cells} - {""}
         mixed = self._directory.named_cells.assignments(cells)
-        if len(mixed) > 1 and asked not in mixed:
-            raise _NoTarget(
-                f"the file has cells of {' and of '.join(mixed)}: ask the student for a notebook for each, or write "
-                f"the name of one of these assignments {_UNDER}"
-            )
-        held = self._directory.named_cells.closest(names, asked if asked in mixed else "")
+        cell_names = {cell.grade_id for cell in cells} - {""}
+        held = self._directory.named_cells.closest(cell_names, asked if asked in mixed else "")
         meant = [target for target in named if not held or target in held] or held
         here = [target for target in meant if asked in ("", target[0])]
-        if meant and not here:
-            other = meant[0][0]
-            why = f"the file is the notebook of {other}, not of {asked}"
-            raise _NoTarget(
-                f"{why}; to collect the file for {other}, write {other} {_UNDER}", is_left_out=True
-            )
-        if named and not asked and not set(named) & set(meant):
-            says, other = " or ".join(assignment for assignment, _ in named), held[0][0]
-            raise _NoTarget(
-                f"the file's name is that of {says}, but the cells are those of {other}: ask the student for the right "
-                f"notebook, or write {other} {_UNDER}"
-            )
-        if asked and not here:
-            here = [(asked, one) for one in self._directory.notebooks(asked)]
-        if len(here) != 1:
-            # The file has named cells, but none from this class: it is another notebook of the course, such as its
-            # summary.
-            raise _NoTarget(self._unclear(meant, asked), is_left_out=not meant and bool(names))
-        return here[0], here[0] in named
-
-    def _unclear(self, meant: list[Target], asked: str) -> str:
-        """Return a message with the notebooks or assignments that are possible."""
-        assignments = sorted({asked} if asked else {assignment for assignment, _ in meant})
-        if len(assignments) == 1:
-            names = ", ".join(self._directory.notebooks(assignments[0]))
-            which = (
-                f"which notebook of {assignments[0]} the file is ({names}): write the notebook under notebook in "
-                "collected.csv"
-            )
+        is_at_odds = not asked and bool(named) and not set(named) & set(meant)
+        disagree = is_at_odds or (len(mixed) > 1 and asked not in mixed)
+        if meant and not here and not disagree:
+            why = f"the file is the notebook of {meant[0][0]}, not of {asked}"
+            reason = f"{why}; to collect the file for {meant[0][0]}, write {meant[0][0]} {_UNDER}"
+            return replace(line, reason=reason, is_soft=True)
+        here = here or [(asked, one) for one in self.notebooks(asked)]
+        if len(here) == 1 and not disagree:
+            return replace(line, assignment=here[0][0], notebook=here[0][1], is_named=here[0] in named)
+        # A file with named cells of which none is from this class is another notebook of the course.
+        is_foreign = not meant and bool(cell_names)
+        possible = {asked} if asked else {target[0] for target in meant}
+        if len(possible) == 1 and not disagree:
+            reason = self._of_several(*possible)
         else:
-            known = ", ".join(assignments or self._directory.assignments())
-            which = f"which assignment the file is for ({known}): write the assignment {_UNDER}"
-        return f"it is not clear {which}"
+            reason = self._unclear(
+                {target[0] for target in named}, {*mixed} or {target[0] for target in held}
+            )
+        return replace(line, reason=line.unreadable or reason, is_soft=is_foreign)
+
+    def _of_several(self, assignment: str) -> str:
+        which = f"which notebook of {assignment} the file is ({', '.join(self.notebooks(assignment))})"
+        return f"it is not clear {which}: write the notebook under notebook in collected.csv"
+
+    def _unclear(self, by_name: Collection[str], by_cells: Collection[str]) -> str:
+        sources = {"name": by_name, "cells": by_cells}
+        said = [f"{' or '.join(sorted(those))} by its {source}" for source, those in sources.items() if those]
+        which = f"which assignment the file is for ({', '.join(said or self._directory.assignments())})"
+        return f"it is not clear {which}: write the assignment {_UNDER}"
 
     @functools.cached_property
     def _notebooks(self) -> dict[str, list[Target]]:
@@ -333,20 +312,6 @@ class AssignmentOf:
 
 
 _UNDER = "under assignment in collected.csv"
-
-
-class _NoTarget(ValueError):
-    """The notebook of a file is unclear, or the file is not to be collected now, for the reason in the message.
-
-    Args:
-        message: The reason, and what to type.
-        is_left_out: True if the file need not be collected: the instructor asked for another assignment, or the class
-            has no assignment with the file's cells.
-    """
-
-    def __init__(self, message: str, *, is_left_out: bool = False) -> None:
-        super().__init__(message)
-        self.is_left_out = is_left_out
 
 
 def _is_notebook(name: str, data: bytes) -> bool:

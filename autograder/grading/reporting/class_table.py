@@ -108,6 +108,12 @@ class ClassTable:
         is_absent = any(row.state == NOT_SUBMITTED for row in rows) and all(row.is_blank for row in rows)
         return self.absent if is_absent else total(rows)
 
+    def has_points(self, student: str, assignments: Iterable[str]) -> bool:
+        """Return True if the student has points for one of these assignments, or is excused from one."""
+        return any(
+            self.score(student, name) is not None or self.is_excused(student, name) for name in assignments
+        )
+
     def is_excused(self, student: str, assignment: str) -> bool:
         """Return True if the student is excused from the assignment."""
         return any(row.state == EXCUSED for row in self.of(student, assignment))
@@ -126,10 +132,22 @@ class ClassTable:
             for name in ("", *self.assignments)
         }
 
+    def late_notices(self, systems: Iterable[str]) -> list[str]:
+        """Return sentences about late penalties that one of these systems may subtract once more."""
+        is_late = any(entry.is_late or entry.penalty for entry in self.entries.values())
+        return [_LATE_TWICE[name] for name in sorted(systems) if name in _LATE_TWICE and is_late]
+
     @property
     def waiting(self) -> list[Row]:
         """The rows that a person still has to grade."""
         return [row for row in self.rows if row.waits]
+
+
+_LATE_TWICE = {
+    "canvas": "Canvas may subtract its own late penalty from these points, which are already those after the penalty "
+    "of the class: switch it off in Canvas (Grades, Settings, Late Policies), or set the status there to none"
+}
+"""For each LMS that changes imported points of late work, the warning about it."""
 
 
 def read_table(directory: ClassDirectory, sections: Sequence[str] = ()) -> ClassTable:
@@ -166,7 +184,12 @@ def read_table(directory: ClassDirectory, sections: Sequence[str] = ()) -> Class
     whole = Roster([*roster.students.values(), *others])
     table = ClassTable(tuple(rows), whole, entries, tuple(stale), unplaced, released.unusable)
     shown = table.only(roster.of_sections(sections)) if sections else table
-    return replace(shown, notices=tuple(roster.notices(directory.assignments(), entries, shown.students)))
+    systems = {lms for student in roster.students.values() for lms in student.lms}
+    notices = [
+        *roster.notices(directory.assignments(), entries, shown.students),
+        *shown.late_notices(systems),
+    ]
+    return replace(shown, notices=tuple(notices))
 
 
 @dataclass(frozen=True)

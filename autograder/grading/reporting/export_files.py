@@ -33,6 +33,9 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 
+_MOST_NAMED = 20
+
+
 @dataclass(frozen=True)
 class Exported:
     """The files that an export wrote.
@@ -103,7 +106,12 @@ def export(
     notices += [
         f"{name} is left out of all students' points: {reason}" for name, reason in table.unusable.items()
     ]
-    notices += table.notices
+    notices += [*table.notices, *(one for one in table.late_notices([to]) if one not in table.notices)]
+    if without := [one for one in table.students if not table.has_points(one, wanted)]:
+        notices.append(
+            f"{counted(len(without), 'student')} of the class without points for {', '.join(wanted)}: "
+            f"{', '.join(without[:_MOST_NAMED])}{' …' if without[_MOST_NAMED:] else ''}"
+        )
     if table.waiting:
         waiting = counted(len(table.waiting), "result")
         notices.append(f"{waiting} still to be graded by a person, exported with their present points")

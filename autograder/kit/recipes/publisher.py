@@ -322,8 +322,9 @@ class Hears:
             if twin
             else "If your code still has a TODO, write that step first. The timer's method must call publish(...) "
             "with the message between the parentheses; a log line is not a message. Give the timer its period "
-            f"in seconds, {_reference_period(evidence.reference):g} and not "
-            f"{1000 * _reference_period(evidence.reference):g}.",
+            f"in seconds, {_reference_period(evidence.reference):g}: with a longer one, such as "
+            f"{10 * _reference_period(evidence.reference):g} or {1000 * _reference_period(evidence.reference):g}, "
+            "nothing comes in the time that the judge listens.",
         )
 
     def _wrong_rate(self, evidence: Evidence) -> Advice | None:
@@ -349,8 +350,9 @@ class Hears:
             return None
         return Advice(
             f"Your node published {counted(came, 'message')} and then no more, although it still exists.",
-            "The task has no end: delete the code that stops the timer, or that returns from the callback before it "
-            "publishes.",
+            "The task has no end: a timer has to call the method that publishes again and again. If your node has no "
+            "timer, make one with create_timer. If it has one, delete the code that stops it, or that returns from "
+            "the callback before it publishes.",
         )
 
 

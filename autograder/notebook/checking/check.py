@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from autograder import course
 from autograder.cards import html_rendering
 from autograder.messages import judge_messages as messages
+from autograder.messages import run_messages
 from autograder.notebook.cell_output import notebook_shell, say
 from autograder.notebook.cell_runs import raise_if_stale
 from autograder.notebook.checking.card_display import (
@@ -145,10 +146,10 @@ def converse(link: JudgeLink, exercise: str, subject: Any, progress: Progress) -
 
     with (
         CheckContext(first.domain, first.keeper) as check_context,
-        CapturedOutput(lambda line, logged: tell(messages.Output, text=line, logged=logged)) as captured,
+        CapturedOutput(lambda line, logged: tell(run_messages.Output, text=line, logged=logged)) as captured,
         ToldCalls(captured.is_captured, tell) as calls,
     ):
-        link.say(messages.Ready())
+        link.say(run_messages.Ready())
         try:
             while True:
                 match order := link.hear():
@@ -157,7 +158,7 @@ def converse(link: JudgeLink, exercise: str, subject: Any, progress: Progress) -
                         link.say(
                             messages.EndpointsMet(check_context.sees(order.there, order.gone, order.within))
                         )
-                    case messages.Start():
+                    case run_messages.Start():
                         # Only a class or function runs in this kernel's context. A path runs in a new process.
                         if not is_path(subject):
                             check_context.ensure(fresh=order.fresh)
@@ -172,14 +173,14 @@ def converse(link: JudgeLink, exercise: str, subject: Any, progress: Progress) -
                         run.start(order.arguments, order.options)
                     case messages.Release() if run is not None:
                         run.release()
-                    case messages.Interrupt() if isinstance(run, PathRun):
+                    case run_messages.Interrupt() if isinstance(run, PathRun):
                         run.interrupt()
                     case messages.Stack() if run is not None:
                         link.say(messages.Stacks(number, captured.stacks()))
-                    case messages.Stop() if run is not None:
+                    case run_messages.Stop() if run is not None:
                         if not run.stop():
                             check_context.renew()  # the run still uses the old context, so the next run gets a new one
-                        link.say(messages.Stopped(number))
+                        link.say(run_messages.Stopped(number))
                         progress.doing(f"the judge examines run {number}")
                         run = None
                     case messages.SoFar():
@@ -249,7 +250,11 @@ def _retold(tell: Tell, progress: Progress) -> Tell:
     """Return a function that calls ``tell`` and also shows the last printed line of a program on the card."""
 
     def told(message: Message) -> None:
-        if isinstance(message, messages.Output) and message.text.strip() and not message.text.startswith("@"):
+        if (
+            isinstance(message, run_messages.Output)
+            and message.text.strip()
+            and not message.text.startswith("@")
+        ):
             progress.doing(message.text.strip()[:LINE])
         tell(message)
 

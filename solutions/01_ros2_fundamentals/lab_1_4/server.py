@@ -196,9 +196,9 @@ def wrong_feedback(seen: Evidence, _: Evidence) -> Advice | None:
     if not wrong:
         return None
     return Advice(
-        f"The feedback does not grow by one number each time ({wrong[0][1]}).",
+        f"The feedback is not one more number each time, up to the last number of the sequence ({wrong[0][1]}).",
         "Publish in each turn of the loop, right after you have appended a number: all numbers found so far, in "
-        "partial_sequence.",
+        "partial_sequence. End the loop when the sequence is complete: for order 4 it has five numbers.",
     )
 
 

@@ -245,7 +245,7 @@ def test_the_cells_say_which_assignment_it_is(klass: TinyClass, tmp_path: Path) 
         assert "the file is the notebook of lab_1_3, not of lab_1_2" in beside.reason
         assert lies(klass, "ada") == work(klass, 3)
     report = gathered(klass, tmp_path, {ada: other})
-    assert "the file's name is that of lab_1_2, but the cells are those of lab_1_3" in why(report)
+    assert "(lab_1_2 by its name, lab_1_3 by its cells)" in why(report)
     report = gathered(klass, tmp_path, {MOODLE.format("Ada Lovelace", "homework.ipynb"): other})
     assert [one.assignment for one in report.having(LineState.PLACED)] == ["lab_1_3"]
 
@@ -272,7 +272,7 @@ def test_a_second_copy_under_another_labs_name_waits(klass: TinyClass, tmp_path:
     held = zipped({"lab_1_2 (1).ipynb": other, "lab_1_3.ipynb": other})
     report = gathered(klass, tmp_path, {MOODLE.format("Ada Lovelace", "work.zip"): held})
     assert [one.assignment for one in report.having(LineState.PLACED)] == ["lab_1_3"]
-    assert "the file's name is that of lab_1_2, but the cells are those of lab_1_3" in why(report)
+    assert "(lab_1_2 by its name, lab_1_3 by its cells)" in why(report)
 
 
 def test_a_notebook_of_the_course_that_is_no_assignment_here_is_beside_the_work(

@@ -94,6 +94,9 @@ def test_every_command_of_the_guide_runs(
         "id,first_name,last_name,email,section\nada,Ada,Lovelace,ada@uni.example,Monday\n"
         "ben,Ben,Bär,ben@uni.example,Tuesday\n"
     )
+    (tmp_path / "Downloads" / "Grades.csv").write_text(
+        'Student,ID,SIS User ID,SIS Login ID,Section\n"Lovelace, Ada",1,,ada,Monday\n"Bär, Ben",2,,ben,Tuesday\n'
+    )
     notebook = tiny.submit("x", 4, 7)
     names = ("lovelaceada_1_2_lab_1_2.ipynb", "barben_2_3_lab_1_2.ipynb")
     write_zip(tmp_path / "Downloads" / "submissions.zip", dict.fromkeys(names, notebook.read_bytes()))

@@ -180,7 +180,7 @@ def test_what_turns_the_direction_of_writing_is_shown_as_an_escape(
     monkeypatch.setattr(tiny_class, "verdict", lambda *words: replace(plain(*words), diagnosis=said))
     graded.submit("ben", 3, 3)
     graded.grade()
-    (graded.path / "students.csv").write_text("id,first_name\nada,\u202enimda\u2066\x1b\n")
+    (graded.path / "students.csv").write_text("id,first_name\nada,\u202enimda\u2066\x1b\nben,\n")
     text = write_report(graded.path).read_text()
     assert "\\u202egro.live" in text
     assert "\\u202enimda" in text
