@@ -301,7 +301,7 @@ def diagnose(
             _cut(of_its_kind(shortened(visible(words)), in_a_notebook), 2 * MAX_WORDS)
             for words in (advice.text, advice.next_step)
         )
-        return Diagnosis(mistake.key, text, next_step), advice.traceback
+        return Diagnosis(advice.key or mistake.key, text, next_step), advice.traceback
     failed = next((one for one in criteria if not one.passed), None)
     seen = f"“{failed.title}” is not met: {failed.seen}. Asked: {failed.expected}." if failed else ""
     text = of_its_kind(shortened(visible(parting_point(evidence) or seen)), evidence.in_a_notebook)
