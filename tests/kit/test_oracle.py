@@ -16,7 +16,6 @@ if TYPE_CHECKING:
 
 INTERFACE = {"publisher": {"/cmd_vel": "x/msg/Y", "/beat": "x/msg/Y"}, "subscription": {"/scan": "x/msg/Y"}}
 GIVEN = ("0.75 s without an input", "/scan", "speed = 2.5")
-Steps = "Sequence[list[Any]]"
 
 
 def exercise() -> Exercise:
@@ -33,7 +32,7 @@ def exercise() -> Exercise:
 
 
 def run(
-    commands: Steps,
+    commands: Sequence[Sequence[Any]],
     beats: Sequence[int] = (1, 2, 3, 4, 5),
     speed: Sequence[Any] = ((3, [[0.0, 2.0]]), (False, True)),
     *,
@@ -42,7 +41,7 @@ def run(
 ) -> Part:
     """Return a run with these commands, one in each step, these beats, and what the parameter's node answered."""
     noted = [
-        *(("/cmd_vel", step, [command] if command else []) for step, command in enumerate(commands)),
+        *(("/cmd_vel", step, [list(command)] if command else []) for step, command in enumerate(commands)),
         ("speed", 0, [list(speed[0])]),
         ("speed", 2, [list(speed[1])]),
         ("/beat", 0, [[beat] for beat in beats]),

@@ -5,7 +5,21 @@ from random import Random
 from autograder.kit.recipes.oracle import SameAsSolution, To
 
 FRONT = {"near": (0.1, 0.45), "between": (0.55, 0.75), "far": (0.9, 3.0)}
-COURSE = ("far", "between", "near", "between", "far", "between", "near", 1.6, "between", "far", 2.3, "near", "far")
+COURSE = (
+    "far",
+    "between",
+    "near",
+    "between",
+    "far",
+    "between",
+    "near",
+    1.6,
+    "between",
+    "far",
+    2.3,
+    "near",
+    "far",
+)
 """How far the nearest thing in front is in each scan; a number is a pause without a scan, in seconds."""
 
 
