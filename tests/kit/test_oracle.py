@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from autograder.kit.evidence import Event, Evidence, Part, Reference, Variant
-from autograder.kit.recipes.oracle import SameAsSolution, Sets, To
+from autograder.kit.oracle.same_as_solution import SameAsSolution, Sets, To
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

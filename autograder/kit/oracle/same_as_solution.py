@@ -7,8 +7,7 @@ the solution.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Container, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from random import Random
 from types import MappingProxyType
@@ -17,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 from autograder.kit.draft import OWN, Draft
 from autograder.kit.in_words import counted
 from autograder.kit.model import Advice, Finding, Mistake, Pace
+from autograder.kit.oracle.steps import Serves, Sets, Step, parameter_in_words, parameter_value
 from autograder.kit.recipes.own_scenario import QUIET, Met, OwnScenario, meet, pick
 from autograder.kit.recipes.relay import To
 from autograder.kit.rules import in_words, same
@@ -32,14 +32,13 @@ DRAWINGS = 8
 PAUSE = 0.75
 """Seconds of the subject's time after each input. Whatever the input changes must be published by then."""
 TOLERANCE = 1e-3
+"""The tolerance for numbers, absolute or relative to the larger one."""
 ONE_MISSING_IN = 4
 """One more or one fewer of this many messages may come, because each node asks and tells at its own moments."""
 NOTHING: Mapping[str, Any] = MappingProxyType({})
 SET = ("set_parameters", "rcl_interfaces/srv/SetParameters")
 DESCRIBE = ("describe_parameters", "rcl_interfaces/srv/DescribeParameters")
 DESCRIBED = ("type", "ranges")
-TYPES = {1: "bool", 2: "integer", 3: "double", 4: "string"}
-"""The types of parameters (rcl_interfaces/msg/ParameterType.msg)."""
 POINTS = 10.0
 """The points of an exercise whose author does not say how many it is worth."""
 
@@ -76,45 +75,6 @@ class _Drawn(OwnScenario):
 
 def _noted(part: Part) -> list[Any]:
     return [[event.name, event.data["step"], event.data["values"]] for event in part.of("noted")]
-
-
-@dataclass(frozen=True)
-class Serves:
-    """A service of the judge that the subject calls.
-
-    Attributes:
-        answer: Draws the fields of an answer.
-        late: The requests, counted from 1, that are answered late, with the delay in seconds of the subject's time.
-        never: The requests that are never answered.
-    """
-
-    answer: Callable[[Random], Mapping[str, Any]]
-    late: Mapping[int, float] = field(default_factory=dict)
-    never: Container[int] = ()
-
-
-@dataclass(frozen=True)
-class Sets:
-    """A step in which the judge sets a parameter of the subject; the subject takes the value or refuses it.
-
-    Attributes:
-        parameter: The name of the parameter.
-        value: The new value: a number, a text or a truth value.
-        node: The full name of the node; by default the subject's first node.
-    """
-
-    parameter: str
-    value: float | str | bool
-    node: str = ""
-
-    @property
-    def name(self) -> str:
-        """The parameter, with its node if the author named one."""
-        return f"{self.node}.{self.parameter}" if self.node else self.parameter
-
-
-Step = To | Sets | float
-"""What the judge does in a step: it gives an input, sets a parameter, or lets time pass, in seconds."""
 
 
 class SameAsSolution:
@@ -254,7 +214,7 @@ class SameAsSolution:
         """Give the subject an input. Return False if it should answer and does not."""
         bench, ends = met.bench, met.bench.reference.interface
         if isinstance(step, Sets):
-            value = {"name": step.parameter, "value": _parameter_value(step.value)}
+            value = {"name": step.parameter, "value": parameter_value(step.value)}
             return self._ask(bench, step.node, SET, {"parameters": [value]})
         speakers = dict(zip(sorted(ends.get("subscription", {})), met.speakers, strict=True))
         callers = dict(zip(sorted(ends.get("service", {})), met.callers, strict=True))
@@ -331,7 +291,7 @@ class SameAsSolution:
 
     def _in_words(self, name: str, listed: Sequence[Sequence[Any]]) -> str:
         if name in self._parameters:
-            return "; ".join(map(_of_a_parameter, listed)) or "nothing"
+            return "; ".join(map(parameter_in_words, listed)) or "nothing"
         paths = self._paths[name]
         named = ("" if path == "data" else f"{path} = " for path in paths)
         prefixes = list(named)
@@ -343,20 +303,3 @@ class SameAsSolution:
 
 def _listed(part: Part, name: str) -> list[Any]:
     return [values for event in part.of("noted", name) for values in event.data["values"]]
-
-
-def _of_a_parameter(noted: Sequence[Any]) -> str:
-    """Return in words a parameter's noted type and ranges, or how a new value was received."""
-    first, second = noted
-    if isinstance(first, bool):
-        return "taken" if first else f"refused with{'' if second else 'out'} a reason"
-    ranges = " and ".join(f"from {low:g} to {high:g}" for low, high in second) or "without a range"
-    return f"{TYPES.get(first, 'not declared')} {ranges}"
-
-
-def _parameter_value(value: float | str | bool) -> dict[str, Any]:
-    """Return the fields of a rcl_interfaces/msg/ParameterValue."""
-    kind = next(
-        number for number, python in ((1, bool), (2, int), (3, float), (4, str)) if isinstance(value, python)
-    )
-    return {"type": kind, f"{TYPES[kind]}_value": value}
