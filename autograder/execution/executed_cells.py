@@ -97,8 +97,6 @@ class Execution:
         trouble: A failure of the grader itself; empty if there was none. With such a failure, no result is final.
         seconds: The duration in seconds of wall time, including the start of the kernel.
         start_seconds: The part of ``seconds`` until kernel and judge were ready.
-        as_typed: The indexes of the text cells that a page shows as plain text, because rendering their Markdown takes
-            too long.
         crowded_out: True if the notebook may have failed only because other work ran at the same time.
         cpu_seconds: The processor time in seconds that was used in the student's boxes; 0 if it is not counted.
         evidence: The evidence for the judge's verdicts, by exercise, packed. Grading does not unpack it.
@@ -109,7 +107,6 @@ class Execution:
     trouble: str = ""
     seconds: float = 0.0
     start_seconds: float = 0.0
-    as_typed: tuple[int, ...] = ()
     crowded_out: bool = False
     cpu_seconds: float = 0.0
     evidence: dict[str, bytes] = field(default_factory=dict)
@@ -189,16 +186,16 @@ class OutputCollector:
 
     def outputs(self) -> tuple[dict[str, Any], ...]:
         """The outputs so far in nbformat's format, with a last line if anything was dropped."""
-        kept = [_without_overwritten_lines(output) for output in self._outputs]
+        outputs = [_without_overwritten_lines(output) for output in self._outputs]
         if self._dropped:
-            kept.append(
+            outputs.append(
                 {
                     "output_type": "stream",
                     "name": "stdout",
                     "text": f"\n[{self._dropped} bytes of output were dropped]\n",
                 }
             )
-        return tuple(kept)
+        return tuple(outputs)
 
     def _stream(self, content: Mapping[str, Any]) -> None:
         name = "stderr" if content.get("name") == "stderr" else "stdout"

@@ -11,11 +11,12 @@ defined. A check is never left out: if it reaches its verdict within the short l
 
 from __future__ import annotations
 
-import ast
 import contextlib
 import time
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Protocol
+
+import re2
 
 from autograder.boxes.run_limits import Ended, Patient, first_of, wall_time
 from autograder.execution.executed_cells import Cell, CellCheck, CellRun, CellType, Execution, NotebookOutputs
@@ -252,7 +253,7 @@ class _Hangs:
     def of(cls, cells: Iterable[Cell]) -> _Hangs:
         """Return a record for the notebook with these cells, in which nothing has hung yet."""
         own = (cell.source for cell in cells if cell.kind is CellType.CODE and cell.own)
-        return cls(frozenset(name for source in own for name in _defined(source)))
+        return cls(frozenset(name for source in own for name in _DEFINED.findall(source)))
 
     def note(self, cell: Cell, title: str) -> None:
         """Record that the cell with this title in messages was stopped at its time limit."""
@@ -266,12 +267,12 @@ class _Hangs:
         The second value is the title of the cell in which this function or class hung.
         """
         if not self._hung:
-            return None  # nothing has hung, as in nearly every notebook, so no cell has to be parsed
+            return None  # nothing has hung, as in nearly every notebook, so no cell has to be read
         return next(((name, self._hung[name]) for name in self._used(cell) if name in self._hung), None)
 
     def _used(self, cell: Cell) -> list[str]:
-        tree = _parsed(cell.source)
-        names = {node.id for node in ast.walk(tree) if isinstance(node, ast.Name)} if tree else set()
+        is_python = not cell.source.lstrip().startswith("%%")
+        names = {part["name"] for part in _PART.finditer(cell.source)} if is_python else set()
         return sorted(names & self.written)
 
 
@@ -285,15 +286,12 @@ def _seconds_again(cell: Cell, usual: float, limits: Limits) -> float:
     return min(usual, cell.check.limit * _SHARE_OF_A_CHECK + limits.check_margin)
 
 
-def _defined(source: str) -> list[str]:
-    tree = _parsed(source)
-    kinds = (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)
-    return [node.name for node in tree.body if isinstance(node, kinds)] if tree else []
-
-
-def _parsed(source: str) -> ast.Module | None:
-    """Return the syntax tree of Python code; None for anything else: a magic, a syntax error, or unreadable text."""
-    try:
-        return ast.parse(source)
-    except (SyntaxError, ValueError, RecursionError, MemoryError):
-        return None
+# Python's parser takes quadratic time for some texts and cannot be interrupted, so code is only searched.
+_NAME = r"[\pL_][\pL\pN_]*"
+_DEFINED = re2.compile(rf"(?m)^(?:(?:async[ \t]+)?def|class)[ \t]+({_NAME})")
+# Matches a string, a comment, a number, an attribute, or a name. A string without an end matches too, so that no part
+# of the text is searched twice.
+_PART = re2.compile(
+    r'''(?s)""".*?(?:"""|\z)|'{3}.*?(?:'{3}|\z)|"(?:\\.|[^"\\\n])*"?|'(?:\\.|[^'\\\n])*'?|#[^\n]*'''
+    rf"|\d[\pL\pN_.]*|\.\s*{_NAME}|(?P<name>{_NAME})"
+)

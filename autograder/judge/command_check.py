@@ -11,14 +11,15 @@ from typing import TYPE_CHECKING
 import msgspec
 
 from autograder import exercises
+from autograder.command_name import COMMAND
 from autograder.dds_discovery import NoFreeDomainError
 from autograder.judge import evidence_files, ros_setup
 from autograder.judge.check_process import Child
 from autograder.judge.machine_fitness import JudgeFailed
-from autograder.kit.runners import Launches
+from autograder.kit.runners import Launches, runner_as_word
 from autograder.messages.judge_messages import Report
 from autograder.verdict import Verdict, not_checked
-from environment.installation import COMMAND
+from autograder.workspaces.sources import full_disk
 from environment.python_child import python_child
 
 if TYPE_CHECKING:
@@ -76,6 +77,8 @@ def check_and_keep(
         raise CommandNotFound(
             f"the program {command[0]!r} does not exist here: check its spelling, and that it is executable"
         )
+    if is_path(exercise, command, cwd) and (trouble := full_disk(Path(cwd or ".", command[0]))):
+        return not_checked(exercise.id, exercise.title, exercise.points, trouble, key="disk_full"), b""
     chosen = seed or secrets.token_hex(8)
 
     def report() -> bytes:
@@ -99,10 +102,11 @@ def _as_run(exercise: Exercise, command: Sequence[str], cwd: Path | None) -> Seq
 
     If ``command`` is the path of a workspace or launch file, this is ``python -m autograder.workspaces`` with the path.
     """
-    runner = python_child("-m", "autograder.workspaces", exercise.id).command
-    if is_path(exercise, command, cwd):
-        return [*runner, command[0]]
-    return [*runner, "--", *command] if exercise.wraps_commands else command
+    wraps = exercise.wraps_commands and not is_path(exercise, command, cwd)
+    if exercise.runner is None or not (wraps or is_path(exercise, command, cwd)):
+        return command
+    runner = python_child("-m", "autograder.workspaces", runner_as_word(exercise.runner)).command
+    return [*runner, *(["--"] if wraps else []), *command]
 
 
 def is_path(exercise: Exercise, command: Sequence[str], cwd: Path | None) -> bool:

@@ -22,10 +22,10 @@ from typing import TYPE_CHECKING, Any
 
 import msgspec
 
+from autograder.command_name import COMMAND
 from autograder.exercises import reference_path
 from autograder.kit.evidence import Event, Evidence, Part, Reference
 from autograder.verdict import Verdict  # noqa: TC001  (msgspec reads the annotations)
-from environment.installation import COMMAND
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -156,6 +156,8 @@ MAX_RAW_BYTES = 8_000_000
 """The maximum size in bytes before compression. Without it, evidence full of repetitions could be huge, because it is
 small after compression.
 """
+MAX_LINES_BYTES = MAX_RAW_BYTES + 1_000
+"""The maximum size in bytes of all lines. The last line, about what was left out, is written beyond the limit."""
 _GZIP = 31
 """The value of zlib's ``wbits`` for a gzip header with the largest window."""
 _FLOAT = "$float"
@@ -269,15 +271,36 @@ def unpack(data: bytes) -> Kept:
     Raises:
         NoEvidence: The bytes are not evidence, or are damaged.
     """
+    return parse(lines_of(data))
+
+
+def lines_of(data: bytes) -> bytes:
+    """Return the lines of packed evidence, each of which is JSON.
+
+    Raises:
+        NoEvidence: The bytes are not evidence, or are damaged.
+    """
     try:
         unzip = zlib.decompressobj(_GZIP)
-        text = unzip.decompress(data, 2 * MAX_RAW_BYTES)
-        if not unzip.eof:
-            raise NoEvidence("the end of the evidence is missing, or the evidence is larger than allowed")
-        first, *rows, last = [restored(json.loads(line)) for line in text.splitlines()]
+        text = unzip.decompress(data, MAX_LINES_BYTES)
+    except zlib.error as error:
+        raise NoEvidence(str(error)) from error
+    if not unzip.eof:
+        raise NoEvidence("the end of the evidence is missing, or the evidence is larger than allowed")
+    return text
+
+
+def parse(lines: bytes) -> Kept:
+    """Return the evidence that :func:`lines_of` has returned as lines.
+
+    Raises:
+        NoEvidence: The lines are not evidence, or are damaged.
+    """
+    try:
+        first, *rows, last = [json.loads(line, object_hook=restored) for line in lines.splitlines()]
         return msgspec.convert({**first, **last, "looks": _looks(rows)}, type=Kept)
-    except (zlib.error, ValueError, TypeError, LookupError, RecursionError) as error:
-        raise error if isinstance(error, NoEvidence) else NoEvidence(str(error)) from error
+    except (ValueError, TypeError, LookupError, RecursionError) as error:
+        raise NoEvidence(str(error)) from error
 
 
 def _looks(rows: Sequence[Any]) -> list[dict[str, Any]]:
@@ -331,10 +354,6 @@ def plain(value: Any) -> Any:
     return value if isinstance(value, (str, int, float)) or value is None else repr(value)
 
 
-def restored(value: Any) -> Any:
-    """Undo :func:`plain` for numbers such as infinity."""
-    if isinstance(value, dict):
-        if value.keys() == {_FLOAT}:
-            return float(value[_FLOAT])
-        return {key: restored(inner) for key, inner in value.items()}
-    return [restored(inner) for inner in value] if isinstance(value, list) else value
+def restored(value: dict[str, Any]) -> Any:
+    """Undo :func:`plain` for numbers such as infinity, as the ``object_hook`` of ``json.loads``."""
+    return float(value[_FLOAT]) if value.keys() == {_FLOAT} else value

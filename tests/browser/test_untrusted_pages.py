@@ -27,7 +27,9 @@ from autograder.boxes.run_limits import Ended, Limits
 from autograder.execution.executed_cells import Budget, CellRun, CellType, OutputCollector
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.rebuilding import nbformat_nodes
-from autograder.grading.returning.sanitize import clean, harmless_markdown
+from autograder.grading.returning.page_exporter import markdown_to_html
+from autograder.grading.returning.picture_sizes import PixelBudget
+from autograder.grading.returning.sanitize import TYPED, as_typed
 from autograder.grading.running import execution_backends
 
 if TYPE_CHECKING:
@@ -144,15 +146,12 @@ def markdown2html_mistune_or_as_it_is(text: str) -> str:
         return text
 
 
-@pytest.mark.parametrize("way", ["before_it_is_kept", "where_the_page_is_made"])
+@pytest.mark.parametrize("way", ["a page of nbconvert", "our page"])
 def test_no_text_does_anything_once_it_is_harmless(watched: Watched, way: str) -> None:
-    """Each of the two guards holds by itself."""
     live = {}
     for name, entry in BANK.items():
-        if way == "before_it_is_kept":
-            html = str(markdown2html_mistune(harmless_markdown(entry["text"])))
-        else:
-            html = clean(markdown2html_mistune_or_as_it_is(entry["text"]))
+        typed = as_typed(entry["text"], (), PixelBudget())
+        html = markdown_to_html({}, typed) if way == "our page" else str(markdown2html_mistune(typed))
         if happened := watched.show(html):
             live[name] = happened
     assert live == {}
@@ -312,6 +311,10 @@ def test_what_is_kept_is_harmless_by_itself(hostile_class: TinyClass) -> None:
     for cell in own:
         kinds = {kind for output in cell.get("outputs", []) for kind in output.get("data", {})}
         assert kinds <= {"text/plain", "image/png", "image/jpeg"}
-        if cell.cell_type == CellType.MARKDOWN:
-            assert harmless_markdown(cell.source) == cell.source
+    texts = [cell.source for cell in own if cell.cell_type == CellType.MARKDOWN]
+    assert sum(text.startswith(TYPED) for text in texts) == 2 * len(TEXTS)
+    given = nbformat.read(hostile_class.path / "source" / "lab_1_2" / "lab_1_2.ipynb", 4)
+    rendered = [text for text in texts if not text.startswith(TYPED)]
+    assert rendered[0].startswith("**Remarks of the grader**")
+    assert set(rendered[1:]) <= {cell.source for cell in given.cells}
     assert "<script>fired()" not in json.dumps(notebook.metadata)

@@ -82,3 +82,14 @@ def test_a_terminal_has_twice_as_long_since_it_may_build() -> None:
 def test_a_cell_that_is_no_python_blames_nobody() -> None:
     cells = [Cell("%%writefile talker.py\nclass Talker: pass", own=True), TALKER, Cell("%%bash\nTalker")]
     assert seconds([*cells, check("Talker")], "Talker")[0][:3] == [120, 120, 240]
+
+
+def test_a_name_in_a_comment_a_string_or_an_attribute_is_not_used() -> None:
+    mentions = Cell('# Talker hangs\nprint(\'Talker\', """\nTalker\n""")\nnode.Talker = 1', own=True)
+    given, _ = seconds([TALKER, SHOWN, mentions], "Talker()")
+    assert given == [120, 120, 120]
+
+
+def test_a_name_behind_a_string_without_an_end_is_not_lost_to_the_next_line() -> None:
+    given, _ = seconds([TALKER, SHOWN, Cell("print('it\nTalker()", own=True)], "Talker()")
+    assert given == [120, 120, 10]

@@ -11,7 +11,6 @@ from xml.etree import ElementTree
 import nbformat
 import pytest
 
-from autograder.grading.returning.sanitize import harmless_markdown
 from autograder.masters.figure_drawing import SIGNATURE, chunk, signed, stale_figures
 from autograder.masters.master_cells import figure_digest
 from autograder.masters.master_files import MasterError, chapter_path, masters
@@ -107,11 +106,3 @@ def test_no_picture_needs_more_than_the_notebook(chapter: Path) -> None:
         if cell.cell_type == "markdown":
             assert "```mermaid" not in cell.source, "JupyterLab alone draws these"
             assert len(re.findall(r"!\[|<img", cell.source)) == len(SHOWN.findall(cell.source))
-
-
-@each_chapter
-def test_a_page_keeps_the_figures_as_they_are(chapter: Path) -> None:
-    """A text cell that had to be rendered would carry each of them twice."""
-    for cell in nbformat.read(chapter, as_version=4).cells:
-        if figures := tuple(cell.get("attachments", {})):
-            assert harmless_markdown(cell.source, figures) == cell.source

@@ -6,9 +6,7 @@ from collections import defaultdict
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
-from rich.console import Console
-
-from autograder.cards.readable_text import printable
+from autograder import standard_output
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.collecting.collected_csv import Table
 from autograder.grading.collecting.collected_files import SHORT_KEY, Arrival, Delivery, Inbox, LineState
@@ -29,7 +27,7 @@ from autograder.grading.collecting.submitted_file_names import Pattern
 from autograder.grading.collecting.submitted_folder import Submitted
 from autograder.grading.grading_errors import GradingError, check_known, course_command
 from autograder.grading.running.batch_progress import plain_line
-from autograder.grading.table.roster import enter_roster, read_roster
+from autograder.grading.table.student_list import enter_roster, read_roster
 from autograder.kit.in_words import counted
 
 if TYPE_CHECKING:
@@ -115,10 +113,10 @@ class CollectReport:
 
 def show(report: CollectReport) -> None:
     """Print which files were placed and which were not, with the reasons."""
-    console = Console()
+    console = standard_output.console()
     for text in _lines(report):
         style = "yellow" if text.startswith(LineState.NOT_PLACED) else ""
-        plain_line(console, printable(text), style)
+        plain_line(console, text, style)
 
 
 def _lines(report: CollectReport) -> Iterator[str]:
@@ -298,7 +296,7 @@ class _Collecting:
             if one.when is None and one.key in keys and one.student not in untimed[one.assignment]:
                 untimed[one.assignment].append(one.student)
         notes = [*self._notes, *self._directory.named_cells.notes]
-        notes += self._roster.excused_from_nothing(self._directory.assignments(), self._roster.students)
+        notes += self._roster.notices(self._directory.assignments(), {}, self._roster.students)
         if not self._roster.students:
             notes.append(
                 "the class has no students.csv, so students' folders have the names that the LMS uses"

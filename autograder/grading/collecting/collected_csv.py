@@ -8,6 +8,7 @@ was open in a spreadsheet while another ``collect`` wrote a new table.
 from __future__ import annotations
 
 import contextlib
+import itertools
 from collections import Counter, defaultdict
 from dataclasses import dataclass, replace
 from datetime import datetime
@@ -244,6 +245,25 @@ class Table:
             "reason": line.reason,
         }
         return [_guarded(cells[name]) if name != "handed_in" else when for name in COLUMNS]
+
+    def rename(self, ids: Mapping[str, str]) -> None:
+        """Write other ids of students into the column ``student``, as a person would.
+
+        Args:
+            ids: The new ids by the old ones.
+
+        Raises:
+            OSError: The table could not be written.
+        """
+        if not self.path.exists():
+            return
+        (header, *rows), separator = csv_rows(self.path.read_bytes())
+        places = [place for place, name in enumerate(header) if name.strip().lower() == "student"]
+        for place, row in itertools.product(places, rows):
+            students = _unguarded(row[place]).split("; ") if place < len(row) else ()
+            if not ids.keys().isdisjoint(students):
+                row[place] = _guarded("; ".join(dict.fromkeys(ids.get(one, one) for one in students)))
+        write_whole(self.path, csv_text([header, *rows], separator, "\r\n").encode("utf-8-sig"))
 
     @property
     def _newest(self) -> int:

@@ -15,7 +15,7 @@ import contextlib
 import hashlib
 import secrets
 import zipfile
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from datetime import datetime  # noqa: TC003  (msgspec reads the annotations)
 from enum import StrEnum
 from typing import TYPE_CHECKING
@@ -25,7 +25,7 @@ import msgspec
 from autograder.safe_files import keep_whole, write_whole
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Mapping
     from pathlib import Path
 
 
@@ -354,6 +354,24 @@ class CollectedRecords:
     def all(self) -> list[tuple[str, str]]:
         """Return pairs of a student and an assignment for which there is a record."""
         return [(path.stem, path.parent.name) for path in self._folder.glob("*/*.json")]
+
+    def rename(self, ids: Mapping[str, str]) -> None:
+        """Give students other ids. If a student has a record under both ids, the one under the new id stays.
+
+        Args:
+            ids: The new ids by the old ones. No new id may be one of the old ones.
+
+        Raises:
+            OSError: A record could not be written.
+        """
+        for student, assignment in self.all():
+            if (new := ids.get(student)) is None:
+                continue
+            history = self.get(assignment, student)
+            if history and self.get(assignment, new) is None:
+                now = {name: replace(line, students=(new,)) for name, line in history.now.items()}
+                self.put(assignment, new, replace(history, now=now))
+            self._path(assignment, student).unlink()
 
     def _path(self, assignment: str, student: str) -> Path:
         return self._folder / assignment / f"{student}.json"

@@ -130,8 +130,9 @@ class _Reading:
         if self.delivery.form == BY_HAND:
             # A person put the file into ``submitted``, where its path names the student and the notebook.
             student, assignment, name = arrival.parts
+            owners = self.student_of.written(edit.student or student)[0] or (student,)
             notebook = name.removesuffix(SUFFIX)
-            line = replace(line, students=(student,), assignment=assignment, notebook=notebook)
+            line = replace(line, students=owners, assignment=assignment, notebook=notebook)
             line = replace(line, lms=BY_HAND, file=arrival.path, is_sure=True)
         else:
             line = self._collected(line, arrival, edit, of_archive)

@@ -13,8 +13,14 @@ from collections import defaultdict
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from autograder.grading.classes.class_directory import SUFFIX, ClassDirectory, RefusedFile
-from autograder.grading.classes.submission_times import TIMESTAMP, timestamp_text
+from autograder.command_name import COMMAND
+from autograder.grading.classes.class_directory import (
+    SUFFIX,
+    TIMESTAMP,
+    ClassDirectory,
+    RefusedFile,
+    timestamp_text,
+)
 from autograder.grading.collecting.collected_files import (
     BY_HAND,
     Arrival,
@@ -26,7 +32,6 @@ from autograder.grading.collecting.collected_files import (
 )
 from autograder.grading.rebuilding.submitted_notebook import UnreadableSubmission, read_bytes
 from autograder.safe_files import write_whole
-from environment.installation import COMMAND
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Mapping

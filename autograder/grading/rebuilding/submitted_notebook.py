@@ -30,10 +30,6 @@ LONGEST_REASON = 300
 """The maximum length, in characters, of the desk's reason why a file cannot be read."""
 LONGEST_NAME = 200
 """The maximum length of the name of a cell or picture, in characters."""
-HARMLESS_LENGTH = 6_000
-"""The total length, in characters, up to which the cells that a student wrote are not first rendered as a trial: even
-the slowest text of this length is rendered within the time limit of a page.
-"""
 _LONGEST_SHOWN = 80
 _KINDS = {
     stat.S_ISLNK: "a link",
@@ -78,7 +74,6 @@ class ReadNotebook(msgspec.Struct, frozen=True, tag=True):
     """The desk's answer about a file that is a notebook.
 
     Attributes:
-        cells: The cells of the notebook.
         left_out: The number of cells that were left out because they are not valid cells.
     """
 

@@ -18,23 +18,22 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 import nbgrader
 import re2
-from bs4 import BeautifulSoup
 from jinja2 import pass_context
 from nbconvert.exporters import HTMLExporter
 from nbconvert.exporters.templateexporter import TemplateExporter
 from nbconvert.filters.highlight import Highlight2HTML
-from nbconvert.filters.markdown_mistune import MarkdownWithMath
+from nbconvert.filters.markdown_mistune import IPythonRenderer, MarkdownWithMath
 from nbconvert.filters.widgetsdatatypefilter import WidgetsDataTypeFilter
 from nbconvert.preprocessors import CSSHTMLHeaderPreprocessor
 from nbformat import NotebookNode
 from traitlets.config import Config
 
 from autograder import exercises
-from autograder.cards.readable_text import printable
 from autograder.grading.rebuilding import nbformat_nodes
 from autograder.grading.rebuilding.notebook_rebuilding import grade_id, is_check, is_the_masters
 from autograder.grading.rebuilding.trusted_master import exercise_of
-from autograder.grading.returning.sanitize import PageRenderer, clean, make_harmless
+from autograder.grading.returning.sanitize import TYPED, make_harmless
+from autograder.standard_output import printable
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
@@ -172,35 +171,46 @@ class RenderedTexts:
 
 @pass_context
 def markdown_to_html(context: Any, source: str) -> str:
-    """Return a Markdown cell as HTML, cleaned unless the cell comes from the master. This replaces nbconvert's filter.
+    """Return a Markdown cell, or a grader's comment on a cell, as HTML. This replaces nbconvert's filter.
 
     For formgrader, ``nbgrader_config.py`` sets this filter as ``HTMLExporter.filters["markdown2html"]``. A picture that
     is not attached to the cell is left out, because an error, as from nbconvert's filter, would leave the student
     without a page.
     """
     cell = context.get("cell", {})
-    rendered = MarkdownWithMath(renderer=PageRenderer(escape=False)).render(source)
-    harmless = rendered if is_the_masters(cell) else clean(rendered)
+    page = source if source.startswith(TYPED) else _rendered(source, is_comment=source != cell.get("source"))
     # Without a limit, a wide picture would extend beyond its column on nbgrader's pages.
-    page = without_dead_links(harmless.replace("<img ", '<img style="max-width: 100%" '))
-    attached = dict(cell.get("attachments", {}))
-    return _with_pictures(page, attached.get if is_the_masters(cell) else attached.pop)
+    page = page.replace("<img ", '<img style="max-width: 100%" ')
+    return _with_pictures(page, cell.get("attachments", {}))
+
+
+def _rendered(source: str, *, is_comment: bool) -> str:
+    renderer = _PageRenderer(escape=is_comment)
+    return without_dead_links(MarkdownWithMath(renderer=renderer).render(source))
+
+
+class _PageRenderer(IPythonRenderer):
+    """nbconvert's renderer without attached pictures, which are inserted later because they are slow to parse."""
+
+    def _embed_image_or_attachment(self, src: str) -> str:
+        attached = src.startswith("attachment:")
+        embedded: str = super()._embed_image_or_attachment("" if attached else src)
+        return embedded or src
 
 
 _SHOWS_ATTACHED = re2.compile(r'(?P<before><img\b(?:\s+[\w-]+="[^"]*")*?\s+)src="attachment:(?P<name>[^"]*)"')
 
 
-def _with_pictures(page: str, take: Callable[[str, dict[str, str]], Mapping[str, str]]) -> str:
+def _with_pictures(page: str, attached: Mapping[str, Mapping[str, str]]) -> str:
     """Return the HTML of a cell with the attached pictures inserted.
 
     Args:
         page: HTML in which the address of a picture is ``attachment:`` and a name.
-        take: Returns an attachment by its name. A student's attachment is returned only once, so that a page cannot
-            grow.
+        attached: The attachments of the cell by name.
     """
 
     def shown(tag: Any) -> str:
-        kind, data = next(iter(take(tag["name"], {}).items()), ("", ""))
+        kind, data = next(iter(attached.get(tag["name"], {}).items()), ("", ""))
         return f'{tag["before"]}src="data:{kind};base64,{data}"' if data else tag["before"]
 
     return _SHOWS_ATTACHED.sub(shown, page)
@@ -243,18 +253,16 @@ def _highlighter(lexer: str | None) -> Any:
     return filtered
 
 
-_PICTURE = re2.compile(r"(?i)<img\b[^>]*")
+_PICTURE = re2.compile(r"(?i)<img\b([^>]*)")
 _ALTERNATIVE = re2.compile(r"(?i)\salt=")
 
 
 def _with_alternative_texts(page: str) -> str:
-    """Add missing alternative texts to pictures, as nbconvert does, but parse the page only if any is missing."""
-    if all(_ALTERNATIVE.search(picture[0]) for picture in _PICTURE.finditer(page)):
-        return page
-    soup = BeautifulSoup(page, features="html.parser")
-    for picture in soup.select("img:not([alt])"):
-        picture.attrs["alt"] = "No description has been provided for this image"
-    return str(soup)
+    """Add missing alternative texts to pictures, as nbconvert does, but without parsing the page."""
+    alternative = 'alt="No description has been provided for this image"'
+    return _PICTURE.sub(
+        lambda tag: tag[0] if _ALTERNATIVE.search(tag[0]) else f"<img {alternative}{tag[1]}", page
+    )
 
 
 WAITS = "waits_for_a_person"

@@ -73,7 +73,8 @@ class TestBench:
         self.before = before
         self._subject = subject
         self._domain_id = domain_id
-        self._recorder = Recorder(hurry)
+        self._hurry = hurry
+        self._recorder = Recorder(hurry=hurry)
         self._participant: Wire | None = None
         self._decoys: DecoyNodes | None = None
         # Announcements show that a program has made a node. For a notebook they would show nothing, because its kernel
@@ -90,7 +91,7 @@ class TestBench:
 
     def part(self, name: str, **inputs: Any) -> None:
         self.stop()
-        self._recorder.begin(name, inputs)
+        self._recorder = recorder = Recorder(name, inputs, self._hurry)
         for asked, facts in self._misnamed.items():
             self._recorder.record("misnamed", asked, **facts)
         self._in_part = True
@@ -99,9 +100,9 @@ class TestBench:
             self._participant, self._decoys = Wire(self._domain_id), DecoyNodes(self._domain_id)
             # Each participant of the judge gets one log reader for all parts, because a new reader would receive the
             # log lines of earlier parts again.
-            self._log = LogReader(self._participant, self._recorder)
+            self._log = LogReader(self._participant, lambda: self._recorder)
             self._subject.renew()
-            self._recorder.take_in = partial(self._participant.take_in, lambda: self._recorder.count)
+        recorder.take_in = partial(self._participant.take_in, lambda: recorder.count)
         self._on_graph = Presence(
             self._participant.node, self._recorder, self._subject, self.pace, self._has_announced_itself
         )

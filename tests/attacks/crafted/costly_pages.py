@@ -1,5 +1,5 @@
 # family = "crafted"
-# tries = "A million characters of Markdown and code, each cell below its limit: nested HTML, formulas that open, headings, and attributes of attributes for the highlighter."
+# tries = "A million characters of Markdown and code, each cell below its limit: nested HTML, formulas that open, headings, and attributes of attributes, lines and fields of f-strings for whatever reads code."
 # could_earn = "A grader whose own process makes this student's page for minutes, while nobody else is graded."
 # undefended = "86 s in the grader's main process for 0.9 MB of Markdown; one cell of code alone took more than a minute."
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 SIZE = 49_000
 MARKDOWN = ("<div>", "<div>\n\n", "\\\\(", "\\begin{a}", "# a\n", "a\n=\n", "```\n", "> > - ", "[a](", "*a_b")
-CODE = ("a.", "x = a.b.c.d.", "import a.")
+CODE = ("a.", "x = a.b.c.d.", "import a.", "\n ", "f'" + "{a}" * SIZE)
 
 
 def hand_in(folder: Path, notebook: Any) -> None:

@@ -11,8 +11,8 @@ from test_collect import why, work
 from test_where_it_goes import MOODLE, gathered
 
 from autograder.grading.classes.class_directory import ClassDirectory
-from autograder.grading.classes.new_class import release
 from autograder.grading.collecting.collected_files import LineState
+from autograder.grading.new_classes.new_class import release
 from autograder.grading.table.rows import remarks_on
 
 if TYPE_CHECKING:

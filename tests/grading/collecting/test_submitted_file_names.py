@@ -13,9 +13,9 @@ from test_collect import lies, placed, stamp, why, work
 
 from autograder.cli import cli
 from autograder.grading.classes.class_directory import ClassDirectory
-from autograder.grading.classes.new_class import release
 from autograder.grading.collecting.collect import collect
 from autograder.grading.collecting.collected_files import LineState
+from autograder.grading.new_classes.new_class import release
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -70,7 +70,7 @@ def one_of_each() -> list[NotebookNode]:
 
 
 def change_source(cells: list[NotebookNode]) -> None:
-    cells[0]["source"] = f"# Given\n\nwith {_SCRIPT} *words*"
+    cells[1]["source"] = f"def talk():\n    return '{_SCRIPT}'"
 
 
 def change_output(cells: list[NotebookNode]) -> None:
@@ -86,7 +86,7 @@ def change_count(cells: list[NotebookNode]) -> None:
 
 
 def change_lock(cells: list[NotebookNode]) -> None:
-    """The same text as the master's own and as a student's: only the second is cleaned."""
+    """The same text as the master's own and as the student's copy of it: only the first is folded away."""
     marked(cells[0])
 
 

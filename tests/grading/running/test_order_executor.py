@@ -275,29 +275,3 @@ def test_an_executor_that_waits_for_what_never_comes_ends_with_its_batch(tmp_pat
     finally:
         executor.kill()
         executor.wait()
-
-
-WITH_A_DESK = """
-import sys
-from autograder.execution.executed_cells import Cell, CellType
-from autograder.grading.rebuilding.submitted_notebook import HARMLESS_LENGTH
-from autograder.grading.returning.rendering_time import too_costly
-from autograder.grading.running import order_executor as executor
-too_costly([Cell("a " * HARMLESS_LENGTH, CellType.MARKDOWN, own=True)])
-executor.main([sys.argv[1], "1"])
-"""
-
-
-def test_an_executor_leaves_no_folder_of_a_desk(tmp_path: Path) -> None:
-    grader, its_own = socket.socketpair()
-    with its_own:
-        executor = subprocess.Popen(
-            [sys.executable, "-c", WITH_A_DESK, str(tmp_path / "scratch")],
-            stdin=its_own.fileno(),
-            env={**os.environ, "TMPDIR": str(tmp_path)},
-        )
-    assert grader.recv(1 << 16)
-    assert [path.name for path in tmp_path.glob("autograder-held-*")]
-    grader.close()
-    assert executor.wait(60.0) == 0
-    assert not list(tmp_path.glob("autograder-held-*"))

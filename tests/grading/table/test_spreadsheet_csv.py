@@ -12,11 +12,10 @@ from typing import TYPE_CHECKING
 import pytest
 from nbgrader.api import Gradebook
 
-from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.reporting.export_files import export
-from autograder.grading.table.roster import read_students_csv
 from autograder.grading.table.rows import Row, write_csv
 from autograder.grading.table.spreadsheet_csv import csv_rows, csv_text, defused, original
+from autograder.grading.table.students_csv import read_students_csv
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -117,7 +116,7 @@ def test_an_id_that_looks_like_a_formula_goes_out_defused_and_comes_back_as_it_i
         assert any(student in map(original, row) for row in csv_rows(text.encode())[0]), path
     # A table that this program wrote is a list of students again.
     (tiny.path / "students.csv").write_text(f"id,first_name\n{defused(student)},Ada\n")
-    assert [one.id for one in read_students_csv(ClassDirectory(tiny.path))] == [student]
+    assert [one.id for one in read_students_csv(tiny.path / "students.csv").students] == [student]
 
 
 def exported(tiny: TinyClass) -> list[Path]:
@@ -140,4 +139,6 @@ def test_a_table_is_read_as_excel_in_germany_or_an_old_mac_saves_it(
     data = text.encode(encoding)
     assert csv_rows(data) == ([["id", "first_name"], ["bär", "Jörg"]], separator)
     (tiny.path / "students.csv").write_bytes(data)
-    assert [(one.id, one.name) for one in read_students_csv(ClassDirectory(tiny.path))] == [("bär", "Jörg")]
+    assert [(one.id, one.name) for one in read_students_csv(tiny.path / "students.csv").students] == [
+        ("bär", "Jörg")
+    ]
