@@ -10,7 +10,6 @@ import os
 import shutil
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
-from urllib.parse import unquote
 
 import nbformat
 import re2
@@ -129,7 +128,7 @@ def course_of(edition: str, root: Path, folder: Path) -> Path:
     return hand_out(folder / "handed-out", root).place
 
 
-_ATTACHMENT = re2.compile(r"\(attachment:([^)]+)\)")
+_ATTACHMENT = re2.compile(r"\(attachment:([^)]+)\.png\)")
 _OUTCOME = re2.compile(r"(?m)^\| ([^|]+) \| [^|]+ \| .*/([\w-]+)\.ipynb\) \|$")
 
 
@@ -145,29 +144,27 @@ def _write_sources(root: Path, folder: Path, edition: str, executed: Mapping[str
     (folder / _STATIC).mkdir()
     if (root / "docs").is_dir():
         shutil.copytree(root / "docs", folder / "docs", ignore=shutil.ignore_patterns("*.py", "*.json"))
-    first = f"# {course.chapters(root)[0].title}\n" + _chapters(root).replace(":hidden:\n", "")
-    for page in root.glob("*.md"):
+    start, beside = folder / f"{_START}.md", ["*", "*/*"]
+    start.write_text(f"# {course.chapters(root)[0].title}\n", encoding="utf-8")
+    for page in sorted(root.glob("*.md")):
+        if page.name != start.name:
+            beside.append(f"../{page.stem}")
+        elif edition == CLASS_EDITION:
+            continue  # its pictures show a solution
         shutil.copyfile(page, folder / page.name)
-        if page.name == f"{_START}.md" and edition == SELF_EDITION:  # its pictures show a solution
-            first = page.read_text(encoding="utf-8") + _chapters(root)
-    (folder / f"{_START}.md").write_text(first, encoding="utf-8")
-    beside = [f"../{page.stem}" for page in sorted(root.glob("*.md")) if page.stem != _START]
-    if (guides := folder / _GUIDES).is_file():
-        guides.write_text(
-            guides.read_text(encoding="utf-8") + _contents("All pages", ["*", "*/*", *beside]),
-            encoding="utf-8",
-        )
+    _append(start, _chapters(root))
+    if (folder / _GUIDES).is_file():
+        _append(folder / _GUIDES, _contents("All pages", beside))
     outcomes = _outcomes(root)
     for master in masters(root):
         source = executed.get(lab_name(master)) or source_notebook(master)
         file = folder / chapter_path(root, master).relative_to(root)
         file.parent.mkdir(parents=True, exist_ok=True)
-        figures = {svg.with_suffix(".png").name: svg for svg in master.parents[1].glob("**/figures/*.svg")}
+        for figure in master.parents[1].glob("**/figures/*.svg"):
+            shutil.copyfile(figure, file.with_name(figure.name))
         notebook = book_page(source, edition, outcomes.get(lab_name(master), ()))
         for cell in notebook.cells:
-            for name in _ATTACHMENT.findall(cell.source):
-                shutil.copyfile(figures[unquote(name)], file.with_name(figures[unquote(name)].name))
-            cell.source = _ATTACHMENT.sub(lambda found: f"({unquote(found[1])[:-4]}.svg)", cell.source)
+            cell.source = _ATTACHMENT.sub(r"(\1.svg)", cell.source)
             cell.pop("attachments", None)
         nbformat.write(notebook, file)
 
@@ -253,12 +250,13 @@ def _chapters(root: Path) -> str:
     return "".join(trees + guides)
 
 
+def _append(page: Path, text: str) -> None:
+    with page.open("a", encoding="utf-8") as file:
+        file.write(text)
+
+
 def _contents(title: str, pages: Sequence[str]) -> str:
-    return (
-        f'\n\n```{{toctree}}\n:hidden:\n:glob:\n:maxdepth: 1\n:caption: "{title}"\n\n'
-        + "\n".join(pages)
-        + "\n```\n"
-    )
+    return f'\n\n```{{toctree}}\n:glob:\n:maxdepth: 1\n:caption: "{title}"\n\n' + "\n".join(pages) + "\n```\n"
 
 
 _ICON = re2.compile(r'(?:"?([\w-]+)"?):\[\d+,\d+,\[([^\]]*)\],"[0-9a-f]*",(?:"[^"]*"|\[[^\]]*\])\],?')

@@ -11,7 +11,6 @@ from random import Random
 from typing import TYPE_CHECKING
 
 from autograder import exercises, kit
-from autograder.judge import verdict_timeline
 from autograder.judge.bench.bench import TestBench
 from autograder.judge.check_process import Undecided, limited, undecidable
 from autograder.judge.machine_fitness import (
@@ -26,7 +25,8 @@ from autograder.judge.machine_fitness import (
     TooBusy,
     delivers,
 )
-from autograder.judge.parting_point import parting_point
+from autograder.judge.timeline import verdict_timeline
+from autograder.judge.timeline.parting_point import parting_point
 from autograder.kit.evidence import Evidence, Reference
 from autograder.kit.in_words import of_its_kind, shortened, visible
 from autograder.kit.mistakes.package_mistakes import changed_since_build
@@ -301,7 +301,7 @@ def diagnose(
             _cut(of_its_kind(shortened(visible(words)), in_a_notebook), 2 * MAX_WORDS)
             for words in (advice.text, advice.next_step)
         )
-        return Diagnosis(mistake.key, text, next_step), advice.traceback
+        return Diagnosis(advice.key or mistake.key, text, next_step), advice.traceback
     failed = next((one for one in criteria if not one.passed), None)
     seen = f"“{failed.title}” is not met: {failed.seen}. Asked: {failed.expected}." if failed else ""
     text = of_its_kind(shortened(visible(parting_point(evidence) or seen)), evidence.in_a_notebook)

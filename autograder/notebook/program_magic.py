@@ -38,14 +38,17 @@ class NotRunError(NotWrittenError):
 def program(line: str, cell: str) -> None:
     """Write a cell to a file, with definitions from the notebook. IPython calls this for ``%%program PATH``.
 
+    IPython also calls it for ``%%writefile PATH``, and for ``%%writefile -a PATH``, which appends the cell to the file.
+
     Raises:
         NotRunError: No cell that has run in this kernel defines one of the names.
         OSError: The file cannot be written.
     """
-    (name,) = shlex.split(line)
+    *appends, name = shlex.split(line)
     shell: Any = notebook_shell()
     text = with_definitions(cell, [source for source in shell.user_ns.get("In", ()) if source])
-    _write(Path(name).expanduser(), text)
+    path = Path(name).expanduser()
+    _write(path, path.read_text(encoding="utf-8") + text if appends and path.exists() else text)
 
 
 def _write(path: Path, text: str) -> None:
@@ -216,17 +219,8 @@ def load_ipython_extension(shell: Any) -> None:
     In a grader's kernel, this module is imported before IPython's shell exists. So IPython calls this function later,
     when it loads its extensions.
     """
-    usual = shell.find_cell_magic("writefile")
-
-    def writefile(line: str, cell: str) -> None:
-        words = shlex.split(line)
-        if len(words) == 1:
-            _write(Path(words[0]).expanduser(), cell)
-        else:
-            usual(line, cell)  # -a appends; any other line is an error
-
-    shell.register_magic_function(program, "cell", "program")
-    shell.register_magic_function(writefile, "cell", "writefile")
+    for name in ("program", "writefile"):
+        shell.register_magic_function(program, "cell", name)
 
 
 if notebook_shell() is not None:

@@ -141,7 +141,7 @@ def test_a_file_that_has_the_text_is_not_written_again(kernel: Any, tmp_path: Pa
     assert run(kernel, "%%writefile CMakeLists.txt\none\n").strip() == "Unchanged CMakeLists.txt"
     assert file.stat().st_ctime_ns == before
     assert run(kernel, "%%writefile CMakeLists.txt\ntwo\n").strip() == "Overwriting CMakeLists.txt"
-    assert run(kernel, "%%writefile -a CMakeLists.txt\nthree\n").strip() == "Appending to CMakeLists.txt"
+    assert run(kernel, "%%writefile -a CMakeLists.txt\nthree\n").strip() == "Overwriting CMakeLists.txt"
     assert (file.read_text(), file.stat().st_mode & 0o777) == ("two\nthree\n", 0o755)
 
 

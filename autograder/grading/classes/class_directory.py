@@ -39,6 +39,8 @@ COURSE_NAME = "course"
 installed package cannot find that folder otherwise.
 """
 SUFFIX = ".ipynb"
+TIMESTAMP = "timestamp.txt"
+"""The name of nbgrader's timestamp file, which lies next to the notebooks of a submission."""
 _LONGEST_NAME = 100
 _STUDENTS_FILES = ("submitted", "autograded", "feedback", "downloaded")
 """nbgrader's names for the folders of a class that contain students' files."""
@@ -307,6 +309,15 @@ def refuse_students_folder(folder: Path) -> None:
                 f"{folder} is among students' files, so it cannot be a class. Use the class that contains it: "
                 f"{outer}"
             )
+
+
+def timestamp_text(when: datetime) -> str:
+    """Return a time as text in the format of nbgrader's timestamp file.
+
+    Args:
+        when: A time in UTC.
+    """
+    return f"{when:%Y-%m-%d %H:%M:%S.%f} UTC"
 
 
 def in_zone(when: datetime, zone: tzinfo) -> str:

@@ -14,7 +14,13 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from autograder.command_name import COMMAND
-from autograder.grading.classes.class_directory import SUFFIX, ClassDirectory, RefusedFile
+from autograder.grading.classes.class_directory import (
+    SUFFIX,
+    TIMESTAMP,
+    ClassDirectory,
+    RefusedFile,
+    timestamp_text,
+)
 from autograder.grading.collecting.collected_files import (
     BY_HAND,
     Arrival,
@@ -24,7 +30,6 @@ from autograder.grading.collecting.collected_files import (
     Inbox,
     LineState,
 )
-from autograder.grading.collecting.submission_times import TIMESTAMP, timestamp_text
 from autograder.grading.rebuilding.submitted_notebook import UnreadableSubmission, read_bytes
 from autograder.safe_files import write_whole
 

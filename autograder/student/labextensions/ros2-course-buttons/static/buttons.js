@@ -16,6 +16,7 @@ window._JUPYTERLAB["ros2-course-buttons"] = (() => {
 
   // For each key, metres a second ahead and radians a second to the left.
   const KEYS = { ArrowUp: [0.5, 0], ArrowDown: [-0.5, 0], ArrowLeft: [0, 1.5], ArrowRight: [0, -1.5] };
+  const SILENCE = 20; // seconds until it is sure that Validate does not begin
   const AGAIN = 300; // milliseconds; the robot obeys a command for a second
 
   const SHOWN = `
@@ -63,8 +64,8 @@ window._JUPYTERLAB["ros2-course-buttons"] = (() => {
       shared = scope;
     },
     async get() {
-      const [{ Notification }, { INotebookTracker }] = await Promise.all(
-        ["@jupyterlab/apputils", "@jupyterlab/notebook"].map(module_),
+      const [{ Notification }, { INotebookTracker }, { PageConfig }] = await Promise.all(
+        ["@jupyterlab/apputils", "@jupyterlab/notebook", "@jupyterlab/coreutils"].map(module_),
       );
       const say = message => Notification.info(message, { autoClose: 5000 });
 
@@ -222,11 +223,30 @@ window._JUPYTERLAB["ros2-course-buttons"] = (() => {
         say("Drive with the arrow keys. Any other key ends it.");
       }
 
+      // Say how far nbgrader's Validate is, which runs the whole notebook in a new kernel.
+      async function tellOfValidation(panel) {
+        const url = `${PageConfig.getBaseUrl()}course/validation?notebook=${encodeURIComponent(panel.context.path)}`;
+        const id = Notification.emit("Validate runs your notebook in a new kernel.", "in-progress", { autoClose: false });
+        for (let silent = 0; silent < SILENCE; silent++) {
+          await new Promise(done => setTimeout(done, 1000));
+          const { at } = await fetch(url).then(answer => answer.json()).catch(() => ({}));
+          if (at === undefined) continue; // it has not begun yet, or has ended
+          silent = SILENCE - 3;
+          const of = panel.content.widgets.length;
+          if (at) Notification.update({ id, message: `Validate: cell ${at} of ${of} runs, ${of - at} are left.` });
+        }
+        Notification.dismiss(id);
+      }
+
       const plugin = {
         id: "ros2-course-buttons:buttons",
         autoStart: true,
         optional: [INotebookTracker],
         activate(app, tracker) {
+          document.addEventListener("click", event => {
+            const panel = notebook(app);
+            if (panel && event.target.closest?.("jp-button, button")?.textContent.trim() === "Validate") tellOfValidation(panel);
+          }, true);
           tracker?.widgetAdded.connect((_, panel) => endCardsWithKernel(panel));
           const style = document.createElement("style");
           style.textContent = SHOWN;

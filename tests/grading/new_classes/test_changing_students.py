@@ -22,9 +22,9 @@ from autograder.cli import cli
 from autograder.grading.class_store import ClassStore
 from autograder.grading.classes import gradebook_writing
 from autograder.grading.classes.class_directory import ClassDirectory
-from autograder.grading.collecting import changing_students
 from autograder.grading.collecting.collect import collect
 from autograder.grading.grading_errors import GradingError
+from autograder.grading.new_classes import changing_students
 from autograder.grading.reporting.export_files import export
 from autograder.grading.table.roster import Student
 from autograder.grading.table.student_list import KnownStudents, compare
