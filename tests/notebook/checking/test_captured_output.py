@@ -180,7 +180,7 @@ def test_a_listener_that_logs_at_a_level_that_is_not_shown_says_nothing() -> Non
             self.create_subscription(String, "chatter", self.hear, 10)
 
         def hear(self, message: String) -> None:
-            self.get_logger().debug(message.data)
+            self.get_logger().debug(message.data)  # type: ignore[no-untyped-call]
 
     with a_judge() as checked:
         verdict = checked("lab_1_2.listener", ListenerNode)
