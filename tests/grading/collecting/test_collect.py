@@ -520,7 +520,7 @@ def test_without_a_list_of_students_folders_have_the_names_of_the_lms(
     ("text", "words"),
     [
         ("name\nada\n", "no column named id"),
-        ("id\nada\nada\n", "also stands in an earlier line"),
+        ("id\nada\nada\n", "also stands in line 2"),
         ("id,email\n,a@b\n", "it has no id"),
     ],
 )
