@@ -24,7 +24,7 @@ if TYPE_CHECKING:
         ("It says something else than its name.", "The content of the file differs from its name."),
         ("A box that is there.", "A running sandbox."),
         ("Its outcome.", "The outcome of this file."),
-        ("Recognise the colour.", "Recognize the color."),
+        ("Recognize the colour.", "Recognize the color."),
     ],
 )
 def test_a_fault_is_found_and_its_plain_form_is_not(faulty: str, plain: str) -> None:

@@ -309,7 +309,7 @@ def diagnose(
     Another traceback is not returned. It may come from another run and from a correct line, but a student would take it
     for the mistake.
     """
-    found = _recognised(exercise, evidence)
+    found = _recognized(exercise, evidence)
     if found is not None:
         mistake, advice = found
         in_a_notebook = evidence.in_a_notebook
@@ -326,9 +326,9 @@ def diagnose(
     ), ""
 
 
-def _recognised(exercise: Exercise, evidence: Evidence) -> tuple[Mistake, Advice] | None:
+def _recognized(exercise: Exercise, evidence: Evidence) -> tuple[Mistake, Advice] | None:
     for mistake in exercise.mistakes:
-        advice = mistake.recognise(evidence)
+        advice = mistake.recognize(evidence)
         if advice is not None:
             return mistake, advice
     return None
@@ -336,7 +336,7 @@ def _recognised(exercise: Exercise, evidence: Evidence) -> tuple[Mistake, Advice
 
 def is_certain(exercise: Exercise, evidence: Evidence) -> bool:
     """Return True if the evidence proves a mistake, no matter how busy the machine was."""
-    found = _recognised(exercise, evidence)
+    found = _recognized(exercise, evidence)
     return found is not None and found[0].certain
 
 

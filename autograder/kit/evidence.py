@@ -208,10 +208,8 @@ _LIBRARIES = re2.compile(r"\.action_(client|server)$|^(rcl|rclpy|rcutils|rmw\w*)
 """Matches the names of ROS's own loggers, which write lines such as "Ignoring unexpected result response"
 (rclpy/action/client.py).
 """
-_COLOURS = r"(?:\x1b\[[\d;]*m)*"
-_MIDDLEWARE = re2.compile(
-    rf"^{_COLOURS}\d{{4}}-\d\d-\d\d [\d:.]+ .*\[{_COLOURS}\w+{_COLOURS} (Error|Warning)\]"
-)
+_COLORS = r"(?:\x1b\[[\d;]*m)*"
+_MIDDLEWARE = re2.compile(rf"^{_COLORS}\d{{4}}-\d\d-\d\d [\d:.]+ .*\[{_COLORS}\w+{_COLORS} (Error|Warning)\]")
 """Matches the beginning of an error or warning of Fast DDS, which on a busy machine appears even if the program is
 right.
 """

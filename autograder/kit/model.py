@@ -86,13 +86,13 @@ class Mistake:
 
     Attributes:
         key: A stable name, listed in ``docs/mistakes.md``.
-        recognise: Returns the advice if the evidence shows this mistake, otherwise None.
+        recognize: Returns the advice if the evidence shows this mistake, otherwise None.
         certain: True if the evidence proves the mistake however busy the machine was. Then no second look in real time
             is needed.
     """
 
     key: str
-    recognise: Callable[[Evidence], Advice | None]
+    recognize: Callable[[Evidence], Advice | None]
     certain: bool = False
 
 
@@ -110,11 +110,11 @@ def mistake(
         certain: True if the evidence proves the mistake however busy the machine was.
     """
 
-    def recognise(evidence: Evidence) -> Advice | None:
+    def recognize(evidence: Evidence) -> Advice | None:
         shown = found(evidence)
         return Advice(text.format(shown), next_step.format(shown)) if shown else None
 
-    return Mistake(key, recognise, certain)
+    return Mistake(key, recognize, certain)
 
 
 class Bench(Protocol):

@@ -306,7 +306,7 @@ class StateRule:
     def taken_for(self, *wrong: State) -> Callable[[Part, Part], bool]:
         """Return a function that recognizes a mistake: all reports are those of a wrong variant of :attr:`rule`."""
 
-        def recognise(seen: Part, _: Part) -> bool:
+        def recognize(seen: Part, _: Part) -> bool:
             said = list(self._said(seen))
             right, *others = (
                 all(any(same(what, rule(given)) for given in views) for what, views in said)
@@ -314,7 +314,7 @@ class StateRule:
             )
             return not right and any(others)
 
-        return recognise
+        return recognize
 
     def only_in_answer(self, seen: Part, _: Part) -> bool:
         """Return True if the subject makes at most one report for each input, and never reports without one."""

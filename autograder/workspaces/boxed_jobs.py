@@ -15,7 +15,7 @@ from autograder.boxes.run_limits import BUILD_LIMITS, Ended, Limits
 from autograder.boxes.sandbox import Enclosure
 from autograder.boxes.visible_host import HOME, WORK, Bind, box_environment
 from autograder.safe_files import fresh_folder
-from autograder.workspaces.builds import build_artefacts, build_cache
+from autograder.workspaces.builds import build_artifacts, build_cache
 from autograder.workspaces.jobs import BUILD_SECONDS, MAX_ARCHIVE_BYTES, MAX_LOG_BYTES, BuildOutcome
 from autograder.workspaces.program_plans import ros2
 from environment.python_child import python_child
@@ -121,7 +121,7 @@ class BoxedJobs:
                     needs_room = limits.beside and guard.reason() is Ended.OUT_OF_MEMORY
                     return BuildOutcome(returncode, output, late=BUILD_SECONDS if late else 0.0), needs_room
                 packed = enclosure.run(
-                    python_child("-m", build_artefacts.__name__, str(place / "install")).command,
+                    python_child("-m", build_artifacts.__name__, str(place / "install")).command,
                     limit=PACK_SECONDS,
                     cwd=Path("/"),
                     output_bytes=MAX_ARCHIVE_BYTES,

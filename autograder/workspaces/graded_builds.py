@@ -31,7 +31,7 @@ import re2
 from autograder import course
 from autograder.messages.workspace_messages import Source
 from autograder.safe_files import HeldFolder
-from autograder.workspaces.builds import build_artefacts, build_cache
+from autograder.workspaces.builds import build_artifacts, build_cache
 from autograder.workspaces.builds.cached_builds import Builds, BuildTookTooLong, file_state
 from autograder.workspaces.builds.colcon_build import describe_workspace, failed_build
 from autograder.workspaces.packages import DEFINITIONS, FOR_READERS, UNREADABLE
@@ -88,8 +88,8 @@ class GradedBuilds(Builds):
         if made.install is None or job.key in self._paid:
             return made
         try:
-            build_artefacts.check_room(size := build_cache.size_of(made.install), self._room)
-        except build_artefacts.BadArtefacts as error:
+            build_artifacts.check_room(size := build_cache.size_of(made.install), self._room)
+        except build_artifacts.BadArtifacts as error:
             return failed_build(found, f"error: {error}")
         self._room -= size
         self._paid.add(job.key)

@@ -25,7 +25,7 @@ from autograder.messages import run_messages
 from autograder.messages import workspace_messages as messages
 from autograder.messages.json_lines import Hangup, Lines, NotUnderstood, listen
 from autograder.safe_files import fresh_folder
-from autograder.workspaces.builds.build_artefacts import pack
+from autograder.workspaces.builds.build_artifacts import pack
 from autograder.workspaces.builds.cached_builds import BuildTookTooLong
 from autograder.workspaces.builds.colcon_build import describe_workspace
 from autograder.workspaces.graded_builds import GradedBuilds

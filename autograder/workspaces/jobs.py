@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Protocol
 
 from autograder.safe_files import HeldFolder
 from autograder.standard_output import split_lines
-from autograder.workspaces.builds.build_artefacts import pack
+from autograder.workspaces.builds.build_artifacts import pack
 from autograder.workspaces.builds.install_folder import BESIDE, without_workspaces
 from autograder.workspaces.program_processes import OwnSession
 
@@ -76,7 +76,7 @@ class BuildOutcome:
     Attributes:
         returncode: colcon's exit code; None if the build was stopped, at a limit or because it was no longer needed.
         output: The output of the build.
-        archive: The install folder as :func:`autograder.workspaces.builds.build_artefacts.pack` packed it, after all
+        archive: The install folder as :func:`autograder.workspaces.builds.build_artifacts.pack` packed it, after all
             processes of the build had ended. It is empty if it could not be packed, and None if the build failed or
             was made in the cache entry itself.
         late: The number of seconds after which the build was stopped as too long, perhaps because the machine was

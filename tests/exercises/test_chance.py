@@ -142,7 +142,7 @@ def test_a_talker_that_spoke_for_a_while_did_not_publish_all_at_once_whatever_wa
 ) -> None:
     seen = [MET, _interface("publisher"), _message(2), *said, Event(1.6, "subject", "exited", {"code": 0})]
     evidence = Evidence([Part("talking", {}, seen)], TALKER)
-    first = next(mistake.key for mistake in talker.EXERCISE.mistakes if mistake.recognise(evidence))
+    first = next(mistake.key for mistake in talker.EXERCISE.mistakes if mistake.recognize(evidence))
     assert first == "ended_too_early"
 
 
@@ -150,7 +150,7 @@ def test_a_talker_that_a_crowded_machine_held_up_in_its_first_moment_published_a
     said = [replace(SAID[0], t=1.3 + 0.04 * number) for number in range(10)]
     seen = [Event(1.4, "matched", TOPIC, {"count": 1}), *said, Event(1.9, "subject", "exited", {"code": 0})]
     evidence = Evidence([Part("talking", {}, seen)], TALKER)
-    first = next(mistake.key for mistake in talker.EXERCISE.mistakes if mistake.recognise(evidence))
+    first = next(mistake.key for mistake in talker.EXERCISE.mistakes if mistake.recognize(evidence))
     assert first == "published_before_discovery"
 
 
@@ -176,7 +176,7 @@ def _told(seen: list[Event]) -> str:
     """What is told of a program that has come to its end."""
     ended = Event(0.4, "subject", "exited", {"code": 0})
     evidence = Evidence([Part("serving", {}, [*seen, ended])], Reference("lab_1_3.server", {}))
-    return next(mistake.key for mistake in unfinished.NOTHING_THERE if mistake.recognise(evidence))
+    return next(mistake.key for mistake in unfinished.NOTHING_THERE if mistake.recognize(evidence))
 
 
 @pytest.mark.parametrize("heard", [[], [_message(1)]])
@@ -185,9 +185,9 @@ def test_a_deaf_talker_is_told_and_earns_the_same_whether_its_only_text_was_hear
     deaf = [Event(5.0, "unanswered", "/node"), Event(5.0, "stack", "subject", {"text": stack})]
     evidence = Evidence([Part("talking", {}, [_interface("publisher"), *heard, *deaf])], TALKER)
     assert _points(talker, evidence) == 3
-    first = next(mistake.key for mistake in talker.EXERCISE.mistakes if mistake.recognise(evidence))
+    first = next(mistake.key for mistake in talker.EXERCISE.mistakes if mistake.recognize(evidence))
     assert first == "node_taken_from_executor"
-    assert common.never_spun("publisher").recognise(evidence) is None
+    assert common.never_spun("publisher").recognize(evidence) is None
 
 
 @pytest.mark.parametrize("seen", [[], [_interface("subscription")]])
@@ -253,8 +253,8 @@ def test_who_says_something_of_the_answer_and_then_ends_never_asked_for_the_resu
     said = Event(0.9, "output", "stdout", {"text": "Goal accepted"})
     part = Part(LATE, {"order": 20}, [goal, ANSWERED, said, Event(3.8, "subject", "exited")])
     evidence = Evidence([part], Reference("lab_1_4.client", {"action_client": {}}, [part]))
-    assert ENDED_TOO_EARLY.recognise(evidence) is None
-    assert RESULT_NOT_REQUESTED.recognise(evidence) is not None
+    assert ENDED_TOO_EARLY.recognize(evidence) is None
+    assert RESULT_NOT_REQUESTED.recognize(evidence) is not None
 
 
 @pytest.mark.parametrize("slow_to_end", [False, True])
@@ -268,9 +268,9 @@ def test_who_does_not_wait_for_an_answer_is_told_so_however_slowly_the_program_e
     late = [replace(given, t=0.9), EXITED] if slow_to_end else [EXITED, replace(given, t=9.5)]
     held = Part(EXTREME, {"numbers": [2000, 3000]}, [asked, gave_up, *late])
     evidence = Evidence([quick, held], evidence_files.load_reference("lab_1_3.client"))
-    assert ANSWER_NOT_AWAITED.recognise(evidence)
+    assert ANSWER_NOT_AWAITED.recognize(evidence)
     right = Part(EXTREME, {}, [asked, given, Event(0.5, "output", "stdout", {"text": "sum: -77777"}), EXITED])
-    assert not ANSWER_NOT_AWAITED.recognise(replace(evidence, parts=[quick, right]))
+    assert not ANSWER_NOT_AWAITED.recognize(replace(evidence, parts=[quick, right]))
 
 
 def test_the_type_that_another_package_has_too_is_always_asked_for_in_the_same_run(

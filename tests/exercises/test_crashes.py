@@ -42,7 +42,7 @@ def _shown(lines: list[str]) -> Evidence:
     ("lines", "newer"), [*((x, True) for x in NEWER.values()), *((x, False) for x in OLD.values())]
 )
 def test_what_is_newer_than_jazzy_is_said_to_be(lines: list[str], newer: bool) -> None:
-    found = next(m for m in (*CRASHES, *OTHER_CRASHES) if m.recognise(_shown(lines)))
+    found = next(m for m in (*CRASHES, *OTHER_CRASHES) if m.recognize(_shown(lines)))
     assert (found.key == "newer_api") is newer
 
 
@@ -58,19 +58,19 @@ def test_what_is_newer_than_jazzy_is_said_to_be(lines: list[str], newer: bool) -
 def test_input_is_named_and_not_taken_for_an_open_part(raised: str) -> None:
     """The name of IPython's error ends like that of a stub's."""
     shown = _shown(['    name = input("Your name? ")', raised])
-    found = next(mistake for mistake in (*CRASHES, *OTHER_CRASHES) if mistake.recognise(shown))
+    found = next(mistake for mistake in (*CRASHES, *OTHER_CRASHES) if mistake.recognize(shown))
     assert found.key == ASKS_FOR_INPUT.key
 
 
 def test_the_line_that_is_quoted_is_what_was_raised_and_where() -> None:
     library = "/usr/lib/python3.11/threading.py"
     lines = ["    work()", f'  File "{library}", line 982, in run', "    self._target()", "LookupError: 'x'"]
-    advice = next(filter(None, (m.recognise(_shown(lines)) for m in OTHER_CRASHES)))
+    advice = next(filter(None, (m.recognize(_shown(lines)) for m in OTHER_CRASHES)))
     assert advice.text.endswith("LookupError: 'x' (line 3, in main)")
 
 
 def test_a_traceback_that_was_cut_off_is_not_quoted() -> None:
-    advice = next(filter(None, (m.recognise(_shown(["    work()"])) for m in OTHER_CRASHES)))
+    advice = next(filter(None, (m.recognize(_shown(["    work()"])) for m in OTHER_CRASHES)))
     assert "File" not in advice.text
 
 
@@ -78,7 +78,7 @@ def test_of_two_tracebacks_that_two_threads_print_at_once_the_place_is_told_and_
     None
 ):
     other = ["Traceback (most recent call last):", '  File "race.py", line 114, in work']
-    advice = next(filter(None, (m.recognise(_shown(["    spin()", *other])) for m in OTHER_CRASHES)))
+    advice = next(filter(None, (m.recognize(_shown(["    spin()", *other])) for m in OTHER_CRASHES)))
     assert advice.text.endswith(
         "its traceback is incomplete, because another thread ended the program (line 114, in work)"
     )
@@ -117,13 +117,13 @@ DESTRUCTOR = [
 )
 def test_what_a_destructor_raised_does_not_hide_what_ended_the_program(lines: list[str], key: str) -> None:
     shown = _shown([*lines, *DESTRUCTOR])
-    assert next(m.key for m in (*CRASHES, *OTHER_CRASHES) if m.recognise(shown)) == key
+    assert next(m.key for m in (*CRASHES, *OTHER_CRASHES) if m.recognize(shown)) == key
     assert not shown.main.said()
 
 
 def test_what_a_thread_says_at_a_shutdown_is_no_crash() -> None:
     for last in ("rclpy.executors.ExternalShutdownException", "rclpy.exceptions.ROSInterruptException: over"):
-        assert not any(m.recognise(_shown(["    spin()", last])) for m in (*CRASHES, *OTHER_CRASHES))
+        assert not any(m.recognize(_shown(["    spin()", last])) for m in (*CRASHES, *OTHER_CRASHES))
 
 
 def test_saying_that_nobody_serves_is_no_crash() -> None:
@@ -134,7 +134,7 @@ def test_saying_that_nobody_serves_is_no_crash() -> None:
     ]
     events = [Event(0.1, "output", "stderr", {"text": line}) for line in lines]
     evidence = Evidence([Part("part", {}, events)], Reference("x", {}))
-    assert not any(m.recognise(evidence) for m in (*CRASHES, *OTHER_CRASHES))
+    assert not any(m.recognize(evidence) for m in (*CRASHES, *OTHER_CRASHES))
 
 
 HEAD = 'Traceback (most recent call last):\n  File "client.py", line 9, in <module>\n    main()\n'
@@ -211,7 +211,7 @@ def test_the_innermost_line_tells(rest: str, expected: bool) -> None:
 def test_what_happens_in_a_line_of_ones_own_is_not_taken_for_a_mistake_with_ros(
     lines: list[str], key: str
 ) -> None:
-    assert next(m.key for m in (*CRASHES, *OTHER_CRASHES) if m.recognise(_shown(lines))) == key
+    assert next(m.key for m in (*CRASHES, *OTHER_CRASHES) if m.recognize(_shown(lines))) == key
 
 
 @pytest.mark.parametrize(
@@ -231,7 +231,7 @@ def test_a_function_that_only_makes_a_coroutine_is_named_and_no_callback_that_ca
     event: Event, told: str
 ) -> None:
     evidence = Evidence([Part("part", {}, [event])], Reference("x", {}))
-    advice = next(filter(None, (m.recognise(evidence) for m in CRASHES)), None)
+    advice = next(filter(None, (m.recognize(evidence) for m in CRASHES)), None)
     assert (advice.text.startswith(told) and bool(told)) if advice else not told
 
 
@@ -247,7 +247,7 @@ def test_of_the_programs_of_a_launch_each_has_a_traceback_of_its_own() -> None:
     shown = [f"[{program}] {line}" for line in lines for program in ("talker-1", "listener-2")]
     evidence = Evidence([Part("part", {}, [_output(text) for text in shown])], Reference("x", {}))
     assert evidence.main.traceback == "\n".join(lines)
-    advice = next(filter(None, (m.recognise(evidence) for m in (*CRASHES, *OTHER_CRASHES))))
+    advice = next(filter(None, (m.recognize(evidence) for m in (*CRASHES, *OTHER_CRASHES))))
     assert "Couldn't parse remap rule: '-r a:=/b/'" in advice.text
 
 
@@ -280,5 +280,5 @@ def test_a_program_that_python_does_not_find_is_named() -> None:
     line = "/usr/bin/python3: can't open file '/home/me/talkr.py': [Errno 2] No such file or directory"
     events = [_output(line), Event(2.0, "subject", "exited", {"code": 2})]
     evidence = Evidence([Part("part", {}, events)], Reference("x", {}))
-    advice = next(filter(None, (mistake.recognise(evidence) for mistake in CRASHES)))
+    advice = next(filter(None, (mistake.recognize(evidence) for mistake in CRASHES)))
     assert advice.text.startswith("Python does not find the program /home/me/talkr.py")

@@ -40,7 +40,7 @@ def test_a_blocking_call_beside_a_thread_that_spins_has_lost_its_node() -> None:
     stacks = f"{_stack(CALL, OWN)}\n\n{_stack(SPIN)}"
     part = Part("part", {}, [Event(9.0, "stack", "subject", {"text": stacks})])
     evidence = Evidence([part], Reference("x", {}))
-    assert next(m.key for m in HANGS if m.recognise(evidence)) == "node_taken_from_executor"
+    assert next(m.key for m in HANGS if m.recognize(evidence)) == "node_taken_from_executor"
 
 
 @pytest.mark.parametrize("where", IN_CALLBACK)
@@ -49,8 +49,8 @@ def test_a_callback_that_does_not_come_back_is_named(where: str) -> None:
     for text in (IN_CALLBACK[where], f"{main}\n\n{IN_CALLBACK[where]}"):
         part = Part("part", {}, [Event(9.0, "stack", "subject", {"text": text})])
         evidence = Evidence([part], Reference("x", {}))
-        found = next(mistake for mistake in HANGS if mistake.recognise(evidence))
-        advice = found.recognise(evidence)
+        found = next(mistake for mistake in HANGS if mistake.recognize(evidence))
+        advice = found.recognize(evidence)
         assert found.key == "callback_never_returns"
         assert advice is not None
         assert "work()" in advice.text
@@ -62,10 +62,10 @@ def test_call_line_and_callback_are_those_of_one_thread() -> None:
     text = f"{asks}\n\n{_stack(CALL, OWN, CALLS_BACK, CALLBACK, SPIN)}"
     part = Part("part", {}, [Event(9.0, "stack", "subject", {"text": text})])
     evidence = Evidence([part], Reference("x", {}))
-    advice = next(filter(None, (mistake.recognise(evidence) for mistake in HANGS)))
+    advice = next(filter(None, (mistake.recognize(evidence) for mistake in HANGS)))
     assert "Your callback work() makes the blocking call call() (line 7, in work)" in advice.text
 
 
 def test_no_stack_names_nothing() -> None:
     evidence = Evidence([Part("part")], Reference("x", {}))
-    assert not any(mistake.recognise(evidence) for mistake in HANGS)
+    assert not any(mistake.recognize(evidence) for mistake in HANGS)

@@ -63,7 +63,7 @@ def returned(name: str, value: str, *events: Event) -> Part:
 )
 def test_a_function_that_returns_another_value_is_told_which(value: str, rejected: str, words: str) -> None:
     late = returned(LATE, value, ASKED, result("succeeded", NUMBERS))
-    advice = NOT_RETURNED.recognise(Evidence([late, returned(REFUSED, rejected)], REFERENCE))
+    advice = NOT_RETURNED.recognize(Evidence([late, returned(REFUSED, rejected)], REFERENCE))
     assert (words in advice.text) if advice else not words
 
 

@@ -87,7 +87,7 @@ def test_a_server_without_a_pause_is_not_canceled_by_the_machine_s_being_busy(ot
         *canceled([0, 1, 1, 2, 3]),
     ]
     assert failed(evidence(hurried)) == {"cancel"}
-    advice = [m.key for m in lab_1_4_server.EXERCISE.mistakes if m.recognise(evidence(hurried))]
+    advice = [m.key for m in lab_1_4_server.EXERCISE.mistakes if m.recognize(evidence(hurried))]
     assert advice[0] == "done_at_once"
 
 
@@ -152,7 +152,7 @@ def test_a_policy_of_one_goal_at_a_time_costs_the_points_of_two_at_once_only() -
     later = [replace(e, data={**e.data, "goal": LONG_ALONE}) for e in canceled([0, 1, 1, 2, 3])]
     ended = evidence([*alone, *older, *goal(BESIDE, 4), result, *again, *later])
     assert failed(ended) == {"two"}
-    assert next(m.key for m in lab_1_4_server.EXERCISE.mistakes if m.recognise(ended)) == "older_goal_ended"
+    assert next(m.key for m in lab_1_4_server.EXERCISE.mistakes if m.recognize(ended)) == "older_goal_ended"
 
 
 def later(number: int, **changed: Any) -> list[Event]:
@@ -179,7 +179,7 @@ def test_each_goal_is_canceled_for_itself(more: list[Event], lost: set[str], key
     seen = evidence([*RIGHT, *more])
     assert failed(seen) == lost
     if key:
-        told = [m.key for m in lab_1_4_server.EXERCISE.mistakes if m.recognise(seen)]
+        told = [m.key for m in lab_1_4_server.EXERCISE.mistakes if m.recognize(seen)]
         assert told[0] == key
 
 
@@ -189,7 +189,7 @@ def test_a_goal_that_is_canceled_only_if_it_is_alone_is_mixed_up_and_not_ignored
     alone = evidence([*right, *ignored, *later(LONG_ALONE)])
     never = evidence([*right, *ignored, *later(LONG_ALONE, status=4)])
     for seen, key in ((alone, "goals_mixed_up"), (never, "cancel_ignored")):
-        assert next(m.key for m in lab_1_4_server.EXERCISE.mistakes if m.recognise(seen)) == key
+        assert next(m.key for m in lab_1_4_server.EXERCISE.mistakes if m.recognize(seen)) == key
 
 
 def test_a_bad_order_that_is_taken_is_wrong_even_if_it_is_aborted_later() -> None:
@@ -263,8 +263,8 @@ def test_a_newer_goal_that_ends_the_older_one_with_canceled_is_named() -> None:
     printed = Event(1.0, "output", "stderr", {"text": text})
     older, *rest = goal(LONG, 20, feedback=[[0, 1, 1]], status=6, sequence=[])
     seen = evidence([*goal(ALONE, 5), older, *goal(BESIDE, 4), printed, *rest, *goal(AGAIN, 3)])
-    mistake = next(m for m in lab_1_4_server.EXERCISE.mistakes if m.recognise(seen))
-    advice = mistake.recognise(seen)
+    mistake = next(m for m in lab_1_4_server.EXERCISE.mistakes if m.recognize(seen))
+    advice = mistake.recognize(seen)
     assert mistake.key == "older_goal_ended"
     assert advice is not None
     assert "No client had asked to cancel" in advice.text
@@ -289,7 +289,7 @@ def test_a_goal_that_was_over_before_the_cancel_is_told_so_where_its_result_was_
             *events,
         ]
     )
-    assert next(m.key for m in lab_1_4_server.EXERCISE.mistakes if m.recognise(seen)) == "done_at_once"
+    assert next(m.key for m in lab_1_4_server.EXERCISE.mistakes if m.recognize(seen)) == "done_at_once"
 
 
 def test_a_server_without_a_pause_whose_last_number_was_out_when_it_agreed_to_cancel_has_not_ignored_that() -> (
@@ -298,7 +298,7 @@ def test_a_server_without_a_pause_whose_last_number_was_out_when_it_agreed_to_ca
     quick = [*goal(ALONE, 5, pause=0.001), *goal(BESIDE, 4, pause=0.001), *goal(AGAIN, 3, pause=0.001)]
     last = goal(LONG, 20, feedback=[FIBONACCI[:n] for n in (3, 4, 5)], pause=0.001, cancel=True, status=4)
     seen = evidence([*quick, *last])
-    assert next(m.key for m in lab_1_4_server.EXERCISE.mistakes if m.recognise(seen)) == "done_at_once"
+    assert next(m.key for m in lab_1_4_server.EXERCISE.mistakes if m.recognize(seen)) == "done_at_once"
 
 
 def test_feedback_that_was_sent_long_after_the_cancel_was_answered_shows_that_the_server_worked_on() -> None:
@@ -314,7 +314,7 @@ def test_feedback_that_was_sent_long_after_the_cancel_was_answered_shows_that_th
     # One number of the round that it was in, and one of the next one, where it had looked already.
     assert criteria.lets_cancel(seen(2)).passed
     assert not criteria.lets_cancel(seen(3)).passed
-    assert next(m.key for m in lab_1_4_server.EXERCISE.mistakes if m.recognise(seen(3))) == "cancel_ignored"
+    assert next(m.key for m in lab_1_4_server.EXERCISE.mistakes if m.recognize(seen(3))) == "cancel_ignored"
 
 
 def test_feedback_that_was_sent_when_the_result_had_been_heard_does_not_count() -> None:

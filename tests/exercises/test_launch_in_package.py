@@ -75,14 +75,14 @@ def test_what_is_wrong_with_the_place_of_a_launch_file(
 ) -> None:
     seen = _evidence(found, built, missing="remap.launch")
     assert not INSTALLED.judge(seen).passed
-    told = [(mistake.key, advice) for mistake in EXERCISE.mistakes if (advice := mistake.recognise(seen))]
+    told = [(mistake.key, advice) for mistake in EXERCISE.mistakes if (advice := mistake.recognize(seen))]
     assert told[0][0] == key
     assert words in told[0][1].text
 
 
 def test_nothing_is_said_of_the_place_of_a_file_that_is_installed() -> None:
     seen = _evidence(["launch/remap.launch.py"], [RIGHT])
-    told = {mistake.key for mistake in EXERCISE.mistakes if mistake.recognise(seen)}
+    told = {mistake.key for mistake in EXERCISE.mistakes if mistake.recognize(seen)}
     assert not told & {"launch_not_installed", "launch_elsewhere", "launch_file_name", "data_file_missing"}
 
 

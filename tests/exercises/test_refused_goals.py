@@ -73,7 +73,7 @@ def test_an_exception_that_only_a_refusal_causes_is_told_with_it() -> None:
 
 
 def test_who_says_nothing_is_told_the_word() -> None:
-    advice = REFUSAL_NOT_REPORTED.recognise(evidence([Event(0.5, "subject", "returned")]))
+    advice = REFUSAL_NOT_REPORTED.recognize(evidence([Event(0.5, "subject", "returned")]))
     assert advice is not None
     assert "`rejected`" in advice.text
 

@@ -62,7 +62,7 @@ def test_the_next_step_fits_what_the_launch_says(what: str, next_step: str) -> N
     failed = Event(0.0, "output", "stderr", {"text": f"[ERROR] [launch]: {what}"})
     seen = Evidence([Part("launching", {"text": "status 1"}, [failed])], REFERENCE)
     known = [one for one in exercises.get("exercise_1_1.remap").mistakes if one.key == "launch_error"]
-    advice = next(filter(None, (mistake.recognise(seen) for mistake in known)))
+    advice = next(filter(None, (mistake.recognize(seen) for mistake in known)))
     assert what in advice.text
     assert next_step in advice.next_step
 
@@ -81,7 +81,7 @@ def test_who_was_not_moved_is_certain_once_all_programs_are_there(
     told = [
         mistake
         for mistake in exercises.get("exercise_1_1.remap").mistakes
-        if mistake.key == "only_one_remapped" and mistake.recognise(seen)
+        if mistake.key == "only_one_remapped" and mistake.recognize(seen)
     ]
     assert told
     assert told[0].certain is certain
@@ -197,7 +197,7 @@ def test_who_is_there_without_a_rule_was_not_moved(names: tuple[str, str], not_m
     told = [
         (mistake.certain, advice.next_step)
         for mistake in exercise.mistakes
-        if mistake.key == "renamed_in_code" and (advice := mistake.recognise(seen))
+        if mistake.key == "renamed_in_code" and (advice := mistake.recognize(seen))
     ]
     assert [certain for certain, _ in told] == [True] * bool(not_moved)
     assert all(" and ".join(not_moved) in step for _, step in told)

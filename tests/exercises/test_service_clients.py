@@ -207,7 +207,7 @@ def test_a_function_that_returns_the_sum_among_other_words_is_told_to_return_the
         seen_of(name, answered(-4321), ("subject", "returned", {"value": value, "traceback": ""}))
         for name in CALLED
     ]
-    advice = NOT_RETURNED.recognise(Evidence(parts, Reference("x", {})))
+    advice = NOT_RETURNED.recognize(Evidence(parts, Reference("x", {})))
     assert advice is not None
     assert value in advice.text
 

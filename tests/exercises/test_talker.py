@@ -68,7 +68,7 @@ def test_a_first_message_that_nobody_could_hear_is_forgiven() -> None:
 
 def told(key: str, evidence: Evidence) -> str:
     """What is told of a mistake; empty where the evidence does not show it."""
-    advice = next(mistake for mistake in talker.EXERCISE.mistakes if mistake.key == key).recognise(evidence)
+    advice = next(mistake for mistake in talker.EXERCISE.mistakes if mistake.key == key).recognize(evidence)
     return advice.text if advice else ""
 
 
@@ -280,7 +280,7 @@ def test_a_judge_that_hears_late_believes_the_publisher() -> None:
 
 def _step(events: list[Event]) -> str:
     step = next(mistake for mistake in talker.EXERCISE.mistakes if mistake.key == "counter_step")
-    advice = step.recognise(_evidence(events))
+    advice = step.recognize(_evidence(events))
     return advice.text if advice else ""
 
 
@@ -309,7 +309,7 @@ def test_a_publisher_that_is_made_anew_for_each_message_always_costs_the_same_an
     seen = _evidence(sorted([*met, *messages], key=lambda event: event.t))
     lost = {c.name for c in talker.EXERCISE.criteria if not c.judge(seen).passed}
     assert lost == {"counter", "rate"}
-    assert next(m for m in talker.EXERCISE.mistakes if m.recognise(seen)).key == "published_before_discovery"
+    assert next(m for m in talker.EXERCISE.mistakes if m.recognize(seen)).key == "published_before_discovery"
 
 
 def test_publishers_that_are_made_at_the_same_moment_are_not_one_after_another() -> None:

@@ -36,7 +36,7 @@ def test_each_criterion_and_mistake_can_look_at_any_evidence(exercise_id: str) -
     for criterion in exercise.criteria:
         assert not criterion.judge(evidence).passed
     for mistake in exercise.mistakes:
-        mistake.recognise(evidence)
+        mistake.recognize(evidence)
 
 
 @pytest.mark.parametrize(
@@ -82,7 +82,7 @@ def test_a_program_that_ends_at_once_is_told_what_belongs_into_its_main(
     stored = evidence_files.load_reference(exercise_id)
     exited = Event(0.4, "subject", "exited", {"code": 0})
     evidence = Evidence([Part(part.name, part.inputs, [exited]) for part in stored.parts], stored)
-    advice = next(filter(None, (m.recognise(evidence) for m in NOTHING_THERE)))
+    advice = next(filter(None, (m.recognize(evidence) for m in NOTHING_THERE)))
     assert "without a node" in advice.text
     assert ("main() of a client" in advice.next_step, "make your node" in advice.next_step) == (client, other)
     assert "__name__" in advice.next_step
@@ -96,7 +96,7 @@ def test_of_a_built_program_nothing_is_said_of_the_last_lines_of_its_file() -> N
     exited = Event(0.4, "subject", "exited", {"code": 0})
     advice = next(
         filter(
-            None, (m.recognise(Evidence([Part("it", {}, [built, exited])], stored)) for m in NOTHING_THERE)
+            None, (m.recognize(Evidence([Part("it", {}, [built, exited])], stored)) for m in NOTHING_THERE)
         )
     )
     assert "its main() makes no node" in advice.text

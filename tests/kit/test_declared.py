@@ -37,10 +37,10 @@ def passed(exercise: Exercise, seen: Sequence[Event], usual: Sequence[Event]) ->
 
 
 def diagnoses(exercise: Exercise, seen: Sequence[Event]) -> set[str]:
-    """Return the exercise's own mistakes that are recognised."""
+    """Return the exercise's own mistakes that are recognized."""
     evidence = Evidence([Part("run", {}, seen)], Reference(exercise.id, INTERFACE))
     own = {"summed", "not_copied", "too_early", "stays_so", "told_too_often", "not_latched"}
-    return {one.key for one in exercise.mistakes if one.key in own and one.recognise(evidence)}
+    return {one.key for one in exercise.mistakes if one.key in own and one.recognize(evidence)}
 
 
 def differences() -> Exercise:

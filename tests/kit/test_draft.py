@@ -59,12 +59,12 @@ def test_a_place_that_the_recipe_has_not_is_an_error() -> None:
 def test_a_text_may_quote_what_was_found(found: object, text: str | None) -> None:
     draft = Draft("lab.it", "", "", Recipe())
     draft.knows("usual", lambda *_: found, "It is {} in {seen.name}.", "")
-    advice = draft.exercise().mistakes[0].recognise(Evidence([Part("rolling")], Reference("lab.it", {})))
+    advice = draft.exercise().mistakes[0].recognize(Evidence([Part("rolling")], Reference("lab.it", {})))
     assert (advice and advice.text) == text
 
 
 def test_a_mistake_may_have_words_of_its_own() -> None:
     draft = Draft("lab.it", "", "", Recipe())
     draft.mistake("usual")(lambda seen, _: Advice(f"It has {{braces}} in {seen.name}.", "") if seen else None)
-    advice = draft.exercise().mistakes[0].recognise(Evidence([Part("rolling")], Reference("lab.it", {})))
+    advice = draft.exercise().mistakes[0].recognize(Evidence([Part("rolling")], Reference("lab.it", {})))
     assert advice == Advice("It has {braces} in rolling.", "")

@@ -50,7 +50,7 @@ def test_a_missing_result_is_told_in_the_words_of_the_action(field: str, found: 
     missing = next(one for one in recipe.ladder if one.key == "result_missing")
     traceback = f"AttributeError: 'NoneType' object has no attribute '{field}'"
     part = Part("main", {}, [Event(0.0, "subject", "raised", {"traceback": traceback})])
-    advice = missing.recognise(Evidence([part], Reference("", {"action_server": {ACTION: TYPE}}, [PART])))
+    advice = missing.recognize(Evidence([part], Reference("", {"action_server": {ACTION: TYPE}}, [PART])))
     assert (advice is not None) is found
     assert advice is None or "DriveTo.Result() in which you have set arrived and steps" in advice.next_step
 

@@ -132,7 +132,7 @@ def test_a_parameter_is_described_and_refused_as_the_solutions(speed: Sequence[A
 def test_a_run_like_a_recorded_wrong_answer_is_named_for_certain_in_simulated_time() -> None:
     def told(part: Part) -> list[tuple[str, bool]]:
         found = (
-            (one, one.recognise(evidence_of(part))) for one in exercise().mistakes if one.key == "variant"
+            (one, one.recognize(evidence_of(part))) for one in exercise().mistakes if one.key == "variant"
         )
         return [(advice.key, one.certain) for one, advice in found if advice]
 

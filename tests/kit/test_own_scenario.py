@@ -38,7 +38,7 @@ def seen(services: dict[str, str]) -> Evidence:
 )
 def test_each_endpoint_of_a_role_counts(services: dict[str, str], key: str, word: str) -> None:
     evidence = seen(services)
-    found = [(mistake.key, advice) for mistake in RECIPE.ladder if (advice := mistake.recognise(evidence))]
+    found = [(mistake.key, advice) for mistake in RECIPE.ladder if (advice := mistake.recognize(evidence))]
     assert found[0][0] == key if key else not found
     assert not found or word in found[0][1].text
     assert RECIPE.has("service")(evidence).passed is not bool(key)
@@ -47,7 +47,7 @@ def test_each_endpoint_of_a_role_counts(services: dict[str, str], key: str, word
 def test_a_services_callback_that_returns_nothing_is_named_in_a_notebook_too() -> None:
     raised = Event(0.5, "subject", "raised", {"traceback": "TypeError"})
     evidence = Evidence([Part("counting", {}, [raised])], REFERENCE)
-    assert next(one.key for one in RECIPE.ladder if one.recognise(evidence)) == "callback_returned_none"
+    assert next(one.key for one in RECIPE.ladder if one.recognize(evidence)) == "callback_returned_none"
 
 
 def test_what_is_expected_has_the_references_endpoints() -> None:

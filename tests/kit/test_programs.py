@@ -86,7 +86,7 @@ def test_whether_a_program_is_right_is_decided_once_for_all_its_mistakes() -> No
     for word in ("one", "other"):
         asked.clear()
         seen = evidence([said(word)])
-        told = [found.text for mistake in exercise.mistakes if (found := mistake.recognise(seen))]
+        told = [found.text for mistake in exercise.mistakes if (found := mistake.recognize(seen))]
         assert told == [f"talker: {word}"]
         assert len(asked) == 1
 
@@ -150,7 +150,7 @@ def test_a_traceback_after_ctrl_c_costs_nothing_and_is_worth_a_word() -> None:
     assert remark(evidence(quiet, quiet)) == ""
     assert remark(evidence(quiet, loud)).startswith("listener ends on Ctrl-C with a traceback.")
     assert PROGRAMS.criteria[-1].judge(evidence(quiet, loud)).passed
-    assert [mistake.key for mistake in PROGRAMS.mistakes if mistake.recognise(evidence(quiet, loud))] == []
+    assert [mistake.key for mistake in PROGRAMS.mistakes if mistake.recognize(evidence(quiet, loud))] == []
 
 
 @pytest.mark.parametrize(
@@ -167,7 +167,7 @@ def test_a_class_that_was_not_copied_into_its_file_is_named_with_the_file(line: 
         *map(said, ("Traceback (most recent call last):", frame, f"    {line}", error)),
         subject("exited"),
     ]
-    told = [m.recognise(evidence([said("hello")], crash)) for m in PROGRAMS.mistakes if m.key == "crashed"]
+    told = [m.recognize(evidence([said("hello")], crash)) for m in PROGRAMS.mistakes if m.key == "crashed"]
     texts = [advice.text for advice in told if advice]
     assert [text for text in texts if "makes a node" in text] == [
         text for text in texts if says and says in text

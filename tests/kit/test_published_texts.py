@@ -55,9 +55,9 @@ def failed(found: Evidence) -> set[str]:
 
 
 def told(found: Evidence) -> tuple[str, str, str]:
-    """The key of the first mistake that is recognised, and its advice."""
+    """The key of the first mistake that is recognized, and its advice."""
     ladder = exercise().mistakes
-    key, advice = next((one.key, advice) for one in ladder if (advice := one.recognise(found)))
+    key, advice = next((one.key, advice) for one in ladder if (advice := one.recognize(found)))
     return key, advice.text, advice.next_step
 
 

@@ -28,7 +28,7 @@ def seen(*heard: tuple[str, list[str]]) -> Evidence:
 def told(key: str, evidence: Evidence) -> str:
     """Return all words of the diagnosis with this key; empty if it does not fit."""
     ladder = [mistake for mistake in Speaks(pace=0.5, paced_by="a talker").ladder if mistake.key == key]
-    found = next(filter(None, (mistake.recognise(evidence) for mistake in ladder)), None)
+    found = next(filter(None, (mistake.recognize(evidence) for mistake in ladder)), None)
     return f"{found.text} {found.next_step}" if found else ""
 
 
@@ -102,4 +102,4 @@ def test_a_listener_that_misses_only_the_first_of_a_pair_or_a_kind_of_text_is_no
         events += [Event(at + 0.1, "output", "stdout", {"text": text})] * (text not in missing)
     evidence = Evidence([Part("listening", {"texts": texts, "pairs": ["b"]}, events)], REFERENCE)
     ladder = Speaks(pace=0.5, paced_by="a talker").ladder
-    assert next(m.key for m in ladder if m.recognise(evidence)) == key
+    assert next(m.key for m in ladder if m.recognize(evidence)) == key

@@ -61,7 +61,7 @@ def judged(part: Part) -> tuple[set[str], str | None]:
     evidence = Evidence([part], Reference(exercise.id, INTERFACE, [run(USUAL)]))
     failed = {one.name for one in exercise.criteria if not one.judge(evidence).passed}
     own = (one for one in exercise.mistakes if one.key in (*READY_MADE, "half", "first"))
-    return failed, next((one.key for one in own if one.recognise(evidence)), None)
+    return failed, next((one.key for one in own if one.recognize(evidence)), None)
 
 
 @pytest.mark.parametrize(

@@ -21,7 +21,7 @@ from autograder.messages import workspace_messages as messages
 from autograder.messages.json_lines import Hangup, Lines
 from autograder.workspaces import grading_service, packages, sources
 from autograder.workspaces.builds import students_builds
-from autograder.workspaces.builds.build_artefacts import Kind, PackedEntry
+from autograder.workspaces.builds.build_artifacts import Kind, PackedEntry
 from autograder.workspaces.builds.install_folder import LIBRARY
 from autograder.workspaces.grading_service import ServiceSockets, WorkspaceService
 from autograder.workspaces.jobs import BuildJob, BuildOutcome, PlainProgram, ProgramJob

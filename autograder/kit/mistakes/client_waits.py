@@ -180,9 +180,9 @@ class Wait:
         The client is known to send requests or goals, because it did so in the first run with a server.
         """
 
-        def recognise(evidence: Evidence) -> Advice | None:
+        def recognize(evidence: Evidence) -> Advice | None:
             if not self.asked(evidence.part(self.served[0])):
                 return None
             return giving_up.silent_end(evidence.part(self.absent), self._had_server(evidence), self.noun)
 
-        return Mistake("silent_end", recognise, certain)
+        return Mistake("silent_end", recognize, certain)

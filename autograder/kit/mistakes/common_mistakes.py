@@ -270,7 +270,7 @@ def only_if_ended(mistake: Mistake) -> Mistake:
     The mistake counts as certain, because timing has no influence on runs that the judge did not stop.
     """
 
-    def recognise(evidence: Evidence) -> Advice | None:
-        return mistake.recognise(evidence) if all(part.ending for part in evidence) else None
+    def recognize(evidence: Evidence) -> Advice | None:
+        return mistake.recognize(evidence) if all(part.ending for part in evidence) else None
 
-    return Mistake(mistake.key, recognise, certain=True)
+    return Mistake(mistake.key, recognize, certain=True)

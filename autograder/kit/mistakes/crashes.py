@@ -210,10 +210,10 @@ def _had_none_instead(part: Part) -> bool:
 
 
 def _only_slips(mistake: Mistake) -> Mistake:
-    def recognise(evidence: Evidence) -> Advice | None:
-        return None if meant(traceback_of(evidence)) else mistake.recognise(evidence)
+    def recognize(evidence: Evidence) -> Advice | None:
+        return None if meant(traceback_of(evidence)) else mistake.recognize(evidence)
 
-    return replace(mistake, recognise=recognise)
+    return replace(mistake, recognize=recognize)
 
 
 CRASHES: tuple[Mistake, ...] = (

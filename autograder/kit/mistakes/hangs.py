@@ -134,9 +134,9 @@ def _executes_a_goal(stack: Stack) -> bool:
     return bool(_stuck_callback([stack])) and any(frame.rclpy == "action/server.py" for frame in stack)
 
 
-Recognise = Callable[[list[Stack]], bool]
+Recognize = Callable[[list[Stack]], bool]
 
-_HANGS: tuple[tuple[str, Recognise, str, str], ...] = (
+_HANGS: tuple[tuple[str, Recognize, str, str], ...] = (
     (
         "nested_spin",
         lambda found: any(map(_spins_in_callback, found)),
@@ -208,8 +208,8 @@ _HANGS: tuple[tuple[str, Recognise, str, str], ...] = (
 )
 
 
-def _mistake(key: str, fits: Recognise, text: str, next_step: str) -> Mistake:
-    def recognise(evidence: Evidence) -> Advice | None:
+def _mistake(key: str, fits: Recognize, text: str, next_step: str) -> Mistake:
+    def recognize(evidence: Evidence) -> Advice | None:
         found = [stack for part in evidence for stack in _stacks(part)]
         if not found or not fits(found):
             return None
@@ -224,7 +224,7 @@ def _mistake(key: str, fits: Recognise, text: str, next_step: str) -> Mistake:
         }
         return Advice(text.format(**words), next_step.format(**words))
 
-    return Mistake(key, recognise)
+    return Mistake(key, recognize)
 
 
 HANGS: tuple[Mistake, ...] = tuple(_mistake(*row) for row in _HANGS)

@@ -350,10 +350,10 @@ _WHAT_IS_SAID = (
 def _not_by_refusal(mistake: Mistake) -> Mistake:
     """Return the mistake, but do not recognize it if the client crashes only in the run with a refused goal."""
 
-    def recognise(evidence: Evidence) -> Advice | None:
-        return None if goals.crashed_by_refusal(evidence) else mistake.recognise(evidence)
+    def recognize(evidence: Evidence) -> Advice | None:
+        return None if goals.crashed_by_refusal(evidence) else mistake.recognize(evidence)
 
-    return replace(mistake, recognise=recognise)
+    return replace(mistake, recognize=recognize)
 
 
 class ActionClient(SeenAsItIs):

@@ -262,7 +262,7 @@ class Programs:
         yield Mistake("package_name", lambda e: package_mistakes.package_name(e, self._name), certain=True)
         for program in self._programs:
             for mistake in package_mistakes.mistakes(self._entry(program)):
-                yield replace(mistake, recognise=partial(_of_the_view, mistake, program))
+                yield replace(mistake, recognize=partial(_of_the_view, mistake, program))
 
     def _of_the_programs(self) -> Iterable[Mistake]:
         yield Mistake("entry_point", self._another_program)
@@ -271,7 +271,7 @@ class Programs:
             copied = Mistake("crashed", partial(_class_not_in_its_file, program), certain=True)
             wrong = _Wrong(program)
             for mistake in (copied, *program.node.mistakes, *late):
-                yield replace(mistake, recognise=partial(wrong.recognise, mistake))
+                yield replace(mistake, recognize=partial(wrong.recognize, mistake))
         for program in self._programs:
             yield Mistake("ignores_ctrl_c", partial(_ignores_ctrl_c, program))
 
@@ -302,7 +302,7 @@ class Programs:
 
 
 def _of_the_view(mistake: Mistake, program: LabProgram, evidence: Evidence) -> Advice | None:
-    return mistake.recognise(program.view(evidence))
+    return mistake.recognize(program.view(evidence))
 
 
 class _Wrong:
@@ -322,10 +322,10 @@ class _Wrong:
             self._known = evidence, None if right else self._program.view(evidence)
         return self._known[1]
 
-    def recognise(self, mistake: Mistake, evidence: Evidence) -> Advice | None:
+    def recognize(self, mistake: Mistake, evidence: Evidence) -> Advice | None:
         """Return the advice on a mistake if this program fails its criterion and shows the mistake."""
         view = self._view(evidence)
-        advice = mistake.recognise(view) if view else None
+        advice = mistake.recognize(view) if view else None
         return replace(advice, text=f"{self._program.name}: {advice.text}") if advice else None
 
 

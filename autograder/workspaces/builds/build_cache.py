@@ -23,7 +23,7 @@ from typing import IO, TYPE_CHECKING
 import platformdirs
 
 from autograder.safe_files import fresh_folder
-from autograder.workspaces.builds.build_artefacts import BLOCK
+from autograder.workspaces.builds.build_artifacts import BLOCK
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator

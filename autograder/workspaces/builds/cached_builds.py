@@ -19,7 +19,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from autograder.workspaces.builds import build_artefacts, build_cache
+from autograder.workspaces.builds import build_artifacts, build_cache
 from autograder.workspaces.builds.colcon_build import (
     colcon_command,
     failed_build,
@@ -80,7 +80,7 @@ class Builds:
         jobs: The argument ``jobs``.
     """
 
-    def __init__(self, folder: Path, jobs: Jobs, room: int = build_artefacts.MAX_BYTES) -> None:
+    def __init__(self, folder: Path, jobs: Jobs, room: int = build_artifacts.MAX_BYTES) -> None:
         self._folder = folder
         self.jobs = jobs
         self._room = room
@@ -219,8 +219,8 @@ class Builds:
         try:
             if built.archive is not None:
                 # The build may only use the space that is left in the cache.
-                build_artefacts.unpack(built.archive, install, self._room)
-        except build_artefacts.BadArtefacts as error:
+                build_artifacts.unpack(built.archive, install, self._room)
+        except build_artifacts.BadArtifacts as error:
             return failed_build(found, f"{log}\nerror: {error}")
         return replace(found, ok=True, install=install)
 

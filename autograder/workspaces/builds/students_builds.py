@@ -33,7 +33,7 @@ import re2
 
 from autograder.messages import workspace_messages as messages
 from autograder.messages.json_lines import Hangup, Lines, NotUnderstood
-from autograder.workspaces.builds import build_artefacts, build_cache
+from autograder.workspaces.builds import build_artifacts, build_cache
 from autograder.workspaces.builds.cached_builds import Builds, BuildTookTooLong
 from autograder.workspaces.builds.colcon_build import CannotCopyBuild, copy_to_workspace, describe_workspace
 from autograder.workspaces.builds.install_folder import (
@@ -127,7 +127,7 @@ def _ask(socket: str, found: Build, chosen: Iterable[Package], install: Path) ->
         lines = Lines.to(socket, LIMIT)
     except (BadSources, Hangup):
         return None
-    with contextlib.closing(lines), contextlib.suppress(Hangup, NotUnderstood, build_artefacts.BadArtefacts):
+    with contextlib.closing(lines), contextlib.suppress(Hangup, NotUnderstood, build_artifacts.BadArtifacts):
         top = found.workspace.resolve().name
         lines.say(messages.BuildRequest(len(collected), top, [package.name for package in chosen]))
         for source in collected:
@@ -144,7 +144,7 @@ def _ask(socket: str, found: Build, chosen: Iterable[Package], install: Path) ->
             )
         if isinstance(answer, messages.BuildDone):
             archive = b"".join(lines.hear(messages.Piece).data for _ in range(answer.pieces))
-            build_artefacts.unpack(archive, install)
+            build_artifacts.unpack(archive, install)
             rename_paths(install, answer.install, str(install))
             return replace(found, ok=True, install=install, seconds=answer.seconds)
     return None

@@ -56,16 +56,16 @@ def _named(files: Sequence[str]) -> list[PurePosixPath]:
     return [path for path in map(PurePosixPath, files) if path.stem == FILE]
 
 
-def _about_the_file(recognise: Callable[[Sequence[str], Sequence[str]], Advice | None]) -> Mistake:
+def _about_the_file(recognize: Callable[[Sequence[str], Sequence[str]], Advice | None]) -> Mistake:
     """A mistake that shows in a package's launch files and the installed ones, once the package is built."""
 
     def advice(evidence: Evidence) -> Advice | None:
         report = report_of(evidence.main)
         if report is None or not report.built or report.missing == PACKAGE or installed(evidence).passed:
             return None
-        return recognise(_launch_files(evidence, "found"), _launch_files(evidence, "built"))
+        return recognize(_launch_files(evidence, "found"), _launch_files(evidence, "built"))
 
-    return Mistake(recognise.__name__, advice, certain=True)
+    return Mistake(recognize.__name__, advice, certain=True)
 
 
 def launch_elsewhere(_: Sequence[str], built: Sequence[str]) -> Advice | None:

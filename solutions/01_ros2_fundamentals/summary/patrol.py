@@ -81,8 +81,8 @@ def cancels(seen: Part, _: Part) -> Finding:
     return Finding(asked == 1 and near == 1, "1 request, after 1 feedback message below 1 m", told)
 
 
-for key, recognise, says, next_step, how in MISTAKES:
-    patrol.knows(key, recognise, says, next_step, **how)
+for key, recognize, says, next_step, how in MISTAKES:
+    patrol.knows(key, recognize, says, next_step, **how)
 
 
 EXERCISE = patrol.exercise(

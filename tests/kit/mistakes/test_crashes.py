@@ -275,7 +275,7 @@ def test_an_answer_was_left_lying_only_if_it_was_so_in_each_run(
         for number, seconds in enumerate(late)
     ]
     first = next(mistake for mistake in CRASHES if mistake.key == "call_never_spun")
-    assert (first.recognise(Evidence(runs, Reference("x", {}))) is not None) == is_told
+    assert (first.recognize(Evidence(runs, Reference("x", {}))) is not None) == is_told
 
 
 def told(traceback: str, *before: Event) -> str:
@@ -292,5 +292,5 @@ def diagnosed(traceback: str, *before: Event) -> str:
 def _found(traceback: str, before: Sequence[Event]) -> tuple[str, Advice]:
     event = Event(0.1, "subject", "raised", {"traceback": traceback})
     evidence = Evidence([Part("part", {}, [*before, event])], Reference("x", {}))
-    asked = ((mistake.key, mistake.recognise(evidence)) for mistake in (*CRASHES, *OTHER_CRASHES))
+    asked = ((mistake.key, mistake.recognize(evidence)) for mistake in (*CRASHES, *OTHER_CRASHES))
     return next((key, advice) for key, advice in asked if advice is not None)

@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 
 from autograder.workspaces.builds import build_cache
-from autograder.workspaces.builds.build_artefacts import BLOCK
+from autograder.workspaces.builds.build_artifacts import BLOCK
 
 
 def fill(key: str, size: int = 10) -> None:

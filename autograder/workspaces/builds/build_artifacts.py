@@ -5,7 +5,7 @@ typed entries, and outside the box every entry is checked before it is written. 
 targets, because otherwise a program might follow a link out of the folder.
 
 In a box, this module is a program that prints the packed folder:
-``python -m autograder.workspaces.builds.build_artefacts FOLDER``.
+``python -m autograder.workspaces.builds.build_artifacts FOLDER``.
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ _OF_THIS_MACHINE = (
 """Error numbers for trouble of this machine that no build can cause, such as a full disk or too many open files."""
 
 
-class BadArtefacts(ValueError):
+class BadArtifacts(ValueError):
     """The packed folder is invalid, or contains something that no build of a workspace makes."""
 
 
@@ -124,19 +124,19 @@ def unpack(packed: bytes, folder: Path, most: int = MAX_BYTES) -> None:
         most: The maximum size in bytes of all files and folders together.
 
     Raises:
-        BadArtefacts: An entry leads out of the folder or is a device, a link does not lead to a file of the build, or
+        BadArtifacts: An entry leads out of the folder or is a device, a link does not lead to a file of the build, or
             there are too many files or bytes. The files that were written before the error stay.
         OSError, MemoryError: The disk, memory or open files of this machine are used up, so the build is not at fault.
     """
     if not packed:
-        raise BadArtefacts("the result of the build could not be packed")
+        raise BadArtifacts("the result of the build could not be packed")
     folder.mkdir(mode=0o755)
     try:
         _write(msgspec.msgpack.decode(packed, type=_Entries), folder, most)
     except (msgspec.MsgspecError, OSError) as error:
         if getattr(error, "errno", None) in _OF_THIS_MACHINE:
             raise
-        raise BadArtefacts(f"the result of the build cannot be read: {error}") from error
+        raise BadArtifacts(f"the result of the build cannot be read: {error}") from error
 
 
 def _write(entries: list[PackedEntry], folder: Path, most: int) -> None:
@@ -166,10 +166,10 @@ def check_room(size: int, most: int, number: int = 0) -> None:
         number: The number of files and folders.
 
     Raises:
-        BadArtefacts: A limit is exceeded.
+        BadArtifacts: A limit is exceeded.
     """
     if number > MAX_FILES or size > most:
-        raise BadArtefacts(
+        raise BadArtifacts(
             f"the build is too large: it may have at most {MAX_FILES} files and folders, and {most // 1000} kB of "
             "space are left for it"
         )
@@ -180,9 +180,9 @@ def _take(entry: PackedEntry, place: Path) -> None:
         place.mkdir(parents=True, exist_ok=True)
         return
     if os.path.lexists(place):
-        raise BadArtefacts(f"{os.fsdecode(entry.path)!r:.80} occurs twice in the result of the build")
+        raise BadArtifacts(f"{os.fsdecode(entry.path)!r:.80} occurs twice in the result of the build")
     if entry.kind is Kind.OTHER:
-        raise BadArtefacts(f"{os.fsdecode(entry.path)!r:.80} is neither a file nor a folder")
+        raise BadArtifacts(f"{os.fsdecode(entry.path)!r:.80} is neither a file nor a folder")
     place.parent.mkdir(parents=True, exist_ok=True)
     place.write_bytes(entry.data)
     place.chmod(0o755 if entry.kind is Kind.PROGRAM else 0o644)
@@ -200,7 +200,7 @@ def _place(name: bytes) -> PurePosixPath:
         or len(parts) > MAX_DEPTH
         or any(len(os.fsencode(part)) > MAX_NAME for part in parts)
     ):
-        raise BadArtefacts(f"{os.fsdecode(name)!r:.80} is not a path inside the install folder")
+        raise BadArtifacts(f"{os.fsdecode(name)!r:.80} is not a path inside the install folder")
     return path
 
 
@@ -211,7 +211,7 @@ def _target(place: PurePosixPath, link: PackedEntry) -> PurePosixPath:
     """
     inside = os.path.normpath(place.parent / os.fsdecode(link.data))
     if inside.startswith(("..", "/")) or "\0" in inside:
-        raise BadArtefacts(f"{os.fsdecode(link.path)!r:.80} leads out of the install folder")
+        raise BadArtifacts(f"{os.fsdecode(link.path)!r:.80} leads out of the install folder")
     return PurePosixPath(inside)
 
 
@@ -222,9 +222,9 @@ def _copy(link: PurePosixPath, links: Mapping[PurePosixPath, PurePosixPath], fol
         target = links.get(target, target)
     place, source = folder / link, folder / target
     if target in links or not source.is_file():
-        raise BadArtefacts(f"{str(link)!r} is a link that does not lead to a file of the build")
+        raise BadArtifacts(f"{str(link)!r} is a link that does not lead to a file of the build")
     if os.path.lexists(place):
-        raise BadArtefacts(f"{str(link)!r} occurs twice in the result of the build")
+        raise BadArtifacts(f"{str(link)!r} occurs twice in the result of the build")
     place.parent.mkdir(parents=True, exist_ok=True)
     shutil.copy(source, place)
     return place.stat().st_size

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 import msgspec
 import pytest
 
-from autograder.workspaces.builds import build_artefacts, build_cache
-from autograder.workspaces.builds.build_artefacts import BadArtefacts, Kind, PackedEntry, pack, unpack
+from autograder.workspaces.builds import build_artifacts, build_cache
+from autograder.workspaces.builds.build_artifacts import BadArtifacts, Kind, PackedEntry, pack, unpack
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -78,7 +78,7 @@ def test_a_long_path_comes_through(tmp_path: Path) -> None:
 )  # fmt: skip
 def test_what_leads_out_is_refused(members: list[tuple[str, Kind, str | int]], tmp_path: Path) -> None:
     (tmp_path / "outside").write_text("x = a.b:c")
-    with pytest.raises(BadArtefacts):
+    with pytest.raises(BadArtifacts):
         unpack(packed(*members), tmp_path / "install")
     assert {path.name for path in tmp_path.iterdir()} == {"install", "outside"}
     assert not [path for path in (tmp_path / "install").rglob("*") if path.is_symlink()]
@@ -95,7 +95,7 @@ def test_what_leads_out_is_refused(members: list[tuple[str, Kind, str | int]], t
     ],
 )  # fmt: skip
 def test_a_list_that_was_written_by_hand_is_refused(said: bytes, tmp_path: Path) -> None:
-    with pytest.raises(BadArtefacts):
+    with pytest.raises(BadArtifacts):
         unpack(said, tmp_path / "install")
     assert not [path for path in tmp_path.rglob("*") if not path.is_dir()]
 
@@ -112,25 +112,25 @@ def test_what_is_packed_is_unpacked(tmp_path: Path) -> None:
     assert (tmp_path / "install" / "lib" / "run").stat().st_mode & 0o777 == 0o755
     assert (tmp_path / "install" / "caf\udce9").stat().st_mode & 0o777 == 0o644
     os.mkfifo(made / "pipe")
-    with pytest.raises(BadArtefacts, match="neither a file nor a folder"):
+    with pytest.raises(BadArtifacts, match="neither a file nor a folder"):
         unpack(pack(made), tmp_path / "other")
     assert pack(tmp_path / "nothing") == b""
 
 
 def test_too_much_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    with pytest.raises(BadArtefacts, match="too large"):
-        unpack(packed(("a", Kind.FILE, 11)), tmp_path / "bytes", most=2 * build_artefacts.BLOCK + 10)
+    with pytest.raises(BadArtifacts, match="too large"):
+        unpack(packed(("a", Kind.FILE, 11)), tmp_path / "bytes", most=2 * build_artifacts.BLOCK + 10)
     copies = [(name, Kind.LINK, "a") for name in "bcd"]
-    with pytest.raises(BadArtefacts, match="too large"):
-        unpack(packed(("a", Kind.FILE, 3), *copies), tmp_path / "copies", most=5 * build_artefacts.BLOCK + 10)
-    monkeypatch.setattr(build_artefacts, "MAX_FILES", 2)
-    with pytest.raises(BadArtefacts, match="too large"):
+    with pytest.raises(BadArtifacts, match="too large"):
+        unpack(packed(("a", Kind.FILE, 3), *copies), tmp_path / "copies", most=5 * build_artifacts.BLOCK + 10)
+    monkeypatch.setattr(build_artifacts, "MAX_FILES", 2)
+    with pytest.raises(BadArtifacts, match="too large"):
         unpack(packed(*((name, Kind.FOLDER, 0) for name in "abc")), tmp_path / "files")
 
 
 def test_millions_of_entries_are_not_even_read(tmp_path: Path) -> None:
-    said = msgspec.msgpack.encode([[b"a", "file"]] * (build_artefacts.MOST_ENTRIES + 1))
-    with pytest.raises(BadArtefacts, match="length"):
+    said = msgspec.msgpack.encode([[b"a", "file"]] * (build_artifacts.MOST_ENTRIES + 1))
+    with pytest.raises(BadArtifacts, match="length"):
         unpack(said, tmp_path / "install")
 
 
@@ -138,19 +138,19 @@ def test_a_full_disk_is_no_fault_of_the_build(tmp_path: Path, monkeypatch: pytes
     def write(*_: object) -> int:
         raise OSError(errno.ENOSPC, "No space left on device")
 
-    monkeypatch.setattr(build_artefacts, "_take", write)
+    monkeypatch.setattr(build_artifacts, "_take", write)
     with pytest.raises(OSError, match="No space left"):
         unpack(packed(("a", Kind.FILE, 1)), tmp_path / "install")
 
 
 def test_empty_files_and_folders_take_room_too(tmp_path: Path) -> None:
     few = packed(*((f"{number}", Kind.FILE, 0) for number in range(9)))
-    unpack(few, tmp_path / "few", most=10 * build_artefacts.BLOCK)
-    assert build_cache.size_of(tmp_path / "few") == 10 * build_artefacts.BLOCK
+    unpack(few, tmp_path / "few", most=10 * build_artifacts.BLOCK)
+    assert build_cache.size_of(tmp_path / "few") == 10 * build_artifacts.BLOCK
     many = packed(*((f"{number}", Kind.FILE, 0) for number in range(10)))
-    with pytest.raises(BadArtefacts, match="too large"):
-        unpack(many, tmp_path / "many", most=10 * build_artefacts.BLOCK)
+    with pytest.raises(BadArtifacts, match="too large"):
+        unpack(many, tmp_path / "many", most=10 * build_artifacts.BLOCK)
     # A file's path makes folders that the archive does not list.
     deep = packed(("/".join("abcdefghijk"), Kind.FILE, 0))
-    with pytest.raises(BadArtefacts, match="too large"):
-        unpack(deep, tmp_path / "deep", most=10 * build_artefacts.BLOCK)
+    with pytest.raises(BadArtifacts, match="too large"):
+        unpack(deep, tmp_path / "deep", most=10 * build_artifacts.BLOCK)
