@@ -12,7 +12,8 @@ from pathlib import Path
 import re2
 
 from autograder import course
-from environment.installation import COMMAND, PACKAGE, installing
+from autograder.command_name import COMMAND
+from environment.installation import PACKAGE, installing
 from environment.python_child import SAFE_PATH
 
 TERMINATED = 143
@@ -25,7 +26,9 @@ def main() -> None:
     # it, Python would not import modules from the program's own folder.
     os.environ.pop(SAFE_PATH, None)
     from autograder.cli import cli
+    from autograder.standard_output import guard_terminal
 
+    guard_terminal()
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(TERMINATED))
     try:
         cli(prog_name=COMMAND)

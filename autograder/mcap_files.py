@@ -11,10 +11,8 @@ from ament_index_python import PackageNotFoundError, get_package_share_directory
 from mcap.writer import Writer
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterator
 
-ROS_2 = "ros2"
-"""The MCAP profile for messages in CDR with the definitions of their types."""
 _LINE = "=" * 80
 """The line that separates the definition of a type from the definitions of the types of its fields."""
 _FIELD = re2.compile(r"^\s*([A-Za-z][\w/]*)(?:<=\d+)?(?:\[[^\]]*\])?\s+\w")
@@ -26,36 +24,30 @@ class MessageFile:
 
     Args:
         stream: The stream to write to. The caller closes it.
-        profile: The profile of the file, such as :data:`ROS_2`; empty for messages as JSON.
     """
 
-    def __init__(self, stream: IO[bytes], profile: str = "") -> None:
+    def __init__(self, stream: IO[bytes]) -> None:
         self._writer = Writer(stream)
-        self._writer.start(profile=profile, library="ros2-course-autograder")
+        self._writer.start(profile="ros2", library="ros2-course-autograder")
         self._counts: Counter[int] = Counter()
 
-    def channel(
-        self, topic: str, type_name: str, definition: str, *, as_json: bool = False, about: Mapping[str, str]
-    ) -> int:
+    def channel(self, topic: str, type_name: str, definition: str) -> int:
         """Add a channel for messages of one type on one topic. Return the number of the channel.
 
         Args:
             topic: The name of the topic.
             type_name: The type of the messages, such as ``"std_msgs/msg/String"``.
-            definition: The definition of the type: that of ROS, or a JSON Schema.
-            as_json: True for messages as JSON; False for CDR.
-            about: Metadata about these messages, as text by name.
+            definition: ROS's definition of the type.
         """
-        encodings = ("jsonschema", "json") if as_json else ("ros2msg", "cdr")
-        schema = self._writer.register_schema(type_name, encodings[0], definition.encode())
-        return self._writer.register_channel(topic, encodings[1], schema, dict(about))
+        schema = self._writer.register_schema(type_name, "ros2msg", definition.encode())
+        return self._writer.register_channel(topic, "cdr", schema, {"offered_qos_profiles": ""})
 
     def add(self, channel: int, data: bytes, *, arrived: int, sent: int) -> None:
         """Write one message.
 
         Args:
             channel: The number that :meth:`channel` returned.
-            data: The message in the channel's encoding.
+            data: The message in CDR.
             arrived: The Unix time of arrival, in nanoseconds.
             sent: The Unix time of sending, in nanoseconds.
         """
@@ -63,10 +55,6 @@ class MessageFile:
         self._writer.add_message(
             channel, log_time=arrived, data=data, publish_time=sent, sequence=self._counts[channel]
         )
-
-    def note(self, name: str, words: Mapping[str, str]) -> None:
-        """Write metadata about the whole file, as text by name."""
-        self._writer.add_metadata(name, dict(words))
 
     def close(self) -> None:
         """Complete the file."""

@@ -194,7 +194,7 @@ def keep(parent: int, command: list[str]) -> int:
         os.getppid() != parent
     ):  # the parent has ended, and another process may now have the parent's process id
         return 1
-    signalled, on_signal = os.pipe2(os.O_NONBLOCK | os.O_CLOEXEC)
+    signaled, on_signal = os.pipe2(os.O_NONBLOCK | os.O_CLOEXEC)
     signal.set_wakeup_fd(on_signal, warn_on_full_buffer=False)
     for number in (signal.SIGCHLD, signal.SIGTERM, signal.SIGINT):
         # Use a handler that does nothing, because the command would inherit SIG_IGN, but inherits no handler.
@@ -203,8 +203,8 @@ def keep(parent: int, command: list[str]) -> int:
     code: int | None = None
     try:
         while code is None:
-            ready, _, _ = select.select([parent_ends, signalled], [], [])
-            if parent_ends in ready or signal.SIGTERM in os.read(signalled, 1 << 12):
+            ready, _, _ = select.select([parent_ends, signaled], [], [])
+            if parent_ends in ready or signal.SIGTERM in os.read(signaled, 1 << 12):
                 return -signal.SIGKILL
             code = reaped(child)
         return code

@@ -1,20 +1,88 @@
-"""Keeps standard output free for results, although Fast DDS prints warnings there; and reads lines with a limit.
+"""The exit to the terminal, which escapes what a student may have written; and lines of output with a limit.
 
-Fast DDS writes its log to standard output (StdoutConsumer in fastdds/dds/log). A line of this log between two lines of
-JSON would keep a program from reading the JSON.
+Whatever a command prints, a student's text must not move the cursor, color or reverse a line, or begin another line. So
+:func:`guard_terminal` makes the streams of the process escape everything but line ends, whoever prints: a command,
+click, or a warning. :func:`printable` also escapes line ends, for a text that is a single line.
+
+Standard output is also kept free for results. Fast DDS writes its log to standard output (StdoutConsumer in
+fastdds/dds/log). A line of this log between two lines of JSON would keep a program from reading the JSON.
 """
 
 from __future__ import annotations
 
+import io
+import json
 import os
 import sys
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any, AnyStr, BinaryIO, Protocol
+from typing import TYPE_CHECKING, Any, AnyStr, BinaryIO, Protocol, TextIO
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from rich.console import Console
+    from rich.segment import Segment
+
 _STDOUT, _STDERR = 1, 2
+
+
+def printable(text: str) -> str:
+    """Return ``text`` with escapes for characters that are not printable, such as newlines and terminal codes."""
+    return text if text.isprintable() else "".join(c if c.isprintable() else ascii(c)[1:-1] for c in text)
+
+
+def printable_json(text: str) -> str:
+    """Return equivalent JSON in which characters that are not printable, such as terminal codes, are escaped.
+
+    Args:
+        text: JSON on a single line.
+    """
+    return "".join(c if c.isprintable() else json.dumps(c)[1:-1] for c in text)
+
+
+def printable_lines(text: str) -> str:
+    """Return ``text`` with escapes for characters that are not printable, except line ends."""
+    return "\n".join(map(printable, text.split("\n")))
+
+
+class _GuardedStream(io.TextIOWrapper):
+    """A stream to the terminal that escapes every text.
+
+    Attributes:
+        rich_proxied_file: The stream without escapes, to which rich writes by itself if it finds this attribute.
+    """
+
+    def __init__(self, stream: TextIO) -> None:
+        super().__init__(stream.buffer, stream.encoding, "backslashreplace", write_through=True)
+        self.rich_proxied_file = stream
+
+    def write(self, text: str) -> int:
+        super().write(printable_lines(text))
+        return len(text)
+
+
+def guard_terminal() -> None:
+    """Make the standard streams of this process escape everything but line ends."""
+    sys.stdout, sys.stderr = (
+        stream and _GuardedStream(styled(stream)) for stream in (sys.stdout, sys.stderr)
+    )
+
+
+def styled(stream: TextIO) -> TextIO:
+    """Return a stream for text with styles of our own, in which the parts of students are escaped already."""
+    return getattr(stream, "rich_proxied_file", stream)
+
+
+def console(*, stderr: bool = False) -> Console:
+    """Return a console of rich that escapes every text, but not rich's own styles and movements of the cursor."""
+    from rich.console import Console
+
+    class GuardedConsole(Console):
+        def render(self, renderable: Any, options: Any = None) -> Iterator[Segment]:
+            for segment in super().render(renderable, options):
+                yield segment if segment.control else segment._replace(text=printable_lines(segment.text))
+
+    return GuardedConsole(stderr=stderr)
 
 
 def private_stdout() -> BinaryIO:

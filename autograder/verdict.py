@@ -159,10 +159,22 @@ def failed(exercise: str, title: str, max_score: float, diagnosis: Diagnosis, de
     )
 
 
-def not_checked(exercise: str, title: str, max_score: float, reason: str, next_step: str = "") -> Verdict:
-    """Return a verdict with the state ``not_checked``, after a failure of the grader that is not the student's fault.
+NO_RESULT = "not_checked"
+"""The key of the diagnosis of a check that has no result because the grader failed, which is no fault of a student."""
 
-    If ``next_step`` is not given and the reason has two lines, the second line is the next step.
+
+def not_checked(
+    exercise: str, title: str, max_score: float, reason: str, next_step: str = "", key: str = NO_RESULT
+) -> Verdict:
+    """Return a verdict with the state ``not_checked``.
+
+    Args:
+        exercise: The exercise's id.
+        title: The exercise's title.
+        max_score: The exercise's points.
+        reason: Why there is no result. If ``next_step`` is not given, the second line of the reason is the next step.
+        next_step: What the student should do.
+        key: The key of the diagnosis. Only with the usual one does the card say that the checker had trouble.
     """
     if not next_step:
         reason, _, next_step = reason.partition("\n")
@@ -172,5 +184,5 @@ def not_checked(exercise: str, title: str, max_score: float, reason: str, next_s
         state=State.NOT_CHECKED,
         score=0.0,
         max_score=max_score,
-        diagnosis=Diagnosis(key="not_checked", text=reason, next_step=next_step),
+        diagnosis=Diagnosis(key=key, text=reason, next_step=next_step),
     )

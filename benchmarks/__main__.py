@@ -260,19 +260,16 @@ def measure(form: Form, folder: Path) -> results.Results:
 
 
 NOTES = (
-    "Both sides grade the same class directory. `nbgrader autograde` is 0.9.6 as it comes, one notebook at a time in a "
-    "cold kernel, with the limit of a cell raised to the class's and logs on standard output. It runs the whole "
-    "notebook; `autograder grade` leaves out the given cells that only demonstrate the `ros2` command, on which no "
-    "grade depends (`c.WireExecute.demonstrations` has them run).",
-    "Every fourth student of the class has one wrong answer. Endless loops are left out: stock nbgrader would sit each "
-    "of them out alone.",
-    "The floor runs the very cells that a grading run executes, and the judge's work, in processes that are warm "
-    "already: no kernel, no box, no gradebook, no page. Notebooks that build a workspace are left out of the "
-    "comparison: the floor would build each of them, and a grading run has the course's own built. It is measured with "
-    "many notebooks at once, as they are graded: a CPU second of a busy core does less than one of an idle core.",
-    "`autograder grade` builds the packages of the course's own solutions once, ahead of all classes; stock nbgrader "
-    "runs the check as a student does, which builds. The students of this class hand in these packages: in a class "
-    "where each one differs, a grading run builds them for each notebook.",
+    "Both sides grade the same class directory. `nbgrader autograde` 0.9.6 runs the whole notebook, one at a "
+    "time in a cold kernel, with the class's limit of a cell and logs on standard output; `autograder grade` "
+    "leaves out the given cells that only demonstrate `ros2` (`c.WireExecute.demonstrations` has them run).",
+    "Every fourth student has one wrong answer. Endless loops are left out: stock nbgrader would sit out each "
+    "alone.",
+    "The floor runs the cells of a grading run and the judge's work in warm processes: no kernel, box, "
+    "gradebook or page, and no notebook that builds a workspace. Like the class, it runs many at once: a CPU "
+    "second of a busy core does less than one of an idle core.",
+    "`autograder grade` builds the packages of the course's own solutions once, ahead of all classes, and "
+    "these students hand in those; stock nbgrader builds at each check.",
 )
 
 

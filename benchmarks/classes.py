@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 from autograder import course
 from autograder.grading.classes.class_directory import SUFFIX, ClassDirectory
-from autograder.grading.classes.new_class import new_class
-from autograder.grading.classes.sample_class import BANK, SampleNotebook, made_notebook
+from autograder.grading.new_classes.new_class import new_class
+from autograder.grading.new_classes.sample_class import BANK, SampleNotebook, made_notebook
 from autograder.grading.rebuilding import nbformat_nodes
 
 if TYPE_CHECKING:

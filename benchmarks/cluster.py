@@ -2,7 +2,7 @@
 
 A scheduler, one worker and the grader run on this machine, each in a control group of its own that counts its CPU time.
 Two classes of different size are graded; the difference is what their difference in notebooks costs, without what is
-spent once. The figures are kept in ``benchmarks/cluster.json`` and put into ``docs/scale.md``.
+spent once. The figures are kept in ``benchmarks/cluster.json`` and put into ``docs/performance.md``.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ import msgspec
 from autograder import course
 from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.class_directory import ClassDirectory
-from autograder.grading.rebuilding.task_making import tasks_of
+from autograder.grading.tasks.task_making import tasks_of
 from autograder.safe_files import fresh_folder
 from benchmarks.classes import make_class
 from benchmarks.machine import Machine, Watch, machine
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
 KEPT = Path(__file__).with_name("cluster.json")
-PAGE = course.root() / "docs" / "scale.md"
+PAGE = course.root() / "docs" / "performance.md"
 BEGIN, END = "<!-- costs: written by benchmarks.cluster -->", "<!-- end of costs -->"
 STUDENTS = (1, 4)
 SUBMISSIONS = (100, 1_000, 100_000)
@@ -118,10 +118,9 @@ def markdown(costs: Costs) -> str:
     most = costs.worker / (BUSY * _alone(costs))
     lines += [
         "",
-        "The first term is the workers', the second one the grader's, the third one the scheduler's. These two are one "
-        f"process each, so beyond about {_rounded(most)} cores more of them do not help. Add a few seconds for "
-        "starting, and for what runs longest. The model takes for granted that workers have enough notebooks at once "
-        "(`--jobs`) to keep their cores busy while some of them wait.",
+        "The terms are the workers', the grader's and the scheduler's. The last two are one process each, so beyond "
+        f"about {_rounded(most)} cores more of them do not help. Add a few seconds for starting, and for what runs "
+        "longest. Workers need enough notebooks at once (`--jobs`) to keep their cores busy.",
     ]
     return "\n".join(lines) + "\n"
 

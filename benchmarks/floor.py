@@ -12,7 +12,7 @@ import msgspec
 
 from autograder import exercises
 from autograder.grading.classes.class_directory import ClassDirectory
-from autograder.grading.rebuilding.task_making import tasks_of
+from autograder.grading.tasks.task_making import tasks_of
 from environment.python_child import python_child
 
 if TYPE_CHECKING:

@@ -16,6 +16,8 @@ _course_root=$(CDPATH='' cd -- "$(dirname -- "$_course_file")/.." && pwd -P)
 if [ -x "$_course_root/.venv/bin/python" ]; then
     . "$_course_root/.venv/bin/activate"
     eval "$("$_course_root/.venv/bin/python" -c 'import course_process; print(course_process.export_lines())')"
+    # What colcon builds here is what a check would build, so a check can use it.
+    export CMAKE_BUILD_TYPE="${CMAKE_BUILD_TYPE:-Release}"
     # Tab completes the words of ros2, the names on the graph and the types of interfaces.
     case "${BASH_VERSION:+bash}$-" in
         bash*i*) eval "$("$_course_root/.venv/bin/register-python-argcomplete" ros2 2>/dev/null)" ;;

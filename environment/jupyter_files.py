@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from pathlib import Path
 
-# rclpy logs to standard error, and nbgrader gives no points to a graded cell that writes there. Colours are
+# rclpy logs to standard error, and nbgrader gives no points to a graded cell that writes there. Colors are
 # escape sequences in a notebook's output.
 KERNEL_VARIABLES = {"RCUTILS_LOGGING_USE_STDOUT": "1", "RCUTILS_COLORIZED_OUTPUT": "0"}
 

@@ -39,7 +39,7 @@ LONGEST = (
     "tests/attacks",
     "tests/authoring/test_notebooks.py",
     "tests/grading/cluster/test_cluster.py",
-    "tests/grading/classes/test_sample_class.py",
+    "tests/grading/new_classes/test_sample_class.py",
     "tests/authoring/test_reference_files.py",
     "tests/grading/day/test_killed_at_random.py",
     "tests/benchmarks/test_short_run.py",
@@ -161,10 +161,11 @@ def _no_waiting_for_the_disk() -> Iterator[None]:
 
 
 @pytest.fixture(scope="session", autouse=True)
-def _no_journal() -> Iterator[None]:
-    """Checks that tests make are nobody's progress."""
+def _nothing_remembered(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
+    """Checks that tests make are nobody's progress, and their classes are not the user's."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("AUTOGRADER_JOURNAL", "")
+        patch.setenv("XDG_DATA_HOME", str(tmp_path_factory.mktemp("data")))
         yield
 
 

@@ -252,3 +252,13 @@ def test_a_release_has_one_version_and_its_own_notes() -> None:
     assert f"\n## [{version}] - " in changelog
     for release in changelog.split("\n## ")[1:]:
         assert sum(line.startswith("- ") for line in release.splitlines()) <= 25, release.partition("\n")[0]
+
+
+def test_every_decision_has_a_date_and_an_end() -> None:
+    text = (ROOT / "docs" / "decisions.md").read_text(encoding="utf-8")
+    rows = text.partition("## In force")[2].partition("\n## ")[0].splitlines()
+    decisions = [row for row in rows if row.startswith("| ")][2:]
+    assert len(decisions) > 20
+    assert not [
+        row for row in decisions if not re.fullmatch(r"\| 20\d\d-\d\d-\d\d \| .+ \| .+ \| \S.*? \|", row)
+    ]

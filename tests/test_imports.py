@@ -26,23 +26,27 @@ ALL = frozenset(PARTS)
 MAY_IMPORT = {
     "verdict": frozenset[str](),
     "course": frozenset[str](),
-    "foreign_code": frozenset[str](),
-    "kit": frozenset({"foreign_code", "verdict"}),
+    "known_errors": frozenset[str](),
+    "kit": frozenset({"known_errors", "verdict"}),
     "exercises": frozenset({"course", "kit"}),
     "messages": frozenset({"verdict"}),
     "cards": frozenset({"verdict"}),
     "boxes": frozenset({"process_trees", "safe_files"}),  # what isolates knows nothing of what runs
     "execution": frozenset({"boxes", "messages", "verdict", "process_trees", "safe_files"}),
-    "masters": frozenset({"course", "exercises", "safe_files"}),
+    "masters": frozenset({"course", "exercises", "safe_files", "standard_output"}),
     "mcap_files": frozenset[str](),
     "process_trees": frozenset[str](),
     "safe_files": frozenset[str](),
+    "standard_output": frozenset[str](),
     "appeals": ALL - {"grading", "boxes", "execution", "notebook"},
     "notebook": ALL
     - {"judge", "exercises", "kit", "masters", "boxes", "execution", "grading", "authoring", "appeals"},
     "judge": ALL - {"notebook", "cards", "masters", "boxes", "execution", "grading", "authoring", "appeals"},
-    "__main__": frozenset({"cli", "course"}),
+    "__main__": frozenset({"cli", "course", "standard_output"}),
+    "command_name": frozenset[str](),
 }
+FOR_ALL = frozenset({"command_name"})
+"""What every part may import: the words of messages."""
 
 # The same for the parts of `notebook`: what is below knows nothing of what is above.
 NOTEBOOK_MAY_IMPORT = {
@@ -56,6 +60,14 @@ NOTEBOOK_MAY_IMPORT = {
     "robot_node": frozenset({"robot_drivers", "robot_motion"}),
     "live_robot": frozenset({"nodes", "observing", "robot_drivers", "robot_motion", "robot_node"}),
 }
+# The folders and files of `grading`, from the bottom up: each imports, also for types, only what stands before it.
+GRADING_FROM_BELOW = (
+    *("grading_errors", "grading_task", "course_version"),
+    *("rebuilding", "classes", "returning", "running", "cluster"),
+    *("table", "export", "class_records", "class_forms", "class_store", "class_checks"),
+    *("collecting", "tasks", "similarity", "result_writer", "reporting", "appeal_writing"),
+    *("batch_work", "batch_steps", "batch", "nbgrader_commands", "new_classes"),
+)
 MOST_FILES = 15
 """In one folder of the package: a stranger must be able to read their names."""
 
@@ -117,7 +129,7 @@ def part_of(path: Path) -> str:
 
 @pytest.mark.parametrize("part", sorted(PARTS))
 def test_a_part_imports_only_what_it_may(part: str) -> None:
-    allowed = MAY_IMPORT.get(part, ALL - {"cli"}) | {part}
+    allowed = MAY_IMPORT.get(part, ALL - {"cli"}) | {part} | FOR_ALL
     wrong = [
         f"{path.relative_to(ROOT)}:{line} imports {name}"
         for path, line, name in imports(PACKAGE)
@@ -126,6 +138,13 @@ def test_a_part_imports_only_what_it_may(part: str) -> None:
         if name.split(".")[1] in PARTS and name.split(".")[1] not in allowed
     ]
     assert not wrong, "MAY_IMPORT above says who may import whom:\n" + "\n".join(wrong)
+
+
+def test_one_part_knows_that_a_wheel_has_another_command_than_a_clone() -> None:
+    asking = {
+        part_of(path) for path, _, name in imports(PACKAGE) if name == "environment.installation.COMMAND"
+    }
+    assert asking == {"command_name"}
 
 
 @pytest.mark.parametrize("part", sorted(NOTEBOOK_MAY_IMPORT))
@@ -138,6 +157,32 @@ def test_a_part_of_the_notebook_imports_only_what_is_below(part: str) -> None:
         if name.startswith("autograder.notebook.") and name.split(".")[2] not in allowed
     ]
     assert not wrong, "\n".join(wrong)
+
+
+def arrows_up(folder: Path, from_below: tuple[str, ...]) -> list[str]:
+    """Return the imports in a folder of the package, also those for types, of what stands later in an order.
+
+    Args:
+        folder: The folder.
+        from_below: The names of everything in the folder, in the order.
+    """
+    return [
+        f"{path.relative_to(folder)}:{line} imports {name}"
+        for path, line, name in imports(folder)
+        if name.startswith(f"{PACKAGE.name}.{folder.name}.")
+        and from_below.index(path.relative_to(folder).parts[0].removesuffix(".py"))
+        < from_below.index(name.split(".")[2])
+    ]
+
+
+def test_nothing_in_grading_imports_what_is_above_it() -> None:
+    folder = PACKAGE / "grading"
+    parts = {
+        path.stem for path in folder.iterdir() if path.suffix == ".py" or (path / "__init__.py").exists()
+    }
+    assert sorted(GRADING_FROM_BELOW) == sorted(parts - {"__init__"})
+    assert not arrows_up(folder, GRADING_FROM_BELOW)
+    assert arrows_up(folder, GRADING_FROM_BELOW[::-1])
 
 
 def test_what_was_handed_in_is_parsed_by_a_desk_alone() -> None:
@@ -157,21 +202,21 @@ def test_what_was_handed_in_is_parsed_by_a_desk_alone() -> None:
     assert users == of_the_class
 
 
-PARSERS = {
-    *(
-        "ast",
-        "bs4",
-        "codeop",
-        "difflib",
-        "html.parser",
-        "IPython",
-        "mistune",
-        "nbconvert",
-        "pygments",
-        "tokenize",
-    ),
-    *("catkin_pkg", "xml", "yaml"),
-}
+PARSERS = (
+    "ast",
+    "bs4",
+    "catkin_pkg",
+    "codeop",
+    "difflib",
+    "html.parser",
+    "IPython",
+    "mistune",
+    "nbconvert",
+    "pygments",
+    "tokenize",
+    "xml",
+    "yaml",
+)
 MAY_PARSE = {
     "cards/card_content.py": "difflib",  # two texts of at most 120 characters
     "grading/collecting/lms_lists.py": "yaml",  # at a desk
@@ -211,6 +256,13 @@ def test_the_process_with_the_gradebook_imports_nothing_that_executes_a_submissi
     assert "autograder.grading.running.process_link" in reached
     assert [name for name in sorted(reached - but) if name.startswith(executing)] == []
     assert "autograder.grading.running.order_executor" not in reached
+
+
+def test_a_task_gets_its_judge_from_the_executor() -> None:
+    importing = [
+        name for path, _, name in imports(PACKAGE / "grading/running") if path.stem == "task_execution"
+    ]
+    assert [name for name in importing if name.startswith("autograder.judge")] == []
 
 
 def test_the_grader_reads_no_master() -> None:

@@ -44,12 +44,14 @@ NIGHTLY = (
     # Commands of nbgrader itself, each of which takes seconds to start; what they end in is tested within the process.
     "tests/grading/classes/test_class_lock.py::test_the_command_of_nbgrader_does_nothing_while_a_batch_runs",
     "tests/grading/classes/test_class_lock.py::test_two_batches_at_once_on_two_classes",
-    "tests/grading/classes/test_new_class.py::test_its_gradebook_has_the_version_that_nbgraders_own_would_have",
+    "tests/grading/new_classes/test_new_class.py::test_its_gradebook_has_the_version_that_nbgraders_own_would_have",
     "tests/grading/table/test_spreadsheet_csv.py::test_plain_nbgrader_export_is_defused_too",
     "tests/masters/test_equals_nbgrader.py::test_the_command_gives_the_same_bytes",
     # A class once more by stock nbgrader, and by each student's Validate: the class itself is graded in both tiers.
-    "tests/grading/classes/test_sample_class.py::test_plain_nbgrader_gives_the_same_points",
-    "tests/grading/classes/test_sample_class.py::test_validate_tells_a_student_the_truth",
+    "tests/grading/new_classes/test_sample_class.py::test_plain_nbgrader_gives_the_same_points",
+    "tests/grading/new_classes/test_sample_class.py::test_validate_tells_a_student_the_truth",
+    # Three programs and all their mistakes, at each missing event; each program's own exercise is tried each day.
+    "tests/judge/test_missing_events.py::test_no_exercise_needs_an_event_to_come_to_a_verdict[lab_1_4.programs]",
     # All notebooks in one folder; two of them are executed each day.
     "tests/masters/test_run_again.py",
     # Recording what builds packages, or a changed exercise; what has changed in truth is recorded in both tiers.
@@ -58,7 +60,7 @@ NIGHTLY = (
     "tests/authoring/test_reference_files.py::test_recording_again_gives_the_same_file[lab_1_4.programs]",
     "tests/authoring/test_reference_files.py::test_a_changed_reference_solution_changes_what_is_expected",
     "tests/authoring/test_reference_files.py::test_inputs_that_were_changed_and_not_recorded_again_are_noticed",
-    "tests/grading/rebuilding/test_course_version.py::test_a_changed_byte_in_any_of_them_moves_it",
+    "tests/grading/test_course_version.py::test_a_changed_byte_in_any_of_them_moves_it",
     # A chapter and an exercise of somebody else's; the first steps of one are in both tiers.
     "tests/authoring/test_new_exercise.py::test_an_exception_of_the_exercise_is_named_with_its_line",
     "tests/authoring/test_new_exercise.py::test_a_point_for_what_is_given_is_found",
@@ -127,7 +129,7 @@ DRAWS = (
     Draw("tests/test_left_behind.py::test_everything_ends_with_the_command[", 1, "-"),
     Draw("tests/grading/day/test_killed_at_random.py::test_a_command_is_ended_and_goes_on[3-", 1),
     Draw("tests/authoring/test_reference_files.py::test_recording_again_gives_the_same_file[", 1),
-    Draw("tests/grading/classes/test_sample_class.py::test_every_sample_earns_what_it_must[", 3),
+    Draw("tests/grading/new_classes/test_sample_class.py::test_every_sample_earns_what_it_must[", 3),
     Draw("tests/workspaces/test_graded_notebooks.py::test_the_master_gets_full_marks[", 1),
     Draw("tests/workspaces/test_graded_notebooks.py::test_answers_are_judged_as_in_a_terminal[", 1),
     Draw("tests/masters/test_programs.py::test_the_program_earns_full_marks[", 2),
@@ -140,7 +142,7 @@ DRAWS = (
         "tests/grading/test_nbgrader_and_ours.py::test_a_command_of_plain_nbgrader_ends_with_the_exit_code_of_ours[",
         1,
     ),
-    Draw("tests/grading/classes/test_result_writer.py::test_nbgraders_own_steps_find_nothing_to_change[", 1),
+    Draw("tests/grading/test_result_writer.py::test_nbgraders_own_steps_find_nothing_to_change[", 1),
     Draw(
         "tests/grading/returning/test_figures_on_pages.py::test_a_page_shows_every_figure_of_the_chapter[", 1
     ),

@@ -1,30 +1,38 @@
-"""Reads and writes appeal files. Each contains one check of one student, as JSON for people and ``./course replay``."""
+"""Reads and writes appeal files. Each is a zip with one check of one student, for people and for ``./course replay``.
+
+``replay`` reads two of the files in the zip: ``check.json`` and ``evidence.jsonl``, which contains a line of JSON for
+each event. The others, such as the student's feedback page, are for people.
+"""
 
 from __future__ import annotations
 
+import io
 import json
-from typing import TYPE_CHECKING, Any
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+from zipfile import ZIP_DEFLATED, ZIP_STORED, BadZipFile, ZipFile
 
 import msgspec
 
-from autograder.cards.readable_text import printable_json
-from autograder.judge.evidence_files import Kept, plain, restored
-from environment.installation import COMMAND
+from autograder.command_name import COMMAND
+from autograder.judge import evidence_files
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Mapping
     from pathlib import Path
 
-FORMAT = "ros2-course-appeal-1"
-ABOUT = (
+    from autograder.judge.evidence_files import Kept
+
+WARNING = (
     f"One check of one student. To judge it again: {COMMAND} replay FILE. This file proves nothing by itself: any "
     "person can write one. Only the class that it names has the grade and what the judge saw."
 )
-"""The text at the top of each appeal file."""
-MAX_BYTES = 64_000_000
-"""The maximum size of an appeal file in bytes. The largest possible evidence takes a fifth of this size."""
-_WIDTH = 120
-"""The maximum length of a line of JSON, in characters. A longer value takes several lines if possible."""
+"""The text at the top of ``check.json``."""
+CHECK, EVIDENCE = "check.json", "evidence.jsonl"
+MAX_BYTES = 16_000_000
+"""The maximum size of an appeal file, in bytes."""
+_MAX_CHECK = 4_000_000
+"""The maximum size of ``check.json``, in bytes. A submitted notebook has at most as much text."""
 
 
 class BadAppeal(ValueError):
@@ -43,8 +51,8 @@ class AppealedCell(msgspec.Struct, frozen=True):
     text: list[str]
 
 
-class Appeal(msgspec.Struct, frozen=True):
-    """The content of an appeal file.
+class AppealedCheck(msgspec.Struct, frozen=True):
+    """The content of ``check.json``.
 
     Attributes:
         student: The student's id.
@@ -53,8 +61,6 @@ class Appeal(msgspec.Struct, frozen=True):
         task: The task, in one sentence.
         course: The version of the course with which the check was made.
         solution: The student's cells that ran before the check, in order.
-        expected: The reference output to which the check compared the subject; None if the course has a newer one.
-        seen: The evidence, with the verdict that is in the gradebook.
     """
 
     student: str
@@ -63,15 +69,35 @@ class Appeal(msgspec.Struct, frozen=True):
     task: str
     course: str
     solution: list[AppealedCell]
-    expected: Any
+
+
+@dataclass(frozen=True)
+class Appeal:
+    """What ``replay`` needs of an appeal file: the check, and the evidence with the verdict in the gradebook."""
+
+    check: AppealedCheck
     seen: Kept
 
 
-def dump(appeal: Appeal) -> bytes:
-    """Return the content of an appeal file: JSON, with one line for each event."""
-    content = plain(msgspec.to_builtins(appeal))
-    head = {"format": FORMAT, "about": ABOUT}
-    return ("\n".join(_lines({**head, **content}, "")) + "\n").encode()
+def dump(check: AppealedCheck, evidence: bytes, others: Mapping[str, bytes]) -> bytes:
+    """Return an appeal file.
+
+    Args:
+        check: The content of ``check.json``.
+        evidence: The packed evidence.
+        others: More files for people, by name.
+    """
+    about = {"about": WARNING, **msgspec.to_builtins(check)}
+    files = {
+        CHECK: json.dumps(about, indent=1).encode(),
+        EVIDENCE: evidence_files.lines_of(evidence),
+        **others,
+    }
+    whole = io.BytesIO()
+    with ZipFile(whole, "w", ZIP_DEFLATED) as file:
+        for name, data in files.items():
+            file.writestr(name, data)
+    return whole.getvalue()
 
 
 def read(path: Path) -> Appeal:
@@ -81,51 +107,31 @@ def read(path: Path) -> Appeal:
         BadAppeal: The file cannot be read, or is not an appeal file.
     """
     try:
-        with path.open("rb") as file:
-            data = file.read(MAX_BYTES + 1)
+        with path.open("rb") as stream:
+            data = stream.read(MAX_BYTES + 1)
+        if len(data) > MAX_BYTES:
+            raise ValueError("it is larger than any appeal file")
+        with ZipFile(io.BytesIO(data)) as file:
+            check = msgspec.convert(json.loads(_member(file, CHECK, _MAX_CHECK)), type=AppealedCheck)
+            return Appeal(
+                check, evidence_files.parse(_member(file, EVIDENCE, evidence_files.MAX_LINES_BYTES))
+            )
     except OSError as error:
         raise BadAppeal(
             f"{path} cannot be read: {error.strerror}. Name a file that `appeal` wrote."
         ) from error
-    if len(data) > MAX_BYTES:
-        raise BadAppeal(f"{path} is larger than any appeal file: name a file that `appeal` wrote")
-    try:
-        content = json.loads(data)
-    except (ValueError, RecursionError) as error:
+    except (ValueError, TypeError, LookupError, BadZipFile, RuntimeError, ArithmeticError) as error:
         raise BadAppeal(
             f"{path} is not an appeal file, or is only a part of one ({error}). Write it again: "
             f"{COMMAND} appeal CLASS STUDENT EXERCISE"
         ) from error
-    if not isinstance(content, dict) or content.pop("format", None) != FORMAT:
-        raise BadAppeal(
-            f"{path} is JSON, but not an appeal file of this version of the course ({FORMAT}). "
-            f"Write it again: {COMMAND} appeal CLASS STUDENT EXERCISE"
-        )
-    try:
-        return msgspec.convert(restored(content), type=Appeal)
-    except (ValueError, TypeError, RecursionError) as error:
-        raise BadAppeal(f"{path} is not a valid appeal file: {error}") from error
 
 
-def _lines(value: Any, indent: str, before: str = "", after: str = "") -> Iterator[str]:
-    """Yield the lines of JSON for a value. A short value, or an event, takes a single line."""
-    whole = _json(value)
-    inside = (
-        (list(value.items()) if isinstance(value, dict) else value) if isinstance(value, (dict, list)) else ()
-    )
-    is_event = isinstance(value, dict) and {"t", "kind", "name"} <= value.keys()
-    if not inside or is_event or len(indent) + len(before) + len(whole) <= _WIDTH:
-        yield f"{indent}{before}{whole}{after}"
-        return
-    yield f"{indent}{before}{'{' if isinstance(value, dict) else '['}"
-    for place, item in enumerate(inside):
-        comma = "," if place + 1 < len(inside) else ""
-        if isinstance(value, dict):
-            yield from _lines(item[1], f"{indent} ", f"{_json(item[0])}: ", comma)
-        else:
-            yield from _lines(item, f"{indent} ", "", comma)
-    yield f"{indent}{'}' if isinstance(value, dict) else ']'}{after}"
-
-
-def _json(value: Any) -> str:
-    return printable_json(json.dumps(value, ensure_ascii=False))
+def _member(file: ZipFile, name: str, limit: int) -> bytes:
+    if file.getinfo(name).compress_type not in (ZIP_STORED, ZIP_DEFLATED):
+        raise ValueError(f"{name} is compressed in another way")  # LZMA allocates what the file asks for
+    with file.open(name) as member:
+        data = member.read(limit + 1)
+    if len(data) > limit:
+        raise ValueError(f"{name} is larger than in any appeal file")
+    return data

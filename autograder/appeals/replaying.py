@@ -7,10 +7,9 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from autograder import exercises
-from autograder.cards.readable_text import printable_json
+from autograder.command_name import COMMAND
 from autograder.judge import evidence_files, one_check
 from autograder.judge.evidence_files import NoEvidence, evidence_of
-from environment.installation import COMMAND
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -112,4 +111,4 @@ def _key(verdict: Verdict) -> str:
 
 
 def _quoted(text: str) -> str:
-    return printable_json(json.dumps(text, ensure_ascii=False))
+    return json.dumps(text, ensure_ascii=False)

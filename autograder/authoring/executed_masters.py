@@ -1,15 +1,13 @@
-"""Executes the masters as a student would in JupyterLab. Returns them with their outputs, including animations."""
+"""Executes the masters as a student would in JupyterLab, and returns them with their outputs."""
 
 from __future__ import annotations
 
-import base64
 import os
 import subprocess
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-import re2
 from nbclient import NotebookClient
 from nbclient.exceptions import CellExecutionComplete
 from nbclient.util import ensure_async
@@ -32,15 +30,6 @@ CELL_LIMIT = 600
 """Time limit in seconds for one cell. The slowest cells build a workspace."""
 NOTEBOOKS_AT_ONCE = 3
 """The maximum number of notebooks that run at the same time."""
-_MAX_FRAMES = 60
-_FRAME_SECONDS = 0.25
-RECORDED = "Recorded while the notebook ran"
-MOVING_PICTURES = "moving_pictures"
-"""The key in a notebook's metadata for its animations: the texts of SVG files by the files' names."""
-_SVG_DATA = re2.compile(r'src="data:image/svg\+xml;base64,([A-Za-z0-9+/=]+)"')
-_STYLE = re2.compile(r"(?s)<style>(.*?)</style>")
-_INNER = re2.compile(r"(?s)^<svg([^>]*)>(.*)</svg>$")
-_TITLE = re2.compile(r"(?s)<title>.*?</title>")
 
 
 def run_masters(masters: Sequence[Path], root: Path, tell: Callable[[str], None]) -> dict[str, NotebookNode]:
@@ -59,7 +48,7 @@ def run_masters(masters: Sequence[Path], root: Path, tell: Callable[[str], None]
     """
 
     def run(master: Path) -> tuple[str, NotebookNode]:
-        done = _run(source_notebook(master), lab_name(master), root)
+        done = _run(source_notebook(master), root)
         tell(f"executed   {lab_name(master)}")
         return lab_name(master), done
 
@@ -90,11 +79,11 @@ def execute_in_new_kernel(client: NotebookClient, folder: Path, lines: Path, **v
     client.execute(env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
 
 
-def _run(notebook: NotebookNode, name: str, root: Path) -> NotebookNode:
+def _run(notebook: NotebookNode, root: Path) -> NotebookNode:
     with HeldFolder("course-site-") as held:
         folder = held.path / "notebooks"
         folder.mkdir()
-        client = _Recorder(notebook)
+        client = _UntilTheEnd(notebook)
         claim = claim_free_domain()
         variables = {DOMAIN_VARIABLE: str(claim.domain), "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
         variables[course.VARIABLE] = str(root)
@@ -105,24 +94,12 @@ def _run(notebook: NotebookNode, name: str, root: Path) -> NotebookNode:
             execute_in_new_kernel(client, folder, held.path / "journal.jsonl", **variables)
         finally:
             claim.release()
-        _put_moving_pictures(notebook, name, client.frames)
         show_as_a_students(notebook, str(folder))
     return notebook
 
 
-class _Recorder(NotebookClient):
-    """A client that stores every frame of a live picture. nbclient's own client keeps only the last frame."""
-
-    def __init__(self, *arguments: Any, **options: Any) -> None:
-        super().__init__(*arguments, **options)
-        self.frames: dict[str, list[str]] = {}
-
-    def process_message(self, msg: dict[str, Any], cell: NotebookNode, cell_index: int) -> Any:
-        content = msg["content"]
-        display = content.get("transient", {}).get("display_id")
-        if display and (found := _SVG_DATA.search(content.get("data", {}).get("text/html", ""))):
-            self.frames.setdefault(display, []).append(found[1])
-        return super().process_message(msg, cell, cell_index)
+class _UntilTheEnd(NotebookClient):
+    """A client that shows what became of a live picture while later cells ran."""
 
     async def _async_poll_output_msg(self, parent_msg_id: str, cell: NotebookNode, cell_index: int) -> None:
         """Process a cell's messages, and new frames of live pictures in earlier cells, which nbclient would ignore."""
@@ -137,57 +114,6 @@ class _Recorder(NotebookClient):
                     self.process_message(msg, cell, cell_index)
                 except CellExecutionComplete:
                     return
-
-
-def _put_moving_pictures(notebook: NotebookNode, name: str, frames: dict[str, list[str]]) -> None:
-    """Replace the last frame of each live picture by an animation of all its frames."""
-    pictures: dict[str, str] = {}
-    for shown in frames.values():
-        if len(set(shown)) < 3:
-            continue
-        for cell in notebook.cells:
-            for output in cell.get("outputs", ()):
-                page = output.get("data", {}).get("text/html", "")
-                if shown[-1] in page:
-                    file = f"{name}-{len(pictures) + 1}.svg"
-                    pictures[file] = moving_picture([base64.b64decode(one).decode() for one in shown])
-                    picture = page.replace(f"data:image/svg+xml;base64,{shown[-1]}", f"../../_static/{file}")
-                    output["data"]["text/html"] = (
-                        f'<details class="moving" open><summary>{RECORDED}</summary>{picture}</details>'
-                    )
-    notebook.metadata[MOVING_PICTURES] = pictures
-
-
-def moving_picture(frames: Sequence[str]) -> str:
-    """Return one SVG that shows the given SVGs in turn, repeatedly; the last one if the reader prefers no motion.
-
-    Args:
-        frames: The texts of the SVGs, at least one. All have the same size and style.
-    """
-    step = -(-len(frames) // _MAX_FRAMES)
-    kept = [*frames[:-1:step], frames[-1]]
-    last = _INNER.match(kept[-1])
-    style = _STYLE.search(kept[0])
-    title = _TITLE.search(kept[-1])
-    pause = 6
-    parts = len(kept) + pause
-    seconds = parts * _FRAME_SECONDS
-    share = 100 / parts
-    motion = (
-        ".frame { visibility: hidden; } .frame:last-of-type { visibility: visible; } "
-        "@media (prefers-reduced-motion: no-preference) { "
-        f".frame {{ animation: shown {seconds:g}s step-end infinite; }} "
-        f".frame:last-of-type {{ visibility: hidden; animation-name: last; }} }} "
-        f"@keyframes shown {{ 0% {{ visibility: visible; }} {share:.3f}% {{ visibility: hidden; }} }} "
-        f"@keyframes last {{ 0% {{ visibility: visible; }} {share * (pause + 1):.3f}% {{ visibility: hidden; }} }}"
-    )
-    drawn = []
-    for number, frame in enumerate(kept):
-        inner = _TITLE.sub("", _STYLE.sub("", _INNER.match(frame)[2]))
-        delay = number * _FRAME_SECONDS
-        drawn.append(f'<g class="frame" style="animation-delay:{delay:g}s">{inner}</g>')
-    head = (title[0] if title else "") + f"<style>{style[1] if style else ''}{motion}</style>"
-    return f"<svg{last[1]}>{head}{''.join(drawn)}</svg>"
 
 
 def show_as_a_students(notebook: NotebookNode, folder: str) -> None:

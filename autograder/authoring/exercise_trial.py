@@ -13,9 +13,9 @@ from autograder.authoring.answer_bank import Answer, Turn, answers, answers_fold
 from autograder.authoring.answer_tables import BadTable, CannotEdit
 from autograder.authoring.exercise_faults import still_to_do
 from autograder.cards.text_rendering import card_text
+from autograder.command_name import COMMAND
 from autograder.safe_files import HeldFolder
 from autograder.verdict import to_json
-from environment.installation import COMMAND
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence

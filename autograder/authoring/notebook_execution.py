@@ -15,26 +15,27 @@ from enum import StrEnum
 from typing import TYPE_CHECKING, Any
 
 from nbconvert import HTMLExporter
-from rich.console import Console
 
+from autograder import standard_output
 from autograder.boxes.run_limits import Ended, Limits
 from autograder.cards.readable_text import TRACEBACK
+from autograder.command_name import COMMAND
 from autograder.execution.executed_cells import CellType
 from autograder.grading.grading_task import Task
 from autograder.grading.rebuilding import nbformat_nodes
-from autograder.grading.rebuilding.task_making import cells_of
 from autograder.grading.running import execution_backends
 from autograder.grading.running.batch_progress import BatchProgress, plain_line
+from autograder.grading.tasks.task_making import cells_of
 from autograder.masters.master_files import chapter_path, lab_name, masters
 from autograder.masters.source_notebooks import source_notebook
 from autograder.safe_files import HeldFolder
-from environment.installation import COMMAND
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
     from pathlib import Path
 
     from nbformat import NotebookNode
+    from rich.console import Console
 
     from autograder.execution.executed_cells import Cell, CellRun, Execution
     from autograder.verdict import Verdict
@@ -86,7 +87,7 @@ def execute_command(
         autograder.masters.master_files.MasterError: A master cannot be used.
     """
     began = time.monotonic()
-    console = console or Console(stderr=True)
+    console = console or standard_output.console(stderr=True)
     folder = reports or root / REPORTS_FOLDER
     planned = execution_plan(root, only)
     _remove_reports(folder)

@@ -10,7 +10,6 @@ import os
 import shutil
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
-from urllib.parse import unquote
 
 import nbformat
 import re2
@@ -20,7 +19,7 @@ from nbformat.v4 import new_code_cell, new_markdown_cell
 from sphinx.application import Sphinx
 
 from autograder import course
-from autograder.authoring.executed_masters import MOVING_PICTURES, run_masters
+from autograder.authoring.executed_masters import run_masters
 from autograder.masters.master_files import chapter_path, lab_name, masters
 from autograder.masters.notebook_release import release_text
 from autograder.masters.source_notebooks import SET_UP_CELL, source_notebook
@@ -28,7 +27,7 @@ from autograder.safe_files import HeldFolder
 from autograder.student.handout import hand_out
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Mapping, Sequence
 
     from nbformat import NotebookNode
 
@@ -38,6 +37,9 @@ EDITIONS = (SELF_EDITION, CLASS_EDITION)
 """The editions of the website: ``self`` for learners on their own, with solutions; ``class`` without solutions."""
 SOLUTION_SUMMARY = "Solution (click to expand)"
 _STATIC = "_static"
+_START = "README"
+"""The page with which the website begins, so that the links to it in the guides lead there."""
+_GUIDES = "docs/README.md"
 MAX_PAGE_BYTES = 1_000_000
 """The maximum size of a page in bytes."""
 _STYLE_SHEET = "book.css"
@@ -59,6 +61,7 @@ _SPHINX_SETTINGS: dict[str, Any] = {
     "html_copy_source": False,
     "html_show_sphinx": False,
     "language": "en",
+    "root_doc": _START,
     "nb_execution_mode": "off",
     # Without this line, pages would load scripts for Jupyter widgets from another host. No page has such widgets.
     "nb_ipywidgets_js": {},
@@ -104,6 +107,7 @@ def build_site(root: Path, folder: Path, edition: str, *, outputs: bool, tell: C
             for page in pages.rglob("*.html")
             if page.stat().st_size > MAX_PAGE_BYTES
         ]
+        shutil.copyfile(pages / f"{_START}.html", pages / "index.html")
         _leave_out_what_no_page_needs(pages)
         if folder.exists():
             shutil.rmtree(folder)
@@ -124,13 +128,8 @@ def course_of(edition: str, root: Path, folder: Path) -> Path:
     return hand_out(folder / "handed-out", root).place
 
 
-_ATTACHMENT = re2.compile(r"\(attachment:([^)]+)\)")
-_NOTEBOOK_LINK = re2.compile(r"\]\(([\w./-]*\.ipynb)#([^)]+)\)")
-_README_PICTURE = re2.compile(r"!\[[^\]]*\]\(docs/images/[^)]+\)")
-_WAYS = re2.compile(r"^(← Previous: |Next: )")
+_ATTACHMENT = re2.compile(r"\(attachment:([^)]+)\.png\)")
 _OUTCOME = re2.compile(r"(?m)^\| ([^|]+) \| [^|]+ \| .*/([\w-]+)\.ipynb\) \|$")
-_READER = re2.compile(r"(?m)^\*\*(.+)\*\*$")
-_TARGET = re2.compile(r"\]\(([^)#:]+)[^)]*\)")
 
 
 def _write_sources(root: Path, folder: Path, edition: str, executed: Mapping[str, NotebookNode]) -> None:
@@ -145,33 +144,27 @@ def _write_sources(root: Path, folder: Path, edition: str, executed: Mapping[str
     (folder / _STATIC).mkdir()
     if (root / "docs").is_dir():
         shutil.copytree(root / "docs", folder / "docs", ignore=shutil.ignore_patterns("*.py", "*.json"))
-    (folder / "index.md").write_text(f"# {course.chapters(root)[0].title}{_contents(root)}", encoding="utf-8")
-    for page in root.glob("*.md"):
-        name = "index.md" if page.name == "README.md" else page.name
-        text = page.read_text(encoding="utf-8")
-        if name == "index.md" and edition == CLASS_EDITION:  # the pictures in README may show a solution
-            text = _README_PICTURE.sub("", text)
-        (folder / name).write_text(text + _contents(root) if name == "index.md" else text, encoding="utf-8")
-    for page in folder.rglob("*.md"):
-        text = (
-            page.read_text(encoding="utf-8")
-            .replace("../README.md", "../index.md")
-            .replace("](README.md", "](index.md")
-        )
-        page.write_text(_with_plain_anchors(text), encoding="utf-8")
+    start, beside = folder / f"{_START}.md", ["*", "*/*"]
+    start.write_text(f"# {course.chapters(root)[0].title}\n", encoding="utf-8")
+    for page in sorted(root.glob("*.md")):
+        if page.name != start.name:
+            beside.append(f"../{page.stem}")
+        elif edition == CLASS_EDITION:
+            continue  # its pictures show a solution
+        shutil.copyfile(page, folder / page.name)
+    _append(start, _chapters(root))
+    if (folder / _GUIDES).is_file():
+        _append(folder / _GUIDES, _contents("All pages", beside))
     outcomes = _outcomes(root)
     for master in masters(root):
         source = executed.get(lab_name(master)) or source_notebook(master)
-        for name, picture in source.metadata.pop(MOVING_PICTURES, {}).items():
-            (folder / _STATIC / name).write_text(picture, encoding="utf-8")
         file = folder / chapter_path(root, master).relative_to(root)
         file.parent.mkdir(parents=True, exist_ok=True)
-        figures = {svg.with_suffix(".png").name: svg for svg in master.parents[1].glob("**/figures/*.svg")}
+        for figure in master.parents[1].glob("**/figures/*.svg"):
+            shutil.copyfile(figure, file.with_name(figure.name))
         notebook = book_page(source, edition, outcomes.get(lab_name(master), ()))
         for cell in notebook.cells:
-            for name in _ATTACHMENT.findall(cell.source):
-                shutil.copyfile(figures[unquote(name)], file.with_name(figures[unquote(name)].name))
-            cell.source = _ATTACHMENT.sub(lambda found: f"({unquote(found[1])[:-4]}.svg)", cell.source)
+            cell.source = _ATTACHMENT.sub(r"(\1.svg)", cell.source)
             cell.pop("attachments", None)
         nbformat.write(notebook, file)
 
@@ -188,15 +181,12 @@ def book_page(source: NotebookNode, edition: str, outcomes: tuple[str, ...] = ()
     secret = _lines_of_solutions(source, page) if edition == CLASS_EDITION else frozenset[str]()
     cells = []
     for solved, cell in zip(source.cells, page.cells, strict=True):
-        # Leave out the links between notebooks, because the website has its own, and the cell that prepares a kernel.
-        if _WAYS.match(cell.source) or cell.get("id") == SET_UP_CELL:
+        if cell.get("id") == SET_UP_CELL:  # prepares a kernel
             continue
         changed = solved.source != cell.source
         outputs = [one for one in solved.get("outputs", []) if secret.isdisjoint(_printed(one))]
         cell.metadata = {}
-        if cell.cell_type == "markdown":
-            cell.source = _with_plain_anchors(cell.source)
-        else:
+        if cell.cell_type == "code":
             cell.outputs = [] if changed else outputs
         cells.append(cell)
         if changed and edition == SELF_EDITION:
@@ -241,16 +231,6 @@ def _folded(solved: NotebookNode, outputs: list[NotebookNode]) -> NotebookNode:
     )
 
 
-def _with_plain_anchors(text: str) -> str:
-    """Return a text whose links to headings of notebooks have anchors in lower case, as Sphinx writes them."""
-
-    def plain(link: re2._Match[str]) -> str:
-        anchor = re2.sub(r"[^\w\- ]", "", unquote(link[2]).lower()).replace(" ", "-")
-        return f"]({link[1]}#{anchor})"
-
-    return _NOTEBOOK_LINK.sub(plain, text)
-
-
 def _outcomes(root: Path) -> dict[str, tuple[str, ...]]:
     """Return the learning outcomes of each lab, from ``docs/learning-outcomes.md``, by the names of the labs."""
     found: dict[str, tuple[str, ...]] = {}
@@ -260,38 +240,23 @@ def _outcomes(root: Path) -> dict[str, tuple[str, ...]]:
     return found
 
 
-def _contents(root: Path) -> str:
-    """Return the table of contents as Markdown: first the chapters, then the guides for each kind of reader."""
-    trees = {}
-    for chapter in course.chapters(root):
-        trees[chapter.title] = [f"chapters/{chapter.folder.name}/{lab.name}" for lab in chapter.labs]
-    for title, pages in _guides(root.resolve()).items():
-        trees[title] = [str(page.relative_to(root.resolve()).with_suffix("")) for page in pages]
-    return "".join(
-        f'\n\n```{{toctree}}\n:hidden:\n:caption: "{title}"\n\n' + "\n".join(pages) + "\n```\n"
-        for title, pages in trees.items()
-        if pages
-    )
+def _chapters(root: Path) -> str:
+    """Return the table of contents of the start page as Markdown: the chapters, then the guides."""
+    trees = [
+        _contents(chapter.title, [f"chapters/{chapter.folder.name}/{lab.name}" for lab in chapter.labs])
+        for chapter in course.chapters(root)
+    ]
+    guides = [_contents("Guides", [_GUIDES])] if (root / _GUIDES).is_file() else []
+    return "".join(trees + guides)
 
 
-def _guides(root: Path) -> dict[str, list[Path]]:
-    """Return the guides by kind of reader, as listed in ``docs/README.md``. Pages that are not listed come last."""
-    index = root / "docs" / "README.md"
-    _, *parts = _READER.split(index.read_text(encoding="utf-8") if index.is_file() else "")
-    left = {*root.glob("*.md"), *(root / "docs").rglob("*.md")} - {root / "README.md"}
-    found = {}
-    for reader, listed in zip(parts[::2], parts[1::2], strict=True):
-        targets = [(index.parent / target).resolve() for target in _TARGET.findall(listed)]
-        pages = [
-            page
-            for target in targets
-            for page in (sorted(target.glob("*.md")) if target.is_dir() else [target])
-        ]
-        found[f"For {reader[:1].lower()}{reader[1:]}"] = [
-            page for page in dict.fromkeys(pages) if page in left
-        ]
-        left.difference_update(pages)
-    return found | {"About": sorted(left)}
+def _append(page: Path, text: str) -> None:
+    with page.open("a", encoding="utf-8") as file:
+        file.write(text)
+
+
+def _contents(title: str, pages: Sequence[str]) -> str:
+    return f'\n\n```{{toctree}}\n:glob:\n:maxdepth: 1\n:caption: "{title}"\n\n' + "\n".join(pages) + "\n```\n"
 
 
 _ICON = re2.compile(r'(?:"?([\w-]+)"?):\[\d+,\d+,\[([^\]]*)\],"[0-9a-f]*",(?:"[^"]*"|\[[^\]]*\])\],?')

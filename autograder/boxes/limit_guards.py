@@ -10,8 +10,11 @@ moment harms nothing.
 
 from __future__ import annotations
 
+import fcntl
 import os
 import resource
+import select
+import socket
 import time
 from collections import Counter
 from collections.abc import Callable
@@ -34,6 +37,9 @@ INTERVAL = 0.25
 """Seconds between two checks."""
 _SIZE = re2.compile(r"(?m)^(\w+):[ \t]+(\d+) kB$")
 _TICKS = os.sysconf("SC_CLK_TCK")
+_ZOMBIE = "Z"
+_SMALL_PIPE = 8192
+"""The size in bytes of a new pipe once a user's pipes have reached ``/proc/sys/fs/pipe-user-pages-soft`` (pipe(7))."""
 _PAGES = re2.compile(r"(?m)^(?:TCP|UDP): .*\bmem (\d+)$")
 """Matches, in ``/proc/net/sockstat``, the memory of data that waits in sockets: of all networks together, in pages. The
 numbers include sockets of IPv6 and of UDP-Lite.
@@ -41,6 +47,10 @@ numbers include sockets of IPv6 and of UDP-Lite.
 _PROTOCOLS = ("udp", "udp6", "tcp", "tcp6")
 _SOCKETS = re2.compile(r"(?m)^sockets: used (\d+)$")
 _PIECE = 1 << 16
+
+
+_used_up_at = 0.0
+"""The time (``time.monotonic``) at which a guard of this process last saw that its user's counters were used up."""
 
 
 class BoxGuard:
@@ -54,6 +64,8 @@ class BoxGuard:
         self._next_look = 0.0
         self._seen: Ended | None = None
         self._seen_cpu = 0.0
+        self._had_room = self._has_room()
+        self._began = time.monotonic()
 
     @property
     def cgroups(self) -> list[str]:
@@ -126,9 +138,23 @@ class BoxGuard:
         self._first = 0
         self._group.close()
 
+    def _has_room(self) -> bool:
+        """Return False if this user has used up a counter that Linux keeps for all processes of a user.
+
+        Programs can do without large pipes. So these matter only while other submissions run, since a submission that
+        runs alone would get no points although another program of the user has the pipes.
+        """
+        return _can_watch() and (not self._limits.beside or _can_make_large_pipes())
+
     def _look(self) -> Ended | None:
+        global _used_up_at
         # Memory was used up if the kernel killed any process of the group, whichever process it chose.
         if self._group.ran_out_of_memory:
+            return Ended.OUT_OF_MEMORY
+        if self._had_room and not self._has_room():
+            _used_up_at = time.monotonic()
+        # Any of the boxes may be the cause, and calls in the others may have failed. So all end, and run again alone.
+        if self._had_room and _used_up_at > self._began:
             return Ended.OUT_OF_MEMORY
         use = use_of(self._first, None if self._memory else _memory_of)
         self._seen_cpu = max(self._seen_cpu, use.cpu_seconds)
@@ -154,6 +180,26 @@ class BoxGuard:
             exactly = use_of(self._first, _exact_memory_of)
             return Ended.OUT_OF_MEMORY if exactly.memory + files > self._limits.memory_now else None
         return None
+
+
+def _can_watch() -> bool:
+    """Return True if an epoll instance of this user can watch one more file (epoll(7), ``max_user_watches``)."""
+    try:
+        with select.epoll() as watcher, socket.socket(socket.AF_UNIX) as watched:
+            watcher.register(watched)
+    except OSError:
+        return False
+    return True
+
+
+def _can_make_large_pipes() -> bool:
+    """Return True if a new pipe of this user has its usual size."""
+    ends = os.pipe()
+    try:
+        return fcntl.fcntl(ends[0], fcntl.F_GETPIPE_SZ) > _SMALL_PIPE
+    finally:
+        for end in ends:
+            os.close(end)
 
 
 @dataclass(frozen=True)
@@ -205,10 +251,14 @@ def use_of(first: int, memory_of: _MemoryOf | None) -> Use:
             fields = Path(process.path, "stat").read_text(errors="replace").rpartition(")")[2].split()
             threads += int(fields[17])
             seconds += sum(map(int, fields[11:15])) / _TICKS
-            now, most = memory_of(process.path) if memory_of else (0, 0)
+            folder = process.path
+            if fields[0] == _ZOMBIE and int(fields[17]) > 1:
+                # The first thread has ended. Only the folders of the others show the memory and files of the process.
+                folder = max(os.scandir(f"{folder}/task"), key=lambda thread: int(thread.name)).path
+            now, most = memory_of(folder) if memory_of else (0, 0)
             memory += now
             most_memory = max(most_memory, most)
-            files += _files_of(process.path)
+            files += _files_of(folder)
         except (OSError, ValueError, IndexError):
             continue  # the process has ended meanwhile
     return Use(threads, memory, most_memory, seconds, files)

@@ -294,14 +294,24 @@ class OneCommandBox:
         folder: The folder of the user that a command sees, read-only and at the same path. It is also the working
             folder.
         command: The command, which is checked for names of files that would not be visible.
+        more: Further folders that a command sees, read-only and at the same path.
+        variables: Further environment variables of a command.
 
     Raises:
         ValueError: The folder contains files that no box may see, or the command needs files outside the folder. The
             exception's text says what to do.
     """
 
-    def __init__(self, scratch: Path, folder: Path, command: Sequence[str]) -> None:
+    def __init__(
+        self,
+        scratch: Path,
+        folder: Path,
+        command: Sequence[str],
+        more: Sequence[Path] = (),
+        variables: Mapping[str, str] | None = None,
+    ) -> None:
         self._scratch, self._folder = scratch, folder.resolve()
+        self._more, self._variables = more, variables or {}
         visible = (self._folder, *map(Path, SYSTEM), *installation())
         for word in command:
             file = self._folder / word
@@ -335,10 +345,10 @@ class OneCommandBox:
             command: The command.
             environment: The command's environment outside a box. Variables that Python and ROS need are kept.
         """
-        words = box_arguments(self._scratch, [Bind(self._folder)])
+        words = box_arguments(self._scratch, list(map(Bind, (self._folder, *self._more))))
         settings = ("PYTHONUNBUFFERED", "PYTHONFAULTHANDLER")
         extra = {name: environment[name] for name in settings if name in environment}
-        for name, value in box_environment(extra, environment).items():
+        for name, value in box_environment({**extra, **self._variables}, environment).items():
             words += ["--setenv", name, value]
         words += ["--chdir", str(self._folder)]
         begin, descriptors = bubblewrap(words, hidden_memory=self._guard.hidden_memory)

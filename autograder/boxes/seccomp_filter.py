@@ -11,6 +11,8 @@ The namespaces decide what a box can reach. In addition, the filter refuses:
   seconds;
 * calls that take kernel memory that neither cgroups nor the guard count: attributes of files (access control lists),
   memory policies (``mbind``), names of memory areas (``prctl``), filters of sockets and of system calls;
+* tables of open files that ``/proc/PID/fd`` does not show, so that the guard cannot count them;
+* memory and labels of sockets that Linux counts for the user or for the whole machine (:data:`_SOCKET_OPTIONS`);
 * locks that ``/proc/locks`` does not show for a box, so that the guard (:mod:`autograder.boxes.limit_guards`) cannot
   count them: those of open file descriptions, and of ended processes whose table of open files is shared;
 * network protocols whose waiting data the guard does not count: all except UDP, TCP, and netlink to list interfaces.
@@ -56,7 +58,8 @@ _X86_64: Mapping[str, int] = {
     "settimeofday": 164, "mount": 165, "umount2": 166, "swapon": 167, "swapoff": 168, "reboot": 169,
     "sethostname": 170, "setdomainname": 171, "iopl": 172, "ioperm": 173, "init_module": 175,
     "delete_module": 176, "quotactl": 179, "setxattr": 188, "lsetxattr": 189, "fsetxattr": 190, "io_setup": 206,
-    "lookup_dcookie": 212, "clock_settime": 227, "mbind": 237, "kexec_load": 246, "add_key": 248, "request_key": 249,
+    "lookup_dcookie": 212, "clock_settime": 227, "mbind": 237, "set_mempolicy": 238,
+    "kexec_load": 246, "add_key": 248, "request_key": 249,
     "keyctl": 250, "inotify_init": 253, "unshare": 272, "inotify_init1": 294,
     "vmsplice": 278,
     "perf_event_open": 298, "fanotify_init": 300, "name_to_handle_at": 303, "open_by_handle_at": 304, "setns": 308,
@@ -74,14 +77,16 @@ _AARCH64: Mapping[str, int] = {
     "setdomainname": 162, "prctl": 167, "settimeofday": 170, "msgget": 186, "semget": 190, "shmget": 194, "socket": 198,
     "socketpair": 199, "setsockopt": 208, "add_key": 217, "request_key": 218, "keyctl": 219, "clone": 220,
     "swapon": 224, "swapoff": 225,
-    "mbind": 235, "perf_event_open": 241, "fanotify_init": 262, "name_to_handle_at": 264, "open_by_handle_at": 265,
+    "mbind": 235, "set_mempolicy": 237,
+    "perf_event_open": 241, "fanotify_init": 262, "name_to_handle_at": 264, "open_by_handle_at": 265,
     "setns": 268, "process_vm_readv": 270, "process_vm_writev": 271, "kcmp": 272, "finit_module": 273,
     "seccomp": 277, "memfd_create": 279, "bpf": 280, "userfaultfd": 282, "kexec_file_load": 294,
 }  # fmt: skip
 _EVERYWHERE: Mapping[str, int] = {
     "io_uring_setup": 425, "io_uring_enter": 426, "io_uring_register": 427, "open_tree": 428,
     "move_mount": 429, "fsopen": 430, "fsconfig": 431, "fsmount": 432, "fspick": 433, "clone3": 435,
-    "pidfd_getfd": 438, "mount_setattr": 442, "quotactl_fd": 443, "memfd_secret": 447,
+    "close_range": 436, "pidfd_getfd": 438, "mount_setattr": 442, "quotactl_fd": 443, "memfd_secret": 447,
+    "set_mempolicy_home_node": 450,
     "setxattrat": 463,
 }  # fmt: skip
 _READERS: Mapping[str, Mapping[str, int]] = {
@@ -121,7 +126,17 @@ _FUTEX_WAKE = (1, 129)
 """FUTEX_WAKE, and its variant for a single process (linux/futex.h). A program that releases a lock makes this call
 even if no thread waits for the lock. A call that waits for a lock is not allowed.
 """
-_BY_ARGUMENT = {"clone", "clone3", "socket", "socketpair", "setsockopt", "ioctl", "fcntl", "prctl"}
+_BY_ARGUMENT = {
+    "clone",
+    "clone3",
+    "socket",
+    "socketpair",
+    "setsockopt",
+    "ioctl",
+    "fcntl",
+    "prctl",
+    "close_range",
+}
 _ATTRIBUTES = {"setxattr", "lsetxattr", "fsetxattr", "setxattrat"}
 _HIDDEN_MEMORY = {"memfd_create", "shmget", "vmsplice"}
 """Calls that allocate memory that belongs to no process. They are refused if the guard has no cgroup and counts process
@@ -143,10 +158,15 @@ _PROTOCOLS = {socket.AF_INET: _COUNTED, socket.AF_INET6: _COUNTED, _NETLINK: (_R
 AF_UNIX is not here because it has no protocols. AF_VSOCK is left out on purpose: it reaches the host of a virtual
 machine past every network namespace.
 """
-_SOL_SOCKET, _SOCKET_FILTERS = 1, (26, 50, 51, 52)
-"""The level and the options of ``setsockopt`` that attach a filter to a socket: SOL_SOCKET; SO_ATTACH_FILTER,
-SO_ATTACH_BPF and the two filters of SO_REUSEPORT (asm-generic/socket.h).
+_SOCKET_OPTIONS = {1: (26, 50, 51, 52, 60), 41: (32,)}
+"""The refused options of ``setsockopt``, by level.
+
+For SOL_SOCKET, they attach a filter to a socket (SO_ATTACH_FILTER, SO_ATTACH_BPF and the two filters of SO_REUSEPORT),
+or lock memory that Linux counts for the user (SO_ZEROCOPY; asm-generic/socket.h). For IPPROTO_IPV6, the option takes
+flow labels, of which the machine has 4,096 for all networks (IPV6_FLOWLABEL_MGR; linux/in6.h).
 """
+_UNSHARES_DESCRIPTORS = 2
+"""The flag of ``close_range`` that gives a thread a table of open files of its own (linux/close_range.h)."""
 _TERMINAL_TRICKS = (0x5412, 0x541C)
 """TIOCSTI, which types into a terminal, and TIOCLINUX, which pastes into a console (asm-generic/ioctls.h)."""
 _OTHERS_WAIT = (fcntl.F_SETLEASE, fcntl.F_NOTIFY, 1040)
@@ -185,7 +205,7 @@ ARCHITECTURES = {
     "aarch64": Architecture(0xC00000B7, {**_AARCH64, **_EVERYWHERE}),
 }
 
-_LOAD, _JUMP_EQUAL, _JUMP_AT_LEAST, _JUMP_BITS, _RETURN = 0x20, 0x15, 0x35, 0x45, 0x06
+_LOAD, _AND, _JUMP_EQUAL, _JUMP_AT_LEAST, _JUMP_BITS, _RETURN = 0x20, 0x54, 0x15, 0x35, 0x45, 0x06
 _ALLOW, _KILL, _ERRNO = 0x7FFF0000, 0x80000000, 0x00050000
 _NUMBER, _ARCH, _ARGUMENTS = 0, 4, 16
 """Offsets in the data that a filter reads (struct seccomp_data in linux/seccomp.h): the call's number, the
@@ -220,7 +240,10 @@ def filter_for_boxes(*, hidden_memory: bool = True, machine: str = "") -> bytes:
     program += _where(calls["ioctl"], _refuse_any(1, _TERMINAL_TRICKS))
     program += _where(calls["fcntl"], _refuse_any(1, (*_OTHERS_WAIT, *_LOCKS_OF_NOBODY)))
     program += _where(calls["prctl"], _refuse_any(0, (PR_SET_SECCOMP, _NAMES_OF_MEMORY)))
-    program += _where(calls["setsockopt"], [*_only_if(1, _SOL_SOCKET), *_refuse_any(2, _SOCKET_FILTERS)])
+    program += _where(calls["setsockopt"], _decide_on_socket_option())
+    program += _where(
+        calls["close_range"], [_load(2), (_JUMP_BITS, 0, 1, _UNSHARES_DESCRIPTORS), _fail(errno.EPERM)]
+    )
     program += _where(calls["socket"], _decide_on_socket())
     program += _where(calls["socketpair"], _refuse_others(0, (socket.AF_UNIX,), errno.EAFNOSUPPORT))
     program.append((_RETURN, 0, 0, _ALLOW))
@@ -303,11 +326,6 @@ def _load(argument: int) -> _Instruction:
     return (_LOAD, 0, 0, _ARGUMENTS + 8 * argument)
 
 
-def _only_if(argument: int, value: int) -> list[_Instruction]:
-    """Return instructions that allow a call unless an argument has this value; then, the next instructions decide."""
-    return [_load(argument), (_JUMP_EQUAL, 1, 0, value), (_RETURN, 0, 0, _ALLOW)]
-
-
 def _refuse_any(argument: int, values: Sequence[int]) -> list[_Instruction]:
     return [
         _load(argument),
@@ -321,15 +339,28 @@ def _refuse_others(argument: int, values: Sequence[int], why: int) -> list[_Inst
 
 
 def _decide_on_clone() -> list[_Instruction]:
-    """Return instructions that refuse new namespaces, and processes (not threads) that share a table of open files."""
+    """Return instructions that refuse new namespaces, and unusual tables of open files.
+
+    All threads of a process share one table, and no two processes do, because a guard counts the table of a process.
+    """
+    thread = CLONE_FILES | CLONE_THREAD
     return [
         _load(0),
         (_JUMP_BITS, 0, 1, _NAMESPACES),
         _fail(errno.EPERM),
-        (_JUMP_BITS, 0, 2, CLONE_FILES),
-        (_JUMP_BITS, 1, 0, CLONE_THREAD),
+        (_AND, 0, 0, thread),
+        (_JUMP_EQUAL, 2, 0, 0),
+        (_JUMP_EQUAL, 1, 0, thread),
         _fail(errno.EPERM),
     ]
+
+
+def _decide_on_socket_option() -> list[_Instruction]:
+    program = []
+    for level, options in _SOCKET_OPTIONS.items():
+        body = [*_refuse_any(2, options), (_RETURN, 0, 0, _ALLOW)]
+        program += [_load(1), (_JUMP_EQUAL, 0, len(body), level), *body]
+    return program
 
 
 def _decide_on_socket() -> list[_Instruction]:

@@ -194,7 +194,7 @@ class Card:
                 paragraph(advice.text, 1200, mark=mark),
                 paragraph(advice.next_step, 1200, mark=mark),
             ),
-            place=_readable(students_line(verdict.detail), mark),
+            place=_readable(students_line(verdict.detail, advice.text), mark),
             criteria=tuple(CriterionRow.of(criterion, form) for criterion in verdict.criteria),
             remarks=tuple(paragraph(remark, 600, mark=mark) for remark in verdict.remarks),
             traffic=shown,

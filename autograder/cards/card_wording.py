@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from autograder.cards.readable_text import TRACEBACK, last_error, one_line
-from autograder.verdict import State
+from autograder.verdict import NO_RESULT, State
 
 if TYPE_CHECKING:
     from autograder.cards.card_traffic import Traffic, TrafficPart
@@ -63,9 +63,11 @@ def advice(verdict: Verdict) -> AdviceBlock:
         return AdviceBlock("", "Well done: your code did everything that was asked for.")
     diagnosis = verdict.diagnosis
     if verdict.state is State.NOT_CHECKED:
-        reason = f"{diagnosis.text.rstrip()} " if diagnosis and diagnosis.text.strip() else ""
+        reason = diagnosis.text.strip() if diagnosis else ""
         next_step = diagnosis.next_step.strip() if diagnosis else ""
-        return AdviceBlock("Why there is no result", reason + _BLAMELESS, next_step or _TRY_AGAIN)
+        if not diagnosis or diagnosis.key == NO_RESULT:
+            reason = f"{reason} {_BLAMELESS}".lstrip()
+        return AdviceBlock("Why there is no result", reason, next_step or _TRY_AGAIN)
     first = next((criterion for criterion in verdict.criteria if not criterion.passed), None)
     if diagnosis:
         return AdviceBlock("What happened", diagnosis.text, diagnosis.next_step.strip() or _start_with(first))

@@ -8,34 +8,19 @@ that a Python programmer knows (``\x1b``). A long text is cut in the middle, wit
 from __future__ import annotations
 
 import functools
-import json
 import unicodedata
 from dataclasses import dataclass
 
 import re2
 
 # Matches a code that sets a color or style in a terminal and contains no text (ECMA-48, "SGR").
-_COLOUR_CODE = re2.compile(r"\x1b\[[0-9;:]*m")
+_COLOR_CODE = re2.compile(r"\x1b\[[0-9;:]*m")
 
 # The format characters that are kept: joiners shape Persian words and family emoji. All other format characters are
 # invisible or reorder a line.
 _HARMLESS_FORMAT = frozenset("\u200c\u200d\u00ad")
 
 _NAMED_ESCAPES = {"\n": "\\n", "\r": "\\r", "\t": "\\t"}
-
-
-def printable(text: str) -> str:
-    """Return ``text`` with escapes for characters that are not printable, such as newlines and terminal codes."""
-    return "".join(c if c.isprintable() else ascii(c)[1:-1] for c in text)
-
-
-def printable_json(text: str) -> str:
-    """Return equivalent JSON in which characters that are not printable, such as terminal codes, are escaped.
-
-    Args:
-        text: JSON on a single line.
-    """
-    return "".join(c if c.isprintable() else json.dumps(c)[1:-1] for c in text)
 
 
 def one_line(text: str, limit: int, *, mark: str = "…") -> str:
@@ -63,7 +48,7 @@ def block(text: str, *, max_lines: int, max_columns: int, mark: str = "…") -> 
     If there are more than ``max_lines`` lines, some of the first and twice as many of the last are kept, because a
     traceback says the most at its end.
     """
-    lines = _COLOUR_CODE.sub("", text).replace("\r\n", "\n").strip("\n").split("\n")
+    lines = _COLOR_CODE.sub("", text).replace("\r\n", "\n").strip("\n").split("\n")
     if len(lines) > max_lines:
         head = max_lines // 3
         tail = max_lines - head - 1
@@ -182,10 +167,15 @@ def last_error(detail: str) -> str:
     return next((line for line in lines if line and not _FORM_OF_CALL.match(line)), "")
 
 
-def students_line(detail: str) -> TracebackLine | None:
+def students_line(detail: str, advice: str = "") -> TracebackLine | None:
     """Return the last line of the student's own code in the last traceback of a text.
 
     Return None if there is no such line, or if the line only calls ``spin``: the mistake is then in a callback.
+
+    Args:
+        detail: The text with the traceback.
+        advice: What the card says about it. A line that it quotes is returned rather than a later one, which may belong
+            to a function that the student was given.
     """
     lines = detail.splitlines()
     error = last_error(detail)
@@ -200,7 +190,8 @@ def students_line(detail: str) -> TracebackLine | None:
         if frame and _is_students(frame["file"]):
             after = lines[number + 1] if number + 1 < len(lines) else ""
             quote = after.strip() if after.startswith("    ") and not _FRAME.match(after) else ""
-            found = (frame["file"], frame["line"], quote)
+            if found is None or not found[2] or found[2] not in advice:
+                found = (frame["file"], frame["line"], quote)
         elif frame and _CALLED_BY_ROS in frame["file"]:
             found = None
     if found is None:

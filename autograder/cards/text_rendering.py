@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 _MARK = IN_A_TERMINAL.mark
 _ARROWS = {"from_subject": "-->", "to_subject": "<--", "expected": "..>"}
-_COLOURS = {State.PASSED: "32", State.FAILED: "33", State.NOT_CHECKED: "34"}
+_COLORS = {State.PASSED: "32", State.FAILED: "33", State.NOT_CHECKED: "34"}
 _NARROWEST = 40
 
 
@@ -85,7 +85,7 @@ class _Writer:
         state = card.state_words.upper()
         how = f"{state}: {card.score_line}" + (f", {card.tally}" if card.tally else "")
         first, *rest = self._wrapped(how, "", "  ")
-        yield self._styled(state, f"1;{_COLOURS[card.state]}") + first.removeprefix(state)
+        yield self._styled(state, f"1;{_COLORS[card.state]}") + first.removeprefix(state)
         yield from rest
         yield "-" * min(self.width, max(columns(how), columns(card.title)))
         if card.notice:
@@ -104,7 +104,7 @@ class _Writer:
             yield from self._wrapped(advice.next_step, "  > ", "    ")
 
     def _criterion(self, row: CriterionRow) -> Iterator[str]:
-        badge = self._styled(f"[{row.word}]", _COLOURS[State.PASSED if row.passed else State.FAILED])
+        badge = self._styled(f"[{row.word}]", _COLORS[State.PASSED if row.passed else State.FAILED])
         line = f"{row.title} ({row.points} {row.unit})"
         first, *rest = self._wrapped(line, " " * (len(row.word) + 5), "    ")
         yield f"  {badge} {first.lstrip()}"

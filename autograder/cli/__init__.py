@@ -7,11 +7,13 @@ example after a wrong option. Each command makes its imports itself, so that ``c
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import click
 
 from autograder import course
 from autograder.cli import author_commands, class_commands, result_commands, student_commands
+from autograder.standard_output import printable
 
 GROUPS = {
     "Students": student_commands.STUDENT_COMMANDS,
@@ -36,6 +38,14 @@ copy of a course. They use the course that `new-class` recorded.
 
 class _Groups(click.Group):
     """A command whose help page groups the subcommands by the people who use them."""
+
+    def invoke(self, ctx: click.Context) -> Any:
+        """Run a subcommand. An error of click may quote the name of a student's file, which must not begin a line."""
+        try:
+            return super().invoke(ctx)
+        except click.ClickException as error:
+            vars(error)["message"] = printable(error.message)
+            raise
 
     def format_commands(self, _ctx: click.Context, formatter: click.HelpFormatter) -> None:
         for title, commands in GROUPS.items():

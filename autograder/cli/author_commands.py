@@ -8,7 +8,7 @@ from pathlib import Path
 import click
 
 from autograder.cli.command_results import NO, fail, need_ros
-from environment.installation import COMMAND
+from autograder.command_name import COMMAND
 
 
 @click.command()

@@ -15,8 +15,9 @@ from autograder.cli.command_results import (
     grading_errors,
     need_ros,
     print_json,
+    print_line,
 )
-from environment.installation import COMMAND
+from autograder.command_name import COMMAND
 
 class_folder = click.argument("folder", type=click.Path(path_type=Path))
 only_assignments = click.option(
@@ -59,7 +60,7 @@ def hand_out(place: Path, assignments: tuple[str, ...], as_zip: bool, with_solut
         )
     except (handout.CannotHandOut, OSError) as error:
         fail(str(error))
-    click.echo(
+    print_line(
         f"{made.place}: {made.files} files, {made.size / 1e6:.1f} MB. To try it, type in that folder: {COMMAND} lab"
     )
 
@@ -77,11 +78,12 @@ def hand_out(place: Path, assignments: tuple[str, ...], as_zip: bool, with_solut
 def new_class(folder: Path, assignments: tuple[str, ...], timezone: ZoneInfo | None) -> None:
     """Make an nbgrader course directory in FOLDER, ready for submissions."""
     from autograder import course
-    from autograder.grading.classes import new_class as classes
+    from autograder.grading.new_classes import new_class as classes
 
     with grading_errors():
         made = classes.new_class(folder, course.root(), assignments=assignments, timezone=str(timezone or ""))
-    click.echo(made.summary())
+    for line in made.summary():
+        print_line(line)
 
 
 @click.command("renew-class")
@@ -90,11 +92,45 @@ def new_class(folder: Path, assignments: tuple[str, ...], timezone: ZoneInfo | N
 def renew_class(folder: Path, assignments: tuple[str, ...]) -> None:
     """Update the source notebooks of the class FOLDER to the present course, and keep copies of the old ones."""
     from autograder import course
-    from autograder.grading.classes.new_class import renew
+    from autograder.grading.new_classes.new_class import renew
 
     with grading_errors():
         for line in renew(folder, course.root(), assignments):
-            click.echo(line)
+            print_line(line)
+
+
+def _pairs(_context: click.Context, _option: click.Parameter, values: tuple[str, ...]) -> dict[str, str]:
+    """Return pairs that were written as ``OLD=NEW``."""
+    pairs = {old.strip(): new.strip() for old, _, new in (one.partition("=") for one in values)}
+    if not all((*pairs, *pairs.values())):
+        fail("--rename needs the old and the new id: --rename OLD=NEW")
+    return pairs
+
+
+@click.command()
+@class_folder
+@click.argument("new_list", required=False, metavar="[LIST]", type=click.Path(path_type=Path))
+@click.option(
+    "--rename",
+    "said",
+    multiple=True,
+    callback=_pairs,
+    metavar="OLD=NEW",
+    help="A student's old and new id, if no number in the list shows that both are one student; may be given several "
+    "times.",
+)
+@click.option("--yes", is_flag=True, help="Make the changes. Without this option, they are only shown.")
+def students(folder: Path, new_list: Path | None, said: dict[str, str], yes: bool) -> None:
+    """Show what a new list of students changes in the class FOLDER: who is renamed, dropped or added.
+
+    LIST replaces students.csv in FOLDER; without it, students.csv itself is the new list. A student with a new id keeps
+    work, points and records.
+    """
+    from autograder.grading.new_classes.changing_students import change_students
+
+    with grading_errors():
+        for line in change_students(folder, new_list, said, is_final=yes):
+            print_line(line)
 
 
 @click.command()
@@ -153,7 +189,7 @@ def collect(
     """
     from autograder.grading.collecting import collect as collecting
     from autograder.grading.collecting.collect import show
-    from autograder.grading.collecting.submitted_file_names import read_time
+    from autograder.grading.collecting.written_times import read_time
 
     when = read_time(handed_in) if handed_in else None
     if handed_in and when is None:
@@ -212,7 +248,7 @@ def grade(
 ) -> None:
     """Grade the submissions in the class directory FOLDER."""
     from autograder.grading import batch
-    from autograder.grading.running import execution_backends
+    from autograder.grading.classes.class_directory import switch_sandbox_off
 
     if scheduler is not None and jobs is not None:
         fail(
@@ -221,7 +257,7 @@ def grade(
     if scheduler is None:
         need_ros()
     if unsafe_no_sandbox:
-        execution_backends.switch_sandbox_off(folder)
+        switch_sandbox_off(folder)
     try:
         with grading_errors():
             report = batch.grade(
@@ -282,7 +318,7 @@ def worker(scheduler: str | None, jobs: int | None, name: str | None, unsafe_no_
 @click.argument("folder", type=click.Path(path_type=Path), default=Path("demo-class"))
 def demo(folder: Path) -> None:
     """Make a sample class, grade it and show the result."""
-    from autograder.grading.classes import sample_class
+    from autograder.grading.new_classes import sample_class
 
     with grading_errors():
         report = sample_class.demo(folder)
@@ -294,6 +330,7 @@ CLASS_COMMANDS = (
     hand_out,
     new_class,
     renew_class,
+    students,
     collect,
     grade,
     worker,

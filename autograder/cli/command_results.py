@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 import click
 
+from autograder.standard_output import printable, printable_json
+
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
@@ -24,15 +26,18 @@ def print_json(value: Any) -> None:
     """Print a value as one line of JSON, without characters that control a terminal. Bytes are taken to be JSON."""
     import msgspec
 
-    from autograder.cards.readable_text import printable_json
-
     data = value if isinstance(value, bytes) else msgspec.json.encode(value, enc_hook=str)
     click.echo(printable_json(data.decode()))
 
 
+def print_line(text: str, *, err: bool = False) -> None:
+    """Print a text that may contain a student's words as one line."""
+    click.echo(printable(text), err=err)
+
+
 def fail(message: str) -> NoReturn:
     """Print an error message and end the command with exit code 2."""
-    click.echo(f"autograder: {message}", err=True)
+    print_line(f"autograder: {message}", err=True)
     sys.exit(CANNOT)
 
 

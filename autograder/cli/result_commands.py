@@ -8,22 +8,20 @@ from __future__ import annotations
 import sys
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import TYPE_CHECKING, NoReturn
+from typing import TYPE_CHECKING
 
 import click
 
-from autograder.cards.readable_text import printable
 from autograder.cli.class_commands import class_folder, only_assignments, only_sections
-from autograder.cli.command_results import as_json_option, fail, grading_errors, print_json
+from autograder.cli.command_results import as_json_option, fail, grading_errors, print_json, print_line
+from autograder.command_name import COMMAND
 from autograder.kit.in_words import counted
-from environment.installation import COMMAND
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from autograder.appeals.appeal_file import Appeal
     from autograder.appeals.replaying import Replay
-    from autograder.judge.evidence_files import Kept
     from autograder.verdict import Verdict
 
 
@@ -95,9 +93,10 @@ def export(
         print_json({"files": files, "notices": done.notices})
         return
     for file, purpose in done.files:
-        click.echo(f"{printable(str(file))}\n    {printable(purpose)}")
+        print_line(str(file))
+        print_line(f"    {purpose}")
     for notice in done.notices:
-        click.echo(f"note: {printable(notice)}")
+        print_line(f"note: {notice}")
 
 
 @click.command()
@@ -117,9 +116,9 @@ def report(
 ) -> None:
     """Write a page about the class FOLDER: points, mistakes, exercises and each student's progress."""
     from autograder.grading.classes.class_directory import ClassDirectory
+    from autograder.grading.reporting.class_table import read_table
     from autograder.grading.reporting.grade_report import table_json
     from autograder.grading.reporting.report_page import write_report
-    from autograder.grading.table.class_table import read_table
 
     if as_json and without_names:
         fail(
@@ -130,7 +129,7 @@ def report(
         if as_json:
             print_json(table_json(page, read_table(ClassDirectory(folder), sections)))
         else:
-            click.echo(page)
+            print_line(str(page))
 
 
 @click.command()
@@ -176,7 +175,7 @@ def compare(folder: Path, before: str, after: str, as_json: bool) -> None:
     """
     from autograder.grading.class_store import ClassStore
     from autograder.grading.classes.class_directory import ClassDirectory
-    from autograder.grading.table import class_table
+    from autograder.grading.reporting import class_table
 
     with grading_errors(), ClassStore(ClassDirectory(folder)) as store:
         old, new, found = class_table.compare(store, before, after)
@@ -185,7 +184,7 @@ def compare(folder: Path, before: str, after: str, as_json: bool) -> None:
         return
     click.echo(f"{old} → {new}: {counted(len(found), 'difference')}")
     for difference in found:
-        click.echo(printable(difference.line()))
+        print_line(difference.line())
 
 
 @click.command()
@@ -205,7 +204,7 @@ def attempts(folder: Path, student: str, as_json: bool) -> None:
         print_json({"student": student, "attempts": found})
         return
     for attempt in found:
-        click.echo(printable(attempt.line()))
+        print_line(attempt.line())
 
 
 @click.command()
@@ -216,34 +215,24 @@ def attempts(folder: Path, student: str, as_json: bool) -> None:
     "-o",
     "--output",
     type=click.Path(path_type=Path),
-    help="The file to write. The default is FOLDER/appeals/STUDENT-EXERCISE.json.",
+    help="The file to write. The default is FOLDER/appeals/STUDENT-EXERCISE.zip.",
 )
 def appeal(folder: Path, student: str, exercise: str, output: Path | None) -> None:
     """Save everything about the check of EXERCISE by STUDENT in the class FOLDER.
 
-    The file contains the student's code, the expected output, the judge's evidence and verdict, and the course's
-    version, as readable JSON. The command `replay` judges the check again from this file.
+    The file is a zip with the student's code and page, the expected output, the judge's evidence and verdict, and the
+    course's version. The command `replay` judges the check again from this file.
     """
     from autograder.grading.appeal_writing import write_appeal
 
     with grading_errors():
-        click.echo(write_appeal(folder, student, exercise, output))
+        print_line(str(write_appeal(folder, student, exercise, output)))
 
 
 @click.command()
 @click.argument("file", type=click.Path(path_type=Path))
-@click.option(
-    "--mcap",
-    type=click.Path(path_type=Path),
-    help="Also write the messages that the judge saw into this file, for Foxglove and other programs that open MCAP.",
-)
-@click.option(
-    "--bag",
-    type=click.Path(path_type=Path),
-    help="Also write the messages of topics into this file, for ros2 bag play.",
-)
 @as_json_option
-def replay(file: Path, mcap: Path | None, bag: Path | None, as_json: bool) -> None:
+def replay(file: Path, as_json: bool) -> None:
     """Judge the check in an appeal FILE again, from its evidence and with the present version of the course.
 
     This runs no code of the student, and starts no ROS node.
@@ -256,71 +245,30 @@ def replay(file: Path, mcap: Path | None, bag: Path | None, as_json: bool) -> No
     from autograder.appeals import appeal_file, replaying
 
     try:
-        for path in (mcap, bag):
-            if path is not None:
-                require_mcap_suffix(path)
         appeal = appeal_file.read(file)
-        if mcap is not None:
-            click.echo(save_messages(appeal.seen, mcap), err=as_json)
-        if bag is not None:
-            click.echo(_save_bag(appeal.seen, bag), err=as_json)
         again = replaying.replay(appeal.seen)
         lines = list(_lines_of_replay(appeal, again))
     except (appeal_file.BadAppeal, replaying.CannotReplay) as error:
-        _fail_safely(str(error))
+        fail(_cut(str(error)))
     except Exception as error:  # a damaged file may cause any kind of error
-        _fail_safely(
-            f"{file} is not a valid appeal file ({type(error).__name__}: {error}). The file was edited, or comes from "
-            "a different version of the course: use the version that wrote it."
+        fail(
+            f"{file} is not a valid appeal file ({type(error).__name__}: {_cut(str(error))}). The file was edited, or "
+            "comes from a different version of the course: use the version that wrote it."
         )
     if as_json:
-        print_json({"student": appeal.student, "course": appeal.course, "replay": again})
+        print_json({"student": appeal.check.student, "course": appeal.check.course, "replay": again})
     else:
         for line in lines:
-            click.echo(_shown(line))
+            print_line(_cut(line))
     sys.exit(1 if again.differences else 0)
-
-
-def require_mcap_suffix(path: Path) -> None:
-    """End the command with exit code 2 if the name of a file for messages does not end in .mcap."""
-    if path.suffix != ".mcap":
-        _fail_safely(
-            f"the name of a file for messages must end in .mcap, such as check.mcap; {path.name} does not"
-        )
-
-
-def save_messages(seen: Kept, path: Path) -> str:
-    """Write the messages of a check as MCAP, and return a line about the file. On failure, end with exit code 2."""
-    from autograder.appeals.evidence_as_mcap import write_messages
-
-    try:
-        with path.open("wb") as stream:
-            count = write_messages(seen, stream)
-    except OSError as error:
-        _fail_safely(f"{path} cannot be written: {error.strerror}")
-    return f"{path}: {count} events, as JSON"
-
-
-def _save_bag(seen: Kept, path: Path) -> str:
-    """Write the messages of topics for ``ros2 bag play``. Return and fail in the same way as ``save_messages``."""
-    from autograder.appeals.evidence_as_mcap import write_bag
-
-    try:
-        with path.open("wb") as stream:
-            written, left_out = write_bag(seen, stream)
-    except OSError as error:
-        _fail_safely(f"{path} cannot be written: {error.strerror}")
-    missing = (
-        f" ({left_out} more were left out, because their type is not installed here)" if left_out else ""
-    )
-    return f"{path}: {written} messages of topics{missing}"
 
 
 def _lines_of_replay(appeal: Appeal, again: Replay) -> Iterator[str]:
     """Yield the result of a replay as lines."""
     then = again.then
     checked = f"{datetime.fromtimestamp(appeal.seen.at, tz=UTC):%Y-%m-%d %H:%M:%S} UTC"
-    yield f"{then.exercise} by {appeal.student}, checked {checked} with course {appeal.course[:8]}"
+    check = appeal.check
+    yield f"{then.exercise} by {check.student}, checked {checked} with course {check.course[:8]}"
     yield f"then: {_verdict_in_words(then)}"
     yield f"now:  {_verdict_in_words(again.now)}"
     if again.differences:
@@ -343,14 +291,8 @@ _MAX_LINES = 100
 """The maximum number of differences to print, and also of notes. A damaged file could cause any number of them."""
 
 
-def _fail_safely(message: str) -> NoReturn:
-    """End the command with a message that may quote text from a student's file."""
-    fail(_shown(message))
-
-
-def _shown(line: str) -> str:
-    """Return a line that is safe to print: shortened, and without characters that control a terminal."""
-    return printable(line if len(line) <= _MAX_COLUMNS else f"{line[:_MAX_COLUMNS]}…")
+def _cut(line: str) -> str:
+    return line if len(line) <= _MAX_COLUMNS else f"{line[:_MAX_COLUMNS]}…"
 
 
 RESULT_COMMANDS = (

@@ -4,20 +4,20 @@ from __future__ import annotations
 
 import os
 import sys
-from contextlib import contextmanager, nullcontext
+from contextlib import contextmanager, nullcontext, redirect_stderr
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
-from autograder.cli import result_commands
 from autograder.cli.command_results import CANNOT, NO, as_json_option, fail, need_ros, print_json
-from environment.installation import COMMAND
+from autograder.command_name import COMMAND
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from autograder.boxes.sandbox import OneCommandBox
+    from autograder.kit.model import Exercise
     from autograder.verdict import Verdict
 
 
@@ -48,18 +48,12 @@ _notebooks = click.option(
     is_flag=True,
     help="Run COMMAND in the sandbox in which submissions of a class run. It can read only the current folder.",
 )
-@click.option(
-    "--mcap",
-    type=click.Path(path_type=Path),
-    help="Also write the messages that the judge saw into this file.",
-)
 def check(
     exercise: str | None,
     command: tuple[str, ...],
     as_json: bool,
     seed: str | None,
     boxed: bool,
-    mcap: Path | None,
 ) -> None:
     """Run a command as the subject of an exercise and print the verdict."""
     from autograder import course, exercises
@@ -80,15 +74,13 @@ def check(
             f"no command to check: write it after two dashes, such as {COMMAND} check {exercise} -- python3 my_file.py"
             + (f" (it is called with {wanted.arguments})" if wanted.arguments else "")
         )
-    if mcap is not None:
-        result_commands.require_mcap_suffix(mcap)
     need_ros()
     from autograder.judge.command_check import CommandNotFound, check_and_keep
     from autograder.standard_output import stray_lines_on_stderr
 
     try:
-        with _box(command) if boxed else nullcontext() as box, stray_lines_on_stderr():
-            verdict, evidence = check_and_keep(exercise, command, seed=seed, box=box)
+        with _box(wanted, command) if boxed else nullcontext() as box, stray_lines_on_stderr():
+            verdict, _ = check_and_keep(exercise, command, seed=seed, box=box)
     except CommandNotFound as error:
         fail(str(error))
     # With --box, the program is another person's, so its result does not count as the user's progress.
@@ -97,26 +89,28 @@ def check(
 
         check_journal.note_check(verdict)
     show(verdict, as_json=as_json)
-    if mcap is not None and evidence:
-        from autograder.judge.evidence_files import unpack
-
-        click.echo(result_commands.save_messages(unpack(evidence), mcap), err=as_json)
     sys.exit({"passed": 0, "failed": NO}.get(verdict.state, CANNOT))
 
 
 @contextmanager
-def _box(command: Sequence[str]) -> Iterator[OneCommandBox]:
+def _box(exercise: Exercise, command: Sequence[str]) -> Iterator[OneCommandBox]:
     from contextlib import closing
 
+    from autograder import course
     from autograder.boxes.sandbox import OneCommandBox, why_impossible
+    from autograder.kit.runners import Launches, LaunchesFromPackage
     from autograder.safe_files import HeldFolder
+    from autograder.workspaces.program_plans import reference_workspace
 
     why = why_impossible()
     if why:
         fail(f"no sandbox is possible here: {why}")
     with HeldFolder("autograder-box-") as scratch:
         try:
-            box = OneCommandBox(scratch.path, Path.cwd(), command)
+            # A launch may start the course's own talker and listener.
+            launches = isinstance(exercise.runner, Launches | LaunchesFromPackage)
+            more = [own] if launches and (own := reference_workspace()).is_dir() else []
+            box = OneCommandBox(scratch.path, Path.cwd(), command, more, course.variables())
         except ValueError as error:
             fail(str(error))
         with closing(box):
@@ -142,8 +136,9 @@ def show(verdict: Verdict, *, as_json: bool) -> None:
         print_json(verdict)
         return
     from autograder.cards.text_rendering import card_text
+    from autograder.standard_output import styled
 
-    click.echo(card_text(verdict, color=sys.stdout.isatty()))
+    click.echo(card_text(verdict, color=sys.stdout.isatty()), file=styled(sys.stdout))
 
 
 @click.command(context_settings={"ignore_unknown_options": True})
@@ -155,10 +150,13 @@ def lab(folder: Path | None, arguments: tuple[str, ...]) -> None:
     """Open JupyterLab with the course's notebooks, in a free ROS domain."""
     from autograder import course
     from autograder.dds_discovery import NoFreeDomainError
+    from autograder.standard_output import styled
     from autograder.student.lab import NoSuchFolderError, open_lab
 
     try:
-        open_lab(folder or course.root() / course.CHAPTERS, arguments)
+        # JupyterLab colors its log itself.
+        with redirect_stderr(styled(sys.stderr)):
+            open_lab(folder or course.root() / course.CHAPTERS, arguments)
     except (NoSuchFolderError, NoFreeDomainError, ValueError) as error:
         fail(str(error))
 

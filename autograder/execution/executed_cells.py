@@ -186,16 +186,16 @@ class OutputCollector:
 
     def outputs(self) -> tuple[dict[str, Any], ...]:
         """The outputs so far in nbformat's format, with a last line if anything was dropped."""
-        kept = [_without_overwritten_lines(output) for output in self._outputs]
+        outputs = [_without_overwritten_lines(output) for output in self._outputs]
         if self._dropped:
-            kept.append(
+            outputs.append(
                 {
                     "output_type": "stream",
                     "name": "stdout",
                     "text": f"\n[{self._dropped} bytes of output were dropped]\n",
                 }
             )
-        return tuple(kept)
+        return tuple(outputs)
 
     def _stream(self, content: Mapping[str, Any]) -> None:
         name = "stderr" if content.get("name") == "stderr" else "stdout"

@@ -77,7 +77,6 @@ class NotebookProcesses(Protocol):
     Attributes:
         folder: The notebook's folder, in which a folder for the kernel's sockets is made. Only the desk's box sees
             the sockets. The path must be short, because the name of a Unix socket has at most 107 characters.
-        limits: The limits of the notebook.
     """
 
     folder: Path
@@ -119,6 +118,7 @@ class Kernel:
         sockets.mkdir()
         shell, iopub = (_listener(sockets / f"k-{number}") for number in (SHELL, IOPUB))
         own, orders = socket.socketpair()
+        # A desk that a student's message has taken over may stop reading: sending an order must not block forever.
         own.settimeout(_DESK_SECONDS)
         self._desk_says = own
         self._lines = Lines(own, MOST_ESCAPED * self._limits.notebook_output_bytes + FURTHER_BYTES)
@@ -247,8 +247,10 @@ class Kernel:
         if of_living:
             waiting.register(self._process, select.POLLIN)
         while True:
+            # Look at the clock before reading: an answer that came in time counts, even if the grader was slow to read.
             is_over = (of_living and not self.alive) or left() <= 0
             try:
+                # Answers to earlier orders may still be on their way, for example after an order that ran out of time.
                 while (answer := self._answer()).number < self._sent:
                     pass
                 return answer.said

@@ -119,7 +119,6 @@ class DeskAnswer(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """The answer to an order.
 
     Attributes:
-        number: The number of the order.
         said: How the order ended.
         outputs: For each cell with new outputs since the last answer, all of its outputs, by the index of the cell.
     """

@@ -73,14 +73,14 @@ def _rehearsed() -> list[str]:
         with contextlib.suppress(BaseException):
             _rehearse()
         names = [name for name in sys.modules if name not in before and name != "__main__"]
-        with os.fdopen(writing, "w") as told:
-            told.write("\n".join(names))
+        with os.fdopen(writing, "w") as pipe:
+            pipe.write("\n".join(names))
         os._exit(0)
     os.close(writing)
-    with os.fdopen(reading) as told:
-        found = told.read().split()
+    with os.fdopen(reading) as pipe:
+        modules = pipe.read().split()
     os.waitpid(pid, 0)
-    return found
+    return modules
 
 
 def _rehearse() -> None:

@@ -78,7 +78,6 @@ class BoxedProcesses:
 
     Args:
         addresses: The addresses of the fork servers.
-        setting: The settings of the processes.
 
     Raises:
         NoSandbox: The namespaces could not be made.

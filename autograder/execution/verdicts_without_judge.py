@@ -78,7 +78,6 @@ def zero_points(check: CellCheck, key: str, reason: str, next_step: str, detail:
 
     Args:
         check: The check that should have been made.
-        key: The key of the diagnosis.
         reason: What happened, in words for the student.
         next_step: What the student should do now.
         detail: Further text, such as the end of a traceback.
@@ -114,6 +113,7 @@ def without_verdict(
         hung: The name of a function or class in the cell that hung before, and the title of the cell in which it hung;
             None if none hung.
     """
+    # Each case names the most probable cause, since no judge saw the subject.
     match run.ended:
         case Ended.NOT_RUN | Ended.KERNEL_DIED:
             return _kernel_gone(check, run, before)
@@ -191,6 +191,7 @@ def _stopped_by_error(check: CellCheck, run: CellRun, before: list[tuple[str, Ce
         ((title, cell) for title, cell in before if cell.ended in (Ended.RAISED, Ended.TIMED_OUT, *LIMITS)),
         ("", None),
     )
+    # An earlier cell that was stopped explains the error here better than the error itself, such as a NameError.
     if cause is not None and cause.ended in LIMITS:
         return _limit_exceeded(check, cause.ended, f"the cell that begins with “{title}”")
     if cause is not None and cause.ended is Ended.TIMED_OUT:
@@ -200,6 +201,7 @@ def _stopped_by_error(check: CellCheck, run: CellRun, before: list[tuple[str, Ce
             f"The cell that begins with “{title}” was stopped at its time limit, so no check could begin.",
             "Look for a loop that never ends. To keep a node running, spin it in the background.",
         )
+    # Of two errors, the first one has to be corrected first: the other may go with it.
     first = cause or run
     shortage = next((words for begins, words in _SHORTAGES.items() if first.error.startswith(begins)), None)
     if shortage is not None:
@@ -253,6 +255,7 @@ def verdict_by_tests(check: CellCheck, run: CellRun) -> Verdict | None:
     Returns:
         The verdict; None if the cell was stopped by something other than a failing test.
     """
+    # A failing `assert` decides for all points, as in nbgrader; only other results may give a part of them.
     if run.ended is Ended.RAISED and run.error.startswith(_ASSERTION):
         said = run.error.removeprefix(_ASSERTION).lstrip(": ").strip()
         text = f"A test in this cell failed: {said}" if said else "A test in this cell failed."

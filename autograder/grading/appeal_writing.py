@@ -1,12 +1,12 @@
-"""Writes the appeal file of one check: the student's cells, the judge's evidence, and the verdict."""
+"""Writes the appeal file of one check: the student's cells and page, the judge's evidence, and the verdict."""
 
 from __future__ import annotations
 
-import json
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from autograder import exercises
-from autograder.appeals.appeal_file import Appeal, AppealedCell, dump
+from autograder.appeals.appeal_file import AppealedCell, AppealedCheck, dump
+from autograder.command_name import COMMAND
 from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.grading_errors import (
@@ -18,7 +18,6 @@ from autograder.grading.grading_errors import (
 from autograder.judge import evidence_files
 from autograder.judge.evidence_files import NoEvidence, unpack
 from autograder.safe_files import write_whole
-from environment.installation import COMMAND
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -29,6 +28,8 @@ if TYPE_CHECKING:
 
 FOLDER = "appeals"
 """The name of a class's folder for appeal files."""
+_MAX_PAGE = 8_000_000
+"""The maximum size in bytes of a feedback page in an appeal file. A larger one is only in the class."""
 
 
 def write_appeal(path: Path, student: str, exercise_id: str, to: Path | None = None) -> Path:
@@ -36,7 +37,6 @@ def write_appeal(path: Path, student: str, exercise_id: str, to: Path | None = N
 
     Args:
         path: The class directory.
-        student: The student's id.
         exercise_id: The exercise's id, such as ``"lab_1_2.talker"``.
         to: The path of the appeal file; by default in the class's folder ``appeals``.
 
@@ -49,42 +49,42 @@ def write_appeal(path: Path, student: str, exercise_id: str, to: Path | None = N
     except (exercises.UnknownExercise, exercises.BrokenExercise) as error:
         raise GradingError(f"{error} `{COMMAND} check` lists the exercises.") from error
     with clear_disk_errors(directory.path), ClassStore(directory) as store:
-        content = dump(_appeal(directory, store, student, exercise_id, task))
-        to = (to or directory.path / FOLDER / f"{student}-{exercise_id}.json").absolute()
+        content = _content(directory, store, student, exercise_id, task)
+        to = (to or directory.path / FOLDER / f"{student}-{exercise_id}.zip").absolute()
         with clear_place_errors(to, "-o"):
             write_whole(to, content)
     return to
 
 
-def _appeal(
+def _content(
     directory: ClassDirectory, store: ClassStore, student: str, exercise_id: str, task: str
-) -> Appeal:
+) -> bytes:
     again = course_command("grade", directory.path, "--student", student)
-    kept, entered = store.evidence(student, exercise_id), store.entered()
-    if kept is None:
+    stored, entered = store.evidence(student, exercise_id), store.entered()
+    if stored is None:
         raise GradingError(_why_nothing(directory, entered, student, exercise_id, again))
-    known = entered.get((student, kept.assignment))
-    if known is None or known.tasks.get(kept.notebook) != kept.task:
+    record = entered.get((student, stored.assignment))
+    # An appeal is about the grade that the student sees, so the evidence has to be that of the entered points.
+    if record is None or record.tasks.get(stored.notebook) != stored.task:
         raise GradingError(
-            f"The points of {student} for this check of {kept.notebook} are not in the gradebook, for example "
+            f"The points of {student} for this check of {stored.notebook} are not in the gradebook, for example "
             f"because the last run was a `--dry-run`. Enter the points first: {again}"
         )
     try:
-        seen, cells = unpack(kept.checks[exercise_id]), kept.run_cells()
+        evidence, cells = unpack(stored.checks[exercise_id]), stored.run_cells()
     except (NoEvidence, ValueError) as error:
         raise GradingError(
             f"The evidence of {exercise_id} by {student} is damaged ({error}). Judge the check again: {again} --again"
         ) from error
-    return Appeal(
-        student=student,
-        assignment=kept.assignment,
-        notebook=kept.notebook,
-        task=task,
-        course=kept.course,
-        solution=list(_before(cells, exercise_id)),
-        expected=_expected(exercise_id, seen.reference),
-        seen=seen,
-    )
+    solution = list(_before(cells, exercise_id))
+    check = AppealedCheck(student, stored.assignment, stored.notebook, task, stored.course, solution)
+    page = directory.path / "feedback" / student / stored.assignment / f"{stored.notebook}.html"
+    others = {}
+    if page.is_file() and page.stat().st_size < _MAX_PAGE:
+        others["page.html"] = page.read_bytes()
+    if evidence_files.reference_digest(exercise_id) == evidence.reference:
+        others["expected.json"] = exercises.reference_path(exercise_id).read_bytes()
+    return dump(check, stored.checks[exercise_id], others)
 
 
 def _before(cells: list[RunCell], exercise_id: str) -> Iterator[AppealedCell]:
@@ -96,12 +96,6 @@ def _before(cells: list[RunCell], exercise_id: str) -> Iterator[AppealedCell]:
             yield AppealedCell(cell.name, cell.text.splitlines())
 
 
-def _expected(exercise_id: str, digest: str) -> Any:
-    if evidence_files.reference_digest(exercise_id) != digest:
-        return None
-    return json.loads(exercises.reference_path(exercise_id).read_text(encoding="utf-8"))
-
-
 def _why_nothing(
     directory: ClassDirectory,
     entered: Mapping[tuple[str, str], Entered],
@@ -110,8 +104,8 @@ def _why_nothing(
     again: str,
 ) -> str:
     for assignment in directory.assignments():
-        known = entered.get((student, assignment))
-        for row in known.rows if known else ():
+        record = entered.get((student, assignment))
+        for row in record.rows if record else ():
             if row.exercise == exercise_id:
                 return (
                     f"No evidence of {exercise_id} by {student} is stored. The state in the table is: {row.state}"

@@ -8,14 +8,14 @@ from datetime import UTC
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from autograder.command_name import COMMAND
 from autograder.grading.classes.class_directory import RefusedFile
 from autograder.grading.classes.gradebook_reading import CellEntry, SubmissionEntry, read_due_dates
-from autograder.grading.classes.submission_times import handed_in_at, is_not_believed
 from autograder.grading.collecting.collected_csv import NAME, Table
 from autograder.grading.grading_errors import MasterUnusable, check_known, course_command
-from autograder.grading.table.class_table import Difference
+from autograder.grading.reporting.class_table import Difference
 from autograder.grading.table.rows import LATE, Row
-from environment.installation import COMMAND
+from autograder.grading.tasks.submission_times import handed_in_at, is_not_believed
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
@@ -24,10 +24,10 @@ if TYPE_CHECKING:
     from autograder.execution.executed_cells import Execution
     from autograder.grading.classes.class_directory import ClassDirectory, Submission
     from autograder.grading.classes.gradebook_reading import Entries
-    from autograder.grading.grading_task import Task
-    from autograder.grading.rebuilding.source_points import GradedCell, Released
-    from autograder.grading.rebuilding.submission_fingerprints import Fingerprints
+    from autograder.grading.grading_task import GradedCell, Task
     from autograder.grading.table.roster import Roster
+    from autograder.grading.tasks.source_points import Released
+    from autograder.grading.tasks.submission_fingerprints import Fingerprints
 
 
 @dataclass(frozen=True)
@@ -64,7 +64,6 @@ class Work:
     """The state of a submission during a run.
 
     Attributes:
-        submission: The submission.
         fingerprint: The hash of its files at the beginning of the run.
         notebooks: The names of the assignment's notebooks.
         results: The results by notebook, until they are entered into the gradebook.
@@ -102,7 +101,6 @@ class FoundWork:
     """The submissions of a class, with refused files and notices.
 
     Attributes:
-        works: The chosen submissions.
         others: The other submissions of the class.
         refused: Files and folders that cannot be graded, each with the reason.
         notices: Sentences for the instructor.
@@ -125,10 +123,8 @@ def find_work(
     """Find the submissions of a class, and select the chosen ones.
 
     Args:
-        directory: The class.
         asked: The chosen students and assignments.
         released: The cells with points in the source notebooks.
-        roster: The students of the class.
         fingerprints: Computes the fingerprint of a submission.
         beside: Files in ``submitted`` that lie in a wrong folder.
 
@@ -137,8 +133,8 @@ def find_work(
         GradingError: A chosen name is not an assignment or a student.
     """
     submissions, refused = directory.submissions()
-    found = FoundWork([], [], refused, [])
-    found.refused.extend([*beside, *_unusable(directory, asked, released), *_unplaced(directory, asked)])
+    result = FoundWork([], [], refused, [])
+    result.refused.extend([*beside, *_unusable(directory, asked, released), *_unplaced(directory, asked)])
     submissions = [one for one in submissions if one.assignment in released.cells]
     check_known(asked.assignments, directory.assignments(), "assignment")
     there = {submission.student for submission in submissions}
@@ -149,14 +145,14 @@ def find_work(
     for submission in submissions:
         work = Work(submission, fingerprints.of(submission), names[submission.assignment])
         if is_not_believed(submission.folder):
-            found.notices.append(
+            result.notices.append(
                 f"{submission.student}/{submission.assignment}: timestamp.txt is ignored, because "
                 f"`{COMMAND} collect` did not write it. To set the time of handing in, first type "
                 f"{course_command('collect', directory.path)}. Then write the time into the column handed_in of "
-                f"this submission's line in {NAME}, and type the same command again"
+                f"this submission's line in {NAME}, and type the same command again."
             )
-        (found.works if asked.has(*work.key) else found.others).append(work)
-    return found
+        (result.works if asked.has(*work.key) else result.others).append(work)
+    return result
 
 
 def _unusable(directory: ClassDirectory, asked: AskedFor, released: Released) -> Iterator[RefusedFile]:
@@ -195,23 +191,27 @@ def would_change(
     """Return the changes of points that a run would make, by new verdicts or a late penalty.
 
     Args:
-        directory: The class.
         works: The submissions, with the results of the dry run.
-        entries: The entries of the gradebook.
         cells: The cells with points, by assignment.
     """
-    found = []
+    changes = []
     due = read_due_dates(directory.gradebook_url)
     for work in works:
         entry = entries.get(work.key, SubmissionEntry())
         by_exercise = {cell.exercise: cell for cell in cells[work.submission.assignment]}
         for row in () if work.written else work.rows or ():
             cell = by_exercise[row.exercise]
-            kept = entry.cells.get(cell.notebook, {}).get(cell.name)
-            before = kept.judged if kept else None
+            cell_entry = entry.cells.get(cell.notebook, {}).get(cell.name)
+            before = cell_entry.judged if cell_entry else None
             if before != row.score:
-                note = "the points that a person gave stay" if kept and kept.by_hand is not None else ""
-                found.append(Difference(*work.key, row.exercise, before, row.score, "", row.diagnosis, note))
+                note = (
+                    "the points that a person gave stay"
+                    if cell_entry and cell_entry.by_hand is not None
+                    else ""
+                )
+                changes.append(
+                    Difference(*work.key, row.exercise, before, row.score, "", row.diagnosis, note)
+                )
         then = _foreseen(work, entry, by_exercise, due.get(work.submission.assignment))
         if then.is_late or entry.penalty:
             from autograder.grading.table.late_policy import (
@@ -222,10 +222,10 @@ def would_change(
             then = replace(then, penalties={name: cost or 0.0 for name, cost in costs.items()})
             if then.taken_off != entry.taken_off:
                 before, after = (-one.taken_off if one.taken_off else None for one in (entry, then))
-                found.append(
+                changes.append(
                     Difference(*work.key, LATE, before, after, note=then.why_late(directory.time_zone))
                 )
-    return found
+    return changes
 
 
 def _foreseen(

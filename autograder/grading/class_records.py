@@ -24,7 +24,6 @@ class Attempt:
 
     Attributes:
         at: The time of the grading, in UTC.
-        assignment: The assignment's name.
         work: The fingerprint of the submission, a hash of all files that influence its grade.
         course: The version of the course that graded the submission.
         rows: The judge's results, as rows of the report.
@@ -112,10 +111,7 @@ class KeptEvidence:
     """The evidence of all checks in a student's notebook, for appeals. It has no influence on grades.
 
     Attributes:
-        assignment: The assignment's name.
-        notebook: The notebook's name.
         task: The hash of the executed task, from :meth:`autograder.grading.grading_task.Task.key`.
-        course: The version of the course.
         checks: The evidence by exercise, as packed by the judge (:mod:`autograder.judge.evidence_files`).
         cells: The executed cells: a list of :class:`RunCell`, encoded with MessagePack and compressed.
     """

@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Any, Self, TypeVar
 import msgspec
 
 from autograder.execution.executed_cells import Execution
+from autograder.grading.class_forms import bring_up_to_date
 from autograder.grading.class_records import Attempt, Entered, KeptEvidence, Origin
 from autograder.grading.grading_errors import DiskFull, StoreTrouble, is_disk_full, said_by_database
 from autograder.grading.table.rows import Row
@@ -30,45 +31,6 @@ if TYPE_CHECKING:
     from autograder.grading.grading_task import Task
 
 NAME = "class.db"
-_FORM = 2
-"""The version of the tables, which increases with each change of the tables. A file with another version is not used.
-"""
-_TABLES = """
--- The last result of each notebook. The column task contains the hash of everything on which the result depends.
-CREATE TABLE IF NOT EXISTS result (
-    student TEXT, assignment TEXT, notebook TEXT, task TEXT NOT NULL, execution BLOB NOT NULL,
-    PRIMARY KEY (student, assignment, notebook)
-);
--- The evidence of each notebook, for appeals: packed by exercise, with the executed cells. Evidence is kept for the
--- task whose points are in the gradebook, and for the task that was executed last.
-CREATE TABLE IF NOT EXISTS evidence (
-    student TEXT, assignment TEXT, notebook TEXT, task TEXT NOT NULL, course TEXT NOT NULL,
-    checks BLOB NOT NULL, cells BLOB NOT NULL,
-    PRIMARY KEY (student, assignment, notebook, task)
-);
--- The results that were entered into the gradebook; see the class Entered.
-CREATE TABLE IF NOT EXISTS entered (
-    student TEXT, assignment TEXT, fingerprint TEXT NOT NULL, tasks BLOB NOT NULL, scores BLOB NOT NULL,
-    report BLOB NOT NULL, course TEXT NOT NULL, shown TEXT NOT NULL,
-    PRIMARY KEY (student, assignment)
-);
--- Each grading of a submission; see the class Attempt. Attempts are only added, never changed or removed.
-CREATE TABLE IF NOT EXISTS attempt (
-    number INTEGER PRIMARY KEY, student TEXT NOT NULL, at TEXT NOT NULL, assignment TEXT NOT NULL,
-    work TEXT NOT NULL, course TEXT NOT NULL, report BLOB NOT NULL
-);
-CREATE INDEX IF NOT EXISTS attempt_of ON attempt (student);
-CREATE TRIGGER IF NOT EXISTS not_removed BEFORE DELETE ON attempt BEGIN SELECT RAISE(ABORT, 'attempts stay'); END;
-CREATE TRIGGER IF NOT EXISTS not_changed BEFORE UPDATE ON attempt BEGIN SELECT RAISE(ABORT, 'attempts stay'); END;
--- The class's table of results after each of the last runs that changed the table. The name is the run's time in UTC.
-CREATE TABLE IF NOT EXISTS run (name TEXT PRIMARY KEY, course TEXT NOT NULL, report BLOB NOT NULL);
--- The master from which each source notebook of the class was made; see the class Origin.
-CREATE TABLE IF NOT EXISTS origin (
-    assignment TEXT PRIMARY KEY, master TEXT NOT NULL, text TEXT NOT NULL, work TEXT NOT NULL
-);
--- The cells with points in the source notebooks. They are valid as long as the sources have this fingerprint.
-CREATE TABLE IF NOT EXISTS graded_cells (fingerprint TEXT PRIMARY KEY, cells BLOB NOT NULL);
-"""
 _NOT_ENTERED = (
     "task NOT IN (SELECT value FROM entered AS e, json_each(CAST(e.tasks AS TEXT))"
     " WHERE e.student = evidence.student AND e.assignment = evidence.assignment)"
@@ -240,8 +202,28 @@ class ClassStore:
         ):
             rows = _decoded(report, tuple[Row, ...])
             if rows is not None:
-                found.append(Attempt(datetime.fromisoformat(at), assignment, work, course, rows))
+                own = tuple(replace(row, student=student) for row in rows)
+                found.append(Attempt(datetime.fromisoformat(at), assignment, work, course, own))
         return found
+
+    def rename(self, ids: Mapping[str, str]) -> None:
+        """Give students other ids. If a student had both ids, the results under the new one stay.
+
+        Args:
+            ids: The new ids by the old ones. No new id may be one of the old ones.
+        """
+        if not self._path.exists():
+            return
+        with self._step() as book:
+            for pair in ((new, old) for old, new in ids.items()):
+                for table in ("result", "evidence", "entered", "attempt"):
+                    book.execute(f"UPDATE OR IGNORE {table} SET student = ? WHERE student = ?", pair)
+                for table in ("result", "evidence", "entered"):
+                    book.execute(f"DELETE FROM {table} WHERE student = ?", pair[1:])
+            for name, report in book.execute("SELECT name, report FROM run").fetchall():
+                if rows := _decoded(report, tuple[Row, ...]):
+                    own = [replace(row, student=ids.get(row.student, row.student)) for row in rows]
+                    book.execute("UPDATE run SET report = ? WHERE name = ?", (msgspec.json.encode(own), name))
 
     # -- runs
 
@@ -282,7 +264,7 @@ class ClassStore:
         return {name: Origin(*fields) for name, *fields in self._rows("SELECT * FROM origin")}
 
     def keep_graded_cells(self, fingerprint: str, cells: bytes) -> None:
-        """Store the cells with points in the present source notebooks, in place of all earlier ones."""
+        """Store the cells with points in the present source notebooks, instead of all earlier ones."""
         with self._step() as book:
             book.execute("DELETE FROM graded_cells")
             book.execute("INSERT INTO graded_cells VALUES (?, ?)", (fingerprint, cells))
@@ -329,16 +311,10 @@ class ClassStore:
             self._connection.execute("PRAGMA synchronous = FULL")
             self._has_tables = False
         if not self._has_tables:
-            (form,) = self._connection.execute("PRAGMA user_version").fetchone()
-            if form not in (0, _FORM):
-                whose = " of a newer course" if form > _FORM else ""
-                raise StoreTrouble(
-                    self._path, f"the file has version {form}{whose}, but this course uses version {_FORM}"
-                )
-            if may_make and not form:
-                make = f"BEGIN IMMEDIATE; {_TABLES} PRAGMA user_version = {_FORM}; COMMIT;"
-                self._connection.executescript(make)
-            self._has_tables = may_make or form == _FORM
+            try:
+                self._has_tables = bring_up_to_date(self._connection, self._path, may_make=may_make)
+            except ValueError as error:
+                raise StoreTrouble(self._path, str(error)) from error
         return self._connection
 
     @contextlib.contextmanager

@@ -7,7 +7,8 @@ import errno
 import shlex
 from typing import TYPE_CHECKING
 
-from environment.installation import COMMAND, IS_CLONE, ROOT, installing
+from autograder.command_name import COMMAND
+from environment.installation import IS_CLONE, ROOT, installing
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -165,6 +166,7 @@ def clear_disk_errors(path: Path) -> Iterator[None]:
     except GradingError:
         raise
     except Exception as error:
+        # The order matters: SQLite and SQLAlchemy report a full disk as a database error, too.
         if is_disk_full(error):
             raise DiskFull(path) from error
         if isinstance(error, ModuleNotFoundError) and str(error.name).startswith("psycopg"):
@@ -175,9 +177,10 @@ def clear_disk_errors(path: Path) -> Iterator[None]:
         said = said_by_database(error)
         if said:
             raise GradebookTrouble(path, said) from error
-        if isinstance(error, PermissionError):
+        if isinstance(error, OSError) and error.errno in (errno.EACCES, errno.EPERM, errno.EROFS):
             raise GradingError(
-                f"You do not have the right to read or write {error.filename or path}. Check the file's owner and mode."
+                f"You do not have the right to read or write {error.filename or path}: {error.strerror}. Check its "
+                "owner, its mode, and whether its disk is mounted for reading only."
             ) from error
         raise
 

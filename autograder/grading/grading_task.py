@@ -85,6 +85,24 @@ class Task:
         return Execution(cells=(), verdicts=verdicts, trouble=reason)
 
 
+@dataclass(frozen=True)
+class GradedCell:
+    """A cell with points in a source notebook.
+
+    Attributes:
+        name: The grade_id of the cell.
+        exercise: The id of the exercise that the cell checks; if there is none, the name of the cell.
+        worth: The maximum points of the cell.
+        by_judge: True if the judge or the cell's own tests give the points; False if a person does.
+    """
+
+    notebook: str
+    name: str
+    exercise: str
+    worth: float
+    by_judge: bool = True
+
+
 def points(check: CellCheck, verdict: Verdict) -> float:
     """Return the points for a verdict: the points of the check cell times the share that the judge gave."""
     share = verdict.score / verdict.max_score if verdict.max_score > 0 else 0.0

@@ -17,15 +17,15 @@ from nbgrader.preprocessors import NbGraderPreprocessor
 from rich.console import Console
 from traitlets.config import Application
 
-from autograder.cards.readable_text import printable
 from autograder.grading.batch import grade
+from autograder.grading.class_checks import check_configuration
 from autograder.grading.class_store import ClassStore
-from autograder.grading.classes.class_checks import check_configuration
 from autograder.grading.classes.class_directory import ClassDirectory, Submission, reason_against_name
-from autograder.grading.classes.result_writer import Writer
 from autograder.grading.grading_errors import GradingError, check_known
+from autograder.grading.result_writer import Writer
 from autograder.grading.returning.page_exporter import PageExporter
 from autograder.grading.table.rows import remarks_on
+from autograder.standard_output import printable
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -185,7 +185,8 @@ def _converse(connection: socket.socket, order: Open | None) -> Report:
     try:
         exercise = exercises.get(asked)
     except exercises.UnknownExercise as error:
-        _tell(lines, Refused(str(error)))
+        correct = "Correct the name of the exercise in this cell, and run the cell again."
+        _tell(lines, Judged(not_checked(asked, asked, 0.0, f"{error}\n{correct}", key="unknown_exercise")))
         return Report()
     except exercises.BrokenExercise as error:
         _tell(lines, Refused(f"{' '.join(str(error).split())}\n{WHAT_TO_DO}"))

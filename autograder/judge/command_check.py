@@ -11,14 +11,15 @@ from typing import TYPE_CHECKING
 import msgspec
 
 from autograder import exercises
+from autograder.command_name import COMMAND
 from autograder.dds_discovery import NoFreeDomainError
 from autograder.judge import evidence_files, ros_setup
 from autograder.judge.check_process import Child
 from autograder.judge.machine_fitness import JudgeFailed
-from autograder.kit.runners import Launches
+from autograder.kit.runners import Launches, runner_as_word
 from autograder.messages.judge_messages import Report
 from autograder.verdict import Verdict, not_checked
-from environment.installation import COMMAND
+from autograder.workspaces.sources import full_disk
 from environment.python_child import python_child
 
 if TYPE_CHECKING:
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
 
     from autograder.judge.one_check import Checked
     from autograder.judge.subject import CommandBox
+    from autograder.kit.evidence import Part, Reference
     from autograder.kit.model import Exercise
 
 
@@ -76,6 +78,8 @@ def check_and_keep(
         raise CommandNotFound(
             f"the program {command[0]!r} does not exist here: check its spelling, and that it is executable"
         )
+    if is_path(exercise, command, cwd) and (trouble := full_disk(Path(cwd or ".", command[0]))):
+        return not_checked(exercise.id, exercise.title, exercise.points, trouble, key="disk_full"), b""
     chosen = seed or secrets.token_hex(8)
 
     def report() -> bytes:
@@ -99,10 +103,11 @@ def _as_run(exercise: Exercise, command: Sequence[str], cwd: Path | None) -> Seq
 
     If ``command`` is the path of a workspace or launch file, this is ``python -m autograder.workspaces`` with the path.
     """
-    runner = python_child("-m", "autograder.workspaces", exercise.id).command
-    if is_path(exercise, command, cwd):
-        return [*runner, command[0]]
-    return [*runner, "--", *command] if exercise.wraps_commands else command
+    wraps = exercise.wraps_commands and not is_path(exercise, command, cwd)
+    if exercise.runner is None or not (wraps or is_path(exercise, command, cwd)):
+        return command
+    runner = python_child("-m", "autograder.workspaces", runner_as_word(exercise.runner)).command
+    return [*runner, *(["--"] if wraps else []), *command]
 
 
 def is_path(exercise: Exercise, command: Sequence[str], cwd: Path | None) -> bool:
@@ -131,3 +136,18 @@ def checked_here(
             return checked.verdict, checked
     except (NoFreeDomainError, evidence_files.NoReference, JudgeFailed) as error:
         return not_checked(exercise.id, exercise.title, exercise.points, str(error)), None
+
+
+def recorded_here(exercise: Exercise, command: Sequence[str], reference: Reference) -> Sequence[Part]:
+    """Record what a command does in all parts of an exercise, in this process, which was forked for it.
+
+    Raises:
+        NoFreeDomainError: Every ROS domain of this machine is in use.
+    """
+    ros_setup.prepare_judge()
+    from autograder.judge import reference_recording
+    from autograder.judge.subject import CommandSubject
+
+    with ros_setup.lease_domain() as domain_id:
+        subject = CommandSubject(_as_run(exercise, command, None))
+        return reference_recording.record_variant(exercise, subject, reference, domain_id=domain_id)

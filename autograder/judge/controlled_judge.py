@@ -19,11 +19,11 @@ from typing import TYPE_CHECKING, Any, Protocol, Self
 import msgspec
 
 from autograder import course, exercises
+from autograder.command_name import COMMAND
 from autograder.judge import ros_setup
 from autograder.messages.json_lines import Hangup, Lines, Silent, listen
 from autograder.messages.judge_messages import Close, Open, Report
 from autograder.process_trees import signal_group
-from environment.installation import COMMAND
 from environment.python_child import python_child
 
 if TYPE_CHECKING:

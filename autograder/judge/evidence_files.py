@@ -22,10 +22,10 @@ from typing import TYPE_CHECKING, Any
 
 import msgspec
 
+from autograder.command_name import COMMAND
 from autograder.exercises import reference_path
-from autograder.kit.evidence import Event, Evidence, Part, Reference
+from autograder.kit.evidence import Event, Evidence, Part, Reference, Variant
 from autograder.verdict import Verdict  # noqa: TC001  (msgspec reads the annotations)
-from environment.installation import COMMAND
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 _RECORDED_KINDS = (
     "message", "sent", "request", "response", "goal", "feedback", "cancel", "result", "asked", "answered",
     "goal_sent", "goal_answer", "feedback_heard", "cancel_sent", "cancel_answer", "result_heard",
-    "said", "type",
+    "said", "type", "noted",
 )  # fmt: skip
 
 _UNTIL_CANCELED = ("feedback_heard", "result_heard")
@@ -80,7 +80,15 @@ def reference_digest(exercise_id: str) -> str:
 
 def parse_reference(data: Mapping[str, Any]) -> Reference:
     """Return a reference output from its JSON form."""
-    parts = [
+    variants = [
+        Variant(one["key"], one["text"], one["next_step"], _parts(one["parts"]))
+        for one in data.get("variants", ())
+    ]
+    return Reference(data["exercise"], data["interface"], _parts(data["parts"]), variants)
+
+
+def _parts(listed: Sequence[Mapping[str, Any]]) -> list[Part]:
+    return [
         Part(
             part["name"],
             part["inputs"],
@@ -89,9 +97,8 @@ def parse_reference(data: Mapping[str, Any]) -> Reference:
                 for e in part["events"]
             ],
         )
-        for part in data["parts"]
+        for part in listed
     ]
-    return Reference(data["exercise"], data["interface"], parts)
 
 
 def dump_reference(reference: Reference, kinds: Sequence[str] | None = None) -> str:
@@ -101,24 +108,29 @@ def dump_reference(reference: Reference, kinds: Sequence[str] | None = None) -> 
         reference: The recording.
         kinds: The kinds of events to write; None for the usual kinds.
     """
-    if kinds is not None:
-        parts = [replace(p, events=[e for e in p.events if e.kind in kinds]) for p in reference.parts]
-        reference = replace(reference, parts=parts)
     head = {"exercise": reference.exercise, "interface": _sorted_interface(reference.interface)}
-    lines = json.dumps(head, indent=1, ensure_ascii=False).splitlines()[:-1]
-    return (
-        "\n".join(
-            [
-                *lines[:-1],
-                lines[-1] + ",",
-                ' "parts": [',
-                ",\n".join(map(_part_text, reference.parts)),
-                " ]",
-                "}",
-            ]
-        )
-        + "\n"
-    )
+    blocks = [
+        json.dumps(head, indent=1, ensure_ascii=False).removesuffix("\n}"),
+        f' "parts": [\n{_parts_text(reference.parts, kinds)}\n ]',
+    ]
+    if reference.variants:
+        variants = ",\n".join(_variant_text(variant, kinds) for variant in reference.variants)
+        blocks.append(f' "variants": [\n{variants}\n ]')
+    return ",\n".join(blocks) + "\n}\n"
+
+
+def _variant_text(variant: Variant, kinds: Sequence[str] | None) -> str:
+    head = {"key": variant.key, "text": variant.text, "next_step": variant.next_step}
+    told = json.dumps(head, ensure_ascii=False).removesuffix("}")
+    return f'  {told}, "parts": [\n{_parts_text(variant.parts, kinds)}\n  ]}}'
+
+
+def _parts_text(parts: Sequence[Part], kinds: Sequence[str] | None) -> str:
+    kept = [
+        part if kinds is None else replace(part, events=[e for e in part.events if e.kind in kinds])
+        for part in parts
+    ]
+    return ",\n".join(map(_part_text, kept))
 
 
 def _part_text(part: Part) -> str:
@@ -156,6 +168,8 @@ MAX_RAW_BYTES = 8_000_000
 """The maximum size in bytes before compression. Without it, evidence full of repetitions could be huge, because it is
 small after compression.
 """
+MAX_LINES_BYTES = MAX_RAW_BYTES + 1_000
+"""The maximum size in bytes of all lines. The last line, about what was left out, is written beyond the limit."""
 _GZIP = 31
 """The value of zlib's ``wbits`` for a gzip header with the largest window."""
 _FLOAT = "$float"
@@ -269,15 +283,36 @@ def unpack(data: bytes) -> Kept:
     Raises:
         NoEvidence: The bytes are not evidence, or are damaged.
     """
+    return parse(lines_of(data))
+
+
+def lines_of(data: bytes) -> bytes:
+    """Return the lines of packed evidence, each of which is JSON.
+
+    Raises:
+        NoEvidence: The bytes are not evidence, or are damaged.
+    """
     try:
         unzip = zlib.decompressobj(_GZIP)
-        text = unzip.decompress(data, 2 * MAX_RAW_BYTES)
-        if not unzip.eof:
-            raise NoEvidence("the end of the evidence is missing, or the evidence is larger than allowed")
-        first, *rows, last = [restored(json.loads(line)) for line in text.splitlines()]
+        text = unzip.decompress(data, MAX_LINES_BYTES)
+    except zlib.error as error:
+        raise NoEvidence(str(error)) from error
+    if not unzip.eof:
+        raise NoEvidence("the end of the evidence is missing, or the evidence is larger than allowed")
+    return text
+
+
+def parse(lines: bytes) -> Kept:
+    """Return the evidence that :func:`lines_of` has returned as lines.
+
+    Raises:
+        NoEvidence: The lines are not evidence, or are damaged.
+    """
+    try:
+        first, *rows, last = [json.loads(line, object_hook=restored) for line in lines.splitlines()]
         return msgspec.convert({**first, **last, "looks": _looks(rows)}, type=Kept)
-    except (zlib.error, ValueError, TypeError, LookupError, RecursionError) as error:
-        raise error if isinstance(error, NoEvidence) else NoEvidence(str(error)) from error
+    except (ValueError, TypeError, LookupError, RecursionError) as error:
+        raise NoEvidence(str(error)) from error
 
 
 def _looks(rows: Sequence[Any]) -> list[dict[str, Any]]:
@@ -331,10 +366,6 @@ def plain(value: Any) -> Any:
     return value if isinstance(value, (str, int, float)) or value is None else repr(value)
 
 
-def restored(value: Any) -> Any:
-    """Undo :func:`plain` for numbers such as infinity."""
-    if isinstance(value, dict):
-        if value.keys() == {_FLOAT}:
-            return float(value[_FLOAT])
-        return {key: restored(inner) for key, inner in value.items()}
-    return [restored(inner) for inner in value] if isinstance(value, list) else value
+def restored(value: dict[str, Any]) -> Any:
+    """Undo :func:`plain` for numbers such as infinity, as the ``object_hook`` of ``json.loads``."""
+    return float(value[_FLOAT]) if value.keys() == {_FLOAT} else value

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 from autograder.judge.subject import InOwnProcesses
 from autograder.kit.runners import tells_of_a_build
-from autograder.messages import judge_messages
+from autograder.messages import judge_messages, run_messages
 from autograder.messages.json_lines import Hangup, Lines, NotUnderstood
 from autograder.messages.workspace_messages import Source
 
@@ -108,11 +108,11 @@ class NotebookSubject:
         """Have the notebook make the node (if the subject is a class) or call the function."""
         self._run += 1
         self._recorder = recorder
-        self._end = recorder.end_of_this_part()
+        self._end = recorder.end
         self._marker, self._may_make_more, self._ended = None, False, False
         self._stopped.clear()
         fresh, self._fresh = self._fresh, False
-        self._tell(judge_messages.Start(self._run, fresh, list(arguments), options))
+        self._tell(run_messages.Start(self._run, list(arguments), fresh, options))
         if self._is_class and not recorder.wait(
             lambda: self._marker is not None or self.ended, CONSTRUCT_LIMIT
         ):
@@ -122,7 +122,7 @@ class NotebookSubject:
 
     def interrupt(self) -> None:
         """Have the notebook send Ctrl-C to a program. A class or function in the kernel is not interrupted."""
-        self._tell(judge_messages.Interrupt(self._run))
+        self._tell(run_messages.Interrupt(self._run))
 
     def release(self) -> None:
         """Have the notebook spin the node.
@@ -163,7 +163,7 @@ class NotebookSubject:
 
     def stop(self) -> None:
         """Have the notebook end the run and destroy its nodes."""
-        self._tell(judge_messages.Stop(self._run))
+        self._tell(run_messages.Stop(self._run))
         self._stopped.wait(STOP_LIMIT)
         self._recorder = None
 
@@ -187,7 +187,7 @@ class NotebookSubject:
 
     def _take(self, message: judge_messages.FromNotebook) -> None:
         match message:
-            case judge_messages.Ready():
+            case run_messages.Ready():
                 self._ready.set()
             case judge_messages.EndpointsMet(seen=seen):
                 self._seen_as_told = seen
@@ -197,15 +197,15 @@ class NotebookSubject:
             case _ if message.run == self._run and self._recorder is not None:
                 self._take_of_run(message, self._recorder)
 
-    def _take_of_run(self, message: judge_messages.RunMessage, recorder: Recorder) -> None:
+    def _take_of_run(self, message: judge_messages.OfRun, recorder: Recorder) -> None:
         record, ended = recorder.record, partial(self._note_end, message.run)
         match message:
-            case judge_messages.Stopped():
+            case run_messages.Stopped():
                 self._stopped.set()
             case judge_messages.Stacks(text=text):
                 self._stack = text[:MAX_STACK]
                 self._told_stack.set()
-            case judge_messages.Output(text=text, logged=logged):
+            case run_messages.Output(text=text, logged=logged):
                 record("output", "notebook log" if logged else "notebook", text=text[:MAX_TEXT])
             case judge_messages.Started(accepted=names):
                 record("subject", "started", accepted=names)
@@ -217,7 +217,7 @@ class NotebookSubject:
                 self._may_make_more = goes_on
                 self._marker = marker[:MAX_MARKER]
                 record("subject", "constructed", **({"twin": twin[:MAX_MARKER]} if twin else {}))
-            case judge_messages.Exited(code=code):
+            case run_messages.Exited(code=code):
                 self._end("exited", ended, code=code)
             case judge_messages.Returned(value=value):
                 shown = None if value is None else value[:MAX_TEXT]
@@ -242,8 +242,8 @@ class NotebookPath(InOwnProcesses, NotebookSubject):
 
     tell_so_far = NotebookSubject.tell_so_far
 
-    def _take_of_run(self, message: judge_messages.RunMessage, recorder: Recorder) -> None:
+    def _take_of_run(self, message: judge_messages.OfRun, recorder: Recorder) -> None:
         super()._take_of_run(message, recorder)
         match message:
-            case judge_messages.Output(text=text):
+            case run_messages.Output(text=text):
                 self.is_building = self.is_building and not tells_of_a_build(text)

@@ -11,7 +11,6 @@ from random import Random
 from typing import TYPE_CHECKING
 
 from autograder import exercises, kit
-from autograder.judge import verdict_timeline
 from autograder.judge.bench.bench import TestBench
 from autograder.judge.machine_fitness import (
     NOT_DELIVERED,
@@ -25,14 +24,17 @@ from autograder.judge.machine_fitness import (
     TooBusy,
     delivers,
 )
+from autograder.judge.timeline import verdict_timeline
+from autograder.judge.timeline.parting_point import parting_point
 from autograder.kit.evidence import Evidence, Reference
 from autograder.kit.in_words import of_its_kind, shortened, visible
 from autograder.kit.mistakes.package_mistakes import changed_since_build
 from autograder.kit.model import Advice, Exercise, Finding, Mistake, Pace
+from autograder.kit.runners import runner_trouble
 from autograder.verdict import CriterionResult, Diagnosis, State, Verdict, failed
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping
+    from collections.abc import Callable, Iterator, Mapping, Sequence
 
     from autograder.judge.subject import Subject
     from autograder.kit.evidence import Event
@@ -130,7 +132,7 @@ def _check(
 
     def next_look(pace: Pace, before: Evidence | None = None) -> Seen:
         try:
-            return look(
+            seen = look(
                 exercise,
                 subject,
                 reference,
@@ -143,6 +145,9 @@ def _check(
             )
         except OutOfTime:
             raise _too_busy(verdict) from None
+        if trouble := runner_trouble(seen.evidence.parts):
+            raise JudgeFailed(f"the course could not prepare the program: {trouble}")
+        return seen
 
     subject.begin(domain_id)
     seen = next_look(Pace.FAST)
@@ -268,7 +273,7 @@ def judge(exercise: Exercise, evidence: Evidence, seed: str) -> Verdict:
         for finding in [_with_name(c.judge(evidence), lost.get(c.name))]
     )
     passed = all(criterion.passed for criterion in criteria)
-    diagnosis, traceback = (None, "") if passed else diagnose(exercise, evidence)
+    diagnosis, traceback = (None, "") if passed else diagnose(exercise, evidence, criteria)
     told = (diagnosis.text if diagnosis else "", *(one.seen for one in criteria if not one.passed))
     remarks = (*exercise.remarks, *([changed_since_build] if exercise.runner else []))
     return Verdict(
@@ -293,8 +298,13 @@ def _with_name(finding: Finding, wrong: Event | None) -> Finding:
     return Finding(False, f"the name {wrong.name}", f"the name {wrong.data['real']}")
 
 
-def diagnose(exercise: Exercise, evidence: Evidence) -> tuple[Diagnosis, str]:
+def diagnose(
+    exercise: Exercise, evidence: Evidence, criteria: Sequence[CriterionResult] = ()
+) -> tuple[Diagnosis, str]:
     """Return the diagnosis of the first known mistake in the evidence, and the traceback that shows it, if any.
+
+    If no mistake is known, the diagnosis says where the run leaves the reference solution's. If that is not clear
+    either, it quotes the first criterion that is not met.
 
     Another traceback is not returned. It may come from another run and from a correct line, but a student would take it
     for the mistake.
@@ -307,13 +317,13 @@ def diagnose(exercise: Exercise, evidence: Evidence) -> tuple[Diagnosis, str]:
             _cut(of_its_kind(shortened(visible(words)), in_a_notebook), 2 * MAX_WORDS)
             for words in (advice.text, advice.next_step)
         )
-        return Diagnosis(mistake.key, text, next_step), advice.traceback
-    unknown = Diagnosis(
-        UNKNOWN,
-        "The judge does not recognize this mistake.",
-        "Compare what was expected with what was seen, criterion by criterion.",
-    )
-    return unknown, ""
+        return Diagnosis(advice.key or mistake.key, text, next_step), advice.traceback
+    failed = next((one for one in criteria if not one.passed), None)
+    seen = f"“{failed.title}” is not met: {failed.seen}. Asked: {failed.expected}." if failed else ""
+    text = of_its_kind(shortened(visible(parting_point(evidence) or seen)), evidence.in_a_notebook)
+    return Diagnosis(
+        UNKNOWN, _cut(text, 2 * MAX_WORDS), "Find the line of your code that does this, and change it."
+    ), ""
 
 
 def _recognised(exercise: Exercise, evidence: Evidence) -> tuple[Mistake, Advice] | None:

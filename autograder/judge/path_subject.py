@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from autograder.judge.machine_fitness import JudgeFailed
 from autograder.judge.subject import InOwnProcesses
 from autograder.kit.evidence import REPORTS
-from autograder.messages import workspace_messages
+from autograder.messages import run_messages, workspace_messages
 from autograder.messages.json_lines import Hangup, Lines, NotUnderstood
 from autograder.messages.judge_messages import Collect, FromNotebook, Sources
 from autograder.messages.workspace_messages import Source
@@ -104,19 +104,19 @@ class PathSubject(InOwnProcesses):
         del options
         self._run += 1
         self._recorder = recorder
-        self._end = recorder.end_of_this_part()
+        self._end = recorder.end
         self._ended.clear()
         self._stopped.clear()
         self._built.clear()
         self._began = time.monotonic()
-        self._say(workspace_messages.StartProgram(self._run, tuple(map(str, arguments))))
+        self._say(run_messages.Start(self._run, list(map(str, arguments))))
 
     def release(self) -> None:
         """Do nothing, because a program runs from its start on."""
 
     def interrupt(self) -> None:
         """Have the workspace service send Ctrl-C to the program."""
-        self._say(workspace_messages.InterruptProgram(self._run))
+        self._say(run_messages.Interrupt(self._run))
 
     @property
     def ended(self) -> bool:
@@ -138,7 +138,7 @@ class PathSubject(InOwnProcesses):
         self._recorder = None
         waited = not self._built.is_set() and not self.ended and time.monotonic() - self._began > PATIENCE
         if not self.trouble:
-            self._say(workspace_messages.StopProgram(self._run))
+            self._say(run_messages.Stop(self._run))
             if not self._stopped.wait(STOP_LIMIT):
                 raise JudgeFailed("the grader's workspace service did not end the run")
         if waited:
@@ -187,11 +187,11 @@ class PathSubject(InOwnProcesses):
         match message:
             case workspace_messages.Trouble(why=why):
                 self._fail(why)
-            case workspace_messages.ServiceReady():
+            case run_messages.Ready():
                 self._ready.set()
             case _ if message.run != self._run:
                 pass  # a message about an earlier run
-            case workspace_messages.ProgramStopped():
+            case run_messages.Stopped():
                 self._stopped.set()
             case workspace_messages.BuildEnded():
                 self._built.set()
@@ -202,9 +202,9 @@ class PathSubject(InOwnProcesses):
         match message:
             case workspace_messages.ReportLine(text=text):
                 record("output", "report", text=text)
-            case workspace_messages.ProgramOutput(text=text):
+            case run_messages.Output(text=text):
                 record("output", "stdout", text=as_words(text))
-            case workspace_messages.ProgramExited(code=code):
+            case run_messages.Exited(code=code):
                 self._end("exited", self._ended.set, code=code)
 
     def _fail(self, why: str) -> None:

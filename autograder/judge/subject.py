@@ -204,7 +204,7 @@ class CommandSubject(InOwnProcesses):
         except (OSError, ValueError) as error:
             raise CannotStart(f"cannot start {self._command[0]!r}: {error}") from error
         self._done, self._dying, self._last_words = threading.Event(), threading.Event(), []
-        follow = (recorder.in_this_part(), recorder.end_of_this_part(), self._process, self._done)
+        follow = (recorder.record, recorder.end, self._process, self._done)
         threading.Thread(target=self._follow, args=follow, daemon=True).start()
 
     def _spawn(self, command: Sequence[str], environment: Mapping[str, str]) -> subprocess.Popen[bytes]:

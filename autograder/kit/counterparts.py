@@ -67,14 +67,17 @@ class ActionCaller(Protocol):
     """A client with which the judge sends goals to one action. Its goals are numbered from 0.
 
     It records the events ``servers``, ``goal_sent``, ``goal_answer``, ``feedback_heard``, ``cancel_sent``,
-    ``cancel_answer`` and ``result_heard``. All but ``servers`` contain the number of the goal.
+    ``cancel_answer``, ``goal_ended`` and ``result_heard``. All but ``servers`` contain the number of the goal.
     """
 
     def await_server(self, within: float) -> bool:
         """Wait until the client can send goals; False if no matching server appears in ``within`` seconds."""
 
-    def send_goal(self, **fields: Any) -> int:
-        """Send a goal, and request the result once the goal is accepted. Return the number of the goal."""
+    def send_goal(self, number: int | None = None, /, **fields: Any) -> int:
+        """Send a goal, and request the result once the goal is accepted. Return the number of the goal.
+
+        The number of an earlier goal must not be given again; by default goals are counted from 0.
+        """
 
     def cancel(self, goal: int) -> None:
         """Request to cancel a goal."""

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import functools
+import itertools
 from collections.abc import Iterator, Mapping, Sequence  # noqa: TC003  (what reads kept evidence needs the types)
 from dataclasses import dataclass, field
 from typing import Any
 
 import re2
 
-from environment.installation import COMMAND
+from autograder.command_name import COMMAND
 
 
 @dataclass(frozen=True)
@@ -154,6 +155,8 @@ For example, if a Python program ends while one of its threads still spins, the 
 (``terminate called without an active exception``), and faulthandler then prints the stacks.
 """
 _FRAME = re2.compile(r'\s+File ".*", line \d+')
+_SEGFAULT = "Fatal Python error: Segmentation fault"
+_STACK_FRAME = re2.compile(r'(  File ".*", line \d+)( in .*)')
 _LOGGING_ERROR = "--- Logging error ---"
 _OF_A_LOGGING_ERROR = ("Call stack:", "    ", "Message: ", "Arguments: ")
 """The beginnings of the lines that Python's ``logging`` prints after the traceback of an error in a log call.
@@ -247,8 +250,10 @@ def _traceback_in(lines: Sequence[str]) -> str:
     """Return the last Python traceback in lines of output, as a terminal would show it.
 
     A traceback that was cut off, because the process died or another thread printed in between, counts only if no
-    complete one exists.
+    complete one exists. A crash in compiled code ended the process, so its stack is the last traceback.
     """
+    if _SEGFAULT in lines:
+        return _as_traceback(lines[lines.index(_SEGFAULT) :])
     starts = [
         i
         for i, line in enumerate(lines)
@@ -265,6 +270,13 @@ def _traceback_in(lines: Sequence[str]) -> str:
         return "\n".join(lines[syntax[0] : ends[-1] + 1]) if ends and syntax else ""
     found = [_traceback_at(lines, start) for start in starts]
     return "\n".join(next((taken for taken in reversed(found) if not is_cut_off(taken)), found[-1]))
+
+
+def _as_traceback(stacks: Sequence[str]) -> str:
+    """Return the stack of the thread that crashed, as faulthandler prints it, in the form of a traceback."""
+    crashed = itertools.dropwhile(lambda line: not line.startswith("Current thread"), stacks)
+    frames = [_STACK_FRAME.sub(r"\1,\2", line) for line in itertools.takewhile(bool, crashed)]
+    return "\n".join([f"{_TRACEBACK}:", *frames[:0:-1], _SEGFAULT.partition(": ")[2]])
 
 
 def is_cut_off(traceback: Sequence[str]) -> bool:
@@ -323,6 +335,23 @@ class Evidence:
 
 
 @dataclass(frozen=True)
+class Variant:
+    """What the judge recorded of a wrong answer of the bank, with the text for a student whose node does the same.
+
+    Attributes:
+        key: The key of the mistake.
+        text: What the node does wrong.
+        next_step: What the student should do now.
+        parts: The record of the wrong answer, with the same parts as the reference solution's.
+    """
+
+    key: str
+    text: str
+    next_step: str
+    parts: Sequence[Part]
+
+
+@dataclass(frozen=True)
 class Reference:
     """A reference output: what the judge recorded on the wire when it ran the reference solution.
 
@@ -330,11 +359,13 @@ class Reference:
         exercise: The exercise's id.
         interface: For each role, the types of the reference solution's endpoints by name.
         parts: The record of the reference solution, with the same parts as a subject's.
+        variants: The records of wrong answers that a card can name.
     """
 
     exercise: str
     interface: Mapping[str, Mapping[str, str]]
     parts: Sequence[Part] = ()
+    variants: Sequence[Variant] = ()
 
     def part(self, name: str) -> Part:
         """Return the part with this name.

@@ -15,7 +15,7 @@ from autograder.kit.model import Pace, mistake
 from autograder.kit.service_calls import HANGS_AFTER
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Iterable, Sequence
 
     from autograder.kit.counterparts import ActionCounterpart
     from autograder.kit.evidence import Event, Evidence, Part
@@ -47,6 +47,9 @@ PATIENT = 1.2
 """A client that waited this many seconds for its server before it gave up was patient, and may have missed the server
 only by a moment.
 """
+HESITATION = 0.45
+"""A client that waits for its server asks it sooner than after this many seconds: ``wait_for_service`` of rclpy looks
+four times a second."""
 LONG = 4.0
 """A client that waited this many seconds for its server has not missed it by a moment, so one more run is enough."""
 
@@ -78,6 +81,23 @@ def may_be_impatient(bench: Bench) -> bool:
     if limit is None:
         return not was_patient(absent)
     return not limit * TOO_SHORT <= waited(absent) <= limit + CLOSELY
+
+
+def second_lateness(parts: Iterable[Part], request: str) -> float:
+    """Return the server's delay in seconds in the second try of a client that has missed its late server.
+
+    A client that let time pass before it asked a server that was available may go by a clock, and not wait at all. Then
+    a sooner server would only suit its clock.
+
+    Args:
+        parts: The runs of the client in which its server was available.
+        request: The event kind of the client's request to the server.
+    """
+    for part in parts:
+        asked, *ready = map(part.first, (request, "serving", "interface"))
+        if asked and asked.t - max((event.t for event in ready if event), default=asked.t) > HESITATION:
+            return LATENESS
+    return SOON
 
 
 def called_before_server(part: Part) -> bool:
@@ -234,7 +254,12 @@ def looks_for_it(bench: Bench, part: Part, role: str) -> bool | None:
 
 
 def meets_late(
-    bench: Bench, meet: Callable[[float], bool], role: str, request: str, lateness: float = LATENESS
+    bench: Bench,
+    meet: Callable[[float], bool],
+    role: str,
+    request: str,
+    lateness: float = LATENESS,
+    again: float = SOON,
 ) -> bool:
     """Run the subject with a late server. If a patient subject ends without a request, run the subject again.
 
@@ -248,13 +273,14 @@ def meets_late(
         role: The role of the subject's endpoint, such as ``client``.
         request: The event kind of the subject's request to the server.
         lateness: The delay of the server in the first run, in seconds.
+        again: The delay in a further run, as :func:`second_lateness` returns it.
 
     Returns:
         True if the subject finished its work in the last run.
     """
 
     def sooner() -> bool:
-        return meet(SOON)
+        return meet(again)
 
     def missed(seen: Part) -> bool:
         # If a client waits for another server, a further run would show the same.
@@ -271,6 +297,7 @@ def meets_late_action(
     requests: Sequence[str],
     lateness: float = LATENESS,
     held: float | None = None,
+    again: float = SOON,
 ) -> bool:
     """Run the subject with an action server that is late and that holds back its answers.
 
@@ -284,12 +311,13 @@ def meets_late_action(
         requests: The event kinds of the requests whose answers the judge holds back.
         lateness: The delay of the server in the first run, in seconds.
         held: The delay of these answers in the first run, in seconds; by default, the value of :func:`answers_late`.
+        again: The delay of the server in a further run, as :func:`second_lateness` returns it.
 
     Returns:
         True if the subject finished its work in the last run.
     """
     delay = answers_late(bench) if held is None else held
-    done = meets_late(bench, lambda late: meet(late, delay), "action_client", "goal", lateness)
+    done = meets_late(bench, lambda late: meet(late, delay), "action_client", "goal", lateness, again)
 
     def missed_an_answer(seen: Part) -> bool:
         return not seen.of("result_request") and was_patient_with_an_answer(seen, requests)

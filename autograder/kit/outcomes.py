@@ -95,9 +95,9 @@ def goal(part: Part, number: int) -> Goal:
     """Return the goal with a given number; the judge numbers its goals from 0."""
     events = [event for event in part.events if event.data.get("goal") == number]
     first = {event.kind: place for place, event in reversed(list(enumerate(events)))}
-    by_kind = {kind: events[place] for kind, place in first.items()}
-    data = {kind: event.data for kind, event in by_kind.items()}
+    data = {kind: events[place].data for kind, place in first.items()}
     result = data.get("result_heard", {})
+    moments = [events[first[kind]].t for kind in ("goal_answer", "result_heard") if kind in first]
     ended_at = result.get("arrived", math.inf)
     places = [
         i for i, e in enumerate(events) if e.kind == "feedback_heard" and e.data.get("sent", 0.0) <= ended_at
@@ -116,7 +116,7 @@ def goal(part: Part, number: int) -> Goal:
         cancelled_too_late=data.get("cancel_answer", {}).get("return_code") == _ERROR_GOAL_TERMINATED,
         before_cancel=sum(place < split for place in places),
         unread=sum(split < place < answered for place in places),
-        seconds=by_kind["result_heard"].t - by_kind["goal_answer"].t if "result_heard" in by_kind else None,
+        seconds=moments[1] - moments[0] if len(moments) == 2 else None,
         status=result.get("status"),
         result=result.get("fields", {}),
     )
@@ -234,8 +234,8 @@ def _with_status_names(line: str) -> str:
 
 
 def _most_telling(part: Part, others: Sequence[Part]) -> str:
-    """Return the last line whose words occur in no other run; if there is none, the last line with words."""
-    lines = [line for line in all_lines(part) if re2.search(r"\pL", line) and line != "None"]
+    """Return the last line whose words occur in no other run; if there is none, the last line with a word or number."""
+    lines = [line for line in all_lines(part) if re2.search(r"[\pL\pN]", line) and line != part.returned]
     usual = _shapes(others)
     new = [line for line in lines if shape(line) not in usual]
     return (new or lines or [""])[-1]

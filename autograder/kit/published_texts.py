@@ -16,7 +16,7 @@ import re2
 
 from autograder.kit.in_words import counted, first_difference
 from autograder.kit.model import Advice, Finding
-from autograder.kit.rules import sent_times, simulated_times
+from autograder.kit.rules import sent_times, simulated_times, successive
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -58,6 +58,12 @@ class Publisher:
     def messages(self) -> list[Event]:
         """The messages on the topic, in order."""
         return self.part.of("message", self.topic)
+
+    @cached_property
+    def replaced(self) -> str:
+        """In words, how many publishers the program made one after another; empty if its publisher lasts."""
+        many = successive(self.part, self.topic)
+        return f"{many} publishers, one after another" if many else ""
 
     @cached_property
     def texts(self) -> list[str]:
@@ -206,10 +212,11 @@ def counts(seen: Publisher, expected: Publisher) -> Finding:
     found = ", ".join(map(str, numbers)) if len(numbers) < enough else _around(numbers, _slip(numbers, step))
     if steady and (more := _uncounted(seen, expected)):
         found = f"{counted(more, 'message')} more before {found}"
-    passed = steady and seen.went_on and _starts_right(seen, expected)
+    passed = steady and seen.went_on and _starts_right(seen, expected) and not seen.replaced
     if passed and (lost := seen.number_of_first - 1):
         found += f" after {counted(lost, 'message')} before anybody could hear"
-    return Finding(passed, _row(expected.counters[:5]), found or "no whole number arrived")
+    found = seen.replaced or found or "no whole number arrived"
+    return Finding(passed, _row(expected.counters[:5]), found)
 
 
 def _goes_on_slowly(seen: Publisher, expected: Publisher) -> bool:

@@ -33,6 +33,8 @@ TRIES = 3
 """The maximum number of series at the given pace. Several are needed, because a busy machine may be too slow for a
 moment.
 """
+PAIRS = 3
+"""The number of texts in each series after which the next text is sent at once: a listener has to report both."""
 GREETING = "Hello, world!"
 """The text with which many talkers begin their messages, and which some of the judge's texts contain."""
 _UNUSUAL = 6
@@ -71,6 +73,12 @@ def random_texts(random: Random) -> list[str]:
         texts[far] = f"{random.choice(_ELSEWHERE)}  {texts[far]}"
         texts[single] = texts[single].replace(" ", "_")
     return texts
+
+
+def drawn_pairs(random: Random, texts: Sequence[str]) -> list[str]:
+    """Draw the texts of :func:`random_texts` that the next text of their series follows at once."""
+    rows = (texts[1 + AT_PACE * i : AT_PACE * (i + 1)] for i in range(TRIES))
+    return [text for row in rows for text in random.sample(row, PAIRS)]
 
 
 _QUOTED = re2.compile(r"[\"“«].*[\pL\pN_].*[\"”»]")

@@ -50,6 +50,8 @@ ON_THE_WAY = 0.3
 """The maximum delay in seconds from sending to arrival. If the delay of a message is longer, or negative, its time of
 sending is ignored.
 """
+SUCCESSIVE, APART = 3, 0.3
+"""The minimum number of endpoints that count as made again for each message, and the seconds between two of them."""
 ROUNDING = 0.005
 """The number of seconds by which a message may seem to arrive before it was sent, because times are rounded."""
 
@@ -169,6 +171,16 @@ def confirmed(rate: Rate, before: Rate, wanted: float) -> bool:
     """
     wrong = abs(before.period - wanted) > SIMULATED_TOLERANCE * wanted
     return wrong and abs(rate.period - before.period) < abs(rate.period - wanted)
+
+
+def successive(part: Part, topic: str) -> int:
+    """Return how many endpoints of the subject the judge met on a topic, one after another; 0 if they last.
+
+    A program that makes a new endpoint for each message loses messages by chance, because each must be discovered.
+    """
+    moments = {int(event.moment / APART): event.data["count"] for event in part.of("matched", topic)}
+    many = len(set(moments.values()))
+    return many if many >= SUCCESSIVE else 0
 
 
 def keeps_rate(seen: Part, expected: Part) -> Finding:

@@ -96,6 +96,21 @@ class LaunchesFromPackage:
 
 
 Runner = RunsProgram | RunsPrograms | ServesInterface | Launches | LaunchesFromPackage
+_KINDS: dict[str, type[Runner]] = {
+    kind.__name__: kind
+    for kind in (RunsProgram, RunsPrograms, ServesInterface, Launches, LaunchesFromPackage)
+}
+
+
+def runner_as_word(runner: Runner) -> str:
+    """Return a runner as an argument for a process that cannot see the exercise, such as one in a box."""
+    return json.dumps([type(runner).__name__, asdict(runner)])
+
+
+def runner_from_word(word: str) -> Runner:
+    """Undo :func:`runner_as_word`."""
+    kind, fields = json.loads(word)
+    return _KINDS[kind](**fields)
 
 
 WORKSPACE_MARK = REPORTS[0]
@@ -163,7 +178,8 @@ class WorkspaceReport:
     """The state of a workspace before its build, or the outcome of the build.
 
     Attributes:
-        phase: ``"found"`` before the build, ``"built"`` after it.
+        phase: ``"found"`` before the build, ``"built"`` after it; ``"failed"`` if the runner itself failed before it
+            started the student's program.
         built: True if every package was built.
         trouble: The kind of failure: ``"no_workspace"``, ``"no_package"``, ``"bad_package"``, ``"entry_point"`` or
             ``"build"``; empty if there is none.
@@ -245,6 +261,19 @@ def _written(report: WorkspaceReport) -> str:
 def report_of(part: Part, phase: str = "built") -> WorkspaceReport | None:
     """Return the first report of a phase; None if there is none, for example because the subject is not a workspace."""
     return next((report for _, report in _reports(part) if report.phase == phase), None)
+
+
+def failed_line(error: Exception) -> str:
+    """Return the line of the report about a runner that itself failed."""
+    return workspace_report_line(
+        WorkspaceReport("failed", built=False, line=f"{type(error).__name__}: {error}")
+    )
+
+
+def runner_trouble(parts: Sequence[Part]) -> str:
+    """Return why a runner itself failed; empty if none did. A program cannot say so: a build was reported before it."""
+    reports = (report_of(part, "failed") for part in parts if report_of(part) is None)
+    return next((report.line for report in reports if report is not None), "")
 
 
 def tells_of_a_build(line: str) -> bool:

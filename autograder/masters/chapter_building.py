@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING, Any
 import nbformat
 import re2
 from nbgrader.utils import compute_checksum
-from rich.console import Console
 
-from autograder import course
+from autograder import course, standard_output
+from autograder.command_name import COMMAND
 from autograder.course import SOLUTION
 from autograder.masters.code_cells import exercise_points
 from autograder.masters.master_files import MasterError, chapter_notebooks, chapter_path, masters
@@ -22,10 +22,11 @@ from autograder.masters.notebook_release import release_text
 from autograder.masters.reference_solutions import solution_files
 from autograder.masters.source_notebooks import Points, named_cells, notebook_of, service_links
 from autograder.safe_files import write_whole
-from environment.installation import COMMAND
 
 if TYPE_CHECKING:
     from pathlib import Path
+
+    from rich.console import Console
 
 
 _NOTEBOOK = ".ipynb"
@@ -105,7 +106,7 @@ def build_command(
     Returns:
         The exit code: 0 if the chapters are up to date, 1 if they are not, 2 if a master cannot be used.
     """
-    console = console or Console()
+    console = console or standard_output.console()
     try:
         report = build(root, check=check, points=points)
     except MasterError as error:

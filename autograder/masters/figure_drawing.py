@@ -29,7 +29,7 @@ SCALE = 1.5
 SIGNATURE = b"\x89PNG\r\n\x1a\n"
 """The bytes with which a PNG file begins."""
 _HEADER_LENGTH = len(SIGNATURE) + 8 + 13 + 4
-COLOURS = 256
+COLORS = 256
 _PIXELS = """async png => {
     const picture = await createImageBitmap(await (await fetch("data:image/png;base64," + png)).blob());
     const canvas = new OffscreenCanvas(picture.width, picture.height);
@@ -69,11 +69,11 @@ def _draw(figures: Sequence[Path], chromium: str) -> None:
         for svg in figures:
             page.goto(svg.resolve().as_uri())
             png = page.locator("svg").first.screenshot(omit_background=True)
-            svg.with_suffix(".png").write_bytes(signed(_with_few_colours(page, png), svg.read_bytes()))
+            svg.with_suffix(".png").write_bytes(signed(_with_few_colors(page, png), svg.read_bytes()))
         browser.close()
 
 
-def _with_few_colours(page: Page, png: bytes) -> bytes:
+def _with_few_colors(page: Page, png: bytes) -> bytes:
     """Return the picture as a PNG with a palette of few colors, which makes the file a third as large.
 
     Args:
@@ -84,11 +84,11 @@ def _with_few_colours(page: Page, png: bytes) -> bytes:
     width, height, text = page.evaluate(_PIXELS, base64.b64encode(png).decode("ascii"))
     pixels = numpy.frombuffer(base64.b64decode(text), numpy.uint8).reshape(height * width, 4)
     coarse = (pixels.astype(numpy.uint16) + 8) // 17 * 17
-    colours, places, counts = numpy.unique(coarse, axis=0, return_inverse=True, return_counts=True)
-    kept = numpy.argsort(-counts)[:COLOURS]
-    distances = ((colours[:, None, :].astype(int) - colours[None, kept, :]) ** 2).sum(axis=2)
+    colors, places, counts = numpy.unique(coarse, axis=0, return_inverse=True, return_counts=True)
+    kept = numpy.argsort(-counts)[:COLORS]
+    distances = ((colors[:, None, :].astype(int) - colors[None, kept, :]) ** 2).sum(axis=2)
     rows = distances.argmin(axis=1).astype(numpy.uint8)[places].reshape(height, width)
-    palette = colours[kept].astype(numpy.uint8)
+    palette = colors[kept].astype(numpy.uint8)
     # In a PNG, each line of pixels begins with the number of its filter; 0 means none.
     lines = numpy.insert(rows, 0, 0, axis=1).tobytes()
     header = width.to_bytes(4) + height.to_bytes(4) + bytes((8, 3, 0, 0, 0))

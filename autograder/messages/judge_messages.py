@@ -12,6 +12,16 @@ from typing import Any
 import msgspec
 
 from autograder.messages.json_lines import Message
+from autograder.messages.run_messages import (
+    Exited,
+    Interrupt,
+    Output,
+    Ready,
+    RunMessage,
+    Start,
+    Stop,
+    Stopped,
+)
 from autograder.messages.workspace_messages import Source
 from autograder.verdict import Verdict  # noqa: TC001  (msgspec reads the annotations)
 
@@ -31,10 +41,6 @@ class Check(Message, frozen=True):
 
     exercise: str
     kind: str = "function"
-
-
-class Ready(Message, frozen=True):
-    """The notebook has received :class:`Begin`, and is ready to start runs."""
 
 
 class EndpointsMet(Message, frozen=True, tag="met"):
@@ -58,23 +64,13 @@ class Sources(Message, frozen=True):
 # --- From the notebook: about a run of its subject
 
 
-class _RunMessage(Message, frozen=True):
-    """The common part of messages about something that happened in a run.
-
-    Attributes:
-        run: The number of the run, as in :class:`Start`.
-    """
-
-    run: int
-
-
-class Started(_RunMessage, frozen=True):
+class Started(RunMessage, frozen=True):
     """The function was called. ``accepted`` lists the options of :class:`Start` for which it has a parameter."""
 
     accepted: list[str]
 
 
-class Constructed(_RunMessage, frozen=True):
+class Constructed(RunMessage, frozen=True):
     """The node's constructor has returned. ``marker`` is a topic that was created after all of the node's endpoints.
 
     ``goes_on`` is true if the node has a timer or a thread, which may make more endpoints once the node spins.
@@ -86,54 +82,37 @@ class Constructed(_RunMessage, frozen=True):
     twin: str = ""
 
 
-class Called(_RunMessage, frozen=True):
+class Called(RunMessage, frozen=True):
     """The subject has called a service, or has sent a goal."""
 
 
-class Looked(_RunMessage, frozen=True):
+class Looked(RunMessage, frozen=True):
     """The subject has read the ROS graph."""
 
 
-class Output(_RunMessage, frozen=True):
-    """A line that the subject has printed or logged."""
-
-    text: str
-    logged: bool = False
-
-
-class Returned(_RunMessage, frozen=True):
+class Returned(RunMessage, frozen=True):
     """The function has returned; ``value`` is the ``repr`` of its result, or None if the result is None."""
 
     value: str | None = None
 
 
-class Raised(_RunMessage, frozen=True):
+class Raised(RunMessage, frozen=True):
     """The subject has raised an exception, and has ended."""
 
     traceback: str
 
 
-class Exited(_RunMessage, frozen=True):
-    """The process that runs a workspace or launch file has ended."""
-
-    code: int | None = None
-
-
-class Stacks(_RunMessage, frozen=True, tag="stack"):
+class Stacks(RunMessage, frozen=True, tag="stack"):
     """The stacks of the subject's threads."""
 
     text: str
 
 
-class Stopped(_RunMessage, frozen=True):
-    """The run is over, and its nodes are destroyed."""
-
-
-RunMessage = (
+OfRun = (
     Started | Constructed | Called | Looked | Output | Returned | Raised | Exited
     | Stacks | Stopped
 )  # fmt: skip
-FromNotebook = Check | Ready | EndpointsMet | Source | Sources | RunMessage
+FromNotebook = Check | Ready | EndpointsMet | Source | Sources | OfRun
 
 
 # --- From the judge
@@ -172,44 +151,12 @@ class Meet(Message, frozen=True):
     within: float
 
 
-class Start(Message, frozen=True):
-    """A request to make the node, call the function, or start the process.
-
-    Attributes:
-        run: The number of this run.
-        fresh: True to make a new context first.
-        arguments: The arguments of the class or function.
-        options: Keyword arguments, which are passed if the subject has parameters with these names.
-    """
-
-    run: int
-    fresh: bool
-    arguments: list[Any]
-    options: dict[str, Any]
-
-
-class Release(Message, frozen=True):
+class Release(RunMessage, frozen=True):
     """A request to spin the node."""
 
-    run: int
 
-
-class Interrupt(Message, frozen=True):
-    """A request to send Ctrl-C to the process that runs a workspace or launch file."""
-
-    run: int
-
-
-class Stack(Message, frozen=True):
+class Stack(RunMessage, frozen=True):
     """A request for the stacks of the subject's threads."""
-
-    run: int
-
-
-class Stop(Message, frozen=True):
-    """A request to end the run."""
-
-    run: int
 
 
 class SoFar(Message, frozen=True, tag="so_far"):

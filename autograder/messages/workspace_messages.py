@@ -6,6 +6,16 @@ The service's reports and the programs' output have different types, so that no 
 from __future__ import annotations
 
 from autograder.messages.json_lines import Message
+from autograder.messages.run_messages import (
+    Exited,
+    Interrupt,
+    Output,
+    Ready,
+    RunMessage,
+    Start,
+    Stop,
+    Stopped,
+)
 
 
 class Source(Message, frozen=True):
@@ -43,71 +53,20 @@ class CheckRequest(Message, frozen=True, tag="check"):
     trouble: str = ""
 
 
-class StartProgram(Message, frozen=True, tag="start"):
-    """A request to run the submission. The service builds it first, unless it has been built already.
-
-    Attributes:
-        run: The number of the run.
-        arguments: The program's arguments. If an exercise is about several programs, the first argument chooses one.
-    """
-
-    run: int
-    arguments: tuple[str, ...] = ()
-
-
-class InterruptProgram(Message, frozen=True, tag="interrupt"):
-    """A request to send Ctrl-C to the program of the run. The run continues until the program ends or is stopped."""
-
-    run: int
-
-
-class StopProgram(Message, frozen=True, tag="stop"):
-    """A request to end the run."""
-
-    run: int
-
-
-ToService = StartProgram | InterruptProgram | StopProgram
+ToService = Start | Interrupt | Stop
 
 
 # --- A check: from the workspace service
 
 
-class ServiceReady(Message, frozen=True, tag="ready"):
-    """The service has received the sources."""
-
-
-class BuildEnded(Message, frozen=True, tag="built"):
+class BuildEnded(RunMessage, frozen=True, tag="built"):
     """The build has ended, with or without success."""
 
-    run: int
 
-
-class ReportLine(Message, frozen=True, tag="report"):
+class ReportLine(RunMessage, frozen=True, tag="report"):
     """A line of the service's report."""
 
-    run: int
     text: str
-
-
-class ProgramOutput(Message, frozen=True, tag="output"):
-    """A line that a program has printed."""
-
-    run: int
-    text: str
-
-
-class ProgramExited(Message, frozen=True, tag="exited"):
-    """The program has ended by itself; the exit code is None if it is not known."""
-
-    run: int
-    code: int | None = None
-
-
-class ProgramStopped(Message, frozen=True, tag="stopped"):
-    """The run is over, and its processes have ended."""
-
-    run: int
 
 
 class Trouble(Message, frozen=True):
@@ -116,9 +75,7 @@ class Trouble(Message, frozen=True):
     why: str
 
 
-FromService = (
-    ServiceReady | BuildEnded | ReportLine | ProgramOutput | ProgramExited | ProgramStopped | Trouble
-)
+FromService = Ready | BuildEnded | ReportLine | Output | Exited | Stopped | Trouble
 
 
 # --- A build for a graded notebook

@@ -15,6 +15,7 @@ from __future__ import annotations
 
 import dis
 import hashlib
+import importlib
 import re  # noqa: TID251  (a student's cells, in the student's kernel)
 import traceback
 from dataclasses import dataclass
@@ -22,7 +23,7 @@ from pathlib import Path
 from types import CodeType, FunctionType
 from typing import TYPE_CHECKING, Any
 
-from autograder import course, foreign_code
+from autograder import course, known_errors
 from autograder.notebook.cell_output import last_student_line, notebook_shell, student_frames
 
 if TYPE_CHECKING:
@@ -144,8 +145,10 @@ class _FailedCells:
         self._dropped: dict[str, tuple[Any, list[str]]] = {}
         shell.events.register("pre_run_cell", self._cell_begins)
         shell.events.register("post_run_cell", self._cell_ended)
+        usage_error = importlib.import_module("IPython.core.error").UsageError
         shell.set_custom_exc(
-            (NameError, ImportError, AttributeError, TypeError, RuntimeError), self._show_error
+            (NameError, ImportError, AttributeError, TypeError, RuntimeError, SyntaxError, usage_error),
+            self._show_error,
         )
 
     def why_missing(self, name: str) -> str:
@@ -178,7 +181,7 @@ class _FailedCells:
             if error is None or variables.get(name) is not before.get(name):
                 self._failures.pop(name, None)
             else:
-                words = filter(None, (_error_sentence(error), _advice_on_foreign_code(error)))
+                words = filter(None, (_error_sentence(error), _advice(error)))
                 self._failures[name] = _Failure(cell, " ".join(words))
         for name in known - names:
             # If another cell, an import or an assignment has defined the name since then, this newer definition is up
@@ -194,9 +197,11 @@ class _FailedCells:
             words and trace.tb_next is not None and trace.tb_next.tb_next is None
         ):  # the error was raised by the cell itself, not by a function that it calls
             error._render_traceback_ = lambda: [words]  # type: ignore[attr-defined]
-        elif advice := _advice_on_foreign_code(error):
+        elif advice := _advice(error):
+            if type(error).__name__ == "UsageError":  # IPython shows only the message
+                error.args = (f"{error}\n{advice}",)
             error.add_note(advice)
-        shell.showtraceback(running_compiled_code=True)
+        shell.showtraceback(running_compiled_code=not isinstance(error, SyntaxError))
 
     def _what_to_run(self, name: str) -> str:
         if not re.search(_CHECKED.format(re.escape(name)), self._source, re.MULTILINE):
@@ -227,15 +232,15 @@ def _error_sentence(error: BaseException) -> str:
     return (f"{named}, {message.rstrip('.?')}" if message else named) + "."
 
 
-def _advice_on_foreign_code(error: BaseException) -> str:
-    """Return advice if the error shows that code was copied from outside the course; otherwise an empty text."""
+def _advice(error: BaseException) -> str:
+    """Return what the table of known errors says about an error in a cell; empty if it does not know the error."""
     shown = traceback.format_exception(type(error), error, student_frames(error.__traceback__))
     try:
         packages = course.interfaces()
     except (OSError, course.NoCourse, course.BrokenChapter):  # a grader's kernel sees no course folder
         packages = ()
-    found = foreign_code.recognized("".join(shown), foreign_code.packages(packages))
-    return f"{found.text} {found.next_step}" if found else ""
+    row = known_errors.recognized("".join(shown), "cell", known_errors.packages(packages))
+    return f"{row.means} {row.do}" if row else ""
 
 
 def _names_read(subject: Any) -> set[str]:

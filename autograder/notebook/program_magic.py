@@ -1,8 +1,11 @@
-"""The cell magic ``%%program``, which works like ``%%writefile`` and also copies definitions from the notebook.
+"""The cell magics ``%%program`` and ``%%writefile``; ``%%program`` also copies definitions from the notebook.
 
 A line such as ``# copied from this notebook: TalkerNode`` is replaced by the newest definition of ``TalkerNode`` in the
 cells that have run, together with the imports and helpers that it uses. After changing the class, a student just runs
 its cell and the ``%%program`` cell again.
+
+Both leave a file alone that has the text already, because `colcon` and a check count a file that is written again as
+changed since the last build. On a full disk, the file stays as it was.
 """
 
 from __future__ import annotations
@@ -14,32 +17,53 @@ from pathlib import Path
 from typing import Any
 
 from autograder.notebook.cell_output import notebook_shell
+from autograder.safe_files import write_whole
 
 _COPIED = re.compile(r"^# copied from this notebook: (?P<names>\w+(?:, \w+)*)$", re.MULTILINE)
 _IMPORTS = (ast.Import, ast.ImportFrom)
 
 
-class NotRunError(Exception):
-    """No cell that has run defines the name."""
+class NotWrittenError(Exception):
+    """The file is as it was before. The message says why."""
 
     def _render_traceback_(self) -> list[str]:
         """Return the message only, because a traceback would not help. IPython calls this."""
         return [f"Nothing was written. {self}"]
 
 
+class NotRunError(NotWrittenError):
+    """No cell that has run defines the name."""
+
+
 def program(line: str, cell: str) -> None:
     """Write a cell to a file, with definitions from the notebook. IPython calls this for ``%%program PATH``.
+
+    IPython also calls it for ``%%writefile PATH``, and for ``%%writefile -a PATH``, which appends the cell to the file.
 
     Raises:
         NotRunError: No cell that has run in this kernel defines one of the names.
         OSError: The file cannot be written.
     """
-    (name,) = shlex.split(line)
+    *appends, name = shlex.split(line)
     shell: Any = notebook_shell()
     text = with_definitions(cell, [source for source in shell.user_ns.get("In", ()) if source])
     path = Path(name).expanduser()
+    _write(path, path.read_text(encoding="utf-8") + text if appends and path.exists() else text)
+
+
+def _write(path: Path, text: str) -> None:
+    data, mode = text.encode(), path.stat().st_mode if path.exists() else None
+    if path.is_file() and path.read_bytes() == data:
+        print("Unchanged", path)
+        return
     print("Overwriting" if path.exists() else "Writing", path)
-    path.write_text(text, encoding="utf-8")
+    path.parent.stat()  # an error if there is no such folder, which would be made
+    try:
+        write_whole(path.resolve(), data)
+    except OSError as error:
+        raise NotWrittenError(f"{path} cannot be written: {error.strerror}.") from error
+    if mode is not None:
+        path.chmod(mode)
 
 
 def with_definitions(text: str, cells: list[str]) -> str:
@@ -190,12 +214,13 @@ def _stored(node: ast.stmt) -> set[str]:
 
 
 def load_ipython_extension(shell: Any) -> None:
-    """Define the magic ``%%program``.
+    """Define the magics ``%%program`` and ``%%writefile``.
 
     In a grader's kernel, this module is imported before IPython's shell exists. So IPython calls this function later,
     when it loads its extensions.
     """
-    shell.register_magic_function(program, "cell", "program")
+    for name in ("program", "writefile"):
+        shell.register_magic_function(program, "cell", name)
 
 
 if notebook_shell() is not None:

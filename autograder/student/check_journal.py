@@ -90,15 +90,16 @@ def session_journal_path() -> Path | None:
     return None
 
 
-def note_check(verdict: Verdict, journal: Path | None = None) -> None:
-    """Record a check that has ended, unless it could not be made.
+def note_check(verdict: Verdict, journal: Path | None = None) -> bool:
+    """Record a check that has ended, unless it could not be made. Return False if the journal cannot be written.
 
     Args:
         verdict: The verdict of the check.
         journal: The journal to write to; by default this session's.
     """
-    if verdict.state != "not_checked":
-        note(JournalEntry("check", verdict.exercise, time.time(), verdict.score, verdict.max_score), journal)
+    return verdict.state == "not_checked" or note(
+        JournalEntry("check", verdict.exercise, time.time(), verdict.score, verdict.max_score), journal
+    )
 
 
 def note(entry: JournalEntry, journal: Path | None = None) -> bool:

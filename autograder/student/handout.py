@@ -15,12 +15,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from autograder import course
+from autograder.command_name import COMMAND
 from autograder.course import HANDED_OUT
 from autograder.exercises import REFERENCE
 from autograder.masters.chapter_building import holds_work
 from autograder.masters.master_files import relinked
 from autograder.safe_files import write_whole
-from environment.installation import COMMAND, PACKAGE
+from environment.installation import PACKAGE
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Sequence

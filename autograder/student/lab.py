@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 from autograder.dds_discovery import DOMAIN_VARIABLE, DomainClaim, claim_free_domain, domain_from_environment
 from autograder.student import check_journal
+from autograder.student.known_classes import is_known
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -37,10 +38,6 @@ prints.
 NOTEBOOKS_VARIABLE = "AUTOGRADER_NOTEBOOKS"
 """The environment variable that tells terminals the folder of the session's notebooks."""
 _CONFIG_PATH = "JUPYTER_CONFIG_PATH"
-_BUILD_TYPE = "CMAKE_BUILD_TYPE"
-"""The environment variable that makes a student's `colcon build` use the same build type as a check. With another build
-type, a value of the wrong type in a message would end the process, and a check would have to build again.
-"""
 _DISCOVERY = ("ROS_AUTOMATIC_DISCOVERY_RANGE", "ROS_LOCALHOST_ONLY")
 
 
@@ -69,9 +66,11 @@ def open_lab(folder: Path, arguments: Sequence[str] = ()) -> None:
     os.chdir(folder)
     os.environ[NOTEBOOKS_VARIABLE] = str(Path.cwd())
     os.environ[check_journal.VARIABLE] = str(check_journal.journal_path(Path.cwd()))
-    os.environ[_BUILD_TYPE] = os.environ.get(_BUILD_TYPE) or "Release"
     from jupyterlab.labapp import LabApp
+    from nbgrader.apps import NbGrader
 
+    # For *Validate*, which would run the configuration file of the folder.
+    NbGrader.load_cwd_config = is_known(Path.cwd())
     try:
         # JupyterLab runs in this process, because the claim on the domain ends with this process.
         LabApp.launch_instance([*START_PAGE, NOTHING_TO_SAVE, *QUIET, *_start_folder(Path.cwd()), *arguments])

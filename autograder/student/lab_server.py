@@ -21,6 +21,7 @@ from jupyter_server.auth.decorator import authorized
 from jupyter_server.base.handlers import JupyterHandler
 from jupyter_server.services.contents.largefilemanager import AsyncLargeFileManager
 from jupyter_server.utils import url_path_join
+from nbgrader.server_extensions.validate_assignment.handlers import ValidateAssignmentHandler
 from tornado import web
 
 from autograder import course, exercises
@@ -30,6 +31,7 @@ from autograder.student.check_journal import JournalEntry
 from autograder.student.lab import COURSE_PAGE
 from autograder.student.notebook_reset import CannotReset, reset
 from autograder.student.progress import Standing, page_html, standing, trouble_html
+from environment.python_child import python_child
 
 if TYPE_CHECKING:
     from jupyter_server.serverapp import ServerApp
@@ -147,6 +149,42 @@ class _Certificate(_CourseHandler):
         raise web.HTTPError(404, reason="this certificate does not exist yet")
 
 
+class _Validation(_CourseHandler):
+    """Tells how far nbgrader's *Validate* is."""
+
+    @web.authenticated
+    @authorized
+    async def get(self) -> None:
+        """Send the number of the running cell, 0 before the first; nothing if the notebook is not validated."""
+        self.finish(self.settings.get(_PROGRESS, {}).get(self.get_query_argument("notebook"), {}))
+
+
+_PROGRESS = "course_validation"
+"""The setting of the server that contains the progress of each notebook that is validated, by its path."""
+_MAX_ANSWER = 10_000_000
+"""The maximum length of nbgrader's answer in bytes."""
+
+
+@web.authenticated
+async def _validate(handler: ValidateAssignmentHandler) -> None:
+    """Validate a notebook in a process of its own, so that the server can tell how far it is."""
+    notebook = json.loads(handler.request.body)["path"]
+    command = python_child("-m", "autograder.student.validation", str(handler.root_dir), notebook).command
+    progress = handler.settings.setdefault(_PROGRESS, {})
+    progress[notebook] = said = {"at": 0}
+    process = await asyncio.create_subprocess_exec(
+        *command, stdin=asyncio.subprocess.DEVNULL, stdout=asyncio.subprocess.PIPE, limit=_MAX_ANSWER
+    )
+    assert process.stdout is not None
+    try:
+        async for line in process.stdout:
+            progress[notebook] = said = json.loads(line)
+    finally:
+        del progress[notebook]
+    ended = {"success": False, "value": "Validate ended before the last cell. Try again."}
+    handler.finish(json.dumps(said.get("answer", ended)))
+
+
 VERSION = sys.version.split()[0]
 """The version of the kernel's language (``IPythonKernel.language_info``), which is the version of the server's own
 Python.
@@ -175,6 +213,7 @@ def _jupyter_server_extension_points() -> list[dict[str, str]]:
 
 def _load_jupyter_server_extension(server: ServerApp) -> None:
     _tell_the_address_last(server)
+    ValidateAssignmentHandler.post = _validate
     base = url_path_join(server.web_app.settings["base_url"], COURSE_PAGE)
     server.web_app.add_handlers(  # type: ignore[no-untyped-call]
         ".*$",
@@ -182,6 +221,7 @@ def _load_jupyter_server_extension(server: ServerApp) -> None:
             (f"{base}/?", _CoursePage),
             (f"{base}/read", _ReadMark),
             (f"{base}/reset", _ResetNotebook),
+            (f"{base}/validation", _Validation),
             (f"{base}/certificate/([A-Za-z0-9_.-]+)\\.svg", _Certificate),
         ],
     )

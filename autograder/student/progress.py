@@ -17,9 +17,9 @@ import msgspec
 from autograder import course, exercises
 from autograder.cards.card_wording import points, points_of
 from autograder.cards.html_rendering import certificate_svg, certificate_text
+from autograder.command_name import COMMAND
 from autograder.student import check_journal
 from autograder.student.lab import COURSE_PAGE
-from environment.installation import COMMAND
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence

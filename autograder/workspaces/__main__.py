@@ -18,7 +18,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from autograder import exercises
-from autograder.kit.runners import Launches, LaunchesFromPackage, RunsPrograms
+from autograder.kit.runners import (
+    Launches,
+    LaunchesFromPackage,
+    RunsPrograms,
+    failed_line,
+    runner_from_word,
+)
 from autograder.process_trees import die_with_parent
 from autograder.workspaces.builds.students_builds import StudentsBuilds
 from autograder.workspaces.packages import workspace_of
@@ -33,23 +39,32 @@ if TYPE_CHECKING:
 
 
 def main(arguments: Sequence[str]) -> int:
-    """Run ``python -m autograder.workspaces EXERCISE PATH``, or ``EXERCISE -- COMMAND`` for a launch command.
+    """Run ``python -m autograder.workspaces RUNNER PATH``, or ``RUNNER -- COMMAND`` for a launch command.
 
-    If an exercise has several programs, the path is followed by the name of one of them. If the exercise is about a
-    launch, the path may be followed by ``--alone`` and the name of a program to run instead of the launch. The exit
-    code is returned.
+    RUNNER is an exercise's id or, in a box, which sees no exercises, the exercise's runner
+    (:func:`autograder.kit.runners.runner_as_word`). If an exercise has several programs, the path is followed by the
+    name of one of them. If the exercise is about a launch, the path may be followed by ``--alone`` and the name of a
+    program to run instead of the launch. The exit code is returned.
     """
-    exercise = exercises.get(arguments[0])
     die_with_parent(number=signal.SIGTERM)
-    if isinstance(exercise.runner, Launches):
-        return _launch(arguments[1:])
-    launches = isinstance(exercise.runner, LaunchesFromPackage)
-    several = isinstance(exercise.runner, RunsPrograms)
-    if exercise.runner is None or (len(arguments) > 2 and not launches) != several:
-        print(f"{exercise.id} takes no path: give it the class or function, or a command", file=sys.stderr)
+    try:
+        return _run_subject(*arguments)
+    except Exception as error:
+        print_line(failed_line(error))
+        return 2
+
+
+def _run_subject(word: str, *rest: str) -> int:
+    runner = runner_from_word(word) if word.startswith("[") else exercises.get(word).runner
+    if isinstance(runner, Launches):
+        return _launch(rest)
+    launches = isinstance(runner, LaunchesFromPackage)
+    several = isinstance(runner, RunsPrograms)
+    if runner is None or (len(rest) > 1 and not launches) != several:
+        print(f"{word} takes no path: give it the class or function, or a command", file=sys.stderr)
         return 2
     here = Preparation(StudentsBuilds(), print_line)
-    prepared = here.workspace(plan_for(exercise.runner, arguments[2:]), Path(arguments[1]))
+    prepared = here.workspace(plan_for(runner, rest[1:]), Path(rest[0]))
     if prepared is not None and launches:
         return _run(prepared)
     if prepared is not None:

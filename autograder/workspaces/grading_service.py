@@ -21,6 +21,7 @@ from typing import TYPE_CHECKING, Self
 
 from autograder import exercises
 from autograder.kit.runners import Launches, LaunchesFromPackage, ServesInterface
+from autograder.messages import run_messages
 from autograder.messages import workspace_messages as messages
 from autograder.messages.json_lines import Hangup, Lines, NotUnderstood, listen
 from autograder.safe_files import fresh_folder
@@ -225,17 +226,17 @@ class _WorkspaceCheck:
             first.trouble or wrong,
             {**self._variables, "ROS_DOMAIN_ID": str(first.domain)},
         )
-        self._lines.say(messages.ServiceReady())
+        self._lines.say(run_messages.Ready())
         while True:
             order: messages.ToService = self._lines.hear(messages.ToService)
-            if isinstance(order, messages.InterruptProgram):
+            if isinstance(order, run_messages.Interrupt):
                 self._interrupt(order.run)
                 continue
             self._stop()
-            if isinstance(order, messages.StartProgram):
+            if isinstance(order, run_messages.Start):
                 self._run = _ProgramRun(self._lines, self._builds, submitted, order)
             else:
-                self._lines.say(messages.ProgramStopped(order.run))
+                self._lines.say(run_messages.Stopped(order.run))
 
     def _take_sources(self, check: messages.CheckRequest) -> str:
         """Receive the sources, and write them into a folder. Return what is wrong with them; empty if nothing is."""
@@ -285,7 +286,7 @@ class _ProgramRun:
     """One run of the submitted program, in a thread."""
 
     def __init__(
-        self, lines: Lines, builds: GradedBuilds, submitted: _SubmittedSources, order: messages.StartProgram
+        self, lines: Lines, builds: GradedBuilds, submitted: _SubmittedSources, order: run_messages.Start
     ) -> None:
         self._lines = lines
         self._submitted = submitted
@@ -337,7 +338,7 @@ class _ProgramRun:
         tree = self._submitted.tree
         if not file.is_file():
             self._lines.say(
-                messages.ProgramOutput(self.number, f"there is no launch file {self._submitted.path}")
+                run_messages.Output(self.number, f"there is no launch file {self._submitted.path}")
             )
             self._exited(1)
             return
@@ -377,7 +378,7 @@ class _ProgramRun:
         for text in output_lines(program, lambda: not self._cancelled.is_set()):
             left -= len(text) + 1  # count the line's end, so that empty lines use up the limit, too
             if left > 0:
-                self._lines.say(messages.ProgramOutput(self.number, text))
+                self._lines.say(run_messages.Output(self.number, text))
 
     def _report(self, line: str) -> None:
         """Send the judge a line of the report, with paths changed to those in the notebook's folder."""
@@ -389,4 +390,4 @@ class _ProgramRun:
         self._lines.say(messages.BuildEnded(self.number))
 
     def _exited(self, code: int | None) -> None:
-        self._lines.say(messages.ProgramExited(self.number, code))
+        self._lines.say(run_messages.Exited(self.number, code))

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import re2
 
+from autograder.course import NoCourse
 from autograder.kit.runners import Interface, PackageReport, WorkspaceReport, workspace_report_line
 from autograder.workspaces.builds.colcon_build import describe_workspace
 from autograder.workspaces.builds.install_folder import relocated, with_prefixes
@@ -108,11 +109,15 @@ class Preparation:
         return self._launched(command, file, made, course) if made.ok else None
 
     def _course(self) -> Build | None:
-        """Return the build of the course's own packages; None in a student's copy of the course.
+        """Return the build of the course's own packages; None in a student's copy of the course, also in a box.
 
         A student's copy does not contain these packages, because they are the solutions of Lab 1.2.
         """
-        if not (own := reference_workspace()).is_dir():
+        try:
+            own = reference_workspace()
+        except NoCourse:
+            return None
+        if not own.is_dir():
             return None
         course = self.builds.build(describe_workspace(own), None, name=COURSE)
         if not course.ok:

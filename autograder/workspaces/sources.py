@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import hashlib
 import os
+import shutil
 import stat
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
@@ -130,6 +131,23 @@ def collect_launch(file: Path, workspace: Path | None) -> tuple[str, list[Source
     beside = sorted(other for other in file.parent.iterdir() if other.suffix in LAUNCH_COMPANIONS)
     sources = filter(None, (_read_file(other, other.name, MAX_FILE) for other in beside))
     return file.name, _bounded([*sources, *(collect_workspace(workspace) if workspace else [])])
+
+
+ROOM = 1_000_000
+"""Free bytes of a disk below which it counts as full, because no workspace can be built."""
+
+
+def full_disk(path: str | os.PathLike[str]) -> str:
+    """Return why nothing on the disk of a workspace or launch file can be checked; empty if there is room on it.
+
+    On a full disk, programs leave empty files behind, which look like mistakes of the student.
+    """
+    if not os.path.exists(path) or shutil.disk_usage(path).free >= ROOM:  # noqa: PTH110  (a path may be a text)
+        return ""
+    return (
+        f"The disk with {os.fspath(path)} is full, so files that you have just written may be empty.\n"
+        "Delete what you do not need, write these files again, and repeat the check."
+    )
 
 
 def read_sources(folder: Path, name: str, largest: int) -> Iterator[Source]:

@@ -170,10 +170,14 @@ def _create(args: argparse.Namespace) -> Outcome:
             "different destination directory or package name"
         )
     _tell(package, args.destination_directory)
-    _folder(top)
-    _file(top, "package.xml", templates.package_xml(package))
-    (_write_python if package.build_type == "ament_python" else _write_cmake)(package, top)
-    _write_license(package.license, top)
+    try:
+        _folder(top)
+        _file(top, "package.xml", templates.package_xml(package))
+        (_write_python if package.build_type == "ament_python" else _write_cmake)(package, top)
+        _write_license(package.license, top)
+    except OSError as error:
+        shutil.rmtree(top, ignore_errors=True)
+        return f"\nAborted!\n{top} cannot be written, and nothing of it is left: {error.strerror}"
     return None
 
 

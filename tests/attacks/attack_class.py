@@ -21,7 +21,7 @@ import ordinary_user
 from attack_bank import HERE, USUAL, Attack
 
 from autograder import course
-from autograder.grading.classes.new_class import new_class
+from autograder.grading.new_classes.new_class import new_class
 from autograder.kit import reported_texts
 
 if TYPE_CHECKING:

@@ -1,4 +1,4 @@
-"""What docs/scale.md says a class costs is what was measured."""
+"""What docs/performance.md says a class costs is what was measured."""
 
 from __future__ import annotations
 

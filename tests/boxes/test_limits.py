@@ -195,6 +195,67 @@ def test_a_bomb_that_was_faster_than_the_watch_is_no_matter_of_files(monkeypatch
     guard.close()
 
 
+@pytest.mark.parametrize(
+    ("hoard", "ended"),
+    [
+        ("bytearray(os.urandom(1000) * 300_000)", Ended.OUT_OF_MEMORY),
+        ("[os.eventfd(0) for _ in range(190)]", Ended.TOO_MANY_FILES),
+    ],
+)
+def test_what_a_process_holds_whose_first_thread_has_ended(run: Run, hoard: str, ended: Ended) -> None:
+    """Linux shows such a process as a zombie without memory and files (proc_pid_task(5))."""
+    hides = f"""
+import ctypes, os, platform, threading, time
+EXIT = {{"x86_64": 60, "aarch64": 93}}[platform.machine()]
+def hoards():
+    time.sleep(0.2)
+    held = {hoard}
+    time.sleep(600)
+for _ in range(3):
+    if os.fork() == 0:
+        threading.Thread(target=hoards).start()
+        ctypes.CDLL(None).syscall(EXIT, 0)
+time.sleep(5)
+"""
+    execution = run(hides, memory_bytes=600_000_000, all_open_files=500)
+    assert execution.cells[0].ended is ended
+
+
+@pytest.mark.parametrize("beside", [True, False])
+@pytest.mark.parametrize("used_up", ["watches", "pipes"])
+def test_who_runs_while_the_counters_of_the_user_are_used_up_runs_again_alone(
+    monkeypatch: pytest.MonkeyPatch, used_up: str, beside: bool
+) -> None:
+    """Whichever submission used them up: each box that runs at that time ends for memory, and runs again alone."""
+    room = {"watches": True, "pipes": True}
+    monkeypatch.setattr(limit_guards, "usable", dict)
+    monkeypatch.setattr(limit_guards, "use_of", lambda *_: limit_guards.Use(0, 0, 0, 0.0, 0))
+    monkeypatch.setattr(limit_guards, "INTERVAL", 0.0)
+    monkeypatch.setattr(limit_guards, "_can_watch", lambda: room["watches"])
+    monkeypatch.setattr(limit_guards, "_can_make_large_pipes", lambda: room["pipes"])
+    monkeypatch.setattr(limit_guards, "_used_up_at", 0.0)
+    guards = [limit_guards.BoxGuard(Limits(beside=beside)) for _ in range(2)]
+    for guard in guards:
+        guard.watch(os.getpid())
+        assert guard.exceeded() is None
+    room[used_up] = False
+    ended = Ended.OUT_OF_MEMORY if beside or used_up == "watches" else None
+    assert guards[0].exceeded() is ended
+    room[used_up] = True  # the box has ended, before the other one was looked at
+    assert guards[1].exceeded() is ended
+    room[used_up] = False  # somebody else's doing, since before this one began
+    late = limit_guards.BoxGuard(Limits(beside=beside))
+    late.watch(os.getpid())
+    assert late.exceeded() is None
+    for guard in (*guards, late):
+        guard.close()
+
+
+def test_a_user_whose_counters_have_room_is_found_to_have_room() -> None:
+    assert limit_guards._can_watch()
+    assert limit_guards._can_make_large_pipes()
+
+
 def test_threads_that_the_system_refuses(run: Run) -> None:
     threads = (
         "import threading, time\nfor _ in range(300):\n"

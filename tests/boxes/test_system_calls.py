@@ -60,6 +60,8 @@ def _says(program_bytes: bytes, machine: str, name: str | int, *arguments: int, 
                 position += yes if register >= value else no
             case 0x45:
                 position += yes if register & value else no
+            case 0x54:
+                register &= value
             case _:
                 raise AssertionError(f"not an instruction of these filters: {code:#x}")
 
@@ -84,6 +86,8 @@ def test_what_needs_no_answer_is_refused(machine: str) -> None:
         "semget",
         "msgget",
         "mbind",
+        "set_mempolicy",
+        "set_mempolicy_home_node",
         "seccomp",
     ):
         assert decide(machine, name) == ERRNO | errno.EPERM, name
@@ -107,6 +111,10 @@ def test_clone_makes_threads_and_processes_and_no_namespaces(machine: str) -> No
     thread, process = 0x3D0F00, 17
     assert decide(machine, "clone", thread) == decide(machine, "clone", process) == ALLOW
     assert decide(machine, "clone", process | CLONE_FILES) == ERRNO | errno.EPERM
+    # /proc/PID/fd shows the table of open files of a process, so all of its threads have to share this table.
+    assert decide(machine, "clone", thread & ~CLONE_FILES) == ERRNO | errno.EPERM
+    assert decide(machine, "close_range", 3, 9, 2) == ERRNO | errno.EPERM
+    assert decide(machine, "close_range", 3, 9, 4) == ALLOW
     for flag in (CLONE_NEWUSER, CLONE_NEWNET):
         assert decide(machine, "clone", process | flag) == ERRNO | errno.EPERM
     assert decide(machine, "clone3") == ERRNO | errno.ENOSYS
@@ -136,8 +144,16 @@ def test_no_program_for_the_kernel_is_made(machine: str) -> None:
         assert decide(machine, "setsockopt", 3, socket.SOL_SOCKET, option) == ERRNO | errno.EPERM
     assert decide(machine, "setsockopt", 3, socket.IPPROTO_IPV6, socket.IPV6_V6ONLY) == ALLOW  # which is 26
     assert decide(machine, "setsockopt", 3, socket.SOL_SOCKET, socket.SO_REUSEPORT) == ALLOW
+    assert decide(machine, "setsockopt", 3, socket.IPPROTO_TCP, 26) == ALLOW
     assert decide(machine, "prctl", PR_SET_SECCOMP) == ERRNO | errno.EPERM
     assert decide(machine, "prctl", PR_SET_DUMPABLE) == ALLOW
+
+
+@machines
+def test_what_linux_counts_for_a_user_or_for_all_of_the_machine_is_left_to_others(machine: str) -> None:
+    """Pages locked by SO_ZEROCOPY (for a user), and flow labels of IPv6 (4,096 for all networks of a machine)."""
+    assert decide(machine, "setsockopt", 3, socket.SOL_SOCKET, 60) == ERRNO | errno.EPERM
+    assert decide(machine, "setsockopt", 3, socket.IPPROTO_IPV6, 32) == ERRNO | errno.EPERM
 
 
 @machines

@@ -21,8 +21,8 @@ from tiny_class import TinyClass
 
 from autograder import course
 from autograder.cli import cli
-from autograder.grading.classes.new_class import new_class
-from autograder.grading.classes.sample_class import made_notebook, sample_notebooks
+from autograder.grading.new_classes.new_class import new_class
+from autograder.grading.new_classes.sample_class import made_notebook, sample_notebooks
 from autograder.grading.rebuilding import nbformat_nodes
 
 if TYPE_CHECKING:

@@ -65,7 +65,7 @@ def test_a_student_errs_reads_the_card_mends_it_and_validates(page: Page, lab: s
     notebook.write(r"^class TalkerNode", answer("lab_1_2.talker/right/as_hinted.py"))
     notebook.write(r"^class ListenerNode", answer("lab_1_2.listener/right/as_hinted.py"))
     for name in ("talker", "listener"):
-        notebook.write(rf"^%%writefile .*/{name}\.py", program(name))
+        notebook.write(rf"^%%(?:writefile|program) .*/{name}\.py", program(name))
     notebook.write(r"^entry_points = ", ENTRY_POINTS)
     notebook.menu("Run", "Run All Cells")
     listener = notebook.cell(LISTENER_CHECK)
@@ -83,6 +83,10 @@ def test_a_student_errs_reads_the_card_mends_it_and_validates(page: Page, lab: s
     look(page, "programs")
 
     notebook.panel.get_by_text("Validate", exact=True).click()
+    expect(page.locator(".Toastify")).to_contain_text(
+        re.compile(r"Validate: cell \d+ of \d+ runs, \d+ are left")
+    )
+    look(page, "validating")
     dialog = page.locator(".jp-Dialog")
     expect(dialog).to_contain_text("Success! Your notebook passes all the tests.")
     look(page, "validated")

@@ -31,6 +31,14 @@ class TalkerNode(Node):
             time.sleep(0.1)
 """
 
+CRASHES = """
+class TalkerNode(Node):
+    def __init__(self):
+        super().__init__("talker_node")
+        time.sleep(1.0)
+        os.abort()
+"""
+
 
 def restart(page: Page) -> None:
     page.locator(".lm-MenuBar-item", has_text="Kernel").click()
@@ -81,3 +89,19 @@ def test_check_runs_what_a_new_kernel_lacks_and_a_card_ends_with_its_kernel(page
     checked.locator(".jp-cell-toolbar").get_by_text("Check", exact=True).click()
     expect(checked.locator(".agc-failed")).to_contain_text("What to do next")
     expect(notebook.cell(r"^import time")).to_contain_text(re.compile(r"ROS 2 is up"))
+
+
+def test_a_check_that_ends_its_kernel_again_names_the_cell_to_look_at(page: Page) -> None:
+    from playwright.sync_api import expect
+
+    notebook = OpenNotebook(page)
+    notebook.write(r"^class TalkerNode", f"import os\n{CRASHES}")
+    for words in ("check again", "Look at the cell that defines TalkerNode"):
+        expect(page.locator("#jp-main-statusbar")).to_contain_text(IDLE)
+        checked = notebook.cell(CHECK)
+        checked.click()
+        checked.locator(".jp-cell-toolbar").get_by_text("Check", exact=True).click()
+        expect(checked.locator(".agc-waiting")).to_contain_text("Checking")
+        expect(checked.locator(".agc-over")).to_contain_text(words)
+        page.get_by_role("button", name="Ok", exact=True).click()
+        look(page, f"ended-with-its-kernel-{words.split()[0].lower()}")

@@ -195,6 +195,17 @@ def test_what_could_not_be_checked_accuses_nobody(load: Callable[[str], Verdict]
             assert accusation not in shown
 
 
+def test_a_check_that_the_student_has_to_ask_for_otherwise_blames_nothing() -> None:
+    asked = not_checked(
+        "lab_1_2.taker", "", 0.0, "No exercise has this name.\nCorrect it.", key="unknown_exercise"
+    )
+    shown = words(Tree(card_html(asked)).root)
+    assert "No exercise has this name." in shown
+    assert "Correct it." in shown
+    assert "trouble" not in shown
+    assert "instructor" not in shown
+
+
 def test_a_pass_is_met_with_a_warm_word_and_no_homework(load: Callable[[str], Verdict]) -> None:
     shown = words(Tree(card_html(load("talker_passed"))).root)
     assert "Well done" in shown
@@ -235,18 +246,29 @@ def test_the_picture_has_its_twin_in_words(load: Callable[[str], Verdict]) -> No
         assert moment.part in table
 
 
-def test_the_keyboard_reaches_what_is_labelled_and_a_screen_reader_says_it(verdict: Verdict) -> None:
-    for picture in Tree(card_html(verdict)).root.all("svg", "agc-svg"):
-        reached = [mark for mark in picture.all("svg", "agc-mark") if mark.attributes.get("tabindex") == "0"]
-        assert len(reached) == len(picture.all("text", "agc-label"))
-        for mark in reached:
-            assert mark.attributes["role"] == "img"
+def test_all_pictures_are_one_stop_of_the_keyboard_and_a_screen_reader_says_what_is_labelled(
+    verdict: Verdict,
+) -> None:
+    tree = Tree(card_html(verdict)).root
+    stops = [
+        box
+        for box in tree.all("div", "agc-pictures")
+        for box in box.all("div")
+        if "tabindex" in box.attributes
+    ]
+    assert len(stops) == len(tree.all("div", "agc-pictures"))
+    for picture in tree.all("svg", "agc-svg"):
+        marks = picture.all("svg", "agc-mark")
+        assert not any("tabindex" in mark.attributes for mark in marks)
+        told = [mark for mark in marks if mark.attributes.get("role") == "img"]
+        assert len(told) == len(picture.all("text", "agc-label"))
+        for mark in told:
             assert mark.attributes["aria-label"]
             assert not (mark.parent and mark.parent.attributes.get("aria-hidden"))
         # What is read with the eyes is the same, next to each mark.
         tips = [tip.text().strip() for tip in picture.all("text", "agc-tip")]
-        assert len(tips) == len(picture.all("svg", "agc-mark"))
-        assert {mark.attributes["aria-label"] for mark in reached} <= set(tips)
+        assert len(tips) == len(marks)
+        assert {mark.attributes["aria-label"] for mark in told} <= set(tips)
 
 
 def test_no_picture_where_a_program_only_ended(load: Callable[[str], Verdict]) -> None:

@@ -7,7 +7,8 @@ import sys
 
 import pytest
 
-from autograder.cards.readable_text import _escaped, block, one_line, paragraph, printable_json, width, wrap
+from autograder.cards.readable_text import _escaped, block, one_line, paragraph, width, wrap
+from autograder.standard_output import printable_json
 
 
 @pytest.mark.parametrize(

@@ -73,3 +73,23 @@ def test_an_error_of_compiled_code_is_told_without_the_arguments_below_it() -> N
     found = students_line(detail)
     assert found
     assert found.error.startswith("TypeError: resolve(): incompatible function arguments")
+
+
+def test_the_line_that_the_advice_quotes_is_shown_and_not_a_given_functions() -> None:
+    detail = (
+        "Traceback (most recent call last):\n"
+        '  File "/tmp/ipykernel_1/11.py", line 7, in add_three_ints\n    first = ask(client, node, a, b)\n'
+        '  File "/tmp/ipykernel_1/22.py", line 6, in ask\n    future = client.call_async(request)\n'
+        "AttributeError: 'Node' object has no attribute 'call_async'\n"
+    )
+    given, own = (
+        students_line(detail),
+        students_line(detail, "In `first = ask(client, node, a, b)`, they are swapped."),
+    )
+    assert given is not None
+    assert given.where == "Line 6 of your cell"
+    assert own is not None
+    assert (own.where, own.quote) == (
+        "Line 7 of your cell",
+        "first = ask(client, node, a, b)",
+    )

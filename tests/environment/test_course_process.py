@@ -166,12 +166,13 @@ def test_activate_gives_a_bare_terminal_everything(bare: dict[str, str], shell: 
     commands = [
         ". ./environment/activate.sh",
         *("command -v python", "command -v colcon"),
-        *('echo "$AMENT_PREFIX_PATH"', 'echo "$LD_LIBRARY_PATH"'),
+        *('echo "$AMENT_PREFIX_PATH"', 'echo "$LD_LIBRARY_PATH"', 'echo "$CMAKE_BUILD_TYPE"'),
     ]
     root = Path(sys.prefix).parent
     command = [shell, "-c", "\n".join(commands)]
     done = subprocess.run(command, env=bare, cwd=root, capture_output=True, text=True, check=True)
-    python, colcon, prefixes, libraries = done.stdout.splitlines()
+    python, colcon, prefixes, libraries, build_type = done.stdout.splitlines()
     assert (python, colcon) == (f"{sys.prefix}/bin/python", f"{sys.prefix}/bin/colcon")
     assert prefixes.split(":")[0] == sys.prefix
     assert libraries.split(":")[0] == f"{sys.prefix}/lib"
+    assert build_type == "Release"

@@ -2,12 +2,19 @@
 
 from __future__ import annotations
 
+from random import Random
 from typing import TYPE_CHECKING, Any, cast
 from unittest.mock import MagicMock
 
 import pytest
 from exercise_1_3 import _cancel_scenario as cancel
-from exercise_1_3._cancel_evidence import AGREED, CANCEL_REFUSED, HONOURED
+from exercise_1_3._cancel_evidence import (
+    AGREED,
+    CANCEL_REFUSED,
+    FIRST_FEEDBACK,
+    HONOURED,
+    LAST_FEEDBACK,
+)
 
 from autograder.judge import evidence_files
 from autograder.kit.evidence import Event, Evidence, Part
@@ -66,6 +73,7 @@ def runs_made(first: Part, *, before: Evidence | None = None, monkeypatch: pytes
     monkeypatch.setattr(cancel, "serve_goal", serve)
     monkeypatch.setattr(cancel, "refuse", lambda *_, **__: made.append(REFUSED))
     bench = MagicMock(pace=Pace.REAL_TIME if before else Pace.FAST, before=before, seen=lambda: first)
+    bench.random = Random(0)
     bench.reference = REFERENCE
     cancel.scenario(bench)
     return list(dict.fromkeys(made))
@@ -151,35 +159,38 @@ def test_a_client_that_has_waited_for_a_late_server_is_not_kept_waiting_again(
     came: list[float] = []
     monkeypatch.setattr(cancel, "serve_goal", lambda *_, late, **__: came.append(late))
     bench = MagicMock(pace=Pace.REAL_TIME if before else Pace.FAST, before=before, reference=REFERENCE)
+    bench.random = Random(0)
     bench.seen = lambda: run(HONOURED)
     cancel.run(bench, HONOURED, accept=True)
     assert came == [late]
 
 
-@pytest.mark.parametrize("count", [3, 6])
-def test_a_client_that_has_asked_too_late_once_is_not_started_again_in_the_other_runs(
-    count: int, monkeypatch: pytest.MonkeyPatch
+def window(gap: float, first: float = cancel.FIRST_AFTER) -> tuple[float, float]:
+    """The seconds after the goal at which the third message comes, and the sixth."""
+    began = first + cancel.LATE_GAP  # the status comes before the second message
+    return began + (FIRST_FEEDBACK - 1) * gap, began + LAST_FEEDBACK * gap
+
+
+def test_no_fixed_time_after_anything_is_right_at_both_paces() -> None:
+    _, quick_ends = window(max(cancel.QUICK))
+    slow_begins, _ = window(min(cancel.SLOW))
+    # Counted from the client's start, the goal of the first run comes later than that of the second.
+    assert quick_ends + LATENESS < slow_begins
+
+
+def test_the_paces_are_drawn_and_differ_between_the_two_runs_that_are_judged(
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    served: list[str] = []
-    monkeypatch.setattr(cancel, "serve_goal", lambda _, name, *__, **___: served.append(name))
-    bench = MagicMock(pace=Pace.REAL_TIME, before=fast_look(Part(AGREED)), reference=REFERENCE)
-    bench.seen = lambda: run(AGREED, count=6)
-    cancel.run(bench, AGREED, run(HONOURED, count=count), accept=True)
-    assert len(served) == (4 if count == 3 else 1)
-
-
-@pytest.mark.parametrize("count", [6, 7])
-def test_one_that_counts_messages_is_not_late_by_chance(count: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    served: list[str] = []
-    monkeypatch.setattr(cancel, "serve_goal", lambda _, name, *__, **___: served.append(name))
-    seen = run(HONOURED, count=count)
-    counts = fast_look(run(HONOURED, count=count), run(CANCEL_REFUSED, count=count))
-    for before, runs in ((counts, 1), (fast_look(), 4)):
-        served.clear()
-        bench = MagicMock(pace=Pace.REAL_TIME, before=before, reference=REFERENCE, seen=lambda: seen)
-        monkeypatch.setattr(cancel, "needs_no_time", lambda *_: False)
-        cancel.run(bench, HONOURED, accept=True)
-        assert len(served) == runs
+    monkeypatch.setattr(cancel, "serve_goal", lambda *_, **__: None)
+    gaps: dict[str, set[float]] = {}
+    for seed in range(5):
+        bench = MagicMock(pace=Pace.FAST, before=None, reference=REFERENCE, random=Random(seed))
+        bench.seen = lambda: run(HONOURED)
+        for name, first in ((HONOURED, None), (CANCEL_REFUSED, run(HONOURED))):
+            cancel.run(bench, name, first, accept=True)
+            gaps.setdefault(name, set()).add(bench.part.call_args.kwargs["gap"])
+    assert [len(drawn) for drawn in gaps.values()] == [5, 5]
+    assert max(gaps[HONOURED]) < min(gaps[CANCEL_REFUSED])
 
 
 @pytest.mark.parametrize(
@@ -214,7 +225,8 @@ def _never_asks() -> Part:
 
 def _served(first: Part, in_a_cell: bool = False) -> MagicMock:
     """A bench on which a later run was served to a client that asks to cancel at once."""
-    bench = MagicMock(pace=Pace.FAST, in_a_cell=in_a_cell, reference=REFERENCE, seen=lambda: run(AGREED))
+    bench = MagicMock(pace=Pace.FAST, in_a_cell=in_a_cell, reference=REFERENCE)
+    bench.seen = lambda: Part(AGREED, {"gap": cancel.QUICK[0]}, run(AGREED).events)
     cancel.serve_goal(bench, AGREED, first, accept=True, pause=0.0, late=0.0, held=0.0)
     return bench
 
@@ -239,11 +251,10 @@ class Server:
 
 def test_once_the_moment_is_over_the_rest_of_the_feedback_comes_quickly() -> None:
     server = Server()
-    asked = cancel.send_feedback_until_cancelled(
-        MagicMock(pace=Pace.REAL_TIME), cast("ActionCounterpart", server), [0, 1], 0.0
-    )
+    bench = MagicMock(pace=Pace.REAL_TIME, seen=lambda: Part(HONOURED, {"gap": cancel.QUICK[0]}))
+    asked = cancel.send_feedback_until_cancelled(bench, cast("ActionCounterpart", server), [0, 1], 0.0)
     assert not asked
-    quick, last = server.waits[cancel.LATEST + 1 : -1], server.waits[-1]
-    assert server.sent == cancel.WITHOUT_CANCEL == cancel.LATEST + len(quick)
+    quick, last = server.waits[LAST_FEEDBACK + 1 : -1], server.waits[-1]
+    assert server.sent == cancel.WITHOUT_CANCEL == LAST_FEEDBACK + len(quick)
     assert set(quick) == {cancel.AT_ONCE}
-    assert cancel.CLOCKS - 1.0 < last <= cancel.CLOCKS
+    assert last == cancel.CLOCKS

@@ -6,10 +6,9 @@ import re
 from dataclasses import replace
 from random import Random
 from typing import TYPE_CHECKING
+from unittest.mock import MagicMock
 
 import pytest
-from exercise_1_3._cancel_evidence import HONOURED
-from exercise_1_3._cancel_scenario import asked_a_moment_late
 from inspecting_services import question
 from inspecting_topics import mismatch
 from lab_1_2 import listener, talker
@@ -258,15 +257,6 @@ def test_who_says_something_of_the_answer_and_then_ends_never_asked_for_the_resu
     assert RESULT_NOT_REQUESTED.recognise(evidence) is not None
 
 
-@pytest.mark.parametrize(("feedbacks", "again"), [(5, False), (6, True), (7, True), (8, False)])
-def test_a_request_to_cancel_just_after_the_last_moment_is_asked_for_again(
-    feedbacks: int, again: bool
-) -> None:
-    sent = [Event(0.5 * number, "feedback", "/fibonacci", {}) for number in range(feedbacks)]
-    seen = Part(HONOURED, {}, [*sent, Event(9.0, "cancel", "/fibonacci", {"accepted": True})])
-    assert asked_a_moment_late(seen) is again
-
-
 @pytest.mark.parametrize("slow_to_end", [False, True])
 def test_who_does_not_wait_for_an_answer_is_told_so_however_slowly_the_program_ends(
     slow_to_end: bool,
@@ -281,3 +271,24 @@ def test_who_does_not_wait_for_an_answer_is_told_so_however_slowly_the_program_e
     assert ANSWER_NOT_AWAITED.recognise(evidence)
     right = Part(EXTREME, {}, [asked, given, Event(0.5, "output", "stdout", {"text": "sum: -77777"}), EXITED])
     assert not ANSWER_NOT_AWAITED.recognise(replace(evidence, parts=[quick, right]))
+
+
+def test_the_type_that_another_package_has_too_is_always_asked_for_in_the_same_run(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Otherwise a subject that takes the other package's type would lose other points from check to check."""
+    asked: dict[str, set[str]] = {name: set() for name in (question.LATE, question.OTHER, question.ABSENT)}
+    monkeypatch.setattr(question, "served", lambda _, name, service, __: asked[name].update(service.values()))
+    monkeypatch.setattr(question, "unserved", lambda _, kind, __: asked[question.ABSENT].add(kind))
+    for seed in range(50):
+        question.scenario(MagicMock(random=Random(seed)))
+    twins = set(question.TWIN)
+    assert asked[question.OTHER] == twins
+    assert asked[question.LATE] == asked[question.ABSENT] == question.TEMPTING.keys() - twins
+
+
+def test_one_that_names_another_service_has_not_looked_only_once() -> None:
+    inputs = {"right": "/tower/s1", "type": "std_srvs/srv/Trigger", "others": {"/alcove/s2": "x/srv/Trigger"}}
+    named = [Event(0.2, "output", "stdout", {"text": "/alcove/s2"}), Event(0.4, "subject", "exited", {})]
+    assert not question.gave_up_at_once(Part(question.LATE, inputs, named))
+    assert question.gave_up_at_once(Part(question.LATE, inputs, named[1:]))

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from random import Random
+from unittest.mock import MagicMock
 
 from lab_1_3.server import EXERCISE, ordinary, single_calls
 
 from autograder.kit.evidence import Event, Evidence, Part, Reference
-from autograder.kit.recipes.servers import CALLS, CALLS_AT_ONCE
+from autograder.kit.model import Pace
+from autograder.kit.recipes.servers import CALLS, CALLS_AT_ONCE, Asks
 
 SERVICE, TYPE = "/add_two_ints", "my_robot_interfaces/srv/AddTwoInts"
 ASKED = [*single_calls(Random("a")), *(ordinary(Random(n)) for n in range(CALLS_AT_ONCE + 1))]
@@ -47,3 +50,31 @@ def test_where_chance_picks_the_server_a_wrong_answer_counts_against_each_call()
     # The other server happened to answer one call only; another time it answers others.
     assert failed(part(SUMS | {3: 0}, servers=2)) == {"service", "sums", "together"}
     assert failed(part(SUMS | {LAST: 0}, servers=2)) == {"service", "sums", "together"}
+
+
+def test_a_server_that_ends_by_itself_earns_nothing_whenever_it_ends() -> None:
+    for answered in range(len(SUMS) + 1):
+        seen = part(dict(list(SUMS.items())[:answered]))
+        assert failed(_ended(seen)) == {"service", "sums", "together", "alive"}
+
+
+def test_an_exception_in_the_callback_does_not_cost_the_points_for_the_service_that_was_there() -> None:
+    raised = {"traceback": "Traceback (most recent call last):\nTypeError"}
+    assert failed(_ended(part({}), **raised)) == {"sums", "together", "alive"}
+    never_called = replace(part({}), events=part({}).events[:2])
+    assert "service" in failed(_ended(never_called, **raised))
+
+
+def _ended(seen: Part, **data: str) -> Part:
+    end = Event(1.0, "subject", "raised" if data else "exited", data)
+    return replace(seen, events=[*seen.events, end])
+
+
+def test_time_passes_for_the_server_before_the_last_call() -> None:
+    bench, caller = MagicMock(random=Random(0), pace=Pace.FAST), MagicMock()
+    bench.reference.only.return_value = SERVICE, TYPE
+    bench.pass_time.side_effect = lambda *_: caller.time_passes()
+    assert Asks(single_calls, ordinary)._all_answered(bench, caller)
+    calls = [name for name, *_ in caller.mock_calls if name in ("ask", "time_passes")]
+    assert calls[-2:] == ["time_passes", "ask"]
+    assert calls.count("time_passes") == 1

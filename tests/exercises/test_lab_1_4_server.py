@@ -8,7 +8,20 @@ from typing import Any
 import pytest
 from lab_1_4 import _server_criteria as criteria
 from lab_1_4 import server as lab_1_4_server
-from lab_1_4._goals import AGAIN, ALONE, BAD_ORDERS, BESIDE, GOALS, LONG, LONG_ALONE, NEXT, OLDER, YOUNGER
+from lab_1_4._goals import (
+    AGAIN,
+    ALONE,
+    BAD_ORDERS,
+    BESIDE,
+    CANCELED_ALONE,
+    GOALS,
+    LONG,
+    LONG_ALONE,
+    NEXT,
+    TWINS,
+    YOUNGER,
+    died_of_two,
+)
 
 from autograder.kit.evidence import Event, Evidence, Part, Reference
 
@@ -151,23 +164,15 @@ def later(number: int, **changed: Any) -> list[Event]:
 @pytest.mark.parametrize(
     ("more", "lost", "key"),
     [
-        ([*later(LONG_ALONE), *goal(NEXT, 3), *goal(OLDER, 5), *later(YOUNGER)], set(), ""),
+        ([*later(YOUNGER), *later(LONG_ALONE), *goal(NEXT, 3)], set(), ""),
         # A busy judge may come too late for a quick server, and then asks for nothing more.
         (later(LONG_ALONE, cancel=False, return_code=3, status=4), set(), ""),
         ([*later(LONG_ALONE)[:-3], later(LONG_ALONE)[-1]], set(), ""),
         (later(LONG_ALONE, cancel=False)[:-1], {"cancel"}, ""),
         (later(LONG_ALONE, accepted=False), {"two"}, "goal_rejected"),
         ([*later(LONG_ALONE)[:-1], *goal(NEXT, 3, status=6, sequence=[])], {"two"}, "goals_mixed_up"),
-        (
-            [*later(LONG_ALONE), *goal(NEXT, 3), *goal(OLDER, 5), *later(YOUNGER)[:-1]],
-            {"two"},
-            "goals_mixed_up",
-        ),
-        (
-            [*later(LONG_ALONE), *goal(NEXT, 3), *goal(OLDER, 5, feedback=[[0, 1, 1], FIBONACCI])],
-            {"two"},
-            "goals_mixed_up",
-        ),
+        ([*later(YOUNGER)[:-1], *later(LONG_ALONE), *goal(NEXT, 3)], {"two"}, "goals_mixed_up"),
+        ([*later(LONG_ALONE), *goal(NEXT, 5, feedback=[[0, 1, 1], FIBONACCI])], {"two"}, "goals_mixed_up"),
     ],
 )
 def test_each_goal_is_canceled_for_itself(more: list[Event], lost: set[str], key: str) -> None:
@@ -203,13 +208,74 @@ def test_where_goals_reach_two_servers_no_answer_counts() -> None:
     assert failed(evidence(two)) == {"action", "sequence", "feedback", "two", "cancel", "refuse"}
 
 
-def test_the_answer_of_a_program_that_exits_with_it_counts_for_nothing() -> None:
-    # It gets out of the program or it does not: chance must not give the point.
-    exited = Event(1.0, "subject", "exited", {"code": 0})
-    answered = goal(0, 5)[:2]
-    for events in (answered[:1], answered):
-        assert "action" in failed(evidence([*events, exited], []))
-    assert "action" not in failed(evidence([*goal(0, 5)[:3], exited], []))
+EXITED = Event(1.0, "subject", "exited", {"code": 0})
+RAISED = Event(1.0, "subject", "raised", {"traceback": "Traceback (most recent call last):\nValueError: no"})
+ALL_CRITERIA = {"action", "sequence", "feedback", "two", "cancel", "refuse"}
+
+
+@pytest.mark.parametrize("sent", range(0, len(RIGHT) + 1, 3))
+def test_a_program_that_ends_by_itself_earns_nothing_whenever_it_ends(sent: int) -> None:
+    # Which goals come before its end is chance.
+    assert failed(evidence([*RIGHT[:sent], EXITED], [])) == ALL_CRITERIA
+
+
+@pytest.mark.parametrize("sent", [1, 2, len(RIGHT)])
+def test_an_exception_in_a_callback_does_not_cost_the_point_for_the_server_that_was_there(sent: int) -> None:
+    assert "action" not in failed(evidence([*RIGHT[:sent], RAISED], []))
+    assert "action" in failed(evidence([RAISED], []))
+
+
+LONG_SEQUENCE = [0, 1]
+while len(LONG_SEQUENCE) <= 37:
+    LONG_SEQUENCE.append(LONG_SEQUENCE[-1] + LONG_SEQUENCE[-2])
+
+
+@pytest.mark.parametrize(("wrong_from", "lost"), [(33, {"sequence"}), (37, {"sequence"}), (15, {"two"})])
+def test_wrong_large_numbers_cost_the_sequence_and_not_the_points_for_two_at_once(
+    wrong_from: int, lost: set[str]
+) -> None:
+    feedback = [LONG_SEQUENCE[:n] for n in range(3, len(LONG_SEQUENCE) + 1)]
+    right = goal(BESIDE, 37, feedback=feedback, sequence=LONG_SEQUENCE)
+    sequence = [n + (place >= wrong_from) for place, n in enumerate(LONG_SEQUENCE)]
+    told = [sequence[:n] for n in range(3, len(sequence) + 1)]
+    wrong = goal(BESIDE, 37, feedback=told, sequence=sequence)
+    others = [event for event in RIGHT if event.data.get("goal") != BESIDE]
+    reference = Reference(
+        "lab_1_4.server", {"action_server": {ACTION: TYPE}}, [Part(GOALS, {}, [*others, *right])]
+    )
+    seen = Evidence([Part(GOALS, {}, [SURVEY, *others, *wrong]), Part(BAD_ORDERS, {}, REFUSALS)], reference)
+    assert failed(seen) == lost
+
+
+def test_a_server_that_two_goals_have_ended_is_asked_to_cancel_in_a_run_of_its_own() -> None:
+    seen = evidence([*goal(ALONE, 5), *goal(TWINS[0], 2)[:1], RAISED])
+    assert died_of_two(seen.main)
+    assert "cancel" in failed(seen)
+    alone = [replace(e, data={**e.data, "goal": LONG_ALONE}) for e in canceled([0, 1, 1, 2, 3])]
+    with_run = replace(seen, parts=[*seen.parts, Part(CANCELED_ALONE, {}, [SURVEY, *alone])])
+    assert "cancel" not in failed(with_run)
+    for whole in (evidence(RIGHT), evidence([*RIGHT, RAISED]), evidence([*goal(ALONE, 5), RAISED])):
+        assert not died_of_two(whole.main)
+
+
+def test_a_newer_goal_that_ends_the_older_one_with_canceled_is_named() -> None:
+    text = "attempted invalid transition from state EXECUTING with event CANCELED"
+    printed = Event(1.0, "output", "stderr", {"text": text})
+    older, *rest = goal(LONG, 20, feedback=[[0, 1, 1]], status=6, sequence=[])
+    seen = evidence([*goal(ALONE, 5), older, *goal(BESIDE, 4), printed, *rest, *goal(AGAIN, 3)])
+    mistake = next(m for m in lab_1_4_server.EXERCISE.mistakes if m.recognise(seen))
+    advice = mistake.recognise(seen)
+    assert mistake.key == "older_goal_ended"
+    assert advice is not None
+    assert "No client had asked to cancel" in advice.text
+
+
+@pytest.mark.parametrize(("ended", "told"), [(1.2, True), (9.0, False)])
+def test_feedback_after_the_end_is_worth_a_remark(ended: float, told: bool) -> None:
+    said = Event(0.0, "goal_ended", ACTION, {"goal": ALONE, "status": 4, "sent": ended})
+    seen = evidence([*RIGHT, said])
+    assert any(remark(seen) for remark in lab_1_4_server.EXERCISE.remarks) is told
+    assert not failed(seen)
 
 
 def test_a_goal_that_was_over_before_the_cancel_is_told_so_where_its_result_was_not_seen() -> None:

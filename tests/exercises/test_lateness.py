@@ -31,6 +31,7 @@ from autograder.kit.lateness import (
     meets_late_action,
     meets_present,
     missed_a_result,
+    second_lateness,
     was_patient,
     was_patient_with_an_answer,
 )
@@ -277,3 +278,14 @@ def test_a_client_that_falls_silent_without_a_goal_is_taken_to_hang() -> None:
     await_goal(bench, server, 15.0)
     assert bench.wait_until.call_args.kwargs == {"quiet": HANGS_AFTER}
     server.await_goal.assert_called_once_with(0.0)
+
+
+@pytest.mark.parametrize(("seconds", "again"), [(0.3, SOON), (0.8, LATENESS), (None, SOON)])
+def test_a_client_that_may_go_by_a_clock_does_not_get_a_server_that_suits_its_clock(
+    seconds: float | None, again: float
+) -> None:
+    seen = [Event(0.3, "interface", "graph", {}), Event(0.4, "serving", "/add_two_ints")]
+    asked = [] if seconds is None else [Event(0.4 + seconds, "request", "/add_two_ints")]
+    assert second_lateness([Part("a run", {}, [*seen, *asked])], "request") == again
+    # The server was there before the client.
+    assert second_lateness([Part("a run", {}, [*reversed(seen), *asked])], "request") == again

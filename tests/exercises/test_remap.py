@@ -211,3 +211,12 @@ def _launched(argv: tuple[str, ...], programs: tuple[str, ...] = ()) -> Launched
     ends = {"publisher": {NEW: STRING}, "subscription": {}, "ends": [["publisher", NEW, 11]]}
     seen = Evidence([Part("launching", {}, [built, started, Event(1.0, "interface", "", ends)])], REFERENCE)
     return Launched(seen, "my_robot_pkg", "chatter")
+
+
+@pytest.mark.parametrize(
+    ("nodes", "told"), [(["/bot", "/bot"], "Two of your nodes are called /bot: name="), (["/a", "/b"], "")]
+)
+def test_two_nodes_of_one_name_are_worth_a_remark(nodes: list[str], told: str) -> None:
+    seen = Evidence([Part("launching", {}, [Event(0.0, "interface", "graph", {"nodes": nodes})])], REFERENCE)
+    remarks = [text for remark in exercises.get("exercise_1_1.remap").remarks if (text := remark(seen))]
+    assert [text.partition(".")[0] for text in remarks] == [told] * bool(told)

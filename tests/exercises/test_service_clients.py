@@ -74,7 +74,7 @@ def test_a_service_comes_late_once_more_if_nothing_shows_that_its_client_would_h
 ) -> None:
     came: list[float] = []
 
-    def called_late(_: Any, run: Run, calls: int, seconds: float) -> bool:
+    def called_late(_: Any, run: Run, calls: int, seconds: float, again: float) -> bool:
         came.append(seconds)
         return True
 
@@ -83,7 +83,7 @@ def test_a_service_comes_late_once_more_if_nothing_shows_that_its_client_would_h
     monkeypatch.setattr(service_runs, "unserved", lambda *_: None)
     monkeypatch.setattr(service_runs, "may_be_impatient", lambda _: impatient)
     asked = Part(LATE, {}, [Event(0.0, "request", "/add_two_ints", {})])
-    bench = MagicMock(pace=Pace.FAST, random=Random(0), seen=lambda: asked)
+    bench = MagicMock(pace=Pace.FAST, random=Random(0), seen=lambda: asked, before=None)
     service_runs.scenario(bench, [Run(LATE, (1, 2)), Run(BIASED, (1, 2))], (3, 4), calls=1)
     assert came == lateness
     assert [call.args for call in bench.again.mock_calls] == [(LATE,)] * impatient
@@ -386,3 +386,26 @@ def test_nobody_waits_for_a_sum_of_a_client_that_has_kept_one_to_itself(
     service_runs.called(bench, Run(BIASED, (1, 2)), 1, [first])
     more = service_runs.SAYS_MORE[Pace.REAL_TIME]
     assert waited == [service_runs.AFTERMATH if silent else more]
+
+
+@pytest.mark.parametrize(
+    ("second", "sure"),
+    [((39_622, 0), True), ((0, 1), False), ((0, 0), False)],
+    ids=["own sum", "other", "right"],
+)
+def test_a_sum_of_its_own_in_the_place_of_an_answer_of_0_shows_that_0_is_taken_for_no_answer(
+    second: tuple[int, int], sure: bool
+) -> None:
+    def called(name: str, numbers: list[int], *calls: tuple[int, int, int]) -> Part:
+        events = []
+        for a, b, answer in calls:
+            events.append(Event(1.0, "request", "/add_two_ints", {"fields": {"a": a, "b": b}}))
+            events.append(Event(1.1, "response", "/add_two_ints", {"fields": {"sum": answer}}))
+        said = Event(1.2, "output", "stdout", {"text": str(calls[-1][-1])})
+        return Part(name, {"numbers": numbers}, [*events, said, Event(1.3, "subject", "exited", {"code": 0})])
+
+    late = called(LATE, [39_622, 0, 0], (39_622, 0, 0), (*second, -5_000_000_000))
+    biased = called(BIASED, [-1500, 2500, 3500], (-1500, 2500, -7_000_000), (-7_000_000, 3500, 0))
+    reference = evidence_files.load_reference("exercise_1_2.three_ints")
+    seen = Evidence([late, biased], reference)
+    assert exercise_1_2_three_ints.recipe._dislikes_zero(seen) is sure

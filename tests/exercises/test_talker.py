@@ -295,3 +295,26 @@ def test_a_slip_is_shown_where_it_is() -> None:
 @pytest.mark.parametrize(("text", "is_number"), [("0", True), ("10", True), ("00", False), ("007", False)])
 def test_a_number_has_no_zeros_in_front(text: str, is_number: bool) -> None:
     assert (template(f"Hello, world! {text}") == "Hello, world! #") is is_number
+
+
+@pytest.mark.parametrize("arrive", [range(20), range(0, 20, 2), range(3)])
+def test_a_publisher_that_is_made_anew_for_each_message_always_costs_the_same_and_is_named(
+    arrive: range,
+) -> None:
+    messages = [
+        replace(message, data={**message.data, "number": 1})
+        for message in (_messages(list(range(20)), 0.5)[number] for number in arrive)
+    ]
+    met = [Event(0.3 + i / 2, "matched", TOPIC, {"count": i + 1, "now": 1}) for i in range(20)]
+    seen = _evidence(sorted([*met, *messages], key=lambda event: event.t))
+    lost = {c.name for c in talker.EXERCISE.criteria if not c.judge(seen).passed}
+    assert lost == {"counter", "rate"}
+    assert next(m for m in talker.EXERCISE.mistakes if m.recognise(seen)).key == "published_before_discovery"
+
+
+def test_publishers_that_are_made_at_the_same_moment_are_not_one_after_another() -> None:
+    met = [Event(0.31, "matched", TOPIC, {"count": i + 1, "now": i + 1}) for i in range(4)]
+    ended = Event(11.0, "matched", TOPIC, {"count": 4, "now": 0})
+    seen = _evidence([*met, *_messages(list(range(20)), 0.5), ended])
+    assert judged("counter", seen)
+    assert judged("rate", seen)

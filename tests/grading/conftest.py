@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from autograder.grading import batch
-from autograder.grading.rebuilding import submission_desk, task_making
+from autograder.grading import batch_steps
+from autograder.grading.rebuilding import submission_desk
+from autograder.grading.tasks import task_making
 
 sys.path.insert(0, str(Path(__file__).parent))
 sys.path.insert(0, str(Path(__file__).parent / "collecting"))
@@ -59,7 +60,7 @@ def klass(tiny: TinyClass) -> TinyClass:
 def _one_course_version() -> Iterator[None]:
     """Several processes and runs must agree on it, also while somebody edits the course."""
     with pytest.MonkeyPatch.context() as patch:
-        for part in (task_making, batch):
+        for part in (task_making, batch_steps):
             patch.setattr(part, "course_version", lambda: "test")
         yield
 

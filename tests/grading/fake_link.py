@@ -11,7 +11,6 @@ from tiny_class import FakeEngine, TinyClass
 
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.grading_task import Task
-from autograder.grading.rebuilding.task_making import tasks_of
 from autograder.grading.running.task_dispatcher import Dispatcher
 from autograder.grading.running.worker_messages import (
     Answered,
@@ -23,6 +22,7 @@ from autograder.grading.running.worker_messages import (
     Offer,
     Order,
 )
+from autograder.grading.tasks.task_making import tasks_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import contextlib
-import json
 import shutil
 import sqlite3
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
+from zipfile import ZipFile
 
 import pytest
 from click.testing import CliRunner
@@ -18,7 +18,7 @@ from autograder.appeals import appeal_file
 from autograder.cli import cli
 from autograder.grading.appeal_writing import write_appeal
 from autograder.grading.class_store import ClassStore
-from autograder.grading.classes.class_directory import ClassDirectory
+from autograder.grading.classes.class_directory import ClassDirectory, switch_sandbox_off
 from autograder.grading.grading_errors import GradingError
 from autograder.grading.running import execution_backends, task_execution
 from autograder.judge import evidence_files, one_check
@@ -68,16 +68,22 @@ def kept(tiny: TinyClass, student: str = "ada") -> dict[str, bytes]:
     return found.checks if found else {}
 
 
+def files(path: Path) -> dict[str, bytes]:
+    with ZipFile(path) as file:
+        return {name: file.read(name) for name in file.namelist()}
+
+
 def test_everything_about_the_check_is_in_the_file_and_it_is_judged_the_same(graded: TinyClass) -> None:
     file = write_appeal(graded.path, "ada", ID)
-    assert file == graded.path / "appeals" / "ada-lab_1_2.talker.json"
+    assert file == graded.path / "appeals" / "ada-lab_1_2.talker.zip"
     appeal = appeal_file.read(file)
-    assert (appeal.student, appeal.assignment, appeal.notebook) == ("ada", "lab_1_2", "lab_1_2")
-    assert appeal.course == "test"
-    assert [(cell.cell, cell.text) for cell in appeal.solution] == [
+    check = appeal.check
+    assert (check.student, check.assignment, check.notebook) == ("ada", "lab_1_2", "lab_1_2")
+    assert check.course == "test"
+    assert [(cell.cell, cell.text) for cell in check.solution] == [
         ("Talker", ["def Talker():", "    return 10"])
     ]
-    assert appeal.expected == json.loads(exercises.reference_path(ID).read_text(encoding="utf-8"))
+    assert files(file)["expected.json"] == exercises.reference_path(ID).read_bytes()
     assert appeal.seen == evidence_files.unpack(evidence())
     done = CliRunner().invoke(cli, ["replay", str(file)])
     assert done.exit_code == 0, done.output
@@ -91,10 +97,10 @@ def test_results_and_the_gradebook_have_no_evidence(graded: TinyClass) -> None:
 
 
 def test_where_a_person_says_so_the_file_is_somewhere_else(graded: TinyClass, tmp_path: Path) -> None:
-    words = ["appeal", str(graded.path), "ada", ID, "-o", str(tmp_path / "here.json")]
+    words = ["appeal", str(graded.path), "ada", ID, "-o", str(tmp_path / "here.zip")]
     done = CliRunner().invoke(cli, words)
-    assert (done.exit_code, done.output.strip()) == (0, str(tmp_path / "here.json"))
-    assert appeal_file.read(tmp_path / "here.json").student == "ada"
+    assert (done.exit_code, done.output.strip()) == (0, str(tmp_path / "here.zip"))
+    assert appeal_file.read(tmp_path / "here.zip").check.student == "ada"
     assert CliRunner().invoke(cli, [*words[:-1], str(tmp_path)]).exit_code == 2
 
 
@@ -102,7 +108,14 @@ def test_a_course_that_expects_something_else_since_does_not_say_what_was_expect
     graded: TinyClass, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(evidence_files, "reference_digest", lambda _: "another")
-    assert appeal_file.read(write_appeal(graded.path, "ada", ID)).expected is None
+    assert "expected.json" not in files(write_appeal(graded.path, "ada", ID))
+
+
+def test_the_page_of_the_student_is_in_the_file(graded: TinyClass) -> None:
+    assert "page.html" not in files(write_appeal(graded.path, "ada", ID))
+    graded.grade(feedback=True)
+    page = graded.path / "feedback/ada/lab_1_2/lab_1_2.html"
+    assert files(write_appeal(graded.path, "ada", ID))["page.html"] == page.read_bytes()
 
 
 @pytest.mark.parametrize(
@@ -171,7 +184,7 @@ def test_what_a_judge_hands_over_comes_from_the_worker_and_from_no_notebook(
 ) -> None:
     """Through real workers: the notebook writes where it can, and only the judge's words are kept."""
     monkeypatch.setattr(execution_backends, "require_sandbox", lambda _: None)
-    execution_backends.switch_sandbox_off(tiny.path)
+    switch_sandbox_off(tiny.path)
     tiny.submit("ada", "10 if print('evidence') is None else 0", 1)
     tiny.grade(jobs=1, judge=with_fake_judge, console=QUIET)
     assert kept(tiny) == {ID: b"lab_1_2.talker said 10", "lab_1_2.listener": b"lab_1_2.listener said 1"}

@@ -17,7 +17,6 @@ from autograder.grading.class_store import ClassStore
 from autograder.grading.classes import gradebook_writing
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.classes.gradebook_writing import NotebookEntry
-from autograder.grading.classes.new_class import release
 from autograder.grading.grading_errors import (
     ClassBusy,
     DiskFull,
@@ -25,6 +24,7 @@ from autograder.grading.grading_errors import (
     MasterUnusable,
     NotAClass,
 )
+from autograder.grading.new_classes.new_class import release
 from autograder.safe_files import fresh_folder
 
 if TYPE_CHECKING:

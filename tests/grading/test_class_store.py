@@ -21,7 +21,7 @@ from tiny_class import TALKER, FakeEngine, TinyClass
 from autograder.boxes.run_limits import Ended, Limits
 from autograder.cli import cli
 from autograder.execution.executed_cells import Cell, CellCheck, CellRun, Execution
-from autograder.grading import class_store
+from autograder.grading import class_forms, class_store
 from autograder.grading.class_records import Attempt, Entered, Origin
 from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.class_directory import ClassDirectory, Submission
@@ -304,6 +304,76 @@ def test_a_file_of_a_newer_course_is_sound(store: ClassStore, tmp_path: Path) ->
     assert "Put back" not in str(caught.value)
 
 
+# -- files of an earlier course
+
+
+def make_earlier(store: ClassStore) -> list[str]:
+    """Give the file the tables of version 2, with content, and return that content."""
+    store.keep(TASK, DONE)
+    store.enter(submission(), attempt(), entered())
+    store.keep_run("v1", ROWS)
+    store.close()
+    with contextlib.closing(sqlite3.connect(file_of(store))) as book, book:
+        book.execute("DROP TRIGGER not_changed")
+        book.execute(
+            "CREATE TRIGGER not_changed BEFORE UPDATE ON attempt BEGIN SELECT RAISE(ABORT, 'attempts stay'); END"
+        )
+        book.execute("PRAGMA user_version = 2")
+        return list(book.iterdump())
+
+
+def dump_of(path: Path) -> list[str]:
+    with contextlib.closing(sqlite3.connect(path)) as book:
+        return list(book.iterdump())
+
+
+def test_a_file_of_an_earlier_course_is_used_on_and_a_copy_stays(store: ClassStore) -> None:
+    before = make_earlier(store)
+    assert store.entered() == {("ada", "lab"): entered()}
+    assert (store.attempts("ada"), len(store.runs())) == ([attempt()], 1)
+    with contextlib.closing(sqlite3.connect(file_of(store))) as book:
+        assert book.execute("PRAGMA user_version").fetchone() == (class_forms.FORM,)
+    copy = file_of(store).with_name("class.db.version-2")
+    assert dump_of(copy) == before
+    store.rename({"ada": "eve"})
+    assert (store.attempts("ada"), len(store.attempts("eve"))) == ([], 1)
+    with pytest.raises(sqlite3.IntegrityError, match="attempts stay"):
+        change(store, "UPDATE attempt SET work = 'forged'")
+    assert dump_of(copy) == before
+    store.close()
+    make_earlier(store)  # the instructor put back a file of the earlier course
+    assert ("ada", "lab") in store.entered()
+
+
+@pytest.mark.parametrize("name", ["_copy", "keep_whole", "_form_of"])
+def test_a_file_whose_conversion_was_killed_is_whole(
+    store: ClassStore, monkeypatch: pytest.MonkeyPatch, name: str
+) -> None:
+    before = make_earlier(store)
+
+    def die(*_: object) -> None:
+        os.kill(os.getpid(), signal.SIGKILL)
+
+    asked = class_forms._form_of
+    times: list[int] = []
+
+    def die_in_the_transaction(book: sqlite3.Connection) -> int:
+        times.append(1)
+        if len(times) == 2:
+            book.execute("PRAGMA cache_size = 1")
+            book.execute("DROP TRIGGER not_changed")
+            book.execute("CREATE TABLE large AS SELECT randomblob(3000000)")
+            die()
+        return asked(book)
+
+    monkeypatch.setattr(class_forms, name, die if name != "_form_of" else die_in_the_transaction)
+    os.waitpid(in_a_process(store.entered), 0)
+    monkeypatch.undo()
+    assert dump_of(file_of(store)) == before
+    assert store.entered() == {("ada", "lab"): entered()}
+    assert dump_of(file_of(store).with_name("class.db.version-2")) == before
+
+
 # -- killed
 
 
@@ -478,6 +548,15 @@ def test_a_class_that_may_only_be_read_is_read(
         for words in (("attempts", "ada"), ("compare",), ("report", "--output", page)):
             done = CliRunner().invoke(cli, [words[0], str(tiny.path), *words[1:]])
             assert done.exit_code == 0, done.output
+        for line in (
+            ["export", "--to", "csv", "--output", str(tmp_path)],
+            ["grade"],
+            ["students"],
+            ["collect"],
+        ):
+            done = CliRunner().invoke(cli, [line[0], str(tiny.path), *line[1:]])
+            said = "You do not have the right to read or write"
+            assert (done.exit_code, said in done.output, done.output.count("\n")) == (2, True, 1), done.output
         store = ClassStore(ClassDirectory(tiny.path))
         with pytest.raises(StoreTrouble, match=r"readonly.*Check the owner"):
             store.forget_entered([submission()])

@@ -15,6 +15,8 @@ import pytest
 from click.testing import CliRunner
 
 from autograder.cli import cli
+from autograder.grading.classes.class_directory import ClassDirectory
+from autograder.student.known_classes import CONFIG_NAME, reason_against
 from environment.python_child import installed_program
 
 if TYPE_CHECKING:
@@ -170,14 +172,31 @@ def test_a_class_that_a_student_has_handed_in_is_not_used(
     assert hostile.marks() == ""
 
 
+@pytest.mark.parametrize("where", ["in a class", "in a download"])
 @pytest.mark.parametrize("command", ["nbgrader", "jupyter"])
 def test_a_program_that_would_read_a_students_configuration_is_not_started(
-    tiny: TinyClass, course: Path, hostile: Hostile, handed_in: Path, command: str
+    course: Path, hostile: Hostile, handed_in: Path, command: str, where: str
 ) -> None:
-    done = typed(course, handed_in, command, ".")
+    done = typed(course, handed_in if where == "in a class" else hostile.path, command, "lab")
     assert done.returncode == 2
-    assert str(tiny.path) in done.stderr
+    assert f"--config={CONFIG_NAME}" in done.stderr
     assert hostile.marks() == ""
+
+
+def test_nbgrader_is_not_started_among_modules_that_it_would_import(
+    course: Path, hostile: Hostile, tmp_path: Path
+) -> None:
+    (tmp_path / "alembic.py").write_text((hostile.path / "json.py").read_text())
+    assert typed(course, tmp_path, "nbgrader", "db").returncode == 2
+    assert hostile.marks() == ""
+
+
+def test_a_class_that_was_named_once_needs_no_more_words(tiny: TinyClass, tmp_path: Path) -> None:
+    moved = tiny.path.rename(tmp_path / "moved")
+    assert reason_against(moved, "nbgrader", ["db"])
+    assert reason_against(moved, "nbgrader", ["db", f"--config={CONFIG_NAME}"]) == ""
+    assert ClassDirectory(moved).config
+    assert reason_against(moved, "nbgrader", ["db"]) == ""
 
 
 @pytest.mark.slow

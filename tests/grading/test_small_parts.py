@@ -14,19 +14,15 @@ import msgspec
 import pytest
 
 from autograder.boxes.run_limits import Ended
-from autograder.cards.readable_text import printable
 from autograder.execution.executed_cells import Cell, CellCheck, CellRun, Execution
-from autograder.grading.classes.class_directory import (
-    create_secret,
-    read_secret,
-    reason_against_name,
-    seed_for,
-)
-from autograder.grading.classes.new_class import NewClass
+from autograder.grading.classes.class_directory import reason_against_name
+from autograder.grading.classes.class_secret import create_secret, read_secret, seed_for
 from autograder.grading.grading_errors import DiskFull, NotAClass, is_disk_full
 from autograder.grading.grading_task import Task, points
+from autograder.grading.new_classes.new_class import NewClass
 from autograder.grading.table.rows import Row, write_csv
 from autograder.safe_files import write_whole
+from autograder.standard_output import printable
 from autograder.verdict import State, Verdict
 
 CHECK = CellCheck("lab.one", "One", points=10, worth=4, limit=2)
@@ -135,7 +131,7 @@ def test_a_printed_command_can_be_typed_for_a_class_in_a_folder_with_blanks() ->
     path = Path("/classes/Ada's robots 2026")
     missing = str(NotAClass(path, "no gradebook")).rpartition(": ")[2]
     assert shlex.split(missing) == ["./course", "new-class", str(path)]
-    made = NewClass(path, (), "UTC").summary().rpartition("Then ")[2]
+    made = NewClass(path, (), "UTC").summary()[-1].removeprefix("Then ")
     assert shlex.split(made) == ["./course", "grade", str(path)]
 
 

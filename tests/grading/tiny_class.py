@@ -17,7 +17,7 @@ from autograder.boxes.run_limits import Ended
 from autograder.execution.executed_cells import CellRun, Execution
 from autograder.execution.verdicts_without_judge import grader_trouble, zero_points
 from autograder.grading.batch import grade
-from autograder.grading.classes.new_class import new_class
+from autograder.grading.new_classes.new_class import new_class
 from autograder.grading.running import execution_backends
 from autograder.grading.running.task_dispatcher import Done
 
@@ -100,7 +100,7 @@ GRADE = """
 import sys
 from pathlib import Path
 from rich.console import Console
-from autograder.grading.rebuilding import task_making
+from autograder.grading.tasks import task_making
 from autograder.grading.batch import grade
 task_making.course_version = lambda: "test"
 grade(Path(sys.argv[1]), jobs=2, judge=sys.argv[2], feedback=False, console=Console(stderr=True, width=200))

@@ -9,7 +9,7 @@ import pytest
 from autograder.judge.bench.recorder import Recorder
 from autograder.judge.notebook_subject import NotebookPath
 from autograder.kit.runners import WorkspaceReport, workspace_report_line
-from autograder.messages.judge_messages import Output
+from autograder.messages.run_messages import Output
 
 
 @pytest.mark.parametrize(

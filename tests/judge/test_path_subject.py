@@ -14,8 +14,9 @@ from autograder.judge.bench.recorder import Recorder
 from autograder.judge.path_subject import PathSubject, as_words
 from autograder.kit.evidence import REPORTS
 from autograder.messages.json_lines import Lines
-from autograder.messages.judge_messages import Check, Collect, Constructed, Judged, Output, Sources
-from autograder.messages.workspace_messages import ProgramExited, Source
+from autograder.messages.judge_messages import Check, Collect, Constructed, Judged, Sources
+from autograder.messages.run_messages import Exited, Output
+from autograder.messages.workspace_messages import Source
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "workspaces"))
 from graded import graders_judge, judged
@@ -124,9 +125,8 @@ def test_the_end_of_a_run_is_known_behind_all_that_was_sent_before(monkeypatch: 
     monkeypatch.setattr(PathSubject, "_say", lambda *_: None)
     nobody: Any = None
     subject, recorder = PathSubject(nobody, "lab_1_1.hello", ""), Recorder()
-    recorder.begin("part", {})
     recorder.take_in = lambda: recorder.record("log", "/rosout", text="hello")
     subject.start(recorder, (), {})
-    subject._take(ProgramExited(run=1, code=0))
+    subject._take(Exited(run=1, code=0))
     assert [event.kind for event in recorder.part().events] == ["log", "subject"]
     assert subject.ended

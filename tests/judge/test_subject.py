@@ -29,7 +29,6 @@ def _part(work: Callable[[CommandSubject, Recorder], None], program: str) -> Par
 
     def judge() -> None:
         recorder = Recorder()
-        recorder.begin("part", {})
         recorder.take_in = lambda: recorder.record("message", "/sent")
         subject = CommandSubject([sys.executable, "-u", "-c", program])
         subject.begin(1)
@@ -86,6 +85,15 @@ def test_a_traceback_is_found_and_is_nothing_that_it_said() -> None:
 
 def test_a_syntax_error_is_found() -> None:
     assert "SyntaxError" in _part(_await_end, "def f(:").traceback
+
+
+def test_the_stack_of_a_crash_in_compiled_code_is_a_traceback() -> None:
+    program = "import ctypes\nprint('before')\ndef crash():\n    ctypes.string_at(0)\ncrash()"
+    part = _part(_await_end, program)
+    first, outermost, *_, last = part.traceback.splitlines()
+    assert (first, last) == ("Traceback (most recent call last):", "Segmentation fault")
+    assert outermost == '  File "<string>", line 5, in <module>'
+    assert [line for line in part.said() if line] == ["before"]
 
 
 def test_endless_output_is_cut_and_the_program_ended() -> None:

@@ -53,3 +53,8 @@ def test_a_missing_result_is_told_in_the_words_of_the_action(field: str, found: 
     advice = missing.recognise(Evidence([part], Reference("", {"action_server": {ACTION: TYPE}}, [PART])))
     assert (advice is not None) is found
     assert advice is None or "DriveTo.Result() in which you have set arrived and steps" in advice.next_step
+
+
+def test_a_result_without_an_answer_to_its_goal_is_a_goal_that_was_not_answered() -> None:
+    alone = goal(Part("main", {}, [seen("result_heard", status=SUCCEEDED, fields={})]), 0)
+    assert (alone.accepted, alone.seconds, alone.status) == (None, None, SUCCEEDED)

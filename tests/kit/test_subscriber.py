@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+from random import Random
+from typing import Any
+
 import pytest
 
 from autograder.kit.evidence import Event, Evidence, Part, Reference
+from autograder.kit.model import Pace
 from autograder.kit.recipes.subscriber import Speaks
+from autograder.kit.reported_texts import AT_PACE, PAIRS, TRIES, drawn_pairs, random_texts
 
 TEXTS = ("amber birch 1234", "cedar delta 5678", "ember fjord 9012")
 REFERENCE = Reference("x", {"subscription": {"/chatter": "std_msgs/msg/String"}})
@@ -39,3 +44,62 @@ def test_what_is_said_again_is_told_with_its_count(times: tuple[int, ...], words
 def test_empty_lines_are_no_words() -> None:
     assert "prints nothing when" in told("not_logged", seen((TEXTS[0], [""]), (TEXTS[1], ["", " "])))
     assert "said “hello”" in told("not_logged", seen((TEXTS[0], ["", "hello"])))
+
+
+class Bench:
+    """A bench without a listener, which tells what the recipe does."""
+
+    pace = Pace.FAST
+
+    def __init__(self, texts: list[str], pairs: list[str]) -> None:
+        self.done: list[str] = []
+        self._part = Part("listening", {"texts": texts, "pairs": pairs})
+
+    def seen(self) -> Part:
+        return self._part
+
+    def send(self, data: str) -> None:
+        self.done.append(data)
+
+    def settle(self) -> None:
+        self.done.append("the listener has handled it")
+
+    def run_time(self, *_: float, **__: Any) -> bool:
+        self.done.append("a pause")
+        return True
+
+    def wait_until(self, *_: Any) -> bool:
+        return True
+
+
+def test_between_the_texts_of_a_pair_the_listener_handles_the_first_and_no_time_passes() -> None:
+    bench: Any = Bench(["one", "two", "three"], ["two"])
+    Speaks(pace=0.5, paced_by="a talker")._are_said_at_pace(bench, bench, ["one", "two", "three"])
+    assert bench.done == ["one", "a pause", "two", "the listener has handled it", "three", "a pause"]
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_each_series_has_pairs_and_the_seed_decides_which(seed: int) -> None:
+    random = Random(seed)
+    texts = random_texts(random)
+    pairs = drawn_pairs(random, texts)
+    rows = [texts[1 + AT_PACE * i : 1 + AT_PACE * (i + 1)] for i in range(TRIES)]
+    assert all(sum(text in pairs for text in row[:-1]) >= PAIRS - 1 for row in rows)
+    assert pairs != drawn_pairs(Random(seed + 1), texts)
+
+
+@pytest.mark.parametrize(
+    ("missing", "key"), [(["b"], "not_logged"), (["c"], "callback_too_slow"), (["b", "y"], "not_logged")]
+)
+def test_a_listener_that_misses_only_the_first_of_a_pair_or_a_kind_of_text_is_not_too_slow(
+    missing: list[str], key: str
+) -> None:
+    at_pace, singly = list("abcdefgh"), [*"yz", *map(str, range(10))]
+    texts = ["0", *at_pace, *(f"{row}{n}" for row in "pq" for n in range(AT_PACE)), *singly]
+    events = [Event(0.0, "interface", "", dict(REFERENCE.interface))]
+    for at, text in enumerate(["0", *at_pace, *singly]):
+        events.append(Event(float(at), "sent", "/chatter", {"fields": {"data": text}}))
+        events += [Event(at + 0.1, "output", "stdout", {"text": text})] * (text not in missing)
+    evidence = Evidence([Part("listening", {"texts": texts, "pairs": ["b"]}, events)], REFERENCE)
+    ladder = Speaks(pace=0.5, paced_by="a talker").ladder
+    assert next(m.key for m in ladder if m.recognise(evidence)) == key

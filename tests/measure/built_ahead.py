@@ -14,11 +14,12 @@ from unittest import mock
 
 from autograder import course, exercises
 from autograder.boxes.fork_server import ForkServers
-from autograder.grading.classes.sample_class import _without_markers
 from autograder.grading.grading_task import Task
-from autograder.grading.rebuilding.task_making import cells_of
+from autograder.grading.new_classes.sample_class import _without_markers
 from autograder.grading.running import task_execution
+from autograder.grading.running.order_executor import judge_kind
 from autograder.grading.running.worker_messages import JUDGE
+from autograder.grading.tasks.task_making import cells_of
 from autograder.judge import controlled_judge
 from autograder.judge.ros_setup import boxed_ros_environment
 from autograder.masters.master_files import lab_name, masters
@@ -98,7 +99,9 @@ def _built(task: Task, addresses: Addresses) -> list[PackageFiles]:
         mock.patch.object(GradedBuilds, "_entry", remembering),
         mock.patch.object(task_execution, "build_ahead"),
     ):
-        execution = task_execution.execute(task, Path(scratch), JUDGE, addresses)
+        execution = task_execution.execute(
+            task, Path(scratch), judge_kind(JUDGE, boxed=task.boxed), addresses
+        )
     if execution.trouble:
         raise RuntimeError(f"{task.notebook}: {execution.trouble}")
     return [_files(tree) for tree in trees.values()]

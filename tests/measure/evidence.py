@@ -171,7 +171,7 @@ def record_of(answer: Answer, line: str | None) -> Record:
         content = json.loads(line)
         whole = content.pop("mark", None) == _mark(content)
         if whole and (content["answer"], content["program"]) == (answer.name, program(answer)):
-            return msgspec.convert(restored(content), type=Record)
+            return msgspec.convert(json.loads(json.dumps(content), object_hook=restored), type=Record)
         why = (
             "was seen of another program, or before this one was changed" if whole else "was changed by hand"
         )

@@ -61,7 +61,7 @@ def looks_at(wanted: Mapping[str, Answer], lines: Iterable[str]) -> dict[str, Lo
         done.add(seen)
         content.pop("mark", None)
         try:
-            record = msgspec.convert(restored(content), type=Record)
+            record = msgspec.convert(json.loads(json.dumps(content), object_hook=restored), type=Record)
             now = replay(record.seen).now
         except (CannotReplay, msgspec.ValidationError):
             continue

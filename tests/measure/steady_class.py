@@ -18,8 +18,8 @@ import msgspec
 
 from autograder import course
 from autograder.grading.classes.class_directory import SUFFIX
-from autograder.grading.classes.new_class import new_class
-from autograder.grading.classes.sample_class import BANK, SampleNotebook, made_notebook
+from autograder.grading.new_classes.new_class import new_class
+from autograder.grading.new_classes.sample_class import BANK, SampleNotebook, made_notebook
 from autograder.grading.rebuilding import nbformat_nodes
 from tests.measure.ends import Ends, Repeated, in_one_line
 from tests.measure.soak import busy_loops

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from autograder import course
-from autograder.grading.classes.sample_class import BANK
+from autograder.grading.new_classes.sample_class import BANK
 from tests.measure.steady_class import STUDENTS
 
 

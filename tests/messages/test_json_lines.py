@@ -13,7 +13,7 @@ from typing import get_args
 import msgspec
 import pytest
 
-from autograder.messages import json_lines, judge_messages, workspace_messages
+from autograder.messages import json_lines, judge_messages, run_messages, workspace_messages
 from autograder.messages.json_lines import Hangup, Lines, NotUnderstood, Silent, TooLong
 
 
@@ -27,7 +27,7 @@ def test_messages_come_one_by_one_however_they_are_cut() -> None:
     wire.sendall(b'{"say": "check", "exercise": "lab_1_2.talker"}\n{"say": "re')
     assert judge.hear(judge_messages.FromNotebook) == judge_messages.Check("lab_1_2.talker")
     wire.sendall(b'ady"}\n')
-    assert judge.hear(judge_messages.FromNotebook) == judge_messages.Ready()
+    assert judge.hear(judge_messages.FromNotebook) == run_messages.Ready()
 
 
 @pytest.mark.parametrize(
@@ -67,7 +67,7 @@ def test_what_is_not_expected_is_not_understood_and_ends_nothing(line: bytes) ->
     wire.sendall(line + b'\n{"say": "ready"}\n')
     with pytest.raises(NotUnderstood):
         judge.hear(judge_messages.FromNotebook)
-    assert judge.hear(judge_messages.FromNotebook) == judge_messages.Ready()
+    assert judge.hear(judge_messages.FromNotebook) == run_messages.Ready()
 
 
 class Stubborn(str):
@@ -80,8 +80,8 @@ class Stubborn(str):
 @pytest.mark.parametrize("text", ["Grüße", "\ud800 half a character", "\0", Stubborn("stubborn")])
 def test_any_text_of_a_subject_s_arrives(text: str) -> None:
     wire, judge = _pair()
-    Lines(wire).say(judge_messages.Output(1, text))
-    assert judge.hear(judge_messages.FromNotebook) == judge_messages.Output(1, text)
+    Lines(wire).say(run_messages.Output(1, text))
+    assert judge.hear(judge_messages.FromNotebook) == run_messages.Output(1, text)
 
 
 def test_every_word_stands_for_one_message() -> None:

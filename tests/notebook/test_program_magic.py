@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import ast
+import errno
+import os
 from typing import TYPE_CHECKING, Any
 
 import pytest
 from jupyter_client.manager import start_new_kernel
 
 from autograder.masters.code_cells import COPIED
-from autograder.notebook.program_magic import NotRunError, with_definitions
+from autograder.notebook import program_magic
+from autograder.notebook.program_magic import NotRunError, NotWrittenError, with_definitions
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -126,3 +129,30 @@ def test_a_student_runs_two_cells_and_copies_nothing(kernel: Any, tmp_path: Path
         run(kernel, f"def hello():\n    return {word!r}")
         assert said in run(kernel, cell)
         assert run(kernel, "!python3 hello.py").strip() == word
+
+
+@pytest.mark.slow
+def test_a_file_that_has_the_text_is_not_written_again(kernel: Any, tmp_path: Path) -> None:
+    run(kernel, "import autograder.notebook")
+    file = tmp_path / "CMakeLists.txt"
+    assert run(kernel, "%%writefile CMakeLists.txt\none\n").strip() == "Writing CMakeLists.txt"
+    file.chmod(0o755)
+    before = file.stat().st_ctime_ns
+    assert run(kernel, "%%writefile CMakeLists.txt\none\n").strip() == "Unchanged CMakeLists.txt"
+    assert file.stat().st_ctime_ns == before
+    assert run(kernel, "%%writefile CMakeLists.txt\ntwo\n").strip() == "Overwriting CMakeLists.txt"
+    assert run(kernel, "%%writefile -a CMakeLists.txt\nthree\n").strip() == "Overwriting CMakeLists.txt"
+    assert (file.read_text(), file.stat().st_mode & 0o777) == ("two\nthree\n", 0o755)
+
+
+def test_a_full_disk_leaves_the_file_as_it_was(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(_: int) -> None:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    file = tmp_path / "package.xml"
+    file.write_text("<package/>")
+    monkeypatch.setattr(os, "fsync", full)
+    with pytest.raises(NotWrittenError, match="cannot be written: No space left on device"):
+        program_magic._write(file, "<package></package>")
+    assert file.read_text() == "<package/>"
+    assert list(tmp_path.iterdir()) == [file]

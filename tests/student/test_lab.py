@@ -20,7 +20,7 @@ from nbgrader.server_extensions.validate_assignment.handlers import ValidateAssi
 
 from autograder import exercises
 from autograder.dds_discovery import claim_free_domain
-from autograder.student import check_journal
+from autograder.student import check_journal, known_classes
 from autograder.student.lab import (
     NOTEBOOKS_VARIABLE,
     NOTHING_TO_SAVE,
@@ -37,7 +37,6 @@ VARIABLES = (
     "JUPYTER_CONFIG_PATH",
     check_journal.VARIABLE,
     NOTEBOOKS_VARIABLE,
-    "CMAKE_BUILD_TYPE",
 )
 START = [
     "--LabApp.default_url=/course",
@@ -91,9 +90,16 @@ def test_the_session_has_a_free_domain_of_its_own_and_stays_on_this_host(
     assert started[0].environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] == "LOCALHOST"
 
 
-def test_students_build_interfaces_as_a_check_does(started: list[Started], tmp_path: Path) -> None:
+def test_validate_runs_the_configuration_only_of_a_known_class(
+    started: list[Started], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path / "data"))
+    (tmp_path / "nbgrader_config.py").write_text("c.Exchange.root = 'from the folder'")
     open_lab(tmp_path)
-    assert started[0].environ["CMAKE_BUILD_TYPE"] == "Release"
+    assert not started[0].validate.Exchange
+    known_classes.remember(tmp_path)
+    open_lab(tmp_path)
+    assert started[1].validate.Exchange.root == "from the folder"
 
 
 def test_two_sessions_have_two_domains(
@@ -116,9 +122,7 @@ def test_what_the_user_chose_stays(
     monkeypatch.setenv("ROS_DOMAIN_ID", "17")
     monkeypatch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "SUBNET")
     monkeypatch.setenv("JUPYTER_CONFIG_PATH", "/my/settings")
-    monkeypatch.setenv("CMAKE_BUILD_TYPE", "Debug")
     open_lab(tmp_path)
-    assert started[0].environ["CMAKE_BUILD_TYPE"] == "Debug"
     assert started[0].environ["ROS_DOMAIN_ID"] == "17"
     assert started[0].environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] == "SUBNET"
     assert "/my/settings" in started[0].config_path

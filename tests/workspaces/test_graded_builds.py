@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from autograder import course
-from autograder.grading.classes.sample_class import _without_markers
+from autograder.grading.new_classes.sample_class import _without_markers
 from autograder.masters.master_files import masters
 from autograder.masters.source_notebooks import source_notebook
 from autograder.workspaces import graded_builds

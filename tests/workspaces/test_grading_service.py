@@ -16,6 +16,7 @@ import pytest
 
 from autograder.kit.evidence import REPORTS
 from autograder.kit.runners import ALONE
+from autograder.messages import run_messages
 from autograder.messages import workspace_messages as messages
 from autograder.messages.json_lines import Hangup, Lines
 from autograder.workspaces import grading_service, packages, sources
@@ -98,14 +99,14 @@ class FakeJudge:
         self.lines.say(messages.CheckRequest(exercise, 7, workspace.name, len(sent), trouble))
         for source in sent:
             self.lines.say(source)
-        self.lines.hear(messages.ServiceReady)
+        self.lines.hear(run_messages.Ready)
 
     def hear(self) -> dict[str, Any]:
         return words_of(self.lines, messages.FromService)
 
     def run(self, number: int = 1) -> list[dict[str, Any]]:
         """What is said of a run until it has ended by itself."""
-        self.lines.say(messages.StartProgram(number))
+        self.lines.say(run_messages.Start(number))
         heard: list[dict[str, Any]] = []
         while not heard or heard[-1]["say"] not in ("exited", "trouble"):
             heard.append(self.hear())
@@ -163,7 +164,7 @@ def test_what_a_program_says_is_never_a_report(sockets: ServiceSockets, jobs: Fa
     judge.check(lab)
     heard = judge.run()
     assert len(reports(heard)) == 2
-    assert {"say": "output", "run": 1, "text": FORGED} in heard
+    assert {"say": "output", "run": 1, "text": FORGED, "logged": False} in heard
 
 
 def test_a_build_that_says_it_went_well_and_brought_nothing_has_not(
@@ -298,7 +299,7 @@ def test_who_shares_a_build_has_given_the_very_same_to_its_box(
         judge.lines.say(messages.CheckRequest("lab_1_1.hello", 7, "ros2_ws", len(sent)))
         for source in sent:
             judge.lines.say(source)
-        judge.lines.hear(messages.ServiceReady)
+        judge.lines.hear(run_messages.Ready)
         assert reports(judge.run())[-1]["built"]
         judge.lines.close()
     inside = f"/{odd.path.removeprefix('ros2_ws/')}"
@@ -349,7 +350,7 @@ def test_a_path_that_leads_out_is_refused(sockets: ServiceSockets, jobs: FakeJob
     judge = FakeJudge(sockets)
     judge.lines.say(messages.CheckRequest("lab_1_1.hello", 7, "ros2_ws", 1))
     judge.lines.say(messages.Source("../evil", b""))
-    judge.lines.hear(messages.ServiceReady)
+    judge.lines.hear(run_messages.Ready)
     assert "is not a path inside" in reports(judge.run())[-1]["line"]
     assert not jobs.builds
 
@@ -358,10 +359,10 @@ def test_a_run_is_ended_when_the_judge_says_so(sockets: ServiceSockets, jobs: Fa
     jobs.script = "echo started; sleep 1000"
     judge = FakeJudge(sockets)
     judge.check(lab)
-    judge.lines.say(messages.StartProgram(1))
+    judge.lines.say(run_messages.Start(1))
     while judge.hear().get("text") != "started":
         pass
-    judge.lines.say(messages.StopProgram(1))
+    judge.lines.say(run_messages.Stop(1))
     assert judge.hear() == {"say": "stopped", "run": 1}
 
 
@@ -375,12 +376,12 @@ def test_ctrl_c_ends_the_program_that_the_judge_has_named(
     jobs.script = TRAP
     judge = FakeJudge(sockets)
     judge.check(lab, "lab_1_2.programs")
-    judge.lines.say(messages.StartProgram(1, ("talker", "7")))
+    judge.lines.say(run_messages.Start(1, ["talker", "7"]))
     while judge.hear().get("text") != "started":
         pass
     assert jobs.commands[0][-4:] == ["run", "my_robot_pkg", "talker", "7"]
-    judge.lines.say(messages.InterruptProgram(1))
-    assert judge.hear() == {"say": "output", "run": 1, "text": "bye"}
+    judge.lines.say(run_messages.Interrupt(1))
+    assert judge.hear() == {"say": "output", "run": 1, "text": "bye", "logged": False}
     assert judge.hear() == {"say": "exited", "run": 1, "code": 4}
 
 
@@ -394,9 +395,9 @@ def test_in_place_of_a_launch_the_program_is_run_that_the_judge_has_named(
     judge.lines.say(messages.CheckRequest("exercise_1_1.remap", 7, path, len(sent)))
     for source in sent:
         judge.lines.say(source)
-    judge.lines.hear(messages.ServiceReady)
+    judge.lines.hear(run_messages.Ready)
     for run, words in enumerate(((), (ALONE, "my_robot_pkg", "talker", "--ros-args")), 1):
-        judge.lines.say(messages.StartProgram(run, words))
+        judge.lines.say(run_messages.Start(run, list(words)))
         while judge.hear()["say"] != "exited":
             pass
     launched, alone = jobs.commands
@@ -412,7 +413,7 @@ def test_a_program_that_was_not_built_is_named_and_the_other_one_runs(
     judge.check(lab, "lab_1_2.programs")
     missing = []
     for run, program in enumerate(("talker", "listener"), 1):
-        judge.lines.say(messages.StartProgram(run, (program,)))
+        judge.lines.say(run_messages.Start(run, [program]))
         heard: list[dict[str, Any]] = []
         while not heard or heard[-1]["say"] != "exited":
             heard.append(judge.hear())
@@ -427,11 +428,11 @@ def test_ctrl_c_for_an_earlier_run_ends_no_later_one(
     jobs.script = TRAP
     judge = FakeJudge(sockets)
     judge.check(lab)
-    judge.lines.say(messages.StartProgram(2))
+    judge.lines.say(run_messages.Start(2))
     while judge.hear().get("text") != "started":
         pass
-    judge.lines.say(messages.InterruptProgram(1))
-    judge.lines.say(messages.StopProgram(2))
+    judge.lines.say(run_messages.Interrupt(1))
+    judge.lines.say(run_messages.Stop(2))
     assert judge.hear() == {"say": "stopped", "run": 2}
 
 
@@ -449,7 +450,7 @@ def test_a_build_is_given_up_when_nobody_waits_for_it(
     jobs.waiting = wait
     judge = FakeJudge(sockets)
     judge.check(lab)
-    judge.lines.say(messages.StartProgram(1))
+    judge.lines.say(run_messages.Start(1))
     assert building.wait(20.0)
     judge.lines.close()
     assert given_up.wait(20.0)
@@ -532,7 +533,7 @@ def test_the_judge_may_be_gone_when_the_grader_has_trouble(
     jobs.waiting = fail
     judge = FakeJudge(sockets)
     judge.check(lab)
-    judge.lines.say(messages.StartProgram(1))
+    judge.lines.say(run_messages.Start(1))
     assert building.wait(20.0)
     judge.lines.close()
     gone.set()
@@ -586,11 +587,11 @@ def test_endless_output_is_cut_and_ends_with_the_run(
     jobs.script = "yes"
     judge = FakeJudge(sockets)
     judge.check(lab)
-    judge.lines.say(messages.StartProgram(1))
+    judge.lines.say(run_messages.Start(1))
     size = 0
     while size < 9_900:
         size += size_of_output(judge.hear())
-    judge.lines.say(messages.StopProgram(1))
+    judge.lines.say(run_messages.Stop(1))
     while (words := judge.hear())["say"] != "stopped":
         size += size_of_output(words)
     assert size <= 10_000

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import shutil
 import socket
 import sys
 import tracemalloc
@@ -313,3 +314,17 @@ def test_far_too_much_is_not_even_sent(workspace: Path) -> None:
     (workspace / "src" / "mesh.stl").write_bytes(b"x" * (sources.MAX_FILE + 1))
     with pytest.raises(BadSources, match="kB"):
         sources.collect_workspace(workspace)
+
+
+@pytest.mark.parametrize(("free", "said"), [(0, "is full"), (10**9, "")])
+def test_a_full_disk_is_no_mistake_of_the_sources(
+    free: int, said: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(shutil, "disk_usage", lambda _: shutil._ntuple_diskusage(10**10, 10**10 - free, free))
+    trouble = sources.full_disk(tmp_path)
+    assert said in trouble
+    assert bool(trouble) == bool(said)
+
+
+def test_a_folder_that_is_missing_is_no_full_disk(tmp_path: Path) -> None:
+    assert sources.full_disk(tmp_path / "nothing") == ""

@@ -1,1 +1,1 @@
-"""Makes class directories, reads their folders, configuration and gradebook, and writes results into them."""
+"""Reads the folder, configuration and gradebook of a class, and writes the gradebook."""

@@ -5,9 +5,6 @@ from __future__ import annotations
 import contextlib
 import functools
 import hashlib
-import hmac
-import os
-import secrets
 import unicodedata
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,11 +14,13 @@ from zoneinfo import ZoneInfo
 from traitlets.config.loader import PyFileConfigLoader
 
 from autograder import course
+from autograder.command_name import COMMAND
 from autograder.grading.classes.class_lock import held
+from autograder.grading.classes.class_secret import create_secret, read_secret
 from autograder.grading.grading_errors import GradingError, NotAClass, clear_disk_errors
 from autograder.grading.rebuilding.submitted_notebook import reason_against_file
 from autograder.safe_files import remove_unfinished
-from environment.installation import COMMAND
+from autograder.student import known_classes
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -33,13 +32,15 @@ if TYPE_CHECKING:
     from autograder.grading.rebuilding.cell_matching import NamedCells
 
 
-CONFIG_NAME = "nbgrader_config.py"
+CONFIG_NAME = known_classes.CONFIG_NAME
 STATE_NAME = ".autograder"
 COURSE_NAME = "course"
 """The name of a file in the class's state folder. The file contains the path of the course's top folder, because an
 installed package cannot find that folder otherwise.
 """
 SUFFIX = ".ipynb"
+TIMESTAMP = "timestamp.txt"
+"""The name of nbgrader's timestamp file, which lies next to the notebooks of a submission."""
 _LONGEST_NAME = 100
 _STUDENTS_FILES = ("submitted", "autograded", "feedback", "downloaded")
 """nbgrader's names for the folders of a class that contain students' files."""
@@ -47,13 +48,7 @@ _STUDENTS_FILES = ("submitted", "autograded", "feedback", "downloaded")
 
 @dataclass(frozen=True)
 class Submission:
-    """The folder with the files that one student submitted for one assignment.
-
-    Attributes:
-        student: The student's id.
-        assignment: The assignment's name.
-        folder: The folder of the submission.
-    """
+    """The folder with the files that one student submitted for one assignment."""
 
     student: str
     assignment: str
@@ -149,8 +144,15 @@ class ClassDirectory:
                 "A name looks like Europe/Berlin."
             ) from error
 
+    @property
+    def is_sandbox_off(self) -> bool:
+        """True if this class is graded without boxes, by its configuration or :func:`switch_sandbox_off`."""
+        configured = self.config.WireExecute.get("unsafe_no_sandbox", False)
+        return bool(configured) or self.path.resolve() in _unboxed
+
     @functools.cached_property
     def _as_written(self) -> Config:
+        known_classes.remember(self.path)
         try:
             return PyFileConfigLoader(CONFIG_NAME, path=str(self.path)).load_config()
         except Exception as error:  # the configuration file is a program, so it may raise any error
@@ -213,10 +215,10 @@ class ClassDirectory:
     def files(self, assignment: str) -> dict[str, bytes]:
         """Return the files next to an assignment's source notebooks, by relative path."""
         folder = self.path / "source" / assignment
-        found = (path for path in sorted(folder.rglob("*")) if path.is_file() and path.suffix != SUFFIX)
+        paths = (path for path in sorted(folder.rglob("*")) if path.is_file() and path.suffix != SUFFIX)
         return {
             str(path.relative_to(folder)): path.read_bytes()
-            for path in found
+            for path in paths
             if not any(
                 part.startswith(".") or part == "__pycache__" for part in path.relative_to(folder).parts
             )
@@ -237,11 +239,11 @@ class ClassDirectory:
                     taken.append(Submission(student.name, folder.name, folder))
                     refused += _odd_files(folder / f"{name}{SUFFIX}" for name in notebooks[folder.name])
                 else:
-                    known = ", ".join(notebooks) or "none"
+                    names = ", ".join(notebooks) or "none"
                     refused.append(
                         RefusedFile(
                             folder,
-                            f"the class has no assignment with this name (the class's assignments: {known})",
+                            f"the class has no assignment with this name (the class's assignments: {names})",
                         )
                     )
         return taken, refused
@@ -280,6 +282,17 @@ class ClassDirectory:
         return f"autograder-{hashlib.sha256(str(self.path).encode()).hexdigest()[:8]}-"
 
 
+_unboxed: set[Path] = set()
+"""The folders of the classes that this process grades without boxes. Folders are stored, and not ``ClassDirectory``
+objects, because several such objects may represent one class.
+"""
+
+
+def switch_sandbox_off(path: Path) -> None:
+    """Let this process grade the class in the folder ``path`` without boxes, as ``--unsafe-no-sandbox`` does."""
+    _unboxed.add(path.resolve())
+
+
 def refuse_students_folder(folder: Path) -> None:
     """Raise an error if a folder is inside a class's folder for students' files.
 
@@ -296,6 +309,15 @@ def refuse_students_folder(folder: Path) -> None:
                 f"{folder} is among students' files, so it cannot be a class. Use the class that contains it: "
                 f"{outer}"
             )
+
+
+def timestamp_text(when: datetime) -> str:
+    """Return a time as text in the format of nbgrader's timestamp file.
+
+    Args:
+        when: A time in UTC.
+    """
+    return f"{when:%Y-%m-%d %H:%M:%S.%f} UTC"
 
 
 def in_zone(when: datetime, zone: tzinfo) -> str:
@@ -330,7 +352,7 @@ def _odd_files(paths: Iterable[Path]) -> Iterator[RefusedFile]:
 
 def _folders(parent: Path, refused: list[RefusedFile]) -> list[Path]:
     """Return the folders in ``parent`` with usable names, and add other folders and special files to ``refused``."""
-    found = []
+    folders = []
     for entry in _entries(parent, refused):
         if entry.name.startswith("."):
             continue
@@ -341,10 +363,10 @@ def _folders(parent: Path, refused: list[RefusedFile]) -> list[Path]:
             if reason:
                 refused.append(RefusedFile(entry, f"{reason}; rename the folder"))
             else:
-                found.append(entry)
+                folders.append(entry)
         elif not entry.is_file():
             refused.append(RefusedFile(entry, "the path is neither a folder nor a file; remove it"))
-    return found
+    return folders
 
 
 def _entries(parent: Path, refused: list[RefusedFile]) -> list[Path]:
@@ -355,47 +377,3 @@ def _entries(parent: Path, refused: list[RefusedFile]) -> list[Path]:
     except OSError as error:
         refused.append(RefusedFile(parent, f"the folder could not be read: {error.strerror}"))
         return []
-
-
-_SECRET_BYTES = 32
-
-
-def create_secret(path: Path) -> None:
-    """Write a new secret of a class into a file that only the owner can read.
-
-    Raises:
-        FileExistsError: The file exists. It is not replaced, because a new secret would change the inputs of every
-            student.
-    """
-    descriptor = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
-    with os.fdopen(descriptor, "w") as file:
-        file.write(secrets.token_hex(_SECRET_BYTES))
-
-
-def read_secret(path: Path) -> bytes:
-    """Return the secret of a class.
-
-    Raises:
-        OSError: The file cannot be read.
-        ValueError: The file is damaged.
-    """
-    secret = bytes.fromhex(path.read_text().strip())
-    if len(secret) != _SECRET_BYTES:
-        raise ValueError(f"{path} does not hold {_SECRET_BYTES} bytes")
-    return secret
-
-
-def seed_for(secret: bytes, student: str, assignment: str, notebook: str, work: str) -> str:
-    """Return the seed of one student's notebook. The judge derives the seed of each exercise from it.
-
-    Args:
-        secret: The class secret.
-        student: The student's id.
-        assignment: The assignment's name.
-        notebook: The notebook's name.
-        work: A hash of the submitted cells, so that a changed submission gets different inputs. Otherwise a student
-            could copy inputs from the feedback into the next submission.
-    """
-    # The hashed message contains the lengths of the names, so that ("ab", "c") and ("a", "bc") give different seeds.
-    message = "".join(f"{len(part)}:{part};" for part in (student, assignment, notebook, work))
-    return hmac.new(secret, message.encode(), hashlib.sha256).hexdigest()[:32]

@@ -66,6 +66,7 @@ def held(path: Path, of: Path) -> Iterator[bool]:
     path = path.resolve()
     now = _Holder(os.getpid(), socket.gethostname(), f"{datetime.now():%Y-%m-%d %H:%M:%S}")
     with _changing:
+        # A record lock does not exclude another thread of the process that holds it.
         if path in _own:
             raise ClassBusy(of, str(_own[path]))
         file = path.open("a+b")
@@ -80,6 +81,7 @@ def held(path: Path, of: Path) -> Iterator[bool]:
     finally:
         with _changing:
             del _own[path]
+            # An empty file says to the next holder that this one ended by itself.
             file.truncate(0)
             file.close()
 

@@ -120,8 +120,22 @@ class SubmissionEntry:
     @property
     def taken_off(self) -> float:
         """The points that the late penalty subtracts: at most all points, because no score becomes negative."""
-        points = sum(cell.score for cells in self.cells.values() for cell in cells.values())
-        return min(self.penalty, max(0.0, points))
+        return min(self.penalty, max(0.0, self._earned))
+
+    @property
+    def points(self) -> float:
+        """The points that are left after the late penalty. The weights of the class are not applied."""
+        return self._earned - self.taken_off
+
+    @property
+    def has_points_by_hand(self) -> bool:
+        """True if a person gave points."""
+        cells = [cell for cells in self.cells.values() for cell in cells.values()]
+        return any(cell.by_hand is not None or cell.extra for cell in cells)
+
+    @property
+    def _earned(self) -> float:
+        return sum(cell.score for cells in self.cells.values() for cell in cells.values())
 
     def why_late(self, zone: tzinfo) -> str:
         """Return the submission time and the due date as text, in a time zone; empty without a late penalty."""
@@ -175,7 +189,7 @@ def has_tables(book: Connection) -> bool:
 
 def max_scores(url: str, assignment: str) -> dict[str, dict[str, float]]:
     """Return the maximum points of each cell in the gradebook, by notebook and then by grade_id."""
-    found: dict[str, dict[str, float]] = {}
+    scores: dict[str, dict[str, float]] = {}
     with opened(url) as book:
         if has_tables(book):
             rows = book.execute(
@@ -189,10 +203,10 @@ def max_scores(url: str, assignment: str) -> dict[str, dict[str, float]]:
                 {"assignment": assignment},
             )
             for notebook, cell, points in rows:
-                cells = found.setdefault(notebook, {})
+                cells = scores.setdefault(notebook, {})
                 if cell is not None:
                     cells[cell] = points
-    return found
+    return scores
 
 
 def read_entries(url: str, *, student: str = "", assignment: str = "") -> Entries:
@@ -207,10 +221,11 @@ def read_entries(url: str, *, student: str = "", assignment: str = "") -> Entrie
     narrow = "(:student = '' OR s.student_id = :student) AND (:assignment = '' OR a.name = :assignment)"
     cells: dict[tuple[str, str], dict[str, dict[str, CellEntry]]] = {}
     penalties: dict[tuple[str, str], dict[str, float]] = {}
-    found: dict[tuple[str, str], SubmissionEntry] = {}
+    entries: dict[tuple[str, str], SubmissionEntry] = {}
     with opened(url) as book:
         if not has_tables(book):
             return {}
+        # Four statements for the whole class, and not some for each submission, of which there may be thousands.
         for row in book.execute(sql(f"{_CELLS} WHERE {narrow}"), names):
             of_notebook = cells.setdefault((row.student, row.assignment), {}).setdefault(row.notebook, {})
             of_notebook[row.cell] = CellEntry(
@@ -218,8 +233,8 @@ def read_entries(url: str, *, student: str = "", assignment: str = "") -> Entrie
             )
         for row in book.execute(sql(f"{_COMMENTS} AND {narrow}"), names):
             of_notebook = cells.setdefault((row.student, row.assignment), {}).setdefault(row.notebook, {})
-            known = of_notebook.get(row.cell, CellEntry(0.0))
-            of_notebook[row.cell] = replace(known, comment=row.said)
+            entry = of_notebook.get(row.cell, CellEntry(0.0))
+            of_notebook[row.cell] = replace(entry, comment=row.said)
         for row in book.execute(sql(f"{_PENALTIES} AND {narrow}"), names):
             penalties.setdefault((row.student, row.assignment), {})[row.notebook] = row.penalty
         for row in book.execute(
@@ -235,8 +250,10 @@ def read_entries(url: str, *, student: str = "", assignment: str = "") -> Entrie
                 due = due + row.extension
             key = (row.student, row.assignment)
             name = " ".join(part for part in (row.first_name, row.last_name) if part)
-            found[key] = SubmissionEntry(row.timestamp, due, penalties.get(key, {}), cells.get(key, {}), name)
-    return found
+            entries[key] = SubmissionEntry(
+                row.timestamp, due, penalties.get(key, {}), cells.get(key, {}), name
+            )
+    return entries
 
 
 def read_entry(url: str, student: str, assignment: str) -> SubmissionEntry:

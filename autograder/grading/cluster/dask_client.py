@@ -133,18 +133,18 @@ class _Carrier:
 
     async def _look(self) -> list[tuple[str, str, int]]:
         """Report the workers that have left, and return the address, name and number of threads of each new worker."""
-        known = (await self._client.scheduler.identity())["workers"]
-        for address in self._workers - known.keys():
+        workers = (await self._client.scheduler.identity())["workers"]
+        for address in self._workers - workers.keys():
             for number, worker_address in list(self._given.items()):
                 if worker_address == address:
                     self._drop(number)
             _tell(self._grader, Left(address))
         new = [
             (str(address), str(facts["name"]), int(facts["nthreads"]))
-            for address, facts in known.items()
+            for address, facts in workers.items()
             if address not in self._workers
         ]
-        self._workers = set(known)
+        self._workers = set(workers)
         return new
 
     def _on_event(self, event: Any) -> None:

@@ -18,13 +18,13 @@ import dask
 from distributed import Worker, WorkerPlugin, get_worker
 
 from autograder.boxes.sandbox import why_impossible
+from autograder.command_name import COMMAND
+from autograder.grading.course_version import course_version
 from autograder.grading.grading_errors import GradingError
-from autograder.grading.rebuilding.course_version import course_version
 from autograder.grading.running.execution_backends import check_address, cores
 from autograder.grading.running.order_executor import Executor
 from autograder.grading.running.worker_messages import Offer
 from autograder.safe_files import HeldFolder
-from environment.installation import COMMAND
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -61,6 +61,7 @@ def start_worker(
         )
     check_address(address)
     name = name or os.environ.get("DASK_WORKER_NAME") or f"{os.uname().nodename}-{os.getpid()}"
+    # Refuse here what the grader would refuse later, while a person still watches this terminal.
     offered = offer(jobs or cores())
     if sandbox and offered.obstacle:
         raise GradingError(
@@ -92,11 +93,11 @@ async def _work(address: str, name: str, slots: int, folder: str, tell: Callable
         raise GradingError(
             f"No Dask scheduler answers at {address} ({error}). Start one with: dask scheduler"
         ) from error
-    told = asyncio.Event()
+    signaled = asyncio.Event()
     for number in (signal.SIGINT, signal.SIGTERM):
-        asyncio.get_running_loop().add_signal_handler(number, told.set)
+        asyncio.get_running_loop().add_signal_handler(number, signaled.set)
     tell(f"{name} waits for work from {address}. Ctrl-C ends it.")
-    finished, stopped = asyncio.ensure_future(worker.finished()), asyncio.ensure_future(told.wait())
+    finished, stopped = asyncio.ensure_future(worker.finished()), asyncio.ensure_future(signaled.wait())
     await asyncio.wait((finished, stopped), return_when=asyncio.FIRST_COMPLETED)
     ended_by_scheduler = finished.done() and not stopped.done()
     stopped.cancel()

@@ -6,12 +6,10 @@ from collections import defaultdict
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
-from rich.console import Console
-
-from autograder.cards.readable_text import printable
+from autograder import standard_output
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.collecting.collected_csv import Table
-from autograder.grading.collecting.collected_files import Arrival, Delivery, Inbox, LineState
+from autograder.grading.collecting.collected_files import SHORT_KEY, Arrival, Delivery, Inbox, LineState
 from autograder.grading.collecting.download_desk_process import is_archive
 from autograder.grading.collecting.downloaded_files import (
     Archives,
@@ -23,12 +21,13 @@ from autograder.grading.collecting.downloaded_files import (
 )
 from autograder.grading.collecting.file_owners import NamedSource, StudentOf
 from autograder.grading.collecting.file_to_grade import ClassFolders, decide
-from autograder.grading.collecting.inbox_lines import NO_LIST, AssignmentOf, entries_of, in_utc, lines_of
-from autograder.grading.collecting.submitted_file_names import check_names
+from autograder.grading.collecting.inbox_lines import lines_of
+from autograder.grading.collecting.list_times import NO_LIST, entries_of, in_utc
+from autograder.grading.collecting.submitted_file_names import Pattern
 from autograder.grading.collecting.submitted_folder import Submitted
 from autograder.grading.grading_errors import GradingError, check_known, course_command
 from autograder.grading.running.batch_progress import plain_line
-from autograder.grading.table.roster import enter_roster, read_roster
+from autograder.grading.table.student_list import enter_roster, read_roster
 from autograder.kit.in_words import counted
 
 if TYPE_CHECKING:
@@ -75,7 +74,7 @@ def collect(
         enter_roster(directory)
         columns = {one for student in read_roster(directory).students.values() for one in student.lms}
         if names:
-            check_names(names, sorted(columns | {"github"}))
+            Pattern(names).check(sorted(columns | {"github"}))
         when = in_utc(handed_in, zone or directory.time_zone)
         options = Delivery((), form, names, str(zone) if zone else "", assignment, when)
         return _Collecting(directory, options).run(sources)
@@ -114,10 +113,10 @@ class CollectReport:
 
 def show(report: CollectReport) -> None:
     """Print which files were placed and which were not, with the reasons."""
-    console = Console()
+    console = standard_output.console()
     for text in _lines(report):
         style = "yellow" if text.startswith(LineState.NOT_PLACED) else ""
-        plain_line(console, printable(text), style)
+        plain_line(console, text, style)
 
 
 def _lines(report: CollectReport) -> Iterator[str]:
@@ -126,8 +125,14 @@ def _lines(report: CollectReport) -> Iterator[str]:
         late = ", late according to the LMS" if one.late else ""
         again = f", {one.reason}" if one.reason else ""
         yield f"placed       {one.student}/{one.assignment}: {one.label}{when}{late}{again}"
-    for state in (LineState.EARLIER, LineState.BESIDE, LineState.LEFT_OUT, LineState.NOT_PLACED):
-        for one in report.having(state):
+    for state in (
+        LineState.UNCHANGED,
+        LineState.EARLIER,
+        LineState.BESIDE,
+        LineState.LEFT_OUT,
+        LineState.NOT_PLACED,
+    ):
+        for one in (one for one in report.having(state) if one.reason):
             owner = f"{one.student}: " if one.student else ""
             also = (
                 "; the student's notebook was collected, too"
@@ -176,7 +181,7 @@ class _Collecting:
 
     def run(self, sources: Sequence[Path]) -> CollectReport:
         """Take files into the inbox, decide about all files in it, and update ``submitted`` and the table."""
-        edits, self._notes = self._table.take_edits()
+        edits, self._notes = self._table.take_edits(self._inbox.keys)
         self._submitted.take_in()
         delivery = self._receive(sources)
         before = {one.label for one in self._table.waiting()}
@@ -198,14 +203,14 @@ class _Collecting:
         options = self._options
         with self._inbox.receiving() as receiving, Archives(self._directory.state) as archives:
             lists = [path for path in paths if path.suffix.lower() == ".csv" and path.is_file()]
-            own = self._knowing().paths_of_students([path for path in paths if path not in lists])
-            if own:  # next to a student's own file, a list may come from a student, too, so it is not read as a list
-                own, lists = own.union(lists), []
+            is_own = self._knowing().are_of_students([path for path in paths if path not in lists])
+            if is_own:  # next to a student's own file, a list may come from a student, too, so it is not read as a list
+                lists = []
             arrivals = [self._list(file, receiving) for path in lists for file in archives.files_of(path)]
             student_of = self._knowing()
             for path in (path for path in paths if path not in lists):
-                files = tuple(archives.files_of(path, is_opened=path not in own))
-                source = NamedSource(path, files, path in own)
+                files = tuple(archives.files_of(path, is_opened=not is_own))
+                source = NamedSource(path, files, is_own)
                 arrivals += self._source(source, student_of, receiving, archives)
                 note = student_of.note_on(source, options.form or options.names)
                 self._notes += [note] if note else []
@@ -215,15 +220,21 @@ class _Collecting:
                 )
             unique = {(one.label, one.key): one for one in arrivals}
             ordered = tuple(one for _, one in sorted(unique.items()))
-            receiving.delivery = replace(options, arrivals=ordered)
+            assignment = options.assignment or (self._only_assignment() if len(lists) == len(paths) else "")
+            receiving.delivery = replace(options, arrivals=ordered, assignment=assignment)
         return receiving.delivery
+
+    def _only_assignment(self) -> str:
+        """Return the only assignment of which the students in this command's lists have work so far; else empty."""
+        numbers = {(entry.lms, entry.number) for entry in self._entries}
+        lines = self._table.lines()
+        assignments = {one["assignment"] for one in lines if (one["system"], one["number"]) in numbers}
+        return assignments.pop() if len(assignments) == 1 else ""
 
     def _knowing(self) -> StudentOf:
         """Return a ``StudentOf`` that knows students.csv, the lists in the inbox, and the lists of this command."""
         known = [entry for entries in entries_of(self._inbox).values() for entry in entries]
-        is_notebook = AssignmentOf(self._directory).is_notebook
-        options = self._options
-        return StudentOf(self._roster, is_notebook, options.form, options.names, [*known, *self._entries])
+        return StudentOf(self._roster, self._options.form, self._options.names, [*known, *self._entries])
 
     def _list(self, file: File, receiving: Receiving) -> Arrival:
         arrival, data = _taken(file, receiving)
@@ -242,12 +253,12 @@ class _Collecting:
                 continue
             arrival, data = _taken(file, receiving)
             arrival = replace(arrival, levels=source.levels, is_own=source.is_own)
-            if not is_archive(arrival.name, data):
+            if arrival.refused or not is_archive(arrival.name, data):
                 yield arrival
                 continue
             yield replace(arrival, is_archive=True)
             owners = student_of.owners(arrival.parts, source.levels, is_alone=source.is_own)
-            whose = tuple(one.id for members in owners.members for one in members) or arrival.parts[:2]
+            whose = tuple(one.id for one in (*owners.students, *owners.candidates)) or arrival.parts[:2]
             for inner in archives.within(arrival, data, self._rooms[whose]):
                 yield _taken(inner, receiving)[0]
 
@@ -259,14 +270,19 @@ class _Collecting:
         before: Collection[str],
     ) -> CollectReport:
         zone, keys = self._directory.time_zone, {one.key for one in delivery.arrivals}
+        contents = {one.content for one in delivery.arrivals}
         counting = [one for one in lines if one.state == LineState.PLACED]
         outcomes = []
         for one in lines:
+            also = ""
             if one.state == LineState.PLACED:
                 state, reason = results[one.place]
-                one = replace(one, state=state, reason=reason)
-            waits = one.state == LineState.NOT_PLACED and (not keys or f"{one.label} {one.key}" not in before)
-            if one.key in keys or one.state == LineState.PLACED or waits:
+                also = one.reason if one.content in contents else ""
+                one = replace(one, state=state, reason=", ".join(filter(None, (reason, also))))
+            waits = one.state == LineState.NOT_PLACED and (
+                not keys or f"{one.label} {one.key[:SHORT_KEY]}" not in before
+            )
+            if one.key in keys or one.state == LineState.PLACED or waits or also:
                 outcomes.append(replace(one, when=one.when and one.when.astimezone(zone)))
         here = {one.assignment for one in counting if one.key in keys or not keys}
         work = {(one.student, one.assignment) for one in self._directory.submissions()[0]}
@@ -280,7 +296,7 @@ class _Collecting:
             if one.when is None and one.key in keys and one.student not in untimed[one.assignment]:
                 untimed[one.assignment].append(one.student)
         notes = [*self._notes, *self._directory.named_cells.notes]
-        notes += self._roster.excused_from_nothing(self._directory.assignments(), self._roster.students)
+        notes += self._roster.notices(self._directory.assignments(), {}, self._roster.students)
         if not self._roster.students:
             notes.append(
                 "the class has no students.csv, so students' folders have the names that the LMS uses"

@@ -8,8 +8,7 @@ was open in a spreadsheet while another ``collect`` wrote a new table.
 from __future__ import annotations
 
 import contextlib
-import csv
-import io
+import itertools
 from collections import Counter, defaultdict
 from dataclasses import dataclass, replace
 from datetime import datetime
@@ -20,11 +19,12 @@ import re2
 from babel.core import Locale, UnknownLocaleError, get_global
 from babel.dates import parse_date
 
-from autograder.grading.collecting.collected_files import INBOX_FOLDER, LineState
+from autograder.grading.collecting.collected_files import INBOX_FOLDER, SHORT_KEY, LineState
 from autograder.grading.collecting.file_to_grade import cell_in
-from autograder.grading.collecting.inbox_lines import Edit, in_utc
-from autograder.grading.collecting.submitted_file_names import read_time
-from autograder.grading.table.spreadsheet_csv import csv_rows, defused, original
+from autograder.grading.collecting.inbox_lines import Edit
+from autograder.grading.collecting.list_times import in_utc
+from autograder.grading.collecting.written_times import read_time
+from autograder.grading.table.spreadsheet_csv import csv_rows, csv_text, defused, original
 from autograder.safe_files import write_whole
 
 if TYPE_CHECKING:
@@ -50,7 +50,8 @@ _WORDS = {
 _FIRST = (_WAITS, "yes")
 _YES = frozenset(["yes", "y", "ja", "j", "x", "1", "true", "wahr", "oui", "si", "sí"])
 _NO = frozenset(["no", "n", "nein", "0", "false", "falsch", "non"])
-_KEY = re2.compile(r"#[0-9a-f]{10}$")
+_KEY = re2.compile(r"#[0-9a-f]{10,64}$")
+_WHOLE_KEY = re2.compile(r"#[0-9a-f]{64}")
 _CLOCKS = ("", "%H:%M", "%H:%M:%S", "%I:%M %p", "%I:%M:%S %p")
 _STAMP = re2.compile(r"table (\d+)")
 # Matches values that a spreadsheet would take for a number, a date or a boolean.
@@ -100,12 +101,15 @@ class Table:
     def is_edited(self) -> bool:
         """Return True if the table was changed after ``collect`` wrote it."""
         try:
-            return self.path.read_bytes() != self._copy(self._newest).read_bytes()
+            return self.path.read_bytes() != _shown(self._copy(self._newest).read_bytes().decode("utf-8-sig"))
         except OSError:
             return False
 
-    def take_edits(self) -> tuple[dict[str, Edit], list[str]]:
+    def take_edits(self, keys: Iterable[str]) -> tuple[dict[str, Edit], list[str]]:
         """Read what people have written into the table, and store it for later commands.
+
+        Args:
+            keys: The keys of all files in the inbox. A class may have stored only the first ten digits of them.
 
         Returns:
             All edits, from now and from earlier commands, by the key of the line; and a sentence about each unclear
@@ -118,13 +122,16 @@ class Table:
             before = msgspec.json.decode(self._edits_file.read_bytes(), type=dict[str, Edit])
         except (OSError, msgspec.MsgspecError):
             before = {}
-        edits, notes = self._read(before)
+        wholes = _by_short(keys)
+        edits, notes = self._read({_whole(key, wholes): edit for key, edit in before.items()}, wholes)
         kept = {key: edit for key, edit in sorted(edits.items()) if edit != Edit()}
         if kept != before:
             write_whole(self._edits_file, msgspec.json.encode(kept))
         return edits, notes
 
-    def _read(self, earlier: Mapping[str, Edit]) -> tuple[dict[str, Edit], list[str]]:
+    def _read(
+        self, earlier: Mapping[str, Edit], wholes: Mapping[str, Sequence[str]]
+    ) -> tuple[dict[str, Edit], list[str]]:
         """Return the earlier edits with those of the table, and a sentence about each unclear line or cell."""
         edits = dict(earlier)
         try:
@@ -137,15 +144,16 @@ class Table:
             return edits, [
                 f"{NAME} has no line that names its columns, so nothing was read from it: it is written again"
             ]
-        before = {row["file"]: row for row in (_rows(self._read_copy(stamp))[0] or [])}
+        before = {_whole(row["file"], wholes): row for row in (_rows(self._read_copy(stamp))[0] or [])}
+        shown = _by_short(before)
         notes: list[str] = []
         lines: dict[str, list[dict[str, str]]] = defaultdict(list)
         for row in rows:
-            lines[row["file"]].append(row)
+            lines[_whole(row["file"], shown)].append(row)
         for key, several in lines.items():
             if any(one != several[0] for one in several):
                 notes.append(
-                    f"{NAME} has {len(several)} different lines for {key}: nothing was read from them"
+                    f"{NAME} has {len(several)} different lines for {key[:SHORT_KEY]}: nothing was read from them"
                 )
             elif key not in before:
                 notes.append(
@@ -167,7 +175,7 @@ class Table:
             value, old = self._value(column, written), self._value(column, was)
             if value is None:
                 what = "neither yes nor no" if column == "use" else "not a time: write 2026-01-31 14:05"
-                notes.append(f"{NAME}, line of {key}, column {column}: {written!r} is {what}")
+                notes.append(f"{NAME}, line of {key[:SHORT_KEY]}, column {column}: {written!r} is {what}")
             elif value.casefold() != (old or "").casefold():
                 edit = replace(edit, **{column: value})
         return edit
@@ -206,18 +214,16 @@ class Table:
             ),
         )  # fmt: skip
         number = self._newest
-        if rows and (not self.path.exists() or self._text(number, rows) != self.path.read_bytes()):
-            data = self._text(number + 1, rows)
-            write_whole(self._copy(number + 1), data)
-            write_whole(self.path, data)
+        if rows and (not self.path.exists() or _shown(self._text(number, rows)) != self.path.read_bytes()):
+            text = self._text(number + 1, rows)
+            write_whole(self._copy(number + 1), text.encode("utf-8-sig"))
+            write_whole(self.path, _shown(text))
 
-    def _text(self, number: int, rows: Iterable[Sequence[str]]) -> bytes:
-        text = io.StringIO(newline="")
+    def _text(self, number: int, rows: Iterable[Sequence[str]]) -> str:
         symbol = self._locale.number_symbols.get("latn", {}).get("decimal", ".")
-        writer = csv.writer(text, delimiter=";" if symbol == "," else ",", lineterminator="\r\n")
-        writer.writerow([*COLUMNS[:-1], f"{COLUMNS[-1]} (table {number})"])
-        writer.writerows(rows)
-        return text.getvalue().encode("utf-8-sig", "replace")
+        header = [*COLUMNS[:-1], f"{COLUMNS[-1]} (table {number})"]
+        text = csv_text([header, *rows], ";" if symbol == "," else ",", "\r\n")
+        return text.encode("utf-8", "replace").decode()
 
     def _row(self, several: Sequence[Line], edit: Edit) -> list[str]:
         """Return the row for a file. For the work of a group, ``several`` has a line for each student."""
@@ -239,6 +245,25 @@ class Table:
             "reason": line.reason,
         }
         return [_guarded(cells[name]) if name != "handed_in" else when for name in COLUMNS]
+
+    def rename(self, ids: Mapping[str, str]) -> None:
+        """Write other ids of students into the column ``student``, as a person would.
+
+        Args:
+            ids: The new ids by the old ones.
+
+        Raises:
+            OSError: The table could not be written.
+        """
+        if not self.path.exists():
+            return
+        (header, *rows), separator = csv_rows(self.path.read_bytes())
+        places = [place for place, name in enumerate(header) if name.strip().lower() == "student"]
+        for place, row in itertools.product(places, rows):
+            students = _unguarded(row[place]).split("; ") if place < len(row) else ()
+            if not ids.keys().isdisjoint(students):
+                row[place] = _guarded("; ".join(dict.fromkeys(ids.get(one, one) for one in students)))
+        write_whole(self.path, csv_text([header, *rows], separator, "\r\n").encode("utf-8-sig"))
 
     @property
     def _newest(self) -> int:
@@ -269,11 +294,12 @@ class Table:
 
     def waiting(self) -> list[Waiting]:
         """Return the lines that wait for a person, from the table that ``collect`` wrote last."""
-        return [
-            Waiting(row["file"], row["reason"], row["student"], row["assignment"], number)
-            for number, row in enumerate(self.lines(), 2)
-            if row["counts"] == _WAITS
-        ]
+        waiting = []
+        for number, row in enumerate(self.lines(), 2):
+            label = _KEY.sub(lambda key: key[0][:SHORT_KEY], row["file"])
+            if row["counts"] == _WAITS:
+                waiting.append(Waiting(label, row["reason"], row["student"], row["assignment"], number))
+        return waiting
 
 
 def _rows(data: bytes, *, whole: bool = False) -> tuple[list[dict[str, str]] | None, int]:
@@ -297,6 +323,27 @@ def _rows(data: bytes, *, whole: bool = False) -> tuple[list[dict[str, str]] | N
         row = {**dict.fromkeys(COLUMNS, ""), **row}
         rows.append(row if whole else {**row, "file": key[0] if key else row["file"]})
     return rows, int(stamp[1]) if stamp else 0
+
+
+def _shown(text: str) -> bytes:
+    """Return the text of a table in which each key is cut, but not so far that two of them become equal."""
+    keys = set(_WHOLE_KEY.findall(text))
+    lengths = range(SHORT_KEY, 66)
+    length = next(length for length in lengths if len({key[:length] for key in keys}) == len(keys))
+    return _WHOLE_KEY.sub(lambda key: key[0][:length], text).encode("utf-8-sig")
+
+
+def _by_short(keys: Iterable[str]) -> dict[str, list[str]]:
+    several: dict[str, list[str]] = defaultdict(list)
+    for key in keys:
+        several[key[:SHORT_KEY]].append(key)
+    return several
+
+
+def _whole(key: str, known: Mapping[str, Sequence[str]]) -> str:
+    """Return the only known key that begins with the shown one; the shown one itself if there are several or none."""
+    meant = [one for one in known.get(key[:SHORT_KEY], ()) if one.startswith(key)]
+    return meant[0] if len(meant) == 1 else key
 
 
 def _guarded(cell: str) -> str:

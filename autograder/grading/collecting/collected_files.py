@@ -15,7 +15,7 @@ import contextlib
 import hashlib
 import secrets
 import zipfile
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from datetime import datetime  # noqa: TC003  (msgspec reads the annotations)
 from enum import StrEnum
 from typing import TYPE_CHECKING
@@ -25,7 +25,7 @@ import msgspec
 from autograder.safe_files import keep_whole, write_whole
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Mapping
     from pathlib import Path
 
 
@@ -33,7 +33,8 @@ INBOX_FOLDER = "inbox"
 BY_HAND = "by hand"
 """The value of ``form`` for files that a person has put into ``submitted``."""
 _LIST = "delivery.json"
-_KEY_LENGTH = 10
+SHORT_KEY = 11
+"""The number of characters of a key that messages show."""
 
 
 @dataclass(frozen=True)
@@ -79,9 +80,9 @@ class Arrival:
 
     @property
     def key(self) -> str:
-        """The key of the file in ``collected.csv``; the same for all files with equal bytes and an equal name."""
+        """The identity of the file: the same for all files with equal bytes and an equal path, and for no others."""
         named = f"{self.content}\0{self.path or self.source}".encode("utf-8", "replace")
-        return f"#{hashlib.sha256(named).hexdigest()[:_KEY_LENGTH]}"
+        return f"#{hashlib.sha256(named).hexdigest()}"
 
 
 @dataclass(frozen=True)
@@ -107,7 +108,7 @@ class Delivery:
     @property
     def id(self) -> str:
         """Return the id of the delivery, which is equal for equal files and options in any order."""
-        return hashlib.sha256(msgspec.json.encode(self)).hexdigest()[:16]
+        return hashlib.sha256(msgspec.json.encode(self)).hexdigest()
 
 
 class Inbox:
@@ -123,13 +124,19 @@ class Inbox:
         self._deliveries: dict[str, Delivery] = {}
         for path in sorted(self._folder.glob("*.zip")):
             with zipfile.ZipFile(path) as archive:
-                self._deliveries[path.stem] = msgspec.json.decode(archive.read(_LIST), type=Delivery)
+                delivery = msgspec.json.decode(archive.read(_LIST), type=Delivery)
+                self._deliveries[delivery.id] = delivery
                 self._where |= {name: path for name in archive.namelist() if name != _LIST}
 
     @property
     def deliveries(self) -> dict[str, Delivery]:
         """Return all deliveries by their ids, in an order that does not depend on when they came."""
         return dict(sorted(self._deliveries.items()))
+
+    @property
+    def keys(self) -> set[str]:
+        """Return the keys of all files."""
+        return {file.key for delivery in self._deliveries.values() for file in delivery.arrivals}
 
     def __contains__(self, content: str) -> bool:
         return content in self._where
@@ -159,7 +166,7 @@ class Inbox:
                 delivery = receiving.delivery
                 archive.writestr(_LIST, msgspec.json.encode(delivery))
             path = self._folder / f"{delivery.id}.zip"
-            if delivery.arrivals and not path.exists():
+            if delivery.arrivals and delivery.id not in self._deliveries:
                 keep_whole(beside, path)
                 self._deliveries[delivery.id] = delivery
                 self._where |= dict.fromkeys(receiving.new, path)
@@ -229,6 +236,9 @@ class Line:
         assignment: The name of the assignment; empty if it is unknown.
         notebook: The name of the notebook; empty if it is unknown, or if the file is not a notebook.
         when: The time of handing in, in UTC; in a report, in the time zone of the class.
+        unreadable: Why the file cannot be read as a notebook; empty if it can be read, or was not read.
+        first: The first time at which the same file came, in UTC.
+        time_from: The key of the list, or the word ``handed_in`` if a person wrote the time; else empty.
         order: A number that increases with later files of one student, if the system numbers files.
         late: True if the system marks the file as late.
         use: ``yes`` or ``no``, as a person wrote it; empty if no person did.
@@ -265,6 +275,9 @@ class Line:
     is_sure: bool = False
     came_in: frozenset[str] = field(default_factory=frozenset)
     rank: int = 0
+    unreadable: str = ""
+    first: datetime | None = None
+    time_from: str = ""
 
     @property
     def student(self) -> str:
@@ -341,6 +354,24 @@ class CollectedRecords:
     def all(self) -> list[tuple[str, str]]:
         """Return pairs of a student and an assignment for which there is a record."""
         return [(path.stem, path.parent.name) for path in self._folder.glob("*/*.json")]
+
+    def rename(self, ids: Mapping[str, str]) -> None:
+        """Give students other ids. If a student has a record under both ids, the one under the new id stays.
+
+        Args:
+            ids: The new ids by the old ones. No new id may be one of the old ones.
+
+        Raises:
+            OSError: A record could not be written.
+        """
+        for student, assignment in self.all():
+            if (new := ids.get(student)) is None:
+                continue
+            history = self.get(assignment, student)
+            if history and self.get(assignment, new) is None:
+                now = {name: replace(line, students=(new,)) for name, line in history.now.items()}
+                self.put(assignment, new, replace(history, now=now))
+            self._path(assignment, student).unlink()
 
     def _path(self, assignment: str, student: str) -> Path:
         return self._folder / assignment / f"{student}.json"

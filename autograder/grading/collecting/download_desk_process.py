@@ -23,8 +23,10 @@ from functools import partial
 from typing import IO, TYPE_CHECKING, Any, NamedTuple
 
 import msgspec
+import re2
 
-from autograder.grading.collecting.lms_lists import GRADESCOPE, parse_list
+from autograder.grading.collecting.lms_lists import parse_list
+from autograder.grading.collecting.systems import GRADESCOPE
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -32,6 +34,8 @@ if TYPE_CHECKING:
 
 EMPTY = "contains no file, or only files that programs leave there"
 """The reason why an archive or folder was not taken, if it contains nothing to take."""
+ENCRYPTED = "it is encrypted: unpack the archive with its password, and collect the folder"
+"""The reason why an encrypted archive, or an encrypted file in an archive, was not taken."""
 LONGEST_NAME = 1_000
 """The maximum length of a path in characters. It is needed because a zip may have paths of 65,535, too long to print.
 """
@@ -49,13 +53,16 @@ def is_archive(name: str, data: bytes) -> bool:
     return ".zip" in lower or lower.endswith(_TARS) or (plain and data.startswith(b"PK\x03\x04"))
 
 
-_LEFT_BY_PROGRAMS = ("__MACOSX", ".git", ".ipynb_checkpoints", "__pycache__", ".DS_Store")
-"""Files that operating systems and editors leave next to a student's work."""
+_LEFT_BY_PROGRAMS = re2.compile(
+    rb"(?i)^(?:__MACOSX|\._.*|\.DS_Store|\.Spotlight-V100|\.Trashes|\.fseventsd|(?:eh)?thumbs\.db|desktop\.ini|"
+    rb"\$RECYCLE\.BIN|~\$.*|\.~lock\..*|\.directory|@eaDir|\.git|\.ipynb_checkpoints|__pycache__)$"
+)
+"""The names of files that operating systems and editors leave next to a student's work."""
 
 
 def is_left_by_a_program(name: str) -> bool:
     """Return True for the name of a file or folder that a program made, not the student, such as ``.git``."""
-    return name in _LEFT_BY_PROGRAMS or name.startswith("._")
+    return bool(_LEFT_BY_PROGRAMS.match(name.encode("utf-8", "replace")))
 
 
 _SAMPLES = {
@@ -129,12 +136,18 @@ class _Unpacking:
         # At depth 1 the archive is a whole download; if that is empty, a later step reports it.
         if not kept and self.depth > 1:
             self._tell(names, reason=f"the archive {EMPTY}")
+        if kept and all(one.is_encrypted for one in kept):
+            self._tell(names, reason=ENCRYPTED)
+            return
         for one in kept:
             self._take([*names, one.name[: 2 * LONGEST_NAME]], one)
 
     def _take(self, names: Sequence[str], one: _Entry) -> None:
         if not one.is_ordinary:
             self._tell(names, reason="the file is a link, or not an ordinary file")
+            return
+        if one.is_encrypted:
+            self._tell(names, reason=ENCRYPTED)
             return
         if one.size > self.of_one:
             megabytes = f"{one.size / 1e6:.0f} MB; the limit is {self.of_one / 1e6:.0f} MB"
@@ -162,6 +175,7 @@ class _Entry(NamedTuple):
     name: str
     size: int
     is_ordinary: bool
+    is_encrypted: bool
     open: Callable[[], IO[bytes]]
 
 
@@ -171,7 +185,7 @@ def _entries(file: IO[bytes]) -> list[_Entry]:
         file.seek(0)
         tar = tarfile.open(fileobj=file)  # noqa: SIM115  (its files are read from it)
         return [
-            _Entry(one.name, one.size, one.isreg(), partial(_opened, tar, one))
+            _Entry(one.name, one.size, one.isreg(), False, partial(_opened, tar, one))
             for one in tar
             if not one.isdir()
         ]
@@ -181,6 +195,7 @@ def _entries(file: IO[bytes]) -> list[_Entry]:
             _name_of(one),
             one.file_size,
             stat.S_IFMT(one.external_attr >> 16) in (0, stat.S_IFREG),
+            bool(one.flag_bits & 0x1),
             partial(archive.open, one),
         )
         for one in archive.infolist()

@@ -1,14 +1,14 @@
 """Finds the student who handed in a file, by its name, by students.csv, and by lists from the LMS.
 
 A path on the command line is a download or the work of one student. Only the names on the command line decide which of
-the two it is, never the contents:
+the two it is, never the contents: all paths of a command are each the work of one student if one of them is a file
+that is neither a zip nor a list, or has a name that an LMS gives to the work of one student, or the name of a student;
+or if several are folders, as with ``repositories/*``. Names inside such a path identify no student. In a download, the
+names at the top identify students; and if a single folder at the top contains everything else, the names in that
+folder, too. Names further down do not, because students have chosen them.
 
-- **The work of one student**: a file or folder with a name that an LMS gives to the work of one student. If the command
-  also names a file that is neither a zip nor a list, a path with the name of a student, or several folders, as with
-  ``repositories/*``, then each of its paths is the work of one student. Names inside such a path identify no student.
-- **A download**: every other zip and folder. The names at its top identify students. If a single folder at the top
-  contains everything else, the names in that folder identify students, too. Names further down do not, because students
-  have chosen them.
+There is one doubt about a file: its name does not say with certainty whose it is. Then the file waits, and the
+instructor writes the student's id into a cell.
 """
 
 from __future__ import annotations
@@ -24,20 +24,17 @@ import re2
 
 from autograder.grading.classes.class_directory import reason_against_name
 from autograder.grading.collecting.download_desk_process import EMPTY
-from autograder.grading.collecting.lms_lists import GRADESCOPE
 from autograder.grading.collecting.submitted_file_names import (
-    TOLD_APART,
-    canvas_numbers,
+    Pattern,
     read_lms_name,
-    read_names,
     read_plain_name,
 )
+from autograder.grading.collecting.systems import GRADESCOPE, NAME_FORMS
 from autograder.grading.table.roster import Identity, Roster, Student
 from autograder.safe_files import name_as_text
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Sequence
-    from datetime import datetime
+    from collections.abc import Iterable, Sequence
     from pathlib import Path
 
     from autograder.grading.collecting.collected_files import Arrival
@@ -47,28 +44,27 @@ if TYPE_CHECKING:
 
 
 _WRITE_IT = "write the id under student in collected.csv"
-_NO_ID = f"the file's name does not identify a student: {_WRITE_IT}, or add a line to students.csv"
-_LIST_OF = {"moodle": "the grading worksheet (Grades-….csv)", "gradescope": GRADESCOPE}
-"""For the LMSs that number submissions instead of students, the list that maps these numbers to students."""
-_BY_NUMBER, _BY_LOGIN = ("canvas", "brightspace", "gradescope"), ("blackboard", "sakai", "ilias")
-"""The LMSs whose file names contain a person's number, and those whose file names contain a user name."""
+_NUMBERED = ("canvas", "brightspace", "gradescope")
+"""The LMSs whose file names contain the number of a person. (Moodle's number is that of a submission.)"""
 _LISTED = ("canvas", "github", "gradescope")
 """The LMSs whose lists identify students. (A number from Moodle or Gradescope belongs to one submission only.)"""
 
 
 @dataclass(frozen=True)
 class Owners:
-    """The students who may have handed in a file, according to its name.
+    """The students who handed in a file, according to its name.
 
     Attributes:
-        found: The facts in the name; None if no LMS writes such names, or if several LMSs do, and the students or
-            times would differ.
-        members: For each member of the group, the students who may be meant; empty if none is known.
+        facts: The facts in the name; None if it has no known form, or if two forms would mean different students or
+            times.
+        students: The members of the group, or the only student; empty if they are not certain.
+        candidates: If they are not certain, the students who may be meant.
         is_sure: True if a number of the LMS identifies the students, and not just a name that students may choose.
     """
 
-    found: NameFacts | None
-    members: tuple[tuple[Student, ...], ...] = ()
+    facts: NameFacts | None = None
+    students: tuple[Student, ...] = ()
+    candidates: tuple[Student, ...] = ()
     is_sure: bool = False
 
 
@@ -77,40 +73,26 @@ class StudentOf:
 
     Args:
         roster: The students of the class.
-        is_notebook: Returns True for the name of a notebook of the class.
         form: The LMS that the instructor named for all files; empty to find it from the names.
         names: The pattern given with ``--names``; empty if none was given.
         entries: The entries of all lists, which map numbers to students.
-        own: The entries of lists that came with the files. Their times apply to the files.
-        others: The entries of lists that came alone. Their times are used if ``own`` has no time for a file.
     """
 
     def __init__(
-        self,
-        roster: Roster,
-        is_notebook: Callable[[str], bool],
-        form: str = "",
-        names: str = "",
-        entries: Iterable[ListEntry] = (),
-        own: Iterable[ListEntry] = (),
-        others: Iterable[ListEntry] = (),
+        self, roster: Roster, form: str = "", names: str = "", entries: Iterable[ListEntry] = ()
     ) -> None:
         self._roster = roster
-        self._is_notebook = is_notebook
-        self._form = form
-        self._names = read_names(names) if names else None
+        self._forms = [form] if form else [one.system for one in NAME_FORMS.values() if not one.needs_from]
+        self._names = Pattern(names) if names else None
         self._entries = list(entries)
-        self._timed = (_times(own), _times(others))
         self._by_number = {(one.lms, one.number): one for one in self._entries if one.number}
         # Cached, because many files have the same folder in their path.
         self._identified = functools.cache(self._identify)
 
     def owners(self, parts: Sequence[str], levels: int, *, is_alone: bool = False) -> Owners:
-        """Return the students of a file, by the topmost name in its path that identifies any student.
+        """Return the students of a file, by the topmost name in its path that has a known form.
 
-        The LMS has chosen the topmost names; the student may have chosen the names below. If a name fits the patterns
-        of two LMSs, it must give the same student and time of handing in for both. Otherwise the result has several
-        possible students.
+        The LMS has chosen the topmost names; the student may have chosen the names below.
 
         Args:
             parts: The folders of the path and the file.
@@ -119,138 +101,66 @@ class StudentOf:
         """
         parts = [unicodedata.normalize("NFC", part) for part in parts]
         if self._names is not None:
-            found = self._names(parts, levels)
-            hits = [self._identified(one)[0] for one in found.readings] if found else []
-            meant = _distinct(students for members in hits for students in members)
-            return Owners(found, (meant,) if meant else ())
-        forms = [self._form] if self._form else TOLD_APART
+            facts = self._names.read(parts, levels)
+            return self._students(facts) if facts else Owners()
         names = [*parts[:-1], PurePath(parts[-1]).stem if is_alone else ""]
         for place in range(min(levels, len(parts))):
-            if ways := [
-                way for form in forms if (way := read_lms_name(parts, place, form, self._is_notebook))
-            ]:
-                return self._undisputed(self._agreed(ways), parts[place])
-            if owners := self._find(read_plain_name(names[place], parts[-1])):
-                return owners
-        return Owners(None)
+            ways = [way for form in self._forms if (way := read_lms_name(parts, place, form))]
+            read = [self._students(way) for way in ways] or [
+                self._students(read_plain_name(names[place], parts[-1]))
+            ]
+            # A student has chosen the end of a name, so two forms that fit have to mean the same student and time.
+            said = [(one.students, one.students and one.facts and one.facts.when) for one in read]
+            if any(one != said[0] for one in said):
+                meant = (student for one in read for student in (*one.students, *one.candidates))
+                return Owners(candidates=tuple({one.id: one for one in meant}.values()))
+            if ways or read[0].students or read[0].candidates:
+                return read[0]
+        return Owners()
 
-    def written(self, cell: str) -> tuple[tuple[str, ...], str]:
-        """Return the ids of the students that a person wrote into a cell, or what is wrong with the cell."""
-        ids = []
-        for one in filter(None, map(str.strip, cell.replace(",", ";").split(";"))):
-            found = self._roster.find(Identity(login=one, name=one))
-            if not found:  # a spreadsheet may have dropped the leading zeros of an id, or added a decimal
-                number = one.removesuffix(",0").removesuffix(".0").lstrip("0")
-                students = self._roster.students.values()
-                found = tuple(student for student in students if number and student.id.lstrip("0") == number)
-            if len(found) != 1 and self._roster.students:
-                return (), f"students.csv has no student {one}: correct the id under student"
-            ids.append(found[0].id if found else one)
-            if reason := reason_against_name(ids[-1]):
-                return (), f"{ids[-1]} cannot be a student's id: {reason}: correct the id under student"
-        return tuple(ids), ""
+    def _students(self, facts: NameFacts) -> Owners:
+        """Return the students whom a name means, if all ways to read it that mean students mean the same ones."""
+        ways = facts.identities if self._roster.students else facts.identities[:1]
+        hits = [(self._identified(one), one) for one in ways]
+        hits = [(hit, one) for hit, one in hits if hit.students or hit.candidates]
+        if not hits:
+            return Owners(facts)
+        first, identity = hits[0]
+        facts = replace(facts, identities=(identity,))
+        rivals = [hit for hit in map(self._identified, facts.rivals) if hit.is_sure]
+        read = [*(hit for hit, _ in hits), *rivals]
+        if first.students and all(hit.students == first.students for hit in read):
+            return replace(first, facts=facts)
+        meant = {one.id: one for hit in read for one in (*hit.students, *hit.candidates)}
+        return Owners(facts, candidates=tuple(meant.values()))
 
-    def paths_of_students(self, paths: Sequence[Path]) -> set[Path]:
-        """Return the paths of a command that are each the work of one student."""
-        formed = set(filter(self._has_lms_name, paths))
-        downloads = {path for path in paths if _DOWNLOAD.match(name_as_text(path.name))}
-        others = set(paths) - formed
-        if sum(path.is_dir() for path in others) > 1 or any(
-            _is_loose(path) or self._is_listed(path) for path in others - downloads
-        ):
-            return set(paths)
-        # A name of a known download means a download. But next to one student's work, a student may have chosen this
-        # name, too.
-        return formed if formed - downloads else set()
-
-    def note_on(self, source: NamedSource, form: str) -> str:
-        """Return a sentence about how a path was interpreted, if its name leaves that open; otherwise an empty text."""
-        if not source.files:
-            return f"{source.path} {EMPTY}"
-        if not source.is_own and not form:
-            return (
-                f"{source.path} was taken for a download, in which names identify the students: if one student sent "
-                "the file, rename it to the student's id"
-            )
-        if source.is_own and not _is_loose(source.path) and not self._is_listed(source.path):
-            return (
-                f"{source.path} was taken for one student's work because of its name or the other paths of the "
-                "command: if it is a download or a list, rename it to submissions.zip or list.csv, and collect it in "
-                "a separate command"
-            )
-        return ""
-
-    def _has_lms_name(self, path: Path) -> bool:
-        """Return True if a file or folder has a name that an LMS gives to the work of one student."""
-        owners = self._owners_by_name(path)
-        if owners.found is None:
-            return bool(owners.members)
-        # A user name on GitHub looks like any other name.
-        return owners.found.identity.lms not in ("", "github")
-
-    def _is_listed(self, path: Path) -> bool:
-        """Return True if a file or folder has the name of a student in the list of students."""
-        owners = self._owners_by_name(path)
-        return bool(self._roster.students and owners.found and owners.members)
-
-    def _owners_by_name(self, path: Path) -> Owners:
-        """Return the students of a file or folder that the instructor named, by its own name alone."""
-        name = name_as_text(path.absolute().name)
-        return self.owners((name, "") if path.is_dir() else (name,), 1, is_alone=True)
-
-    def _find(self, way: NameFacts) -> Owners | None:
-        """Return the students who may be meant, by the first reading of the name that identifies any student."""
-        readings = way.readings if self._roster.students and way.readings else (way.identity,)
-        for identity in readings:
-            members, is_sure = self._identified(identity)
-            if members:
-                return Owners(replace(way, identity=identity), members, is_sure)
-        return None
-
-    def _agreed(self, ways: Sequence[NameFacts]) -> Owners:
-        read = [self._find(way) or Owners(way) for way in ways]
-        meant = [(one.members, one.members and way.when) for one, way in zip(read, ways, strict=True)]
-        if all(one == meant[0] for one in meant):
-            return read[0]
-        return Owners(None, (_distinct(students for one in read for students in one.members),))
-
-    def _undisputed(self, owners: Owners, name: str) -> Owners:
-        """Return ``owners``; but if the name has Canvas numbers of several students, any of these may be meant."""
-        if owners.found is None or owners.found.identity.lms != "canvas" or not owners.members:
-            return owners
-        others = map(self._identified, (Identity("canvas", number) for number in canvas_numbers(name)))
-        known = [students for members, is_sure in others if is_sure for students in members]
-        meant = _distinct((*owners.members, *known))
-        return replace(owners, members=(meant,)) if len(meant) > 1 else owners
-
-    def _identify(self, identity: Identity) -> tuple[tuple[tuple[Student, ...], ...], bool]:
-        """Return, for each member of a group, the students who may be meant; and whether a number identifies them."""
+    def _identify(self, identity: Identity) -> Owners:
+        """Return the students whom an identity means, without facts."""
         known = self._by_number.get((identity.lms, identity.number or identity.login))
         if known is not None:
             hits = [hit for names in known.members if (hit := self._first_known(names))]
             hits = [hit for hit in hits if hit[1] or not self._is_another(hit[0], identity)]
             if hits and len(hits) == len(known.members):
-                return tuple((student,) for student, _ in hits), all(is_sure for _, is_sure in hits)
+                return Owners(
+                    students=tuple(one for one, _ in hits), is_sure=all(is_sure for _, is_sure in hits)
+                )
         # Moodle's number in a file name belongs to one submission, so it is not a student's number in students.csv.
         asked = replace(identity, number="") if identity.lms == "moodle" else identity
-        found = self._roster.find(asked)
-        number = asked.number.casefold()  # upper and lower case are the same in user names on GitHub
+        found, number = self._roster.find(asked), asked.number.casefold()
         is_sure = bool(found and number) and found[0].lms.get(identity.lms, "").casefold() == number
         found = tuple(one for one in found if is_sure or not self._is_another(one, identity))
         if found and (identity.login or number):
-            # A user name in the LMS may equal the id of a different student in the class, so the name has to
-            # agree.
+            # A user name in the LMS may equal the id of a different student in the class, so the name has to agree.
             named = self._roster.find(Identity(name=identity.name))
-            found = _distinct((found, named if len(named) == 1 else ()))
+            found = tuple({one.id: one for one in (*found, *(named if len(named) == 1 else ()))}.values())
         called = identity.login or identity.name
         if not self._roster.students and identity.lms and called:
             found = (Student(called),)
-        return ((found,) if found else ()), is_sure
+        return Owners(students=found, is_sure=is_sure) if len(found) == 1 else Owners(candidates=found)
 
     def _is_another(self, student: Student, identity: Identity) -> bool:
         """Return True if the student has a different number in that LMS, and so is not the person with this name."""
-        by_number = identity.number if identity.lms in _BY_NUMBER else ""
-        theirs = by_number or (identity.login if identity.lms in _BY_LOGIN else "")
+        theirs = (identity.number if identity.lms != "moodle" else "") or identity.login
         known = self._numbers.get((identity.lms, student.id), set())
         return bool(theirs and known) and theirs.casefold() not in known
 
@@ -261,7 +171,7 @@ class StudentOf:
         for student in self._roster.students.values():
             for lms, number in student.lms.items():
                 # Some instructors write user names into the column of an LMS that uses numbers.
-                if lms not in _BY_NUMBER or (number.isdigit() and lms != "gradescope"):
+                if lms not in _NUMBERED or (number.isdigit() and lms != "gradescope"):
                     numbers[lms, student.id].add(number.casefold())
         for entry in (one for one in self._entries if one.number and one.lms in _LISTED):
             for hit in map(self._first_known, entry.members):
@@ -274,60 +184,138 @@ class StudentOf:
         hits = ((self._roster.find(name), bool(name.login)) for name in names)
         return next(((found[0], is_sure) for found, is_sure in hits if len(found) == 1), None)
 
-    def reason_against(self, owners: Owners) -> str:
-        """Return why a file cannot be assigned to a student, and what to do; empty if it can be assigned."""
-        if owners.found is None and owners.members:
-            ids = ", ".join(one.id for one in owners.members[0])
-            return (
-                f"the file's name fits several LMSs, and would mean another student or time in each ({ids}): "
-                f"{_WRITE_IT}"
-            )
-        if owners.found is None:
-            return _NO_ID
-        identity = owners.found.identity
-        number = identity.number or identity.login
-        known = self._by_number.get((identity.lms, number))
-        what_to_do = _WRITE_IT
-        if identity.lms in _LIST_OF and known is None:
-            which = f"{_LIST_OF[identity.lms]}, which maps number {number} to a student"
-            what_to_do = f"collect the file together with {which}, or {_WRITE_IT}"
-        for students in owners.members:
-            if len(students) > 1:
-                return f"{identity} may be {', '.join(one.id for one in students)}: {what_to_do}"
-            if reason := reason_against_name(students[0].id):
-                return f"{students[0].id} cannot be a student's id: {reason}. List it in students.csv"
-        if owners.members:
+    def doubt(self, owners: Owners, name: str) -> str:
+        """Return why it is not certain whose a file is, and what to do; empty if it is certain.
+
+        Args:
+            owners: The students, according to the name.
+            name: The name at the top of the file's path.
+        """
+        for student in owners.students:
+            if reason := reason_against_name(student.id):
+                return f"{student.id} cannot be a student's id: {reason}. List it in students.csv"
+        if owners.students:
             return ""
-        called = " and ".join(str(names[-1]) for names in known.members if names) if known else str(identity)
-        return f"no student in the class is called {called or number}: {what_to_do}, or add a line to students.csv"
+        if owners.facts is None and not owners.candidates:
+            form = _likeliest(name, self._roster.students.values())
+            how = f". If other names have this form, type --names '{form}'" if form else ""
+            return f"the file's name does not identify a student: {_WRITE_IT}, or add a line to students.csv{how}"
+        identity = owners.facts.identity if owners.facts else Identity(name=name)
+        known = self._by_number.get((identity.lms, identity.number or identity.login))
+        listed = NAME_FORMS[identity.lms].list if identity.lms in NAME_FORMS and not known else ""
+        how = _WRITE_IT if owners.facts else f"name its system with --from, or {_WRITE_IT}"
+        if listed:
+            which = f"{listed}, which maps number {identity.number} to a student"
+            how = f"collect the file together with {which}, or {_WRITE_IT}"
+        called = f"{identity.login} {identity.name}".strip() or identity.number
+        if known:
+            called = " and ".join(str(names[-1]) for names in known.members if names) or called
+        if meant := owners.candidates or self._alike(identity):
+            ids = [one.id if one in owners.candidates else f"{one.id} ({one.name})" for one in meant]
+            return f"{called} may be {', '.join(ids)}: {how}"
+        return f"no student in the class is called {called}: {how}, or add a line to students.csv"
 
-    def time(self, identity: Identity) -> datetime | None:
-        """Return the time of handing in that the lists have for this number; None if they have none, or several."""
-        number = (identity.lms, identity.number or identity.login)
-        times = next((known[number] for known in self._timed if number in known), set())
-        return next(iter(times)) if len(times) == 1 else None
+    def _alike(self, identity: Identity) -> tuple[Student, ...]:
+        """Return the students who have a part of the name, or the same id without its leading zeros."""
+        words = set(identity.name.casefold().replace(",", " ").split())
+        return tuple(
+            one
+            for one in self._roster.students.values()
+            if not self._is_another(one, identity)
+            and (
+                _same_number(identity.login, one.id) or (words and words <= set(one.name.casefold().split()))
+            )
+        )
+
+    def written(self, cell: str) -> tuple[tuple[str, ...], str]:
+        """Return the ids of the students that a person wrote into a cell, or what is wrong with the cell."""
+        ids = []
+        for one in filter(None, map(str.strip, cell.replace(",", ";").split(";"))):
+            found = self._roster.find(Identity(login=one, name=one))
+            if not found:  # a spreadsheet may have dropped the leading zeros of an id, or added a decimal
+                number = one.removesuffix(",0").removesuffix(".0")
+                found = tuple(
+                    other for other in self._roster.students.values() if _same_number(number, other.id)
+                )
+            if len(found) != 1 and self._roster.students:
+                return (), f"students.csv has no student {one}: correct the id under student"
+            ids.append(found[0].id if found else one)
+            if reason := reason_against_name(ids[-1]):
+                return (), f"{ids[-1]} cannot be a student's id: {reason}: correct the id under student"
+        return tuple(ids), ""
+
+    def are_of_students(self, paths: Sequence[Path]) -> bool:
+        """Return True if the paths of a command are each the work of one student."""
+        if len(paths) == 1 and _DOWNLOAD.match(name_as_text(paths[0].name)):
+            return False
+        return sum(path.is_dir() for path in paths) > 1 or any(
+            _is_loose(path) or self._has_name_of_one(path) for path in paths
+        )
+
+    def note_on(self, source: NamedSource, form: str) -> str:
+        """Return a sentence about how a path was interpreted, if its name leaves that open; otherwise an empty text."""
+        if not source.files:
+            return f"{source.path} {EMPTY}"
+        if not source.is_own and not form:
+            return (
+                f"{source.path} was taken for a download, in which names identify the students: if one student sent "
+                "the file, rename it to the student's id"
+            )
+        is_open = source.is_own and not _is_loose(source.path)
+        if is_open and not (self._roster.students and self._owners_by_name(source.path).students):
+            return (
+                f"{source.path} was taken for one student's work because of its name or the other paths of the "
+                "command: if it is a download or a list, rename it to submissions.zip or list.csv, and collect it in "
+                "a separate command"
+            )
+        return ""
+
+    def _has_name_of_one(self, path: Path) -> bool:
+        """Return True if a file or folder has a name that an LMS gives to one student's work, or a student's name."""
+        owners = self._owners_by_name(path)
+        is_plain = owners.facts is not None and owners.facts.identity.lms in ("", "github")
+        return bool(owners.candidates or owners.students or (owners.facts and not is_plain))
+
+    def _owners_by_name(self, path: Path) -> Owners:
+        """Return the students of a file or folder that the instructor named, by its own name alone."""
+        name = name_as_text(path.absolute().name)
+        return self.owners((name, "") if path.is_dir() else (name,), 1, is_alone=True)
 
 
-# The names of some downloads look like names of files in Canvas: gradebook_ROS_101_2_2025-10-03-14-05-06.zip, as
-# Blackboard makes it, and lab_1_2_submissions.zip.
-_DOWNLOAD = re2.compile(r"^(?:gradebook_.*_\d{4}(?:-\d\d){5}(?: ?\(\d+\))?|\D+_\d_\d_[^_]+)\.zip$")
+def _same_number(one: str, other: str) -> bool:
+    return bool(one.lstrip("0")) and one.lstrip("0").casefold() == other.lstrip("0").casefold()
+
+
+def _likeliest(name: str, students: Iterable[Student]) -> str:
+    """Return the pattern for ``--names`` that describes most of a name; empty if it contains nothing of a student."""
+    path = PurePath(name)
+    stem = path.stem if path.suffix.lower() in (".ipynb", ".zip") else name
+    best, most = "", 1
+    for student in students:
+        own = {
+            "email": student.email,
+            "last": student.last_name,
+            "first": student.first_name,
+            "id": student.id,
+        }
+        pattern, length = stem, 0
+        for word, value in sorted({**own, **student.lms}.items(), key=lambda item: -len(item[1])):
+            place = pattern.casefold().find(value.casefold())
+            if value and place >= 0 and "{" not in pattern[:place].rpartition("}")[2]:
+                pattern = f"{pattern[:place]}{{{word}}}{pattern[place + len(value) :]}"
+                length += len(value)
+        if length > most:
+            best, most = pattern, length
+    return best
+
+
+# Blackboard's download has a name that looks like that of a file in Canvas.
+_DOWNLOAD = re2.compile(r"^gradebook_.*_\d{4}(?:-\d\d){5}(?: ?\(\d+\))?\.zip$")
 
 
 def _is_loose(path: Path) -> bool:
     """Return True if a path is a file that is neither a download nor a list."""
     return path.is_file() and path.suffix.lower() not in (".zip", ".csv")
-
-
-def _distinct(several: Iterable[Iterable[Student]]) -> tuple[Student, ...]:
-    return tuple({one.id: one for students in several for one in students}.values())
-
-
-def _times(entries: Iterable[ListEntry]) -> dict[tuple[str, str], set[datetime]]:
-    times: dict[tuple[str, str], set[datetime]] = defaultdict(set)
-    for one in entries:
-        if one.when is not None and one.number:
-            times[one.lms, one.number].add(one.when)
-    return dict(times)
 
 
 _EXPORT = re2.compile(r"^assignment_\d+_export(?: ?\(\d+\)|-\d+)?$")
@@ -354,16 +342,12 @@ class NamedSource:
         if self.is_own:
             return 1
         above = 1 if self.path.is_dir() else 0  # the name of the folder itself, which identifies no student
-        return above + (
-            2 if len({file.arrival.parts[above : above + 1] for file in self.files} - {()}) == 1 else 1
-        )
+        tops = {file.arrival.parts[above : above + 1] for file in self.files} - {()}
+        return above + (2 if len(tops) == 1 else 1)
 
     def is_list(self, arrival: Arrival, form: str) -> bool:
         """Return True if a file is the list in Gradescope's export, and not a student's file with that name."""
         *above, name = arrival.parts or ("",)
-        is_said = (
-            name == GRADESCOPE
-            and len(arrival.parts) <= self.levels
-            and not any(map(_SUBMISSION.match, above))
-        )
-        return is_said and (form == "gradescope" or bool(above and _EXPORT.match(above[-1])))
+        is_at_top = len(arrival.parts) <= self.levels and not any(map(_SUBMISSION.match, above))
+        is_export = form == "gradescope" or bool(above and _EXPORT.match(above[-1]))
+        return name == GRADESCOPE and is_at_top and is_export

@@ -13,7 +13,7 @@ from autograder.grading.collecting.collected_files import Line, LineState, Place
 from autograder.grading.grading_errors import GradingError
 from autograder.grading.rebuilding.notebook_parsing import parse
 from autograder.grading.rebuilding.notebook_rebuilding import grade_id, is_answer
-from autograder.grading.rebuilding.submission_desk import read_notebook, why_unreadable
+from autograder.grading.rebuilding.submission_desk import read_notebook
 from autograder.grading.rebuilding.submitted_notebook import UnreadableSubmission, read_bytes
 
 if TYPE_CHECKING:
@@ -103,26 +103,22 @@ def _of_notebook(place: Place, files: list[Line], folders: ClassFolders) -> Iter
         if best:
             # If a person corrected the file in ``submitted``, the student's own time of handing in still applies.
             times = [one.when for one in files if one.when and present]
-            yield replace(best, when=best.when or max(times, default=None)), LineState.PLACED, ""
+            yield _timed(replace(best, when=best.when or max(times, default=None)), files, folders)
         why = (
             "was put into the folder submitted by hand, and is graded"
             if present
             else "is graded, because yes is written under use"
         )
-        for one in files:
-            if one not in chosen:
-                same = best and one.content == best.content
-                yield (
-                    one,
-                    *((LineState.UNCHANGED, "") if same else (LineState.EARLIER, f"{chosen[0].label} {why}")),
-                )
+        for one in (one for one in files if one not in chosen):
+            is_same = best and one.content == best.content
+            yield (
+                (one, LineState.UNCHANGED, "")
+                if is_same
+                else (one, LineState.EARLIER, f"{chosen[0].label} {why}")
+            )
         return
-    for one in by_hand:
-        yield (
-            one,
-            LineState.EARLIER,
-            "the file was in submitted before: write yes under use to put it there again",
-        )
+    before = "the file was in submitted before: write yes under use to put it there again"
+    yield from ((one, LineState.EARLIER, before) for one in by_hand)
     pool = [one for one in files if not one.is_by_hand]
     for sift in (_ambiguous_names, _unreadable):
         doubts = sift(place, pool, folders)
@@ -133,7 +129,17 @@ def _of_notebook(place: Place, files: list[Line], folders: ClassFolders) -> Iter
         best, others = _best(place, pool, folders)
         yield from others
         if best:
-            yield best, LineState.PLACED, ""
+            yield _timed(best, files, folders)
+
+
+def _timed(best: Line, files: Sequence[Line], folders: ClassFolders) -> _Why:
+    """Return the file to grade with the first time at which the same bytes came, unless a person wrote another one."""
+    first = min((one.first for one in files if one.first and one.content == best.content), default=None)
+    if not best.when or not first or first >= best.when or best.time_from == "handed_in":
+        return best, LineState.PLACED, ""
+    again = in_zone(best.when, folders.directory.time_zone)
+    reason = f"the same bytes were handed in again on {again}: the first time counts"
+    return replace(best, when=first), LineState.PLACED, reason
 
 
 _ONE_NUMBER = ("canvas", "moodle", "brightspace")
@@ -160,15 +166,14 @@ def _ambiguous_names(place: Place, pool: Sequence[Line], _: ClassFolders) -> lis
     return [(one, reason) for one in of_systems if several and not one.is_sure]
 
 
-def _unreadable(place: Place, pool: Sequence[Line], folders: ClassFolders) -> list[tuple[Line, str]]:
-    """Return the unreadable files, which must not replace readable work; none if all files are unreadable."""
-    if len({one.content for one in pool}) < 2:
-        return []
-    reasons = [(one, reason) for one in pool if (reason := why_unreadable(folders.inbox.read(one.content)))]
+def _unreadable(place: Place, pool: Sequence[Line], _: ClassFolders) -> list[tuple[Line, str]]:
+    """Return the unreadable files, which neither replace readable work nor become zero points without a word."""
     what_to_do = (
-        f"Another file of {place[0]} is graded: ask for this file again if it is newer, or write no under use"
+        "Ask the student for the file again; to have it graded as it is, without points, write yes under use"
+        if all(one.unreadable for one in pool)
+        else f"Another file of {place[0]} is graded: ask for this file again if it is newer, or write no under use"
     )
-    return [(one, f"{reason} {what_to_do}") for one, reason in reasons] if len(reasons) < len(pool) else []
+    return [(one, f"{one.unreadable} {what_to_do}") for one in pool if one.unreadable]
 
 
 def _best(place: Place, files: Sequence[Line], folders: ClassFolders) -> tuple[Line | None, list[_Why]]:

@@ -6,21 +6,21 @@ import functools
 import itertools
 from collections import defaultdict
 from dataclasses import dataclass, replace
-from datetime import UTC, datetime
+from datetime import datetime
 from typing import TYPE_CHECKING
 from zoneinfo import ZoneInfo
 
 from autograder.grading.classes.class_directory import SUFFIX
 from autograder.grading.collecting.collected_files import BY_HAND, Line
-from autograder.grading.collecting.downloaded_files import read_list
 from autograder.grading.collecting.file_owners import Owners, StudentOf
-from autograder.grading.collecting.lms_lists import GRADESCOPE, ListEntry
+from autograder.grading.collecting.list_times import WAS_READ, ListTimes, entries_of, in_utc
 from autograder.grading.collecting.submitted_file_names import base_of
+from autograder.grading.collecting.systems import GRADESCOPE
 from autograder.grading.rebuilding.submission_desk import read_notebook
 from autograder.grading.rebuilding.submitted_notebook import UnreadableSubmission
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping, Sequence
+    from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
     from datetime import tzinfo
 
     from autograder.grading.classes.class_directory import ClassDirectory
@@ -64,24 +64,16 @@ def lines_of(
     """
     assignments = AssignmentOf(directory)
     entries = entries_of(inbox)
-    alone = {id_ for id_, of in inbox.deliveries.items() if all(file.is_list for file in of.arrivals)}
-    found: dict[str, list[Line]] = defaultdict(list)
+    read: list[tuple[Delivery, Line]] = []
     for id_, delivery in inbox.deliveries.items():
-        # All lists, from any delivery, are used to map numbers to students. But the times in a list apply only to files
-        # in the same delivery, because a later list may be about a later file. Only if a list came alone do its times
-        # apply to all files.
-        student_of = StudentOf(
-            roster,
-            assignments.is_notebook,
-            delivery.form,
-            delivery.names,
-            itertools.chain(*entries.values()),
-            entries[id_],
-            [entry for one in alone - {id_} for entry in entries[one]],
-        )
+        # All lists, from any delivery, map numbers to students.
+        student_of = StudentOf(roster, delivery.form, delivery.names, itertools.chain(*entries.values()))
         zone = ZoneInfo(delivery.zone) if delivery.zone else directory.time_zone
-        for line in _Reading(inbox, assignments, student_of, delivery, id_, zone).lines(edits):
-            found[line.key].append(line)
+        lines_there = _Reading(inbox, assignments, student_of, delivery, id_, zone).lines(edits)
+        read += [(delivery, line) for line in lines_there]
+    found: dict[str, list[Line]] = defaultdict(list)
+    for line in ListTimes(inbox, directory.time_zone).applied(read):
+        found[line.key].append(line)
     lines = []
     for several in found.values():
         targets: dict[tuple[str, str], list[Line]] = defaultdict(list)
@@ -109,7 +101,7 @@ class _Reading:
         for arrival in self.delivery.arrivals:
             place, edit = (arrival.source, arrival.parts), edits.get(arrival.key, Edit())
             if arrival.is_archive:
-                is_open = edit.student or not self.student_of.reason_against(self._owners(arrival))
+                is_open = edit.student or not self._doubt(arrival)
                 opened[place] = edit if is_open else None
                 if is_open:
                     continue
@@ -119,6 +111,9 @@ class _Reading:
 
     def _owners(self, arrival: Arrival) -> Owners:
         return self.student_of.owners(arrival.parts, arrival.levels, is_alone=arrival.is_own)
+
+    def _doubt(self, arrival: Arrival) -> str:
+        return self.student_of.doubt(self._owners(arrival), (arrival.parts or (arrival.source,))[0])
 
     def _line(self, arrival: Arrival, edit: Edit, of_archive: Edit) -> Line:
         """Return the line of a file.
@@ -131,22 +126,19 @@ class _Reading:
         rank = bool(self.delivery.assignment) - bool(self.delivery.form or self.delivery.names)
         line = Line(arrival.key, arrival.label, arrival.content, use=edit.use, rank=rank)
         if arrival.is_list:
-            return replace(line, reason="the file was read as a list", is_soft=True, lms="list")
+            return replace(line, reason=WAS_READ, is_soft=True, lms="list")
         if self.delivery.form == BY_HAND:
             # A person put the file into ``submitted``, where its path names the student and the notebook.
             student, assignment, name = arrival.parts
-            line = replace(
-                line,
-                students=(student,),
-                assignment=assignment,
-                notebook=name.removesuffix(SUFFIX),
-                lms=BY_HAND,
-                file=arrival.path,
-                is_sure=True,
-            )
+            owners = self.student_of.written(edit.student or student)[0] or (student,)
+            notebook = name.removesuffix(SUFFIX)
+            line = replace(line, students=owners, assignment=assignment, notebook=notebook)
+            line = replace(line, lms=BY_HAND, file=arrival.path, is_sure=True)
         else:
             line = self._collected(line, arrival, edit, of_archive)
-        return replace(line, when=datetime.fromisoformat(edit.handed_in)) if edit.handed_in else line
+        if not edit.handed_in:
+            return line
+        return replace(line, when=datetime.fromisoformat(edit.handed_in), time_from="handed_in")
 
     def _collected(self, line: Line, arrival: Arrival, edit: Edit, of_archive: Edit) -> Line:
         """Return the line of a file that came from a system, completed with its students, notebook and time."""
@@ -155,18 +147,17 @@ class _Reading:
         if written := edit.student or of_archive.student:
             ids, reason = self.student_of.written(written)
         else:
-            reason = self.student_of.reason_against(owners)
-            ids = () if reason else tuple(one.id for (one,) in owners.members)
-        if found := owners.found:
+            reason = self._doubt(arrival)
+            ids = () if reason else tuple(one.id for one in owners.students)
+        if found := owners.facts:
             identity = found.identity
-            when = in_utc(found.when or self.student_of.time(identity), self.zone)
             line = replace(
                 line,
                 lms=identity.lms,
                 number=identity.number or (identity.login if identity.name else ""),
                 name=identity.name or identity.login,
                 file="/".join(arrival.parts),
-                when=when or self.delivery.handed_in,
+                when=in_utc(found.when, self.zone),
                 order=found.order,
                 late=found.late,
                 is_sure=owners.is_sure or bool(written),
@@ -175,26 +166,25 @@ class _Reading:
             asked = asked or (found.assignment if self.assignments.notebooks(found.assignment) else "")
         # Inside a student's own archive, a name identifies the notebook but not the student.
         name = found.file if found and not arrival.inner else arrival.name
-        named = self.assignments.named(name if owners.members else arrival.name, asked)
+        named = self.assignments.named(name if owners.students else arrival.name, asked)
         came_in = frozenset({f"{self.id}/{arrival.source}"})
         line = replace(line, students=ids, assignment=named, came_in=came_in)
         if arrival.refused:
             is_work = arrival.name.lower().endswith((".ipynb", ".zip")) or not ids
             return replace(line, reason=arrival.refused, is_soft=not is_work)
         if arrival.is_archive:
-            return replace(line, reason=reason)
+            is_nobodys = found is None and not owners.candidates
+            return replace(line, reason=_UNKNOWN_ARCHIVE if is_nobodys and not written else reason)
         data = self.inbox.read(arrival.content)
         if not _is_notebook(arrival.name, data):
             return _no_notebook(line, arrival)
         if reason:
             return replace(line, reason=reason)
+        cells, unreadable = _cells(data)
+        line = replace(line, unreadable=unreadable)
         if edit.assignment or edit.notebook:
             return self._as_written(line, name, edit, asked)
-        try:
-            (assignment, notebook), is_named = self.assignments.target(name, data, asked)
-        except _NoTarget as error:
-            return replace(line, reason=str(error), is_soft=error.is_left_out)
-        return replace(line, assignment=assignment, notebook=notebook, is_named=is_named)
+        return self.assignments.completed(line, name, cells, asked)
 
     def _as_written(self, line: Line, name: str, edit: Edit, asked: str) -> Line:
         """Return the line completed with the notebook that a person wrote."""
@@ -213,6 +203,11 @@ class _Reading:
 
 _LMS_PAGES = ("index.html", "grades.csv", GRADESCOPE)
 """The names of files that an LMS adds to a download."""
+_OF_ONE_STUDENT = "If one student sent it, the folder has to be named after this student"
+_UNKNOWN_ARCHIVE = (
+    "the archive's name identifies no student. If it is a whole download, unpack it, and collect the folder. "
+    f"{_OF_ONE_STUDENT}"
+)
 _OTHER_ARCHIVES = (".rar", ".7z", ".gz", ".bz2", ".xz", ".zst")
 
 
@@ -221,8 +216,9 @@ def _no_notebook(line: Line, arrival: Arrival) -> Line:
     if arrival.name in _LMS_PAGES and not arrival.inner and not line.students:
         return replace(line, assignment="", reason="the file is a page of the LMS", is_soft=True, lms="list")
     if arrival.name.lower().endswith(_OTHER_ARCHIVES):
-        what = "archives of this kind are not opened: unpack the file into a folder named"
-        return replace(line, reason=f"{what} {line.student or 'STUDENT'}, and collect the folder")
+        into = f" into a folder named {line.student}" if line.student else ""
+        reason = f"archives of this kind are not opened: unpack the file{into}, and collect the folder"
+        return replace(line, reason=reason if into else f"{reason}. {_OF_ONE_STUDENT}")
     return replace(line, reason="it is not a notebook", is_soft=True)
 
 
@@ -230,37 +226,12 @@ def _merged(several: Iterable[Line]) -> Line:
     """Return one line for a file that came several times, with the most certain facts and the latest time."""
     lines = sorted(several, key=lambda one: (bool(one.reason), one.is_soft, one.rank, one.label))
     best = lines[0]
-    when = max((one.when for one in lines if one.when), default=None)
+    timed = sorted((one for one in lines if one.when), key=lambda one: one.when or datetime.max)
     came_in = frozenset().union(*(one.came_in for one in lines))
-    return replace(best, when=when, came_in=came_in)
-
-
-def in_utc(when: datetime | None, zone: tzinfo) -> datetime | None:
-    """Return a time in UTC; None for a time in the year 1 or 9999, which may not exist in another time zone."""
-    if when is None:
-        return None
-    try:
-        found = (when if when.tzinfo else when.replace(tzinfo=zone)).astimezone(UTC)
-    except (OverflowError, ValueError):
-        return None
-    return found if 1 < found.year < 9999 else None
-
-
-NO_LIST = (
-    "the file is too large, or not a known list. Known lists are Moodle's grading worksheet, Canvas's gradebook or "
-    "submissions, GitHub Classroom's grades and Gradescope's scores. Write times into the column handed_in of "
-    "collected.csv, and a list of your students into students.csv of the class"
-)
-"""The reason why a list cannot be used."""
-
-
-def entries_of(inbox: Inbox) -> dict[str, list[ListEntry]]:
-    """Return the entries of all lists in the inbox, by delivery."""
-    found: dict[str, list[ListEntry]] = defaultdict(list)
-    for id_, delivery in inbox.deliveries.items():
-        for one in delivery.arrivals:
-            found[id_] += read_list(one.name, inbox.read(one.content)) or [] if one.is_list else []
-    return found
+    best = replace(best, came_in=came_in)
+    if not timed:
+        return best
+    return replace(best, when=timed[-1].when, time_from=timed[-1].time_from, first=timed[0].when)
 
 
 class AssignmentOf:
@@ -272,10 +243,6 @@ class AssignmentOf:
 
     def __init__(self, directory: ClassDirectory) -> None:
         self._directory = directory
-
-    def is_notebook(self, file: str) -> bool:
-        """Return True if a file with this name is a notebook of the class."""
-        return _stem_of(file).casefold() in self._notebooks
 
     def notebooks(self, assignment: str) -> list[str]:
         """Return the notebooks of an assignment; none if the class has no assignment with this name."""
@@ -289,63 +256,50 @@ class AssignmentOf:
         assignments = {assignment for assignment, _ in self._notebooks.get(stem.casefold(), ())}
         return asked or (assignments.pop() if len(assignments) == 1 else "")
 
-    def target(self, name: str, data: bytes, asked: str) -> tuple[Target, bool]:
-        """Return the assignment and the notebook of a file, and whether the file has the notebook's name.
+    def completed(self, line: Line, name: str, cells: Sequence[SubmittedCell], asked: str) -> Line:
+        """Return the line with its assignment and notebook, or with the reason why they are not certain.
 
         Args:
+            line: The line of a notebook.
             name: The name that the student gave the file.
-            data: The content of the file.
+            cells: The cells of the file.
             asked: The assignment that the instructor named; empty to find it.
-
-        Raises:
-            _NoTarget: The notebook is unclear, or the cells belong to several assignments, or they do not belong to the
-                assignment in the file's name or to ``asked``.
         """
         named = self._notebooks.get(_stem_of(name).casefold(), [])
-        cells = _cells(data)
-        names = {cell.grade_id for cell in cells} - {""}
         mixed = self._directory.named_cells.assignments(cells)
-        if len(mixed) > 1 and asked not in mixed:
-            raise _NoTarget(
-                f"the file has cells of {' and of '.join(mixed)}: ask the student for a notebook for each, or write "
-                f"the name of one of these assignments {_UNDER}"
-            )
-        held = self._directory.named_cells.closest(names, asked if asked in mixed else "")
+        cell_names = {cell.grade_id for cell in cells} - {""}
+        held = self._directory.named_cells.closest(cell_names, asked if asked in mixed else "")
         meant = [target for target in named if not held or target in held] or held
         here = [target for target in meant if asked in ("", target[0])]
-        if meant and not here:
-            other = meant[0][0]
-            why = f"the file is the notebook of {other}, not of {asked}"
-            raise _NoTarget(
-                f"{why}; to collect the file for {other}, write {other} {_UNDER}", is_left_out=True
-            )
-        if named and not asked and not set(named) & set(meant):
-            says, other = " or ".join(assignment for assignment, _ in named), held[0][0]
-            raise _NoTarget(
-                f"the file's name is that of {says}, but the cells are those of {other}: ask the student for the right "
-                f"notebook, or write {other} {_UNDER}"
-            )
-        if asked and not here:
-            here = [(asked, one) for one in self._directory.notebooks(asked)]
-        if len(here) != 1:
-            # The file has named cells, but none from this class: it is another notebook of the course, such as its
-            # summary.
-            raise _NoTarget(self._unclear(meant, asked), is_left_out=not meant and bool(names))
-        return here[0], here[0] in named
-
-    def _unclear(self, meant: list[Target], asked: str) -> str:
-        """Return a message with the notebooks or assignments that are possible."""
-        assignments = sorted({asked} if asked else {assignment for assignment, _ in meant})
-        if len(assignments) == 1:
-            names = ", ".join(self._directory.notebooks(assignments[0]))
-            which = (
-                f"which notebook of {assignments[0]} the file is ({names}): write the notebook under notebook in "
-                "collected.csv"
-            )
+        is_at_odds = not asked and bool(named) and not set(named) & set(meant)
+        disagree = is_at_odds or (len(mixed) > 1 and asked not in mixed)
+        if meant and not here and not disagree:
+            why = f"the file is the notebook of {meant[0][0]}, not of {asked}"
+            reason = f"{why}; to collect the file for {meant[0][0]}, write {meant[0][0]} {_UNDER}"
+            return replace(line, reason=reason, is_soft=True)
+        here = here or [(asked, one) for one in self.notebooks(asked)]
+        if len(here) == 1 and not disagree:
+            return replace(line, assignment=here[0][0], notebook=here[0][1], is_named=here[0] in named)
+        # A file with named cells of which none is from this class is another notebook of the course.
+        is_foreign = not meant and bool(cell_names)
+        possible = {asked} if asked else {target[0] for target in meant}
+        if len(possible) == 1 and not disagree:
+            reason = self._of_several(*possible)
         else:
-            known = ", ".join(assignments or self._directory.assignments())
-            which = f"which assignment the file is for ({known}): write the assignment {_UNDER}"
-        return f"it is not clear {which}"
+            reason = self._unclear(
+                {target[0] for target in named}, {*mixed} or {target[0] for target in held}
+            )
+        return replace(line, reason=line.unreadable or reason, is_soft=is_foreign)
+
+    def _of_several(self, assignment: str) -> str:
+        which = f"which notebook of {assignment} the file is ({', '.join(self.notebooks(assignment))})"
+        return f"it is not clear {which}: write the notebook under notebook in collected.csv"
+
+    def _unclear(self, by_name: Collection[str], by_cells: Collection[str]) -> str:
+        sources = {"name": by_name, "cells": by_cells}
+        said = [f"{' or '.join(sorted(those))} by its {source}" for source, those in sources.items() if those]
+        which = f"which assignment the file is for ({', '.join(said or self._directory.assignments())})"
+        return f"it is not clear {which}: write the assignment {_UNDER}"
 
     @functools.cached_property
     def _notebooks(self) -> dict[str, list[Target]]:
@@ -358,20 +312,6 @@ class AssignmentOf:
 
 
 _UNDER = "under assignment in collected.csv"
-
-
-class _NoTarget(ValueError):
-    """The notebook of a file is unclear, or the file is not to be collected now, for the reason in the message.
-
-    Args:
-        message: The reason, and what to type.
-        is_left_out: True if the file need not be collected: the instructor asked for another assignment, or the class
-            has no assignment with the file's cells.
-    """
-
-    def __init__(self, message: str, *, is_left_out: bool = False) -> None:
-        super().__init__(message)
-        self.is_left_out = is_left_out
 
 
 def _is_notebook(name: str, data: bytes) -> bool:
@@ -387,9 +327,9 @@ def _stem_of(name: str) -> str:
     return base_of(name[:end] if end > 0 else name.rpartition(".")[0] or name)
 
 
-def _cells(data: bytes) -> Sequence[SubmittedCell]:
-    """Return a notebook's cells; none if it cannot be read."""
+def _cells(data: bytes) -> tuple[Sequence[SubmittedCell], str]:
+    """Return a notebook's cells; and if it cannot be read, no cells and the reason."""
     try:
-        return read_notebook(data)[0]
-    except UnreadableSubmission:
-        return ()
+        return read_notebook(data)[0], ""
+    except UnreadableSubmission as error:
+        return (), str(error)

@@ -1,1 +1,1 @@
-"""Makes a task from a submitted notebook: reads it, compares it with the trusted master, and builds a new notebook."""
+"""Reads a submitted notebook in a box, compares it with the trusted master, and builds a new notebook."""

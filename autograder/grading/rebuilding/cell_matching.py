@@ -74,7 +74,6 @@ def match(master: Sequence[Known], submitted: Sequence[SubmittedCell]) -> Matche
 
     Args:
         master: The cells of the master, in order.
-        submitted: The submitted cells.
     """
     return _Matching(master, submitted).matches()
 
@@ -145,19 +144,20 @@ class _Matching:
             if cell.kind is CellType.CODE and place in self._written
         }
         left = [place for place, _ in self._left() if place in code]
-        found = {}
+        candidates = {}
         for missing in self._missing() if code else ():
             if missing.is_answer:
                 places = [place for place, text in code.items() if _is_answered_by(missing, text)]
                 places = places or [place for place in left if _is_mentioned_by(missing, code[place])]
                 if places:
-                    found[missing.name] = places
-        merged = {place for places in found.values() for place in places}
+                    candidates[missing.name] = places
+        # A given cell into which an answer was written counts as the answer, and must not also match the given cell.
+        merged = {place for places in candidates.values() for place in places}
         for name in [name for name in self._places if not self._master[name].is_answer]:
             self._places[name] = [place for place in self._places[name] if place not in merged]
             if not self._places[name]:
                 del self._places[name]
-        return found
+        return candidates
 
     def _take(self, name: str, place: int) -> None:
         if name and name not in self._places:
@@ -198,8 +198,8 @@ def _is_mentioned_by(answer: Known, text: str) -> bool:
 
 def _file(source: str) -> str:
     """Return the path of the file that a cell writes by a magic; empty if it has no such magic."""
-    found = _WRITES.match(source)
-    return posixpath.normpath(found[1]) if found else ""
+    magic = _WRITES.match(source)
+    return posixpath.normpath(magic[1]) if magic else ""
 
 
 @functools.lru_cache(maxsize=1024)
@@ -258,7 +258,6 @@ class NamedCells:
         """Return the notebooks with the most of the given cell names; none if no notebook has any of the names.
 
         Args:
-            names: The names of cells.
             assignment: The assignment whose notebooks are searched; all assignments if empty.
         """
         shared = {
@@ -292,17 +291,17 @@ class NamedCells:
     @functools.cached_property
     def _sources(self) -> dict[Target, list[SubmittedCell]]:
         """Return the cells of each source notebook; no cells for a notebook that cannot be read."""
-        found: dict[Target, list[SubmittedCell]] = {}
+        cells: dict[Target, list[SubmittedCell]] = {}
         for target, path in self._paths.items():
             try:
-                found[target], _ = parse(path.read_bytes())
+                cells[target], _ = parse(path.read_bytes())
             except (OSError, UnreadableSubmission) as error:
-                found[target] = []
+                cells[target] = []
                 self.notes.append(
                     f"{path} cannot be read ({error}): submissions of this notebook are recognized only by "
                     "their file names"
                 )
-        return found
+        return cells
 
 
 def _marks(cell: SubmittedCell) -> set[str]:

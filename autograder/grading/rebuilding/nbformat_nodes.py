@@ -28,13 +28,13 @@ def cell(kind: CellType, source: str, identifier: str = "") -> NotebookNode:
         source: The text of the cell.
         identifier: The id of the cell; a random id if empty.
     """
-    made = NotebookNode(
+    node = NotebookNode(
         id=identifier or uuid.uuid4().hex[:8], cell_type=str(kind), metadata=NotebookNode(), source=source
     )
     if kind is CellType.CODE:
-        made["execution_count"] = None
-        made["outputs"] = []
-    return made
+        node["execution_count"] = None
+        node["outputs"] = []
+    return node
 
 
 def output(**fields: Any) -> NotebookNode:
@@ -43,8 +43,8 @@ def output(**fields: Any) -> NotebookNode:
     The fields are not validated, because all outputs of students' cells were built by
     :class:`autograder.execution.executed_cells.OutputCollector`.
     """
-    made: NotebookNode = _node(fields)
-    return made
+    node: NotebookNode = _node(fields)
+    return node
 
 
 def read(text: str) -> NotebookNode:
@@ -76,8 +76,8 @@ def text(of: NotebookNode) -> str:
 
 def copied(of: NotebookNode) -> NotebookNode:
     """Return a deep copy of a notebook or cell."""
-    made: NotebookNode = _node(of)
-    return made
+    copy: NotebookNode = _node(of)
+    return copy
 
 
 def _node(value: Any) -> Any:

@@ -41,7 +41,6 @@ def rebuild(
 
     Args:
         master: The master, with stubs instead of solutions. Its cells without a grade_id are not used.
-        submitted: The cells of the submission.
         left_out: The number of submitted cells that could not be read.
         others: Other assignments whose graded cells are in the submission.
 
@@ -116,36 +115,37 @@ class _Sorting:
 
     def remarks(self) -> list[str]:
         """Return sentences about the differences from the master that the student should know."""
-        found = []
+        remarks = []
         in_their_place = self._chosen.keys() & self._matches.elsewhere.keys()
         unmarked = self._matches.unmarked
         if count := len(unmarked) + len(in_their_place):
-            found.append(
+            remarks.append(
                 f"{counted(count, 'cell')} had lost the metadata by which nbgrader knows a cell: some editors and "
                 "programs drop it. The grader recognized the cells by their ids or their text."
             )
-        found += self._on_missing_cells()
+        remarks += self._on_missing_cells()
         for name, places in self._places.items():
-            found += self._remarks_on(name, places)
+            remarks += self._remarks_on(name, places)
+        # A student who moved a cell may rely on the order that the notebook had on the screen.
         order = sorted(self._chosen, key=lambda name: self._chosen[name])
         if order != [name for name in self._master if name in self._chosen]:
-            found.append("Cells of the notebook had changed places. They were put back into their order.")
+            remarks.append("Cells of the notebook had changed places. They were put back into their order.")
         strangers = {
             cell.grade_id
             for place, cell in enumerate(self._submitted)
             if cell.grade_id and cell.grade_id not in self._master and place not in unmarked
         }
         if len(strangers) == 1:
-            found.append(
+            remarks.append(
                 f"This notebook has no graded cell {_quoted(*strangers)}. The cell with this name runs as a cell "
                 "that you added."
             )
         elif strangers:
-            found.append(
+            remarks.append(
                 f"This notebook has no graded cells {_listed(sorted(strangers))}. The cells with these names run as "
                 "cells that you added."
             )
-        return found
+        return remarks
 
     def _on_missing_cells(self) -> Iterator[str]:
         missing = [name for name in self._master if name not in self._chosen]
@@ -155,30 +155,30 @@ class _Sorting:
             yield f"{_were(given)} missing and put back."
         if empty := [name for name in answers if name not in self._elsewhere]:
             yield f"{_were(empty)} missing and put back without an answer."
-        found = [name for name in answers if name in self._elsewhere]
-        if len(found) == 1:
-            yield f"{_were(found)} missing. Another cell contains the answer, and that cell counts."
-        elif found:
-            yield f"{_were(found)} missing. Other cells contain the answers, and those cells count."
+        moved = [name for name in answers if name in self._elsewhere]
+        if len(moved) == 1:
+            yield f"{_were(moved)} missing. Another cell contains the answer, and that cell counts."
+        elif moved:
+            yield f"{_were(moved)} missing. Other cells contain the answers, and those cells count."
 
     def _remarks_on(self, name: str, places: Sequence[int]) -> list[str]:
         master, cell = self._master[name], self._submitted[self._chosen[name]]
-        found = []
+        remarks = []
         if len(places) > 1 and is_answer(master):
-            found.append(
+            remarks.append(
                 f"The cell {_quoted(name)} was in the notebook {len(places)} times. Of the copies above its check, "
                 "the last one that you changed counts as your answer; the others run as cells that you added."
             )
         elif len(places) > 1:
-            found.append(f"The cell {_quoted(name)} was in the notebook {len(places)} times. It runs once.")
+            remarks.append(f"The cell {_quoted(name)} was in the notebook {len(places)} times. It runs once.")
         if cell.kind != master.cell_type:
-            found.append(
+            remarks.append(
                 f"The cell {_quoted(name)} had become a {cell.kind} cell. "
                 f"The cell is a {master.cell_type} cell again."
             )
         if not is_answer(master) and normalized(cell.source) not in map(normalized, _handed_out(master)):
-            found.append(f"The cell {_quoted(name)} is not yours to change. The original was used.")
-        return found
+            remarks.append(f"The cell {_quoted(name)} is not yours to change. The original was used.")
+        return remarks
 
     def _choose(self, name: str, places: Sequence[int]) -> int:
         """Return the index of the copy of a cell that counts: the last copy before its check.
@@ -318,16 +318,16 @@ class _ShownPictures:
             text: The text of a cell.
             own: The pictures that the student attached to the cell.
         """
-        found: dict[str, Mapping[str, str]] = {}
+        pictures: dict[str, Mapping[str, str]] = {}
         for name in dict.fromkeys(_SHOWN.findall(text)):
             size = sum(map(len, own.get(name, {}).values()))
             if 0 < size <= self._characters:
                 self._characters -= size
-                found[name] = own[name]
+                pictures[name] = own[name]
             elif self._left[name] > 0:
                 self._left[name] -= 1
-                found[name] = self._pictures[name]
-        return nbformat_nodes.copied(NotebookNode(found))
+                pictures[name] = self._pictures[name]
+        return nbformat_nodes.copied(NotebookNode(pictures))
 
 
 def grade_id(cell: NotebookNode) -> str:
@@ -365,19 +365,19 @@ def _known(cell: NotebookNode) -> Known:
 
 def _handed_out(cell: NotebookNode) -> tuple[str, str]:
     """Return the full text of a master's cell, and its text for students: no hidden tests and no mark scheme."""
-    kept, hidden = [], False
+    lines, hidden = [], False
     for line in cell.source.splitlines():
         if _HIDDEN.search(line):
             hidden = "BEGIN" in line
         elif not hidden:
-            kept.append(line)
-    return cell.source, "\n".join(kept)
+            lines.append(line)
+    return cell.source, "\n".join(lines)
 
 
 def _extra(cell: SubmittedCell) -> NotebookNode:
-    made = nbformat_nodes.cell(cell.kind, cell.source, "own")
-    made["attachments"] = _attachments(cell)
-    return made
+    node = nbformat_nodes.cell(cell.kind, cell.source, "own")
+    node["attachments"] = _attachments(cell)
+    return node
 
 
 def _attachments(cell: SubmittedCell) -> dict[str, dict[str, str]]:

@@ -18,17 +18,18 @@ import msgspec
 
 from autograder.boxes.box_connection import ChannelClosed
 from autograder.boxes.reading_desks import KeptDesk, answer_in, in_memory
+from autograder.cards.readable_text import paragraph
 from autograder.execution.executed_cells import IMAGES
 from autograder.grading.grading_errors import GradingError
 from autograder.grading.rebuilding.notebook_parsing import BASE64
 from autograder.grading.rebuilding.submitted_notebook import (
+    LONGEST_REASON,
     MAX_BYTES,
     MAX_CHARACTERS,
     ReadNotebook,
     Unreadable,
     UnreadableSubmission,
 )
-from autograder.grading.running.worker_messages import printable
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -92,22 +93,13 @@ def checked(document: bytes) -> tuple[Sequence[SubmittedCell], int]:
     except (msgspec.MsgspecError, RecursionError, UnicodeError) as error:
         raise UnreadableSubmission(_NOT_READ) from error
     if isinstance(read, Unreadable):
-        raise UnreadableSubmission(printable(read.reason))
+        raise UnreadableSubmission(paragraph(read.reason, LONGEST_REASON))
     pictures = (picture for cell in read.cells for picture in cell.pictures)
     if sum(len(cell.source) for cell in read.cells) > MAX_CHARACTERS or not all(
         kind in IMAGES and BASE64.fullmatch(data) for _, kind, data in pictures
     ):
         raise UnreadableSubmission(_NOT_READ)
     return read.cells, read.left_out
-
-
-def why_unreadable(data: bytes) -> str:
-    """Return why a file cannot be read as a notebook, in words for the student; empty if it can be read."""
-    try:
-        read_notebook(data)
-    except UnreadableSubmission as error:
-        return str(error)
-    return ""
 
 
 def _rehearse(desk: Desk) -> None:

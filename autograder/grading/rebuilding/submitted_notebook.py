@@ -74,7 +74,6 @@ class ReadNotebook(msgspec.Struct, frozen=True, tag=True):
     """The desk's answer about a file that is a notebook.
 
     Attributes:
-        cells: The cells of the notebook.
         left_out: The number of cells that were left out because they are not valid cells.
     """
 

@@ -74,14 +74,14 @@ def _master(source: Path, data: bytes, steps: tuple[str, ...]) -> NotebookNode:
 
 def _rubrics(source: NotebookNode) -> dict[str, dict[str, Any]]:
     """Return, by grade_id, the model answer and its pictures for each question that a person grades."""
-    found = {}
+    rubrics = {}
     for cell in source.cells:
         if cell.cell_type == "markdown" and is_answer(cell):
             with contextlib.suppress(CellError):
                 text = find_model_answer(cell.source)
                 pictures = shown_attachments(text, cell.get("attachments", {}))
-                found[grade_id(cell)] = {"rubric": text, "pictures": pictures}
-    return found
+                rubrics[grade_id(cell)] = {"rubric": text, "pictures": pictures}
+    return rubrics
 
 
 def _given_part(source: str) -> str:
@@ -115,7 +115,9 @@ def check_of(cell: NotebookNode) -> CellCheck | None:
 
 def exercise_of(name: str) -> str:
     """Return the id of the exercise that belongs to a cell with this name; the name itself if there is none."""
-    return next((known for known in exercises.all_ids() if exercises.grade_id(known) == name), name)
+    return next(
+        (exercise_id for exercise_id in exercises.all_ids() if exercises.grade_id(exercise_id) == name), name
+    )
 
 
 def _asks_the_judge(source: str) -> bool:
@@ -131,14 +133,14 @@ def _asks_the_judge(source: str) -> bool:
 
 
 def _check_cells(source: Path, notebook: NotebookNode) -> None:
-    seen: set[str] = set()
+    names: set[str] = set()
     for cell in notebook.cells:
         name = grade_id(cell)
-        if name and name in seen:
+        if name and name in names:
             raise MasterUnusable(
                 f"{source}: two cells have the grade_id {name!r}. Give one of the cells a different grade_id."
             )
-        seen.add(name)
+        names.add(name)
         try:
             check_of(cell)
         except LookupError as error:

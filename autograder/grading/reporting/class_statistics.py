@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
     from autograder.grading.class_records import Attempt
     from autograder.grading.class_store import ClassStore
-    from autograder.grading.table.class_table import ClassTable
+    from autograder.grading.reporting.class_table import ClassTable
     from autograder.grading.table.rows import Row
 
 

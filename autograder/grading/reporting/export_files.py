@@ -21,8 +21,8 @@ from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.collecting.collected_files import CollectedRecords
 from autograder.grading.collecting.submitted_file_names import read_lms_name
 from autograder.grading.grading_errors import GradingError, check_known, clear_place_errors, course_command
+from autograder.grading.reporting.class_table import ClassTable, read_table
 from autograder.grading.reporting.lms_gradebooks import LAYOUTS, fill_list, gradebook, line_from_lms
-from autograder.grading.table.class_table import ClassTable, read_table
 from autograder.grading.table.rows import COLUMNS, DROPPED, LATE, csv_cells
 from autograder.grading.table.spreadsheet_csv import blank, csv_text
 from autograder.kit.in_words import counted
@@ -31,6 +31,9 @@ from autograder.safe_files import write_whole
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
     from pathlib import Path
+
+
+_MOST_NAMED = 20
 
 
 @dataclass(frozen=True)
@@ -103,7 +106,12 @@ def export(
     notices += [
         f"{name} is left out of all students' points: {reason}" for name, reason in table.unusable.items()
     ]
-    notices += table.notices
+    notices += [*table.notices, *(one for one in table.late_notices([to]) if one not in table.notices)]
+    if without := [one for one in table.students if not table.has_points(one, wanted)]:
+        notices.append(
+            f"{counted(len(without), 'student')} of the class without points for {', '.join(wanted)}: "
+            f"{', '.join(without[:_MOST_NAMED])}{' …' if without[_MOST_NAMED:] else ''}"
+        )
     if table.waiting:
         waiting = counted(len(table.waiting), "result")
         notices.append(f"{waiting} still to be graded by a person, exported with their present points")
@@ -195,7 +203,7 @@ def class_csv(table: ClassTable, assignments: Sequence[str]) -> bytes:
 def _class_xlsx(table: ClassTable, assignments: Sequence[str]) -> bytes:
     """Return a workbook with two sheets: a line for each student, and a line for each result in an exercise."""
     exercises: list[_Cells] = [list(COLUMNS)]
-    exercises += [list(csv_cells(row)) for row in table.rows if row.assignment in assignments]
+    exercises += [csv_cells(row) for row in table.rows if row.assignment in assignments]
     data = io.BytesIO()
     # A text from a student or an LMS must never become a formula, a link or a number.
     options = {
@@ -276,9 +284,7 @@ def _page_name(file: str, lms: str, page: PurePath, *, is_one: bool) -> str:
     """
     parts = PurePosixPath(file).parts
     place, found = next(
-        (place, found)
-        for place in range(len(parts))
-        if (found := read_lms_name(parts, place, lms, lambda _: False))
+        (place, found) for place in range(len(parts)) if (found := read_lms_name(parts, place, lms))
     )
     above, given = "".join(f"{one}/" for one in parts[:place]), parts[place]
     if lms == "canvas":

@@ -9,11 +9,10 @@ from typing import TYPE_CHECKING, Any, Self
 import msgspec
 from rich import box
 from rich.cells import cell_len
-from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from autograder.cards.readable_text import printable
+from autograder import standard_output
 from autograder.grading.grading_task import UNREADABLE
 from autograder.grading.running.batch_progress import Timings, plain_line
 from autograder.grading.table.rows import (
@@ -30,6 +29,7 @@ from autograder.grading.table.rows import (
 )
 from autograder.kit.in_words import counted
 from autograder.safe_files import name_as_text
+from autograder.standard_output import printable
 from autograder.verdict import State
 
 if TYPE_CHECKING:
@@ -37,8 +37,10 @@ if TYPE_CHECKING:
     from datetime import datetime
     from pathlib import Path
 
+    from rich.console import Console
+
     from autograder.grading.classes.class_directory import RefusedFile
-    from autograder.grading.table.class_table import ClassTable, Difference
+    from autograder.grading.reporting.class_table import ClassTable, Difference
 
 
 _FORM = 2
@@ -195,7 +197,7 @@ def show(report: GradeReport, console: Console | None = None) -> None:
         report: The result of the run.
         console: The console to print on; by default standard output.
     """
-    console = console or Console()
+    console = console or standard_output.console()
     if not report.rows:
         submitted = _near(report.path / "submitted")
         plain_line(console, f"Nothing was submitted: put notebooks into {submitted}/<student>/<assignment>/.")
@@ -209,23 +211,21 @@ def show(report: GradeReport, console: Console | None = None) -> None:
         found = f"{counted(count, 'result')} would change:" if count else "No result would change."
         plain_line(console, f"Nothing was entered. {found}", "bold")
         for change in report.would_change:
-            plain_line(console, f"would change {printable(change.line())}")
+            plain_line(console, f"would change {change.line()}")
     for words in _legend(report.rows):
         plain_line(console, words)
     for refused in report.refused:
-        plain_line(
-            console, f"refused      {printable(str(refused.path))}: {printable(refused.reason)}", "yellow"
-        )
+        plain_line(console, f"refused      {refused.path}: {refused.reason}", "yellow")
     for where, reason in _unreadable(report):
-        plain_line(console, f"unreadable   {printable(where)}: {printable(reason)}", "yellow")
+        plain_line(console, f"unreadable   {where}: {reason}", "yellow")
     for name, due in report.due.items():
         plain_line(console, f"due          {name} {due:%Y-%m-%d %H:%M}, time zone {due.tzinfo}")
     for (student, assignment), words in remarks_on(report.rows).items():
-        plain_line(console, f"remark       {printable(student)}/{assignment}: {words}")
+        plain_line(console, f"remark       {student}/{assignment}: {words}")
     for notice in report.notices:
-        plain_line(console, f"note         {printable(notice)}")
+        plain_line(console, f"note         {notice}")
     for problem in report.problems:
-        plain_line(console, f"problem      {printable(problem)}", "red")
+        plain_line(console, f"problem      {problem}", "red")
     if report.note:
         plain_line(console, f"unsafe       {report.note}", "red")
     ran, entered = counted(report.executed, "notebook"), counted(report.written, "submission")
@@ -325,8 +325,8 @@ class _Grid:
             if is_last:
                 score, most = total(own), sum(row.max_score for row in own)
                 cells.append(Text("–" if score is None else f"{score:g}/{most:g}"))
-            name = f"{student}\n{own[0].name}" if own[0].name else student
-            shown.add_row(Text("\n".join(map(printable, name.split("\n")))), *cells)
+            name = f"{student}\n{printable(own[0].name)}" if own[0].name else student
+            shown.add_row(Text(name), *cells)
         return shown
 
 
@@ -345,7 +345,7 @@ def _diagnoses(rows: Sequence[Row]) -> Table:
     shown = Table.grid(padding=(0, 2))
     for row in rows:
         if row.diagnosis:
-            shown.add_row(Text(printable(row.student)), names[row.assignment, row.exercise], row.diagnosis)
+            shown.add_row(Text(row.student), names[row.assignment, row.exercise], row.diagnosis)
     return shown
 
 

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 import re2
 from rapidfuzz import fuzz, process
 
-from autograder.grading.collecting.lms_lists import EACH, LIST_FORMS, ListForm
+from autograder.grading.collecting.systems import EACH, LIST_FORMS, ListForm
 from autograder.grading.grading_errors import GradingError
 from autograder.grading.rebuilding.submitted_notebook import UnreadableSubmission, read_bytes
 from autograder.grading.table.roster import Identity
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from autograder.grading.collecting.collected_files import CollectedRecords, Line
-    from autograder.grading.table.class_table import ClassTable
+    from autograder.grading.reporting.class_table import ClassTable
     from autograder.grading.table.roster import Student
 
 
@@ -39,8 +39,8 @@ class _GradebookLayout:
 
     Attributes:
         purpose: The page of the system on which the file is uploaded.
-        columns: The columns before the points: each name with the key of its content in :func:`_facts`, or an empty
-            text.
+        columns: The columns before the points: each name with a template for its content. In it, ``there`` is the
+            student's number or user name in the system, and ``user`` the id if that is unknown.
         points: A template for the name of an assignment's column, with the assignment's name and maximum points.
         possible: The first cell of the line that contains the maximum points; empty if the file has no such line.
         excused: The word with which the system marks an excused student.
@@ -58,31 +58,45 @@ class _GradebookLayout:
 LAYOUTS = {
     "canvas": _GradebookLayout(
         "Canvas: Grades, Import",
-        {"Student": "name", "ID": "there", "SIS User ID": "", "SIS Login ID": "id", "Section": "section"},
+        {
+            "Student": "{name}",
+            "ID": "{there}",
+            "SIS User ID": "",
+            "SIS Login ID": "{student.id}",
+            "Section": "{student.section}",
+        },
         possible="    Points Possible",
         excused="EX",
     ),
     "moodle": _GradebookLayout(
         "Moodle: Grades, Import, CSV file; map Email address and the assignments",
-        {"First name": "first", "Last name": "last", "ID number": "id", "Email address": "email"},
+        {
+            "First name": "{student.first_name}",
+            "Last name": "{student.last_name}",
+            "ID number": "{student.id}",
+            "Email address": "{student.email}",
+        },
     ),
     "blackboard": _GradebookLayout(
         "Blackboard: Grade Center > Work Offline > Upload",
-        {"Last Name": "last", "First Name": "first", "Username": "user"},
+        {"Last Name": "{student.last_name}", "First Name": "{student.first_name}", "Username": "{user}"},
         points="{name} [Total Pts: {most:g} Score]",
     ),
     "brightspace": _GradebookLayout(
         "Brightspace: Grades > Enter Grades > Import",
-        {"OrgDefinedId": "#id"},
+        {"OrgDefinedId": "#{student.id}"},
         points="{name} Points Grade",
         end={"End-of-Line Indicator": "#"},
     ),
     "sakai": _GradebookLayout(
         "Sakai: Gradebook > Import Grades",
-        {"Student ID": "user", "Student Name": "name"},
+        {"Student ID": "{user}", "Student Name": "{name}"},
         points="{name} [{most:g}]",
     ),
 }
+
+
+_LOCKED = "(read only)"
 
 
 def gradebook(lms: str, table: ClassTable, records: CollectedRecords, assignments: Sequence[str]) -> str:
@@ -95,43 +109,23 @@ def gradebook(lms: str, table: ClassTable, records: CollectedRecords, assignment
         assignments: The assignments, which get a column each.
     """
     layout = LAYOUTS[lms]
-    header: list[str | float] = [*layout.columns]
-    possible: list[str | float] = [layout.possible, *[""] * (len(layout.columns) - 1)]
-    for name in assignments:
-        most = table.max_score(name)
-        header.append(layout.points.format(name=name, most=most))
-        possible.append(most)
-    rows = [[*header, *layout.end], *([possible] if layout.possible else [])]
-    for student in table.students:
-        facts = _facts(table, records, student, lms, assignments)
-        row: list[str | float] = [facts[fact] for fact in layout.columns.values()]
-        for name in assignments:
-            score = blank(table.score(student, name))
-            row.append(layout.excused if layout.excused and table.is_excused(student, name) else score)
-        rows.append([*row, *layout.end.values()])
+    points = {name: table.max_score(name) for name in assignments}
+    titles = [layout.points.format(name=name, most=most) for name, most in points.items()]
+    rows: list[list[str | float]] = [[*layout.columns, *titles, *layout.end]]
+    if layout.possible:
+        rows.append([layout.possible, *[""] * (len(layout.columns) - 1), *points.values()])
+    for student in map(table.roster.students.__getitem__, table.students):
+        collected = (line_from_lms(records, name, student.id, lms) for name in assignments)
+        there = student.lms.get(lms, "") or next((one.number or one.name for one in collected if one), "")
+        name = ", ".join(filter(None, (student.last_name, student.first_name))) or student.id
+        facts = {"student": student, "there": there, "user": there or student.id, "name": name}
+        scores = [
+            layout.excused if table.is_excused(student.id, one) else blank(table.score(student.id, one))
+            for one in assignments
+        ]
+        about = [template.format_map(facts) for template in layout.columns.values()]
+        rows.append([*about, *scores, *layout.end.values()])
     return csv_text(rows)
-
-
-def _facts(
-    table: ClassTable, records: CollectedRecords, id_: str, lms: str, assignments: Sequence[str]
-) -> dict[str, str]:
-    """Return the possible contents of a student's cells, by key. ``there`` and ``user`` come from the LMS."""
-    student = table.roster.students[id_]
-    own = student.lms.get(lms, "")
-    collected = (line_from_lms(records, name, id_, lms) for name in assignments)
-    there = own or next((one.number or one.name for one in collected if one), "")
-    return {
-        "": "",
-        "id": id_,
-        "first": student.first_name,
-        "last": student.last_name,
-        "name": ", ".join(part for part in (student.last_name, student.first_name) if part) or id_,
-        "email": student.email,
-        "section": student.section,
-        "there": there,
-        "user": there or id_,
-        "#id": f"#{id_}",
-    }
 
 
 def line_from_lms(records: CollectedRecords, assignment: str, student: str, lms: str) -> Line | None:
@@ -170,7 +164,7 @@ def fill_list(
     rows, delimiter = csv_rows(data)
     header = [name.strip() for name in rows[0]] if rows else []
     form = _form_of(header, lms)
-    places = _point_columns(into, header, form, assignments, columns)
+    places = _point_columns(into, rows, form, assignments, columns)
     lines, strangers = _lines_by_student(rows[1:], header, form, table)
     doubtful: list[str] = []
     for student_id, of_student in lines.items():
@@ -185,6 +179,11 @@ def fill_list(
             elif (score := table.score(student_id, name)) is not None:
                 row[place] = f"{score:g}".replace(".", "," if delimiter == ";" else ".")
     notices = []
+    if left_out := [one for one in table.students if one not in lines and table.has_points(one, assignments)]:
+        notices.append(
+            f"the list has no line for {', '.join(left_out)}, so their points are not in it: if they are in the "
+            "course, download the list again"
+        )
     if strangers:
         notices.append(
             f"no student in the class is called {', '.join(strangers)}: their lines stay as they were"
@@ -226,26 +225,67 @@ def _form_of(header: Sequence[str], lms: str) -> ListForm:
 
 def _point_columns(
     into: Path,
-    header: Sequence[str],
+    rows: Sequence[Sequence[str]],
     form: ListForm,
     assignments: Sequence[str],
     columns: Mapping[str, str],
 ) -> dict[str, int]:
     """Return the index of the column for points, by assignment.
 
+    A column of an assignment has the assignment's name, or its title as in ``Lab 1.2: A talker and a listener``.
+
     Raises:
         GradingError: An assignment has no column of its own.
     """
+    header = [name.strip() for name in rows[0]]
     if form.points != EACH:
         if len(assignments) != 1:
             raise GradingError(
                 f"Say which assignment goes into {into}: --assignment NAME ({', '.join(assignments)})."
             )
         return {assignments[0]: [name.lower() for name in header].index(form.points)}
-    places = {name: _column(header, form, name, columns.get(name, name)) for name in assignments}
+    about = {*form.has, *form.sure, *form.names} - {form.points}
+    # Canvas marks columns that it computes in the line of the points possible, above which another line may stand.
+    locked = {name for row in rows[1:3] for name, cell in zip(header, row, strict=False) if _LOCKED in cell}
+    names = [name for name in header if name and name.lower() not in about and name not in locked]
+    found = {
+        one: _columns_called(columns.get(one, one), names, is_exact=one in columns) for one in assignments
+    }
+    if missing := [one for one in assignments if len(found[one]) != 1]:
+        likeliest = {
+            one: process.extractOne(one, names, scorer=fuzz.partial_ratio, processor=_letters)
+            for one in missing
+        }
+        options = " ".join(
+            f'--column "{one}={best[0] if best else "COLUMN"}"' for one, best in likeliest.items()
+        )
+        asked = ", ".join(columns.get(one, one) for one in missing)
+        why = f" {_LOCKED} columns take no points: {', '.join(sorted(locked))}." if locked else ""
+        raise GradingError(
+            f"No column for points is called {asked}, or more than one is. The list has: {', '.join(names) or 'none'}."
+            f"{why} Name one for each, for example: {options}"
+        )
+    places = {one: header.index(name) for one, (name,) in found.items()}
     if len(set(places.values())) < len(places):
         raise GradingError("Two assignments have the same column: give each its own --column.")
     return places
+
+
+def _columns_called(called: str, names: Sequence[str], *, is_exact: bool) -> list[str]:
+    """Return the columns with a name, by the first way of comparing names that finds any.
+
+    Args:
+        called: The name of a column, or of an assignment.
+        names: The names of all columns for points. Canvas adds a number to them: ``lab_1_2 (815)``.
+        is_exact: True if a person wrote the name, so that it is compared as it is.
+    """
+    for way in (str, _without_number):
+        if found := [name for name in names if way(name) == called]:
+            return found
+    for head in () if is_exact else (_letters, lambda name: _letters(name.partition(":")[0])):
+        if found := [name for name in names if head(name) == _letters(called)]:
+            return found
+    return []
 
 
 def _lines_by_student(
@@ -276,23 +316,6 @@ def _lines_by_student(
     return found, strangers
 
 
-def _column(header: Sequence[str], form: ListForm, assignment: str, called: str) -> int:
-    """Return the index of an assignment's column. Canvas adds a number to the name of a column: ``lab_1_2 (815)``.
-
-    Raises:
-        GradingError: The list has no such column, or the column names the student.
-    """
-    known = {*form.has, *form.sure, *form.names} - {form.points}
-    names = [name for name in header if name.lower() not in known]
-    if column := next((name for name in names if called in (name, _without_number(name))), None):
-        return header.index(column)
-    likeliest = process.extractOne(assignment, names, scorer=fuzz.partial_ratio, processor=_letters)
-    raise GradingError(
-        f"No column for points is called {called}. The list has: {', '.join(names) or 'none'}. Name one, for example: "
-        f'--column "{assignment}={likeliest[0] if likeliest else "COLUMN"}"'
-    )
-
-
 def _without_number(name: str) -> str:
     """Return a column's name without the suffix that Canvas, Brightspace, Blackboard or Sakai adds."""
     return re2.sub(r"(?: \([^()]*\)| Points Grade.*| \[[^\]]*\](?: \|\d+)?)$", "", name)
@@ -303,19 +326,12 @@ def _letters(name: str) -> str:
     return re2.sub(r"[\W_]+", "", _without_number(name)).casefold()
 
 
-_KINDS = ("number", "login", "name")
-"""The kinds of values that may identify a student, the most certain first."""
-
-
 def _who(table: ClassTable, form: ListForm, values: Sequence[str]) -> tuple[Student, int] | None:
     """Return the student of a line, and the rank of the matching value; a lower rank is a more certain match."""
-    columns: list[tuple[str, tuple[str, ...]]] = [(value, _KINDS) for value in values]
+    identities = [Identity(form.lms, value, value, value) for value in values]
     if form.is_numbered:
         # A number of the LMS may be another student's id in the class, so the number is compared with ids last.
-        columns = [(values[0], _KINDS[:1]), *columns[1:], (values[0], _KINDS[1:])]
-    for place, (value, kinds) in enumerate(columns):
-        for way in kinds if value else ():
-            found = table.roster.find(Identity(form.lms, **{way: value}))
-            if len(found) == 1:
-                return found[0], place
-    return None
+        number = values[0]
+        identities = [Identity(form.lms, number), *identities[1:], Identity(form.lms, "", number, number)]
+    matches = ((table.roster.find(identity), rank) for rank, identity in enumerate(identities))
+    return next(((found[0], rank) for found, rank in matches if len(found) == 1), None)

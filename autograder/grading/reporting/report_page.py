@@ -8,16 +8,17 @@ from typing import TYPE_CHECKING
 from urllib.parse import quote
 
 from autograder.cards.html_rendering import page_templates
-from autograder.cards.readable_text import one_line, printable
+from autograder.cards.readable_text import one_line
 from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.collecting.collected_csv import Table
 from autograder.grading.grading_errors import GradingError, clear_disk_errors, clear_place_errors
 from autograder.grading.reporting import class_statistics as figures
+from autograder.grading.reporting.class_table import ClassTable, read_table
 from autograder.grading.returning.page_exporter import POLICY
-from autograder.grading.table.class_table import ClassTable, read_table
 from autograder.grading.table.rows import DROPPED, EXCUSED, NO_EXERCISE, columns, remarks_on
 from autograder.safe_files import write_whole
+from autograder.standard_output import printable
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

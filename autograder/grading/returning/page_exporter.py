@@ -29,11 +29,11 @@ from nbformat import NotebookNode
 from traitlets.config import Config
 
 from autograder import exercises
-from autograder.cards.readable_text import printable
 from autograder.grading.rebuilding import nbformat_nodes
 from autograder.grading.rebuilding.notebook_rebuilding import grade_id, is_check, is_the_masters
 from autograder.grading.rebuilding.trusted_master import exercise_of
 from autograder.grading.returning.sanitize import TYPED, make_harmless
+from autograder.standard_output import printable
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping

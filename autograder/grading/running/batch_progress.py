@@ -17,6 +17,8 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, ProgressColum
 from rich.progress import TextColumn as Words
 from rich.text import Text
 
+from autograder.standard_output import printable
+
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
@@ -88,8 +90,8 @@ class Timings:
 
 
 def plain_line(console: Console, text: str, style: str = "") -> None:
-    """Print a text unchanged: without markup, highlighting and line breaks."""
-    console.print(text, style=style, markup=False, highlight=False, soft_wrap=True)
+    """Print a text, which may contain a student's words, as one line: without markup, highlighting and line breaks."""
+    console.print(printable(text), style=style, markup=False, highlight=False, soft_wrap=True)
 
 
 _LINES = 20
@@ -102,7 +104,6 @@ class BatchProgress:
     """Counts and shows the notebooks that are done, running, waiting or failed. Any thread may call it.
 
     Args:
-        console: The console for the progress.
         total: The number of notebooks to execute.
         doing: The word for the work in progress, such as "grading".
         did: The word for finished work, such as "graded".

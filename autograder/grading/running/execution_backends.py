@@ -44,7 +44,6 @@ def on_this_machine(directory: ClassDirectory, jobs: int | None, judge: str) -> 
     """Yield a function that executes tasks on this machine.
 
     Args:
-        directory: The class.
         jobs: The number of notebooks to execute at the same time; None for as many as processors and memory allow.
         judge: The Python class that makes a judge, as ``module:class``; empty for the real judge.
 
@@ -52,7 +51,7 @@ def on_this_machine(directory: ClassDirectory, jobs: int | None, judge: str) -> 
         GradingError: Submissions cannot be boxed on this machine.
     """
     require_sandbox(directory)
-    boxed = not is_sandbox_off(directory)
+    boxed = not directory.is_sandbox_off
 
     def execute(tasks: Iterable[Task], on_start: Callable[[Task], None]) -> Generator[Done, None, None]:
         return execute_all(tasks, scratch.path, jobs, on_start=on_start, judge=judge or JUDGE, boxed=boxed)
@@ -68,7 +67,6 @@ def on_cluster(
     """Yield a function that executes tasks on the workers of a Dask cluster.
 
     Args:
-        directory: The class.
         scheduler: The scheduler's address.
         judge: The Python class that makes a judge, as ``module:class``; empty for the real judge.
         tell: Called with a sentence for the instructor.
@@ -76,7 +74,7 @@ def on_cluster(
     Raises:
         GradingError: The cluster cannot be used. The message says why.
     """
-    boxed = not is_sandbox_off(directory)
+    boxed = not directory.is_sandbox_off
     with connected(scheduler, judge=judge or JUDGE, boxed=boxed, tell=tell) as pool:
         yield functools.partial(dispatch, pool)
 
@@ -120,6 +118,7 @@ def execute_all(
     """
     slots = workers or at_once(cores(), psutil.virtual_memory().available)
     words = (str(scratch), str(slots), *(["boxed"] if boxed else []))
+    # In a process of its own, so that the process with the gradebook loads nothing that executes submissions.
     with ProcessLink("autograder.grading.running.order_executor", *words, scratch=scratch) as machine:
         dispatcher = Dispatcher(machine, "", judge=judge, boxed=boxed, tell=lambda _: None)
         yield from dispatch(dispatcher, tasks, on_start)
@@ -232,10 +231,6 @@ UNBOXED_NOTE = (
     "and could have changed any grade."
 )
 """A warning that the report and every feedback page show if a class was graded without a sandbox."""
-_off: set[Path] = set()
-"""The folders of the classes that this process grades without boxes. Folders are stored, and not ``ClassDirectory``
-objects, because several such objects may represent one class.
-"""
 
 
 def require_sandbox(directory: ClassDirectory) -> None:
@@ -244,7 +239,7 @@ def require_sandbox(directory: ClassDirectory) -> None:
     Raises:
         GradingError: Submissions cannot be boxed, and the user did not allow grading without boxes.
     """
-    if is_sandbox_off(directory):
+    if directory.is_sandbox_off:
         return
     from autograder.boxes.sandbox import why_impossible
 
@@ -255,14 +250,3 @@ def require_sandbox(directory: ClassDirectory) -> None:
             "them nevertheless, trusting every submission: --unsafe-no-sandbox, or "
             "c.WireExecute.unsafe_no_sandbox = True in nbgrader_config.py."
         )
-
-
-def is_sandbox_off(directory: ClassDirectory) -> bool:
-    """Return True if this class is graded without boxes, because of its configuration or :func:`switch_sandbox_off`."""
-    configured = directory.config.WireExecute.get("unsafe_no_sandbox", False)
-    return bool(configured) or directory.path.resolve() in _off
-
-
-def switch_sandbox_off(path: Path) -> None:
-    """Let this process grade the class in the folder ``path`` without boxes, as ``--unsafe-no-sandbox`` does."""
-    _off.add(path.resolve())

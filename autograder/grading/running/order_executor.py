@@ -8,6 +8,7 @@ module is the executor process, which exchanges lines of JSON with the dispatche
 from __future__ import annotations
 
 import contextlib
+import importlib
 import sys
 import threading
 import warnings
@@ -19,7 +20,7 @@ import msgspec
 from autograder import course
 from autograder.boxes.fork_server import ForkServers
 from autograder.grading.grading_task import Task
-from autograder.grading.running.task_execution import execute
+from autograder.grading.running.task_execution import JudgeKind, execute
 from autograder.grading.running.worker_messages import (
     ADDRESS,
     LARGEST_ANSWER,
@@ -32,12 +33,17 @@ from autograder.grading.running.worker_messages import (
     Offer,
     Order,
 )
-from autograder.judge.ros_setup import boxed_ros_environment, ros_environment
+from autograder.judge import controlled_judge
+from autograder.judge.machine_fitness import Patience
+from autograder.judge.ros_setup import boxed_ros_environment, lease_domain, ros_environment
 from autograder.messages.json_lines import Hangup, Lines
 from autograder.process_trees import adopt_orphans, end_descendants
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from autograder.boxes.fork_server import Addresses
+    from autograder.boxes.run_limits import Left
     from autograder.execution.notebook_processes import BoxedProcesses, UnboxedProcesses
 
 
@@ -45,7 +51,35 @@ LAST_SECONDS = 10.0
 """Time limit in seconds for the clean-up of the executor process. It matters only if the grader has ended, because a
 grader that still runs kills the process earlier.
 """
-_JUDGE_MODULE = "autograder.judge.controlled_judge"
+
+
+def judge_kind(name: str, *, boxed: bool) -> JudgeKind:
+    """Return the judge for tasks that run in boxes, or without.
+
+    Args:
+        name: The Python class of the judge, as ``module:class``.
+        boxed: True if judge and subject run in boxes.
+    """
+    module, _, attribute = name.partition(":")
+    return JudgeKind(
+        make=getattr(importlib.import_module(module), attribute),
+        variables=controlled_judge.environment(boxed=boxed),
+        readable=controlled_judge.readable(),
+        ros_variables=_ros_variables(boxed=boxed),
+        # A box has a network of its own, without other nodes, so any domain is free there.
+        lease_domain=(lambda: contextlib.nullcontext(0)) if boxed else lease_domain,
+        patient=_patiently,
+    )
+
+
+def _ros_variables(*, boxed: bool) -> Mapping[str, str]:
+    return boxed_ros_environment() if boxed else ros_environment()
+
+
+def _patiently(seconds: float) -> Left:
+    """Return a function that returns the seconds left of a limit, which gets longer on an overloaded machine."""
+    patience = Patience(seconds)
+    return lambda: patience.left
 
 
 class Executor:
@@ -74,13 +108,16 @@ class Executor:
         running = _Running()
         with self._changing:
             self._running[key] = running
+            # `stop` ended the orders that it knew; this one came while it did so.
             if self._stopped:
                 running.end()
         try:
+            judge = judge_kind(order.judge, boxed=task.boxed)
             execution = execute(
-                task, self._scratch, order.judge, self.fork_servers(boxed=task.boxed), running.began
+                task, self._scratch, judge, self.fork_servers(boxed=task.boxed), running.began
             )
             answer = msgspec.json.encode(execution)
+        # Whatever failed concerns this order alone: the dispatcher decides whether it runs again.
         except Exception as error:
             answer = msgspec.json.encode(task.in_trouble(f"{type(error).__name__}: {error}"))
         finally:
@@ -105,8 +142,8 @@ class Executor:
             for running in self._running.values():
                 running.end()
             self._changing.wait_for(lambda: not self._running, LAST_SECONDS)
-            for kept in self._fork_servers.values():
-                kept.stop()
+            for servers in self._fork_servers.values():
+                servers.stop()
 
     def fork_servers(self, *, boxed: bool) -> Addresses:
         """Start the fork servers if they do not run, and return their addresses. Do not wait for their imports.
@@ -115,18 +152,18 @@ class Executor:
             boxed: True to include the fork server for the supervisors of boxes.
         """
         with self._changing:
-            kept = self._fork_servers.get(boxed)
-            if kept is None or not kept.alive:
-                if kept is not None:
-                    kept.stop()
-                kept = self._fork_servers[boxed] = ForkServers(
-                    _JUDGE_MODULE,
+            servers = self._fork_servers.get(boxed)
+            if servers is None or not servers.alive:
+                if servers is not None:
+                    servers.stop()
+                servers = self._fork_servers[boxed] = ForkServers(
+                    controlled_judge.__name__,
                     boxed=boxed,
-                    environment=boxed_ros_environment() if boxed else ros_environment(),
+                    environment=_ros_variables(boxed=boxed),
                     of_judges=course.variables(),
                     interfaces=course.interface_modules(),
                 )
-            return kept.addresses
+            return servers.addresses
 
 
 class _Running:

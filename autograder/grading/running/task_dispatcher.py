@@ -17,10 +17,13 @@ from typing import TYPE_CHECKING, Protocol
 
 import msgspec
 
+from autograder.cards.readable_text import paragraph
+from autograder.command_name import COMMAND
+from autograder.grading.course_version import course_version
 from autograder.grading.grading_errors import GradingError
-from autograder.grading.rebuilding.course_version import course_version
 from autograder.grading.running.worker_messages import (
     ADDRESS,
+    LONGEST_WORDS,
     Answered,
     Asked,
     Broken,
@@ -35,9 +38,7 @@ from autograder.grading.running.worker_messages import (
     Unfit,
     admitted,
     admitted_offer,
-    printable,
 )
-from environment.installation import COMMAND
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator, Iterable, Iterator
@@ -125,7 +126,6 @@ class Dispatcher:
     """Gives the tasks of one batch to workers.
 
     Args:
-        link: The connection to the workers.
         address: The address of the cluster's scheduler, for messages; empty for this machine.
         judge: The Python class of the judge, as ``module:class``.
         boxed: True if tasks run in sandboxes. Workers that cannot make sandboxes are then rejected.
@@ -185,6 +185,7 @@ class Dispatcher:
             self._give_out(jobs, on_start)
             if not (self._flights or self._waiting):
                 return
+            # Without workers the run goes on for a while, because a worker that was started again needs some seconds.
             if self._workers:
                 return_until = None
             elif return_until is None:
@@ -310,8 +311,8 @@ class Dispatcher:
             self._workers[address] = _Worker(name, offer.slots)
 
     def _refuse(self, address: str, name: str, reason: str) -> None:
-        called = printable(address if name == address else f"{name[:100]} ({address})")
-        reason = printable(reason)
+        called = paragraph(address if name == address else f"{name[:100]} ({address})", LONGEST_WORDS)
+        reason = paragraph(reason, LONGEST_WORDS)
         self._refused[address] = f"{called}: {reason}"
         self._tell(f"The worker {called} gets no work: {reason}.")
 

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import contextlib
 import functools
-import importlib
 import os
 import shlex
 from dataclasses import dataclass, replace
@@ -24,9 +23,6 @@ from autograder.execution.notebook_processes import (
     UnboxedProcesses,
 )
 from autograder.execution.notebook_runner import Unfinished, run_notebook
-from autograder.judge import controlled_judge
-from autograder.judge.machine_fitness import Patience
-from autograder.judge.ros_setup import boxed_ros_environment, lease_domain, ros_environment
 from autograder.safe_files import scratch_folder
 from autograder.workspaces.boxed_jobs import BoxedJobs
 from autograder.workspaces.builds import build_cache, students_builds
@@ -40,7 +36,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from autograder.boxes.fork_server import Addresses
-    from autograder.boxes.run_limits import Left
+    from autograder.boxes.run_limits import Patient
     from autograder.execution.executed_cells import Cell, Execution
     from autograder.grading.grading_task import Task
     from autograder.verdict import Verdict
@@ -52,20 +48,40 @@ would exceed this size, it is not kept.
 """
 
 
+@dataclass(frozen=True)
+class JudgeKind:
+    """The judge of a task, and the ROS settings with which judge and subject meet.
+
+    Attributes:
+        make: Returns a judge that is not started yet, such as
+            :class:`autograder.judge.controlled_judge.JudgeProcess`. Its arguments are the path of a socket, a seed, and
+            a function that starts the judge's process.
+        variables: The environment variables of the judge.
+        readable: The files outside the package that the judge reads.
+        ros_variables: The environment variables of ROS for the subject, without the domain.
+        lease_domain: Returns a context manager that reserves a ROS domain while its block runs.
+        patient: Turns a time limit into a deadline, which gets later while the machine is overloaded.
+    """
+
+    make: Callable[..., Any]
+    variables: Mapping[str, str]
+    readable: Sequence[Path]
+    ros_variables: Mapping[str, str]
+    lease_domain: Callable[[], contextlib.AbstractContextManager[int]]
+    patient: Patient
+
+
 def execute(
     task: Task,
     scratch: Path,
-    judge: str,
+    judge: JudgeKind,
     addresses: Addresses,
     began: Callable[[BoxedProcesses | UnboxedProcesses], None] = lambda _: None,
 ) -> Execution:
     """Execute one task.
 
     Args:
-        task: The task.
         scratch: The folder in which the task gets its own folder.
-        judge: The Python class of the judge, as ``module:class``. It is called with the path of a socket, a seed, and a
-            function that starts the judge's process.
         addresses: The addresses of the fork servers, which for a boxed task must include the one for supervisors.
         began: Called with the boxes of the task before anything runs in them.
 
@@ -74,47 +90,57 @@ def execute(
     """
     with contextlib.ExitStack() as stack:
         folder = stack.enter_context(scratch_folder(scratch))
-        return _execute(task, folder, _imported(judge), addresses, stack, began)
+        return _execute(task, folder, judge, addresses, stack, began)
 
 
 def _execute(
     task: Task,
     folder: Path,
-    judge: Any,
+    judge: JudgeKind,
     addresses: Addresses,
     stack: contextlib.ExitStack,
     began: Callable[[BoxedProcesses | UnboxedProcesses], None],
 ) -> Execution:
+    # Without a supervisor nothing could make the boxes, and a submission must never run outside of one by mistake.
     if task.boxed and not addresses.supervisors:
         raise NoSandbox("this task must run in a box, but no box can be made here")
     boxed = task.boxed
     kind: type[BoxedProcesses] | type[UnboxedProcesses] = BoxedProcesses if boxed else UnboxedProcesses
     paths = _make_paths(task, folder)
+    # The domain is leased before any process starts, because each of them gets it as an environment variable.
+    domain = str(stack.enter_context(judge.lease_domain()))
     setting = NotebookSetting(
         folder,
         task.limits,
         task.files,
-        {**_ros_variables(stack, boxed=boxed), **paths.variables()},
-        judges_variables=controlled_judge.environment(boxed=boxed),
-        judges_folders=[*controlled_judge.readable(), paths.judges_folder],
+        {**judge.ros_variables, "ROS_DOMAIN_ID": domain, **paths.variables()},
+        judges_variables=judge.variables,
+        judges_folders=[*judge.readable, paths.judges_folder],
         programs=bool(paths.runners),
     )
     processes = kind(addresses, setting)
     stack.enter_context(processes)
+    # From here on an order can be canceled: `began` tells the executor which boxes to end, before they hold a program.
     began(processes)
-    stack.enter_context(_workspace_service(paths, processes, addresses))
+    # The service outlives the notebook and ends before the boxes, in which its builds and programs run.
+    stack.enter_context(_workspace_service(paths, processes, addresses, judge.ros_variables))
 
-    def made(of_programs: bool) -> Any:
+    def new_judge(of_programs: bool) -> Any:
         start = functools.partial(processes.start_judge, of_programs=of_programs)
-        process = judge(processes.judge_socket, seed=task.seed, start=start)
+        process = judge.make(processes.judge_socket, seed=task.seed, start=start)
         process.workspaces = str(paths.judges_socket)
         process.keeps_evidence = True
         process.is_boxed = boxed
         return process
 
-    first = next((cell.check.exercise for cell in task.cells if cell.check and not cell.check.asserts), "")
-    judges = _Judges(made, paths.runners, first)
-    execution = run_notebook(task.cells, judge=judges, processes=processes, patient=_patiently)
+    # The first judge starts while the kernel starts, before a check asks for one: guess from the first check cell
+    # whether the subject will be a program.
+    first_exercise = next(
+        (cell.check.exercise for cell in task.cells if cell.check and not cell.check.asserts), ""
+    )
+    judges = _Judges(new_judge, paths.runners, first_exercise)
+    execution = run_notebook(task.cells, judge=judges, processes=processes, patient=judge.patient)
+    # A task that ran alone, and not beside others, has had the whole machine: its result counts, whatever happened.
     short_of_memory = processes.guard.reason() is Ended.OUT_OF_MEMORY
     crowded_out = task.limits.beside and (
         short_of_memory or judges.crowded or _a_check_was_stopped(task.cells, execution)
@@ -124,19 +150,6 @@ def _execute(
     )
 
 
-def _ros_variables(stack: contextlib.ExitStack, *, boxed: bool) -> Mapping[str, str]:
-    """Return environment variables that make ROS use loopback, the notebook's own domain, and plain logs on stdout."""
-    if boxed:
-        # No other nodes are on this network, so any domain is free.
-        return {**boxed_ros_environment(), "ROS_DOMAIN_ID": "0"}
-    return {**ros_environment(), "ROS_DOMAIN_ID": str(stack.enter_context(lease_domain()))}
-
-
-def _imported(name: str) -> Any:
-    module, _, attribute = name.partition(":")
-    return getattr(importlib.import_module(module), attribute)
-
-
 def _a_check_was_stopped(cells: Sequence[Cell], execution: Execution) -> bool:
     """Return True if a check by the judge reached the time limit of its cell.
 
@@ -144,13 +157,7 @@ def _a_check_was_stopped(cells: Sequence[Cell], execution: Execution) -> bool:
     """
     judged = [cell.check is not None and not cell.check.asserts for cell in cells]
     runs = zip(judged, execution.cells, strict=True)
-    return any(made and run.ended is Ended.TIMED_OUT for made, run in runs)
-
-
-def _patiently(seconds: float) -> Left:
-    """Return a function that returns the seconds left of a limit, which gets longer on an overloaded machine."""
-    patience = Patience(seconds)
-    return lambda: patience.left
+    return any(is_judged and run.ended is Ended.TIMED_OUT for is_judged, run in runs)
 
 
 class _Judges:
@@ -247,7 +254,6 @@ def _make_paths(task: Task, folder: Path) -> _Paths:
     Call this before the boxes of the notebook are made.
 
     Args:
-        task: The notebook.
         folder: A folder that only this notebook uses. Its path must be short, because it will contain a Unix socket.
     """
     checks = [cell.check.exercise for cell in task.cells if cell.check and not cell.check.asserts]
@@ -258,7 +264,10 @@ def _make_paths(task: Task, folder: Path) -> _Paths:
 
 
 def _workspace_service(
-    paths: _Paths, processes: BoxedProcesses | UnboxedProcesses, addresses: Addresses
+    paths: _Paths,
+    processes: BoxedProcesses | UnboxedProcesses,
+    addresses: Addresses,
+    ros_variables: Mapping[str, str],
 ) -> WorkspaceService:
     """Return the workspace service of a notebook, for use in a ``with`` block that lasts as long as the notebook runs.
 
@@ -266,6 +275,7 @@ def _workspace_service(
         paths: The result of :func:`_make_paths`.
         processes: The processes of the notebook, and their boxes.
         addresses: The addresses of the fork servers.
+        ros_variables: The environment variables of ROS.
     """
     folder = paths.folder / "work-of-jobs"
     folder.mkdir()
@@ -273,7 +283,6 @@ def _workspace_service(
     builds, ahead = build_cache.graders_root(), None
     if isinstance(processes, BoxedProcesses):
         jobs = BoxedJobs(addresses.supervisors, processes.programs, folder, addresses.programs)
-        ros = boxed_ros_environment()
         _furnish(processes.shared)
         if paths.runners:
             build_ahead(builds, jobs)
@@ -282,11 +291,10 @@ def _workspace_service(
         sockets = ServiceSockets(paths.judges_socket, processes.shared / _BUILDS)
     else:
         jobs = PlainJobs(kernel_environment(folder / "home", {}), handed_in=True)
-        ros = ros_environment()
         sockets = ServiceSockets(paths.judges_socket, None)
     # PYTHONUNBUFFERED: output comes without delay. PYTHONFAULTHANDLER: a program that hangs can print the stacks of its
     # threads.
-    variables = {**ros, "PYTHONUNBUFFERED": "1", "PYTHONFAULTHANDLER": "1"}
+    variables = {**ros_variables, "PYTHONUNBUFFERED": "1", "PYTHONFAULTHANDLER": "1"}
     return WorkspaceService(sockets, jobs, builds, variables, folder, ahead)
 
 

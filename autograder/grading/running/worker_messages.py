@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 
 import msgspec
 
+from autograder.cards.readable_text import paragraph
 from autograder.execution.executed_cells import Execution, NotebookOutputs
 from autograder.verdict import State
 
@@ -37,7 +38,7 @@ class Offer(msgspec.Struct, frozen=True):
 
     Attributes:
         version: The version of the worker's course
-            (:func:`autograder.grading.rebuilding.course_version.course_version`).
+            (:func:`autograder.grading.course_version.course_version`).
         slots: The number of notebooks that the worker executes at the same time.
         obstacle: Why the worker cannot make sandboxes, and what to do; empty if it can.
     """
@@ -117,7 +118,6 @@ class Failed(msgspec.Struct, frozen=True, tag=True):
     """A message: an order will get no answer.
 
     Attributes:
-        number: The number of the order.
         reason: Why no answer will come.
         forged: True if the worker sent an answer that an unmodified worker would never send.
     """
@@ -143,7 +143,8 @@ evidence takes a third more.
 
 LARGEST_OFFER = 4_000
 _MOST_SLOTS = 1_000
-_LONGEST_WORDS = 1_000
+LONGEST_WORDS = 1_000
+"""The maximum length in characters of a sentence from a worker."""
 
 
 class Forged(ValueError):
@@ -196,12 +197,7 @@ def admitted(data: bytes, task: Task) -> Execution:
         replace(cell, outputs=outputs.of(index), error=cell.error[:500])
         for index, cell in enumerate(execution.cells)
     )
-    return replace(execution, cells=cells, trouble=printable(execution.trouble))
-
-
-def printable(text: str) -> str:
-    """Return a worker's text as one line of limited length, without control characters."""
-    return "".join(letter if letter.isprintable() else " " for letter in text[:_LONGEST_WORDS])
+    return replace(execution, cells=cells, trouble=paragraph(execution.trouble, LONGEST_WORDS))
 
 
 def _look_at(verdict: Verdict, check: CellCheck) -> None:

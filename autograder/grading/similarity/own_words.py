@@ -40,7 +40,6 @@ class ComparedAnswer:
     """An answer, prepared for the comparison.
 
     Attributes:
-        answer: The answer.
         code: The words of the answer.
         signs: The words for the comparison: all names that the student chose are replaced by one sign, and all texts
             that the student chose by another.
@@ -90,6 +89,7 @@ def compared_answers(
     """
     longer = [list(islice(words(answer.text[:_LONGEST_TEXT]), LONGEST + 1)) for answer in answers]
     codes = [code[:LONGEST] for code in longer]
+    # Renaming must not hide a copy: names that a student chose become placeholders in all answers of that student.
     names: defaultdict[str, set[str]] = defaultdict(lambda: set(given.names))
     for answer, code in zip(answers, codes, strict=True):
         names[answer.student] |= chosen_names(code)
@@ -101,6 +101,7 @@ def compared_answers(
     for answer, own_signs in zip(answers, signs, strict=True):
         for sequence in _sequences(own_signs):
             holders[sequence].add(answer.student)
+    # What many students wrote is how one writes it, and no hint.
     many = max(_MANY, _MANY_SHARE * students)
     common = {sequence for sequence, who in holders.items() if len(who) >= many} | given.sequences
     return [

@@ -16,7 +16,7 @@ from autograder.grading.collecting.submitted_folder import misplaced_files
 from autograder.grading.grading_errors import GradingError, check_known
 from autograder.grading.similarity.own_words import LONGEST, SEQUENCE, GivenCode, compared_answers
 from autograder.grading.similarity.student_answers import given_texts, read_answers
-from autograder.grading.table.roster import read_roster
+from autograder.grading.table.student_list import read_roster
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -80,14 +80,13 @@ def find_similar(directory: ClassDirectory, assignment: str = "") -> SimilarPair
     """Compare the submissions of a class with each other.
 
     Args:
-        directory: The class.
         assignment: The assignment whose submissions are compared; all assignments if empty.
 
     Raises:
         GradingError: No submission exists, the assignment does not exist, or a source notebook cannot be used.
     """
-    known = directory.assignments()
-    check_known([assignment] if assignment else [], known, "assignment")
+    assignments = directory.assignments()
+    check_known([assignment] if assignment else [], assignments, "assignment")
     submissions, refused = directory.submissions()
     submissions = [one for one in submissions if assignment in ("", one.assignment)]
     troubles = list(_refused_lines(directory, refused, assignment))
@@ -95,11 +94,12 @@ def find_similar(directory: ClassDirectory, assignment: str = "") -> SimilarPair
         raise GradingError(
             f"The class has no submissions yet{f' for {assignment}' if assignment else ''}, so nothing can be compared."
         )
+    # From all assignments: code that another lab gives is not the student's own either.
     given = GivenCode(given_texts(directory))
     pairs: list[Pair] = []
     notes = []
     read = 0
-    for name in [assignment] if assignment else known:
+    for name in [assignment] if assignment else assignments:
         for notebook in directory.notebooks(name):
             handed_in = read_answers(
                 directory, name, notebook, [one for one in submissions if one.assignment == name]
@@ -108,7 +108,7 @@ def find_similar(directory: ClassDirectory, assignment: str = "") -> SimilarPair
             troubles += handed_in.troubles
             if len(handed_in.students) == 1:
                 notes.append(
-                    f"{notebook}: only one student has submitted this notebook, so there is nothing to compare"
+                    f"{notebook}: only one student has submitted this notebook, so there is nothing to compare."
                 )
             answers = compared_answers(handed_in.answers, given, len(handed_in.students))
             troubles += [
@@ -162,8 +162,6 @@ class Pair:
     """Two similar answers.
 
     Attributes:
-        one: The first answer.
-        other: The second answer.
         passages: The common passages, in the order of the first answer.
     """
 
@@ -200,10 +198,10 @@ class Pair:
 
 def by_students(pairs: Iterable[Pair]) -> list[list[Pair]]:
     """Return the pairs grouped by students: each group contains the pairs of the same two students."""
-    found: dict[tuple[str, str], list[Pair]] = {}
+    groups: dict[tuple[str, str], list[Pair]] = {}
     for pair in pairs:
-        found.setdefault(pair.students, []).append(pair)
-    return list(found.values())
+        groups.setdefault(pair.students, []).append(pair)
+    return list(groups.values())
 
 
 def nothing_found(notebooks: int) -> str:
@@ -247,7 +245,7 @@ def _common_passages(one: ComparedAnswer, other: ComparedAnswer) -> list[Passage
     """
     numbers = {sign: number for number, sign in enumerate({*one.signs, *other.signs})}
     first, second = ([numbers[sign] for sign in answer.signs] for answer in (one, other))
-    found: list[Passage] = []
+    passages: list[Passage] = []
     for _ in range(_ROUNDS):
         blocks = [
             (block.src_start, block.dest_start, block.src_end - block.src_start)
@@ -264,8 +262,8 @@ def _common_passages(one: ComparedAnswer, other: ComparedAnswer) -> list[Passage
             sides = zip(
                 one.own[start : start + length], other.own[other_start : other_start + length], strict=True
             )
-            found.append(Passage(start, other_start, tuple(left and right for left, right in sides)))
-    return sorted((passage for passage in found if any(passage.own)), key=lambda passage: passage.first)
+            passages.append(Passage(start, other_start, tuple(left and right for left, right in sides)))
+    return sorted((passage for passage in passages if any(passage.own)), key=lambda passage: passage.first)
 
 
 def _rank(pair: Pair) -> tuple[object, ...]:

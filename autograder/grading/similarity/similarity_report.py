@@ -10,12 +10,12 @@ from itertools import groupby
 from typing import TYPE_CHECKING, Any
 
 from rich import box
-from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from autograder import standard_output
 from autograder.cards.html_rendering import page_templates
-from autograder.cards.readable_text import one_line, printable
+from autograder.cards.readable_text import one_line
 from autograder.grading.grading_errors import clear_place_errors
 from autograder.grading.returning.page_exporter import POLICY
 from autograder.grading.running.batch_progress import plain_line
@@ -43,10 +43,11 @@ def show(found: SimilarPairs, page: Path) -> None:
         found: The result of the search.
         page: The path of the page with the pairs side by side.
     """
-    console = Console()
+    console = standard_output.console()
 
+    # Names of files and students come from students, and may contain control characters.
     def line(text: str, style: str = "") -> None:
-        plain_line(console, printable(text), style)
+        plain_line(console, text, style)
 
     if found.pairs:
         console.print(_table(found))
@@ -94,8 +95,8 @@ def _table(found: SimilarPairs) -> Table:
     shown.add_column("own words", justify="right", no_wrap=True)
     for pairs in by_students(found.pairs):
         shown.add_row(
-            Text(printable(", ".join(pairs[0].students))),
-            Text("\n".join(printable(pair.place) for pair in pairs)),
+            Text(", ".join(pairs[0].students)),
+            Text("\n".join(pair.place for pair in pairs)),
             "\n".join(pair.percent for pair in pairs),
             "\n".join(f"{pair.shared} of {pair.one.length} and {pair.other.length}" for pair in pairs),
         )
@@ -130,7 +131,6 @@ class _Line:
 
     Attributes:
         number: The line number, from 1; 0 for a note.
-        pieces: The pieces of the line.
         left_out: For a note, the number of lines that were left out.
     """
 
@@ -220,14 +220,14 @@ def _lines(answer: ComparedAnswer, passages: Iterable[tuple[int, Sequence[bool]]
                 words = [answer.code[first + step] for step in steps]
                 start, end = words[0].start, words[-1].end
                 passage_of[start:end] = [number] * (end - start)
-    found = []
+    lines = []
     offset = last = 0
     for number, line in enumerate(text.split("\n"), 1):
         pieces = _pieces(line, passage_of[offset : offset + len(line)], last)
         last = next((piece.passage for piece in reversed(pieces) if piece.passage), last)
-        found.append(_Line(number, pieces))
+        lines.append(_Line(number, pieces))
         offset += len(line) + 1
-    return _near_marks(found)
+    return _near_marks(lines)
 
 
 def _pieces(line: str, passage_of: list[int], last: int) -> tuple[_Piece, ...]:
@@ -237,21 +237,21 @@ def _pieces(line: str, passage_of: list[int], last: int) -> tuple[_Piece, ...]:
     """
     indent = len(line) - len(line.lstrip())
     passage_of[:indent] = [0] * indent
-    found = []
+    pieces = []
     end = 0
     for passage, characters in groupby(passage_of[: len(line.rstrip())]):
         start, end = end, end + len(list(characters))
         text = one_line(line[start:end].expandtabs(4), _LONGEST_PIECE)
-        found.append(_Piece(text, passage, begins=passage not in (0, last)))
+        pieces.append(_Piece(text, passage, begins=passage not in (0, last)))
         last = passage or last
-    return tuple(found)
+    return tuple(pieces)
 
 
 def _near_marks(every: Sequence[_Line]) -> list[_Line]:
     marked = [index for index, line in enumerate(every) if any(piece.passage for piece in line.pieces)]
     shown = {near for index in marked for near in range(index - _AROUND, index + _AROUND + 1)}
-    found: list[_Line] = []
+    near_lines: list[_Line] = []
     for is_shown, numbered in groupby(enumerate(every), key=lambda one: one[0] in shown):
         lines = [line for _, line in numbered]
-        found += lines if is_shown else [_Line(0, left_out=len(lines))]
-    return found
+        near_lines += lines if is_shown else [_Line(0, left_out=len(lines))]
+    return near_lines

@@ -28,9 +28,6 @@ class StudentAnswer:
     """A student's text in one solution cell, or in all cells that the student added.
 
     Attributes:
-        student: The student's id.
-        assignment: The assignment's name.
-        notebook: The notebook's name.
         cell: The name of the cell; ``OWN_CELLS`` for the added cells.
         text: The text of the cell, or of all added cells.
     """
@@ -86,7 +83,7 @@ def read_answers(
         if (name := grade_id(cell))
     }
     answers = [name for name, cell in named.items() if is_answer(cell) and cell.cell_type == CellType.CODE]
-    found = HandedIn()
+    handed_in = HandedIn()
     for submission in submissions:
         who = f"{submission.student}/{assignment}"
         try:
@@ -94,14 +91,14 @@ def read_answers(
         except NotAFile:
             continue  # the instructor gets a line about this refused file elsewhere
         except UnreadableSubmission as error:
-            found.troubles.append(f"unreadable   {who}: {error}")
+            handed_in.troubles.append(f"unreadable   {who}: {error}")
             continue
         if left_out:
-            found.troubles.append(
+            handed_in.troubles.append(
                 f"left out     {who}: {left_out} cell(s) were not valid notebook cells, or were too long; "
                 "the other cells were compared"
             )
-        found.students.append(submission.student)
+        handed_in.students.append(submission.student)
         written: dict[str, list[str]] = {}
         for cell in cells:
             # If a student changed the type of an answer cell, the answer is compared all the same, as in grading.
@@ -111,8 +108,8 @@ def read_answers(
         for name in (*answers, OWN_CELLS):
             if name in written:
                 text = "\n\n".join(written[name])
-                found.answers.append(StudentAnswer(submission.student, assignment, notebook, name, text))
-    return found
+                handed_in.answers.append(StudentAnswer(submission.student, assignment, notebook, name, text))
+    return handed_in
 
 
 def _cells(directory: ClassDirectory, file: str) -> list[NotebookNode]:

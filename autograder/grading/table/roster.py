@@ -1,19 +1,18 @@
-"""Reads the students of a class from ``students.csv`` and the gradebook, and finds a student by name or number."""
+"""The students of a class, found by a number, a user name or a name."""
 
 from __future__ import annotations
 
-import itertools
 import unicodedata
-from dataclasses import dataclass, field, replace
+from collections.abc import Mapping  # noqa: TC003  (msgspec reads the annotations)
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from autograder.grading.classes.class_directory import ClassDirectory, reason_against_name
-from autograder.grading.classes.gradebook_reading import has_tables, opened, sql
 from autograder.grading.grading_errors import GradingError
-from autograder.grading.table.spreadsheet_csv import csv_rows, original
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping, Sequence
+    from collections.abc import Callable, Iterable, Sequence
+
+    from autograder.grading.classes.gradebook_reading import Entries
 
 
 NAME = "students.csv"
@@ -21,6 +20,8 @@ LMS = ("canvas", "moodle", "blackboard", "brightspace", "github", "gradescope", 
 """Learning management systems. ``students.csv`` may have a column for each system, with the students' ids or user names
 in the system.
 """
+COLUMNS = ("id", "first_name", "last_name", "email", "section", "excused", *LMS)
+"""The columns of ``students.csv`` that have a meaning. Only ``id`` is needed."""
 
 
 @dataclass(frozen=True)
@@ -52,6 +53,12 @@ class Student:
         """The first and last name, in one text; empty if both are unknown."""
         return f"{self.first_name} {self.last_name}".strip()
 
+    @property
+    def numbers(self) -> set[tuple[str, str]]:
+        """Pairs of an LMS and the number or name by which this LMS alone knows the student."""
+        # A group may share an account on GitHub.
+        return {(name, folded(self.lms[name])) for name in LMS if name in self.lms and name != "github"}
+
 
 @dataclass(frozen=True)
 class Identity:
@@ -81,10 +88,57 @@ class Roster:
 
     Args:
         students: The students, in any order.
+        is_whole: True if no other student is in the class, because the students are those of ``students.csv``.
+        former: Students who are not in the class any more. Their files are still recognized.
+        unknown: The names of columns of ``students.csv`` that have no meaning.
     """
 
-    def __init__(self, students: Iterable[Student]) -> None:
+    def __init__(
+        self,
+        students: Iterable[Student],
+        *,
+        is_whole: bool = False,
+        former: Iterable[Student] = (),
+        unknown: Sequence[str] = (),
+    ) -> None:
         self.students = {student.id: student for student in students}
+        self._is_whole = is_whole
+        self._former = tuple(former)
+        self._unknown = unknown
+
+    def members(self, others: Iterable[str]) -> list[str]:
+        """Return the ids of the students of the class, sorted.
+
+        Args:
+            others: The ids under which work was handed in. They are left out if ``students.csv`` does not list them.
+        """
+        return sorted(self.students if self._is_whole else {*self.students, *others})
+
+    def notices(self, assignments: Sequence[str], entries: Entries, students: Iterable[str]) -> list[str]:
+        """Return sentences about probable mistakes in ``students.csv``, and about points of students it does not list.
+
+        Args:
+            assignments: The names of all assignments of the class.
+            entries: The entries of the gradebook.
+            students: The ids of the students whose entries in the column ``excused`` are checked.
+        """
+        others: dict[str, list[str]] = {}
+        for (student, assignment), entry in sorted(entries.items()):
+            if self._is_whole and student not in self.students:
+                others.setdefault(student, []).append(f"{assignment} {entry.points:g}")
+        found = self._excused_from_nothing(assignments, students)
+        if self._unknown:
+            found.append(
+                f"{NAME} has columns whose names have no meaning, except in collect --names: "
+                f"{', '.join(self._unknown)}. The known ones are {', '.join(COLUMNS)}"
+            )
+        if others:
+            points = "; ".join(f"{student} ({', '.join(of)})" for student, of in others.items())
+            found.append(
+                f"{NAME} does not list these students, so their points are in no table and no export: {points}. The "
+                "points stay in the gradebook, and count again once the student is listed"
+            )
+        return found
 
     @property
     def names(self) -> dict[str, str]:
@@ -96,13 +150,8 @@ class Roster:
         """Pairs of a student's id and an assignment from which the student is excused."""
         return {(one.id, assignment) for one in self.students.values() for assignment in one.excused}
 
-    def excused_from_nothing(self, assignments: Sequence[str], students: Iterable[str]) -> list[str]:
-        """Return a sentence about each name in the column ``excused`` that is not the name of an assignment.
-
-        Args:
-            assignments: The names of all assignments of the class.
-            students: The ids of the students to check.
-        """
+    def _excused_from_nothing(self, assignments: Sequence[str], students: Iterable[str]) -> list[str]:
+        """Return a sentence about each name in the column ``excused`` that is not the name of an assignment."""
         found: dict[str, list[str]] = {}
         for one in map(self.students.__getitem__, students):
             for name in one.excused:
@@ -145,190 +194,39 @@ class Roster:
     def _by_number(self, identity: Identity) -> tuple[Student, ...]:
         if not identity.number:
             return ()
-        return self._all(lambda one: _folded(one.lms.get(identity.lms, "")) == _folded(identity.number))
+        return self._all(lambda one: folded(one.lms.get(identity.lms, "")) == folded(identity.number))
 
     def _by_login(self, identity: Identity) -> tuple[Student, ...]:
         if not identity.login:
             return ()
-        login = _folded(identity.login)
+        login = folded(identity.login)
         exact = self._all(
-            lambda one: login in (_folded(one.id), _folded(one.email), _folded(one.lms.get(identity.lms, "")))
+            lambda one: login in (folded(one.id), folded(one.email), folded(one.lms.get(identity.lms, "")))
         )
-        return exact or self._all(lambda one: login == _folded(one.email.partition("@")[0]))
+        return exact or self._all(lambda one: login == folded(one.email.partition("@")[0]))
 
     def _by_name(self, identity: Identity) -> tuple[Student, ...]:
         if words := _words(identity.name):
-            forms = _forms(identity.name)
+            forms = name_forms(identity.name)
             return self._all(
-                lambda one: not forms.isdisjoint(_forms(one.name)) or _words(one.id) == sorted(words)
+                lambda one: not forms.isdisjoint(name_forms(one.name)) or _words(one.id) == sorted(words)
             )
         login = "".join(_words(identity.login))
         return self._all(lambda one: bool(login) and login in _joined_names(one))
 
     def _all(self, wanted: Callable[[Student], bool]) -> tuple[Student, ...]:
-        return tuple(student for student in self.students.values() if wanted(student))
+        return tuple(filter(wanted, self.students.values())) or tuple(filter(wanted, self._former))
 
 
-def read_roster(directory: ClassDirectory) -> Roster:
-    """Return the students from ``students.csv`` and from the gradebook. Values in ``students.csv`` take precedence.
-
-    Raises:
-        GradingError: The file cannot be used.
-    """
-    students = {student.id: student for student in _in_gradebook(directory.gradebook_url)}
-    for student in read_students_csv(directory):
-        known = students.get(student.id, student)
-        students[student.id] = replace(
-            student,
-            first_name=student.first_name or known.first_name,
-            last_name=student.last_name or known.last_name,
-            email=student.email or known.email,
-        )
-    return Roster(students.values())
-
-
-def _in_gradebook(url: str) -> list[Student]:
-    with opened(url) as book:
-        if not has_tables(book):
-            return []
-        rows = book.execute(sql("SELECT id, first_name, last_name, email FROM student")).all()
-    return [Student(row.id, row.first_name or "", row.last_name or "", row.email or "") for row in rows]
-
-
-def enter_roster(directory: ClassDirectory) -> None:
-    """Enter the students from ``students.csv`` into the gradebook, without changing other students there.
-
-    Raises:
-        GradingError: The file cannot be used.
-    """
-    students = read_students_csv(directory)
-    if not students:
-        return
-    with opened(directory.gradebook_url) as book:
-        if not has_tables(book):
-            return  # a later step will report that the gradebook is not usable
-        known = set(book.execute(sql("SELECT id FROM student")).scalars())
-        for student in students:
-            values = {
-                "id": student.id,
-                "first": student.first_name or None,
-                "last": student.last_name or None,
-                "email": student.email or None,
-            }
-            if student.id not in known:
-                book.execute(sql("INSERT INTO student (id) VALUES (:id)"), {"id": student.id})
-            book.execute(
-                sql(
-                    "UPDATE student SET first_name = COALESCE(:first, first_name),"
-                    " last_name = COALESCE(:last, last_name), email = COALESCE(:email, email) WHERE id = :id"
-                ),
-                values,
-            )
-
-
-_OWN = ("id", "first_name", "last_name", "email", "section", "excused")
-_EXPORTED = (
-    # For each list from an LMS: the columns that identify the list; and for each column of students.csv, the columns
-    # of the list that may contain the value.
-    (
-        ("student", "id", "section"),  # Canvas: Grades, Export
-        {"id": ("sis login id", "sis user id", "id"), "full_name": ("student",), "canvas": ("id",)},
-    ),
-    (
-        ("first name", "email address"),  # Moodle: Participants, Download
-        {
-            "id": ("id number", "username", "email address"),
-            "first_name": ("first name",),
-            "last_name": ("last name", "surname"),
-            "email": ("email address",),
-        },
-    ),
-    (
-        ("sid", "email"),  # Gradescope: Roster, Download
-        {
-            "id": ("sid", "email"),
-            "first_name": ("first name",),
-            "last_name": ("last name",),
-            "full_name": ("name", "full name"),
-            "email": ("email",),
-        },
-    ),
-)
-_NOBODY = ("points possible", "student, test")
-
-
-def read_students_csv(directory: ClassDirectory) -> list[Student]:
-    """Return the students from ``students.csv``; none if the file does not exist.
-
-    Raises:
-        GradingError: The file cannot be read, the column ``id`` or an id is missing, or an id occurs twice or is
-            invalid.
-    """
-    path = directory.path / NAME
-    try:
-        header, *rows = csv_rows(path.read_bytes())[0] or [[]]
-    except FileNotFoundError:
-        return []
-    except OSError as error:
-        raise GradingError(f"{path} cannot be read: {error}.") from error
-    columns = [name.strip().lower() for name in header]
-    lines = [
-        dict(
-            itertools.zip_longest(
-                columns, (original(cell).strip() for cell in row[: len(columns)]), fillvalue=""
-            )
-        )
-        for row in rows
-    ]
-    form = next((form for has, form in _EXPORTED if set(has) <= set(columns)), None)
-    if form is not None:
-        lines = [_as_ours(line, form) for line in lines]
-    elif "id" not in columns:
-        raise GradingError(
-            f"{path} has no column named id. Its first line has to contain the names of the columns: id and, if you "
-            f"have them, {', '.join((*_OWN[1:], *LMS))}. You can also use Canvas's gradebook, Moodle's "
-            "participants or Gradescope's roster without changes."
-        )
-    found: dict[str, Student] = {}
-    for line, row in enumerate(lines, 2):
-        values = {name: unicodedata.normalize("NFC", cell) for name, cell in row.items()}
-        if not any(values.values()):
-            continue
-        name = values["id"]
-        reason = "it has no id" if not name else reason_against_name(name)
-        if name in found:
-            reason = f"the id {name} also stands in an earlier line"
-        if reason:
-            raise GradingError(f"{path}, line {line}: {reason}.")
-        lms = {column: value for column, value in values.items() if value and column not in _OWN}
-        first, last, email = (values.get(column, "") for column in ("first_name", "last_name", "email"))
-        excused = values.get("excused", "").replace(",", " ").replace(";", " ").split()
-        found[name] = Student(name, first, last, email, lms, tuple(excused), values.get("section", ""))
-    return list(found.values())
-
-
-def _as_ours(line: Mapping[str, str], form: Mapping[str, tuple[str, ...]]) -> dict[str, str]:
-    """Convert a line of an LMS's list to the columns of ``students.csv``; return {} for a line about no person."""
-    values = {ours: next(filter(None, map(line.get, theirs)), "") or "" for ours, theirs in form.items()}
-    full = values.pop("full_name", "")
-    if full.lower().startswith(_NOBODY):
-        return {}
-    if full:
-        last, comma, first = full.partition(",")
-        first, last = (first, last) if comma else full.rpartition(" ")[::2]
-        values |= {"first_name": first.strip(), "last_name": last.strip()}
-    own = {name: line[name] for name in (*LMS, "section", "excused") if line.get(name)}
-    return {**values, **own}
-
-
-def _folded(text: str) -> str:
+def folded(text: str) -> str:
+    """Return a text so that upper and lower case, and the forms of an accent, make no difference."""
     return unicodedata.normalize("NFC", text).casefold().strip()
 
 
 _APOSTROPHES = str.maketrans(dict.fromkeys("'’‘ʼ`´"))
 
 
-def _forms(name: str) -> set[tuple[str, ...]]:
+def name_forms(name: str) -> set[tuple[str, ...]]:
     """Return the words of a name, sorted, in two forms: O'Brien as the words brien and o, and as the word obrien."""
     return {tuple(sorted(_words(form))) for form in (name, name.translate(_APOSTROPHES))}
 

@@ -17,15 +17,16 @@ if TYPE_CHECKING:
 # A list from an LMS may contain students' texts of any length, so raise Python's limit for a cell.
 csv.field_size_limit(2**31 - 1)
 _FORMULA = frozenset("=+-@\N{MINUS SIGN}")
-# Some spreadsheets split a line at these characters, so that a formula could begin after them.
-_SEPARATOR = re2.compile(r"([;|])")
+# A spreadsheet of another country may split a line at any of these characters, so that a formula could begin after
+# them. A quotation mark there begins a quoted cell.
+_SEPARATOR = re2.compile(r"([,;|])")
 _SPACES = frozenset({"Cc", "Zl", "Zp", "Zs"})
 
 
-def csv_text(rows: Iterable[Iterable[str | float]]) -> str:
+def csv_text(rows: Iterable[Iterable[str | float]], delimiter: str = ",", line_end: str = "\n") -> str:
     """Return rows as CSV text. Texts that look like formulas are changed by :func:`defused`."""
     text = io.StringIO(newline="")
-    writer = csv.writer(text, lineterminator="\n")
+    writer = csv.writer(text, delimiter=delimiter, lineterminator=line_end)
     # Cache the results, because most texts appear many times in the rows of a class.
     as_text = functools.cache(defused)
     for row in rows:
@@ -75,6 +76,10 @@ def defused(cell: str) -> str:
     kinds = ((character, unicodedata.category(character)) for character in cell)
     cell = "".join(" " if kind in _SPACES else character for character, kind in kinds if kind != "Cf")
     return "".join(
-        f"'{part}" if unicodedata.normalize("NFKC", part).lstrip()[:1] in _FORMULA else part
-        for part in _SEPARATOR.split(cell)
+        f"'{part}" if _begins_formula(part, ' "' if place else " ") else part
+        for place, part in enumerate(_SEPARATOR.split(cell))
     )
+
+
+def _begins_formula(text: str, before: str) -> bool:
+    return unicodedata.normalize("NFKC", text).lstrip(before)[:1] in _FORMULA

@@ -27,11 +27,12 @@ from autograder.grading.table.rows import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterable, Mapping, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
 
     from autograder.grading.classes.class_directory import ClassDirectory
     from autograder.grading.classes.gradebook_reading import CellEntry, Entries, SubmissionEntry
-    from autograder.grading.rebuilding.source_points import GradedCell
+    from autograder.grading.grading_task import GradedCell
+    from autograder.grading.table.roster import Roster
 
     Judged = Mapping[tuple[str, str], Sequence[Row]]
     """The judge's results for each submission, by student and assignment."""
@@ -159,13 +160,12 @@ def read_what_counts(directory: ClassDirectory, cells: Mapping[str, Sequence[Gra
 
 
 def true_rows(
-    students: Mapping[str, str],
+    roster: Roster,
     cells: Mapping[str, Sequence[GradedCell]],
     judged: Judged,
     entries: Entries,
     handed_in: Iterable[tuple[str, str]],
     *,
-    excused: Collection[tuple[str, str]] = (),
     what_counts: WhatCounts = WhatCounts(),
     zone: tzinfo = UTC,
 ) -> list[Row]:
@@ -174,23 +174,23 @@ def true_rows(
     Every student has rows for each assignment that at least one student has handed in.
 
     Args:
-        students: The names of the students, by id.
+        roster: The students of the class.
         cells: The cells with points, by assignment.
         judged: The judge's results, by student and assignment.
         entries: The entries of the gradebook.
         handed_in: The submissions in ``submitted``, as pairs of a student and an assignment.
-        excused: Pairs of a student and an assignment from which the student is excused.
         what_counts: The instructor's weights, and the exercises that are left out.
         zone: The time zone of the class.
     """
     there = set(handed_in)
-    known = sorted({student for student, _ in [*there, *entries]} | students.keys())
+    known = roster.members(student for student, _ in [*there, *entries])
+    names, excused = roster.names, roster.excused
     assignments = [name for name in sorted(cells) if any(name == other for _, other in [*there, *entries])]
     found = []
     for student in known:
         rows: list[Row] = []
         for assignment in assignments:
-            key, name = (student, assignment), students.get(student, "")
+            key, name = (student, assignment), names.get(student, "")
             if key in excused:
                 own = [Row(*key, cell.exercise, 0.0, 0.0, EXCUSED, name=name) for cell in cells[assignment]]
             else:

@@ -75,12 +75,17 @@ def subject_nodes(judge: Node, keeper: str) -> list[NodeName]:
         keeper: The name of the node with which a notebook's check keeps its participant alive; empty if it has none.
             One node with this name is ignored, but a second node with this name belongs to the subject.
     """
+    return sorted(set(every_node(judge, keeper)), key=lambda node: (node.name, node.namespace))
+
+
+def every_node(judge: Node, keeper: str) -> list[NodeName]:
+    """Like :func:`subject_nodes`, but with a name for each node, so that a name of two nodes comes twice."""
     own = judge.get_name()
     seen = judge.get_node_names_and_namespaces()
     others = [NodeName(name, space) for name, space in seen if name != own and not name.startswith(UNNAMED)]
     if keeper and (the_one := NodeName(keeper, "/")) in others:
         others.remove(the_one)
-    return sorted(set(others), key=lambda node: (node.name, node.namespace))
+    return others
 
 
 def survey(judge: Node) -> Interface:

@@ -37,6 +37,7 @@ STATUS = {
     "aborted": GoalStatus.STATUS_ABORTED,
 }
 
+_ENDED = (GoalStatus.STATUS_SUCCEEDED, GoalStatus.STATUS_CANCELED, GoalStatus.STATUS_ABORTED)
 _SERVICES = ("send_goal", "cancel_goal", "get_result")
 FEEDBACK_MATCH = 3.0
 """Time limit in seconds for discovering the subscription to feedback, without which feedback would be lost."""
@@ -253,7 +254,8 @@ class RecordedActionClient(Client):
     ) -> None:
         self._parts_of = f"{at or action}/_action"
         super().__init__(wire, recorder, action, f"{self._parts_of}/send_goal", server_is_gone)
-        self._goals: list[UUID] = []
+        self._goals: dict[int, UUID] = {}
+        self._ended: set[int] = set()
         node, self._parts = wire.node, interface(type_name).Impl
         # The feedback subscription is made before the clients. Endpoints are announced in order, so a server that has
         # discovered the clients has also discovered this subscription, and no feedback is lost.
@@ -263,14 +265,20 @@ class RecordedActionClient(Client):
             self._hear,  # type: ignore[arg-type]  # a callback with two parameters also gets the message info
             QoSProfile(depth=100),
         )
+        self._statuses = node.create_subscription(
+            GoalStatusArray,
+            f"{self._parts_of}/status",
+            self._hear_statuses,  # type: ignore[arg-type]  # as above
+            qos_profile_action_status_default,
+        )
         self._send = node.create_client(self._parts.SendGoalService, f"{self._parts_of}/send_goal")
         self._cancel = node.create_client(CancelGoal, f"{self._parts_of}/cancel_goal")
         self._result = node.create_client(self._parts.GetResultService, f"{self._parts_of}/get_result")
 
-    def send_goal(self, **fields: Any) -> int:
-        """Send a goal with these fields. Return the goal's number, counted from 0."""
-        number = len(self._goals)
-        self._goals.append(UUID(uuid=list(uuid.uuid4().bytes)))
+    def send_goal(self, number: int | None = None, /, **fields: Any) -> int:
+        """Send a goal with these fields. Return the goal's number, by default counted from 0."""
+        number = len(self._goals) if number is None else number
+        self._goals[number] = UUID(uuid=list(uuid.uuid4().bytes))
         request = self._parts.SendGoalService.Request(goal_id=self._goals[number])
         filled(request.goal, fields)
         self._recorder.record("goal_sent", self._name, goal=number, fields=dict(fields))
@@ -288,7 +296,8 @@ class RecordedActionClient(Client):
     def close(self) -> None:
         for client in (self._send, self._cancel, self._result):
             self._wire.node.destroy_client(client)
-        self._wire.node.destroy_subscription(self._feedback)
+        for subscription in (self._feedback, self._statuses):
+            self._wire.node.destroy_subscription(subscription)
 
     def _ready(self) -> bool:
         clients = (self._send, self._cancel, self._result)
@@ -318,11 +327,23 @@ class RecordedActionClient(Client):
         self._recorder.record(kind, self._name, goal=goal, arrived=time.time(), **data)
 
     def _hear(self, message: Any, info: Any) -> None:
-        known = [_goal_text(goal) for goal in self._goals]
-        heard = _goal_text(message.goal_id)
-        number = known.index(heard) if heard in known else -1
+        number = self._number_of(message.goal_id)
         # Record the time of sending (rmw_message_info_t), which does not depend on how busy the judge is.
         sent = info["source_timestamp"] / 1e9
         self._recorder.record(
             "feedback_heard", self._name, goal=number, fields=to_data(message.feedback), sent=sent
         )
+
+    def _hear_statuses(self, message: Any, info: Any) -> None:
+        """Record, for each goal, when the server said for the first time that the goal has ended."""
+        sent = info["source_timestamp"] / 1e9
+        for line in message.status_list:
+            number, status = self._number_of(line.goal_info.goal_id), int(line.status)
+            if status in _ENDED and number >= 0 and number not in self._ended:
+                self._ended.add(number)
+                self._recorder.record("goal_ended", self._name, goal=number, status=status, sent=sent)
+
+    def _number_of(self, goal_id: Any) -> int:
+        """Return the number of a goal; -1 if the goal is not the judge's."""
+        known = {_goal_text(goal): number for number, goal in self._goals.items()}
+        return known.get(_goal_text(goal_id), -1)

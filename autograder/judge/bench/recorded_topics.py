@@ -17,6 +17,8 @@ from rclpy.qos import (
 from autograder.judge.bench.ros_interfaces import filled, interface, to_data
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from autograder.judge.bench.judge_nodes import Wire
     from autograder.judge.bench.recorder import Recorder
 
@@ -130,15 +132,16 @@ class RecordedPublisher(_RecordedEndpoint):
 class LogReader:
     """Reads ``/rosout``, including lines from before the judge subscribed, because the topic is transient local."""
 
-    def __init__(self, wire: Wire, recorder: Recorder) -> None:
+    def __init__(self, wire: Wire, recorder: Callable[[], Recorder]) -> None:
+        """Subscribe. ``recorder`` returns the recorder of the current part."""
         self._recorder = recorder
         self.subscription = wire.node.create_subscription(
             interface("rcl_interfaces/msg/Log"), "/rosout", self._hear, _LOG_HISTORY
         )
 
     def _hear(self, line: Any) -> None:
-        sent = line.stamp.sec + line.stamp.nanosec / 1e9
-        if sent < self._recorder.began_at:
+        recorder, sent = self._recorder(), line.stamp.sec + line.stamp.nanosec / 1e9
+        if sent < recorder.began_at:
             return  # ignore a late line of an earlier part, which a node of the same participant logged
         text, level = line.msg, int(line.level)
-        self._recorder.record("log", line.name, text=text, level=level, sent=sent, arrived=time.time())
+        recorder.record("log", line.name, text=text, level=level, sent=sent, arrived=time.time())

@@ -1,9 +1,10 @@
-"""The record of everything that the judge sees, in order of time. Any thread may write to it."""
+"""The record of everything that the judge sees in one part, in order of time. Any thread may write to it."""
 
 from __future__ import annotations
 
 import threading
 import time
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from autograder.judge.machine_fitness import Patience
@@ -33,20 +34,28 @@ _SPEECH = ("output", "log")
 
 
 class Recorder:
-    """The events of the current part, in order of time. Threads can wait for the next event.
+    """The events of one part, in order of time. Threads can wait for the next event.
 
-    The times of events are in seconds since :meth:`begin`.
+    Each part has a recorder of its own. So an answer or a line that arrives after its part has ended, because the
+    machine is busy, is never taken for one of the next part.
 
     Attributes:
         take_in: A function that waits until everything that was sent to the judge so far is recorded.
         simulated_now: The simulated time, in seconds, which is stored with each event; None in real time.
-        began_at: The Unix time at which the part began.
+        began_at: The Unix time at which the part began. The times of events are in seconds since then.
     """
 
-    def __init__(self, hurry: Callable[[], None] = lambda: None) -> None:
-        """Create an empty record.
+    def __init__(
+        self,
+        name: str = "",
+        inputs: Mapping[str, Any] = MappingProxyType({}),
+        hurry: Callable[[], None] = lambda: None,
+    ) -> None:
+        """Begin a part.
 
         Args:
+            name: The name of the part.
+            inputs: The inputs of the part.
             hurry: Called repeatedly during each wait. It may end the wait by raising an exception.
         """
         self._hurry = hurry
@@ -55,66 +64,34 @@ class Recorder:
         self._count = 0
         self._said = 0
         self._size = 0
-        self._name = ""
-        self._inputs: Mapping[str, Any] = {}
+        self._name = name
+        self._inputs = dict(inputs)
         self._start = time.monotonic()
-        self._number = 0
         self.take_in: Callable[[], object] = lambda: None
         self.simulated_now: float | None = None
         self.began_at = time.time()
 
-    def begin(self, name: str, inputs: Mapping[str, Any]) -> None:
-        """Begin a new part, and forget the events of the previous one."""
+    def end(self, name: str, known: Callable[[], object], **data: Any) -> None:
+        """Record the subject's end, after everything that it sent before, with the moment of this call.
+
+        Args:
+            name: The kind of end, such as ``"exited"``.
+            known: Called when the end is recorded, before any waiting thread can see it.
+            data: Data about the end.
+        """
+        moment = time.monotonic()
+        self.take_in()
         with self._changed:
-            self._events = []
-            self._said = self._size = 0
-            self._name = name
-            self._inputs = dict(inputs)
-            self._start = time.monotonic()
-            self._number += 1
-            self.simulated_now = None
-            self.began_at = time.time()
-
-    def in_this_part(self) -> Callable[..., None]:
-        """Return a function like :meth:`record`, which records only in the current part and does nothing after that.
-
-        Use this in threads that may still read a run's output when the next run begins.
-        """
-        number = self._number
-
-        def record(kind: str, name: str, **data: Any) -> None:
-            self._record(kind, name, data, number)
-
-        return record
-
-    def end_of_this_part(self) -> Callable[..., None]:
-        """Return a function that records the subject's end in the current part, after everything that it sent before.
-
-        The function's arguments are: the kind of end, such as ``"exited"``; a function to call when the end is
-        recorded, before any waiting thread can see it; and data about the end.
-        """
-        number = self._number
-
-        def end(name: str, known: Callable[[], object], **data: Any) -> None:
-            moment = time.monotonic()
-            self.take_in()
-            with self._changed:
-                self._record("subject", name, data, number, moment)
-                known()
-
-        return end
+            self._record("subject", name, data, moment)
+            known()
 
     def record(self, kind: str, name: str, **data: Any) -> None:
         """Record an event, and wake every thread that waits for one."""
-        self._record(kind, name, data, None)
+        self._record(kind, name, data)
 
-    def _record(
-        self, kind: str, name: str, data: Mapping[str, Any], part: int | None, moment: float | None = None
-    ) -> None:
+    def _record(self, kind: str, name: str, data: Mapping[str, Any], moment: float | None = None) -> None:
         kept, size = _kept(data, MAX_TEXT if self._size < MAX_TEXTS else BEGINNING)
         with self._changed:
-            if part is not None and part != self._number:
-                return
             self._count += 1
             self._size += size
             if kind in _SPEECH:
@@ -134,8 +111,14 @@ class Recorder:
         self._said = sum(len(event.data["text"]) for event in self._events if _is_speech(event))
 
     @property
+    def moment(self) -> float:
+        """The subject's time now, in seconds: simulated time, or the time since the part began."""
+        now = self.simulated_now
+        return time.monotonic() - self._start if now is None else now
+
+    @property
     def count(self) -> int:
-        """The number of events so far, of all parts."""
+        """The number of events so far, with those that were dropped."""
         return self._count
 
     def part(self) -> Part:

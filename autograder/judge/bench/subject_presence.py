@@ -239,7 +239,7 @@ class Presence:
         Args:
             interface: The endpoints as seen a moment ago. If not given, they are queried now.
         """
-        nodes = [node.full for node in self.nodes()]
+        nodes = sorted(node.full for node in discovery.every_node(self._node, self._subject.keeper))
         ends = [[e.role, e.topic, e.process] for e in discovery.topic_ends(self._node)]
         seen = {"nodes": nodes, "ends": sorted(ends), **(interface or discovery.survey(self._node))}
         surveys = self._recorder.part().of("interface", "graph")

@@ -2,21 +2,21 @@
 
 from __future__ import annotations
 
+import functools
 from dataclasses import replace
 from itertools import dropwhile
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import re2
 
-from autograder import foreign_code
+from autograder import known_errors
 from autograder.kit.evidence import is_cut_off
-from autograder.kit.mistakes.known_crashes import KNOWN, NOT_SPUN_WHILE_CALLING
-from autograder.kit.mistakes.python_errors import MARKS, Name, is_a_library, meaning, names, own_line
+from autograder.kit.mistakes.traceback_lines import is_a_library, own_line, owner
 from autograder.kit.model import Advice, Mistake
 
 if TYPE_CHECKING:
-    from autograder.foreign_code import KnownTraceback
     from autograder.kit.evidence import Event, Evidence, Part
+    from autograder.known_errors import KnownError
 
 
 _NO_CRASH = re2.compile(
@@ -39,21 +39,43 @@ def traceback_of(evidence: Evidence) -> str:
     return next((text for text in crashes if not meant(text)), crashes[0] if crashes else "")
 
 
-def _recogniser(crash: KnownTraceback) -> Mistake:
-    compiled = re2.compile(f"(?m){crash.pattern}")
+UNNAMED = "crashed"
+"""The key of the rows of the table that have no diagnosis of their own."""
 
-    def recognise(evidence: Evidence) -> Advice | None:
-        traceback = traceback_of(evidence)
-        found = compiled.search(traceback)
-        if found is None:
-            return None
-        said = {name: Name(text or "") for name, text in found.groupdict().items()}
-        types = [kind for ends in evidence.reference.interface.values() for kind in ends.values()]
-        here = foreign_code.packages(kind.partition("/")[0] for kind in types)
-        words = meaning(traceback)._asdict() | names(traceback) | {"here": Name(here)} | said
-        return Advice(crash.text.format(**words).rstrip(), crash.next_step.format(**words), traceback)
 
-    return Mistake(crash.key, recognise, certain=True)
+def _known(key: str, evidence: Evidence) -> Advice | None:
+    """Return what the table of known errors says, if the row with this key is the first that matches.
+
+    The traceback comes first. If no row names it, the subject's output is searched.
+    """
+    traceback = traceback_of(evidence)
+    row = _row(traceback, evidence)
+    if row is None or row.key == UNNAMED:
+        said = [line for part in evidence for line in part.said() if "await_or_execute" not in line]
+        traceback, row = "", known_errors.recognized("\n".join(said), "terminal")
+    return Advice(row.means, row.do, traceback) if row is not None and row.key == key else None
+
+
+def _row(traceback: str, evidence: Evidence) -> KnownError | None:
+    types = [kind for ends in evidence.reference.interface.values() for kind in ends.values()]
+    here = known_errors.packages(kind.partition("/")[0] for kind in types)
+    return known_errors.recognized(traceback, "program", here, owner(traceback))
+
+
+def _meaning(traceback: str) -> tuple[str, str]:
+    """Return what an exception means and the next step; the meaning is empty if the message itself says it."""
+    row = known_errors.recognized(traceback, "program", owner=owner(traceback))
+    if row is not None:
+        return row.means, row.do
+    if _FRAME.search(traceback):
+        return "", (
+            "Read the traceback from the bottom. The last line says what went wrong; the lines above it say where. "
+            "Correct the line that is in your code."
+        )
+    return "", (
+        "This error was raised inside ROS. Look at what your code passes to ROS: at each create_... and each spin, "
+        "compare the types, names and methods, and their order, with the lab's text."
+    )
 
 
 def what_and_where(traceback: str) -> str:
@@ -63,7 +85,7 @@ def what_and_where(traceback: str) -> str:
     where = f" (line {frames[-1]['line']}, in {frames[-1]['function']})" if frames else ""
     if not line or line.startswith("Traceback"):
         return f"its traceback is incomplete, because another thread ended the program{where}"
-    return f"{line.strip()}{where}"
+    return f"{_SUGGESTION.sub('', line.strip())}{where}"
 
 
 def raised(how: str, traceback: str, next_step: str = "") -> Advice:
@@ -74,7 +96,7 @@ def raised(how: str, traceback: str, next_step: str = "") -> Advice:
         traceback: The traceback of the exception.
         next_step: What to do now; by default the advice that fits such an exception.
     """
-    why, usual = meaning(traceback)
+    why, usual = _meaning(traceback)
     return Advice(f"{how}: {what_and_where(traceback)}{why and f'. {why}'}", next_step or usual, traceback)
 
 
@@ -84,6 +106,8 @@ _LOGGING = "/logging/__init__.py"
 """The file of Python's ``logging``. A traceback that begins in this file is not a crash: one log line could not be
 written, and the program goes on.
 """
+_SUGGESTION = re2.compile(r"\. Did you mean: .*")
+"""Matches the name that Python proposes. A card leaves it out, because the next step names it if it is right."""
 _FRAME = re2.compile(r'(?m)^ +File "(?P<file>[^"\n]*)", line (?P<line>\d+), in (?P<function>[^\n]*)$')
 
 
@@ -134,7 +158,7 @@ def _cut_off(evidence: Evidence) -> Advice | None:
 
 
 _NONE_FOR_AN_ANSWER = re2.compile(
-    rf"\.sum\b.*{MARKS}AttributeError: 'NoneType' object has no attribute 'sum'"
+    r"\.sum\b.*\n(?:[ ~^]*\n)?AttributeError: 'NoneType' object has no attribute 'sum'"
 )
 LEFT_LYING = 0.3
 """The seconds for which an answer must have been available before the advice says that the client did not read it."""
@@ -154,7 +178,9 @@ def _answer_not_taken(evidence: Evidence) -> Advice | None:
     return Advice(
         "The service answered, but your client had None instead of the answer. A call(..., timeout_sec=...) returns "
         "None if its time is up before a spin of the node has received the answer.",
-        NOT_SPUN_WHILE_CALLING,
+        "Write call_async(...) instead of call(...), and wait for the future that it returns: "
+        "rclpy.spin_until_future_complete(your_node, your_future, timeout_sec=5.0) spins the node while it waits. Or "
+        "spin the node in a background thread while you use call(...).",
         unread[0].traceback,
     )
 
@@ -183,65 +209,6 @@ def _had_none_instead(part: Part) -> bool:
     return "rclpy/executors.py" not in part.traceback
 
 
-_COROUTINE = re2.compile(
-    # Warnings about methods are not matched, because a method may be a callback: if the program ends before rclpy has
-    # run a callback, Python warns that it was never awaited.
-    r"^<coroutine object (?P<returned>\S+) at |RuntimeWarning: coroutine '(?P<warned>[a-z]\w*)' was never awaited"
-)
-
-
-def _never_awaited(evidence: Evidence) -> Advice | None:
-    """Return advice if a coroutine was never awaited: it was printed or returned, or Python warned about it."""
-    said = [line for part in evidence for line in part.said()]
-    found = next(filter(None, map(_COROUTINE.search, said)), None)
-    name = (found["returned"] or found["warned"]).rpartition(".")[2] if found else ""
-    if name in ("", "await_or_execute"):
-        return None
-    return Advice(
-        f"{name} is an `async def`: calling {name}() only makes a coroutine, and the code inside does not run until "
-        "the coroutine is awaited.",
-        "Write `def` instead of `async def`. Instead of each `await`, wait for the future: "
-        "rclpy.spin_until_future_complete(your_node, your_future, timeout_sec=5.0).",
-    )
-
-
-_NO_FILE = re2.compile(r"^\S*python[\d.]*: can't (?:open file|find '__main__' module in) '(?P<file>[^'\n]*)'")
-
-
-def _file_not_found(evidence: Evidence) -> Advice | None:
-    """Return advice if Python could not open the file in the command, so that no code of the student ran."""
-    found = _said_without_a_node(evidence, _NO_FILE)
-    if found is None:
-        return None
-    return Advice(
-        f"Python does not find the program {found['file']}, so none of your code has run.",
-        "Write the path of your program after python3. `ls` lists the files in the terminal's current folder, and "
-        "`cd FOLDER` changes to another folder.",
-    )
-
-
-_NO_PACKAGE = re2.compile(r"^Package (?:'(?P<name>[^']*)' )?not found")
-
-
-def _package_not_found(evidence: Evidence) -> Advice | None:
-    """Return advice if `ros2` did not find the package and ended, so that no code of the student ran."""
-    found = _said_without_a_node(evidence, _NO_PACKAGE)
-    if found is None:
-        return None
-    return Advice(
-        f"ROS does not find the package{' ' + found['name'] if found['name'] else ''} in this terminal, so none of "
-        "your code has run.",
-        "In the folder of your workspace, type `colcon build`, then `source install/setup.bash`, and check again in "
-        "the same terminal. Type `source install/setup.bash` again in each new terminal.",
-    )
-
-
-def _said_without_a_node(evidence: Evidence, pattern: Any) -> Any:
-    """Search the output of a program that ended and never had a node. Return the first match, or None."""
-    said = [line for part in evidence if part.ending and not part.had_node for line in part.said()]
-    return next(filter(None, map(pattern.search, said)), None)
-
-
 def _only_slips(mistake: Mistake) -> Mistake:
     def recognise(evidence: Evidence) -> Advice | None:
         return None if meant(traceback_of(evidence)) else mistake.recognise(evidence)
@@ -251,16 +218,16 @@ def _only_slips(mistake: Mistake) -> Mistake:
 
 CRASHES: tuple[Mistake, ...] = (
     Mistake("call_never_spun", _answer_not_taken),
-    *map(_recogniser, foreign_code.ROWS),
-    *map(_recogniser, KNOWN),
-    Mistake(foreign_code.KEY, _never_awaited, certain=True),
+    *(
+        Mistake(key, functools.partial(_known, key), certain=True)
+        for key in dict.fromkeys(
+            row.key for row in known_errors.rows() if {"program", "terminal"} & {*row.heard}
+        )
+        if key != UNNAMED
+    ),
     Mistake("cut_off", _cut_off, certain=True),
-    Mistake("module_not_found", _file_not_found, certain=True),
-    Mistake("module_not_found", _package_not_found, certain=True),
 )
-"""The mistakes with a known traceback, most specific first; then a kernel that ended, and a file or package that was
-not found.
-"""
+"""The mistakes that the table of known errors names, and a kernel that ended."""
 OTHER_CRASHES = (
     Mistake("exception_in_callback", _exception_in_callback, certain=True),
     Mistake("crashed", _crashed, certain=True),

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 
 import re2
 
-from autograder.kit.mistakes.python_errors import own_line
+from autograder import known_errors
+from autograder.kit.mistakes.traceback_lines import own_line
 from autograder.kit.model import Advice, Mistake, Pace, mistake
 from autograder.kit.runners import BUILDING, WorkspaceReport, report_of
 
@@ -51,21 +52,11 @@ def _build_failed(evidence: Evidence) -> Advice | None:
     report = _trouble(evidence, "build")
     if report is None:
         return None
-    if re2.search(r"rosidl_generate_interfaces\(\) the passed file '[^']*' doesn't exist", report.line):
-        next_step = (
-            'Write the path relative to the folder of the package, such as "srv/Name.srv". Check capital letters, '
-            "too."
-        )
-    elif re2.search(r":\d+: ", report.line):
-        next_step = (
-            "Go to the file and line in this message. `colcon build` in the workspace shows the whole log."
-        )
-    else:
-        next_step = (
-            "Run `colcon build` in the workspace to see the whole log, and look for the first line with the word "
-            "error."
-        )
-    return Advice(f"colcon build fails in {report.package or 'the workspace'}: {report.line}", next_step)
+    known = known_errors.recognized(report.line, "build")
+    usual = "Run `colcon build` in the workspace to see the whole log, and look for the first line with the word error."
+    why, next_step = (known.means, known.do) if known else ("", usual)
+    failed = f"colcon build fails in {report.package or 'the workspace'}: {report.line}"
+    return Advice(f"{failed}{why and f' {why}'}", next_step)
 
 
 def _unreadable(evidence: Evidence) -> tuple[str, WorkspaceReport] | None:

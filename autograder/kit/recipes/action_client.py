@@ -13,6 +13,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from autograder.kit.draft import SeenAsItIs
+from autograder.kit.evidence import Part
 from autograder.kit.giving_up import (
     LATENESS,
     PATIENCE,
@@ -47,6 +48,7 @@ from autograder.kit.lateness import (
     meets_late_action,
     meets_present,
     missed_a_result,
+    second_lateness,
 )
 from autograder.kit.mistakes import common_mistakes as common
 from autograder.kit.mistakes import goal_mistakes as goals
@@ -59,7 +61,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from autograder.kit.counterparts import ActionCounterpart
-    from autograder.kit.evidence import Evidence, Part
+    from autograder.kit.evidence import Evidence
     from autograder.kit.model import Advice
 
 ORDERS = {LATE: (41, 46), REFUSED: (-9, -1), ABORTED: (0, 0), ABSENT: (11, 30)}
@@ -96,16 +98,19 @@ more.
 def _scenario(bench: Bench) -> None:
     """Make four runs: first a late server; then, in random order, a refused goal, an aborted goal, and no server."""
     inputs = _begin(bench, LATE)
-    if not _late(bench, inputs, late_at_first(bench)) or called_before_server(bench.seen()):
+    again = second_lateness([part for part in bench.before or () if part.name != LATE], "goal")
+    if not _late(bench, inputs, late_at_first(bench), again) or called_before_server(bench.seen()):
         return
-    first, impatient = bench.seen(), False
+    first, served, impatient = bench.seen(), list[Part](), False
     for run in bench.random.sample((refused, aborted, unserved), 3):
         run(bench, first)
-        if run is unserved:
-            impatient = may_be_impatient(bench)
-    if impatient and first.of("goal"):
+        served.append(bench.seen())
+        impatient = may_be_impatient(bench) if run is unserved else impatient
+    again = second_lateness(served, "goal")
+    clock = bench.pace is Pace.FAST and again > SOON
+    if (impatient or clock) and first.of("goal"):
         bench.again(LATE)
-        _late(bench, inputs, LATENESS, answers_late(bench))
+        _late(bench, inputs, LATENESS, again, answers_late(bench))
 
 
 def _begin(bench: Bench, name: str) -> dict[str, Any]:
@@ -125,13 +130,16 @@ def _start(bench: Bench, inputs: Mapping[str, Any]) -> None:
     bench.start(inputs["order"], patience_sec=inputs[PATIENCE])
 
 
-def _late(bench: Bench, inputs: Mapping[str, Any], lateness: float, held: float = ANSWERS_LATE) -> bool:
+def _late(
+    bench: Bench, inputs: Mapping[str, Any], lateness: float, again: float, held: float = ANSWERS_LATE
+) -> bool:
     """Make one run with a late server. Return True if the subject finished its work.
 
     Args:
         bench: The bench of the scenario.
         inputs: The inputs of the subject.
         lateness: The delay of the server, in seconds.
+        again: The delay in a further run, in seconds.
         held: The delay of the answer to the goal, in seconds. It is as long as allowed even if a student waits for the
             check, because only a long delay shows whether a client's time limit is long enough.
     """
@@ -142,7 +150,7 @@ def _late(bench: Bench, inputs: Mapping[str, Any], lateness: float, held: float 
     def in_haste() -> bool:
         return _meets_late_server(bench, inputs, SOON, ANSWERS_SOON, HASTE)
 
-    done = meets_late_action(bench, meet, ["goal"], lateness, held)
+    done = meets_late_action(bench, meet, ["goal"], lateness, held, again)
     done = again_while(bench, missed_a_result, in_haste, done)
     bench.stop()
     return done

@@ -11,7 +11,7 @@ from autograder.kit.draft import OWN, OWN_LATE
 from autograder.kit.in_words import counted
 from autograder.kit.mistakes import common_mistakes as common
 from autograder.kit.mistakes import unfinished
-from autograder.kit.model import STEP, Advice, Bench, Finding, Mistake, Pace
+from autograder.kit.model import STEP, Advice, Bench, Finding, Mistake, Pace, mistake
 from autograder.kit.published_texts import Counting, Publisher
 from autograder.kit.rules import ROW, Rate, burst_at_the_start, confirmed, rate_of, simulated_times
 
@@ -216,6 +216,8 @@ class Hears:
         )
         rate = before if exact else rate_of(messages, wanted, self._row(evidence.before))
         expected = f"one every {wanted:g} s"
+        if replaced := self.seen(evidence).replaced:
+            return Finding(False, expected, replaced)
         if rate is None:
             return Finding(False, expected, f"{counted(len(messages), 'message')} in all")
         seen = f"one every {rate.period:.2g} s"
@@ -261,6 +263,15 @@ class Hears:
         return (
             unfinished.NEVER_CONSTRUCTED,
             *common.connecting("publisher"),
+            mistake(
+                "published_before_discovery",
+                lambda evidence: self.seen(evidence).replaced,
+                "Your node made {}. Each must be discovered before a subscriber receives its messages, so chance "
+                "decides which messages arrive.",
+                "Call create_publisher only once, in __init__, and keep the publisher in self. Let the timer's method "
+                "publish with it.",
+                certain=True,
+            ),
             common.everything_twice("publisher"),
             Mistake("published_before_discovery", self._published_before_discovery),
             OWN,
@@ -311,8 +322,9 @@ class Hears:
             if twin
             else "If your code still has a TODO, write that step first. The timer's method must call publish(...) "
             "with the message between the parentheses; a log line is not a message. Give the timer its period "
-            f"in seconds, {_reference_period(evidence.reference):g} and not "
-            f"{1000 * _reference_period(evidence.reference):g}.",
+            f"in seconds, {_reference_period(evidence.reference):g}: with a longer one, such as "
+            f"{10 * _reference_period(evidence.reference):g} or {1000 * _reference_period(evidence.reference):g}, "
+            "nothing comes in the time that the judge listens.",
         )
 
     def _wrong_rate(self, evidence: Evidence) -> Advice | None:
@@ -338,8 +350,9 @@ class Hears:
             return None
         return Advice(
             f"Your node published {counted(came, 'message')} and then no more, although it still exists.",
-            "The task has no end: delete the code that stops the timer, or that returns from the callback before it "
-            "publishes.",
+            "The task has no end: a timer has to call the method that publishes again and again. If your node has no "
+            "timer, make one with create_timer. If it has one, delete the code that stops it, or that returns from "
+            "the callback before it publishes.",
         )
 
 

@@ -33,8 +33,8 @@ SERVER_LIMIT = {Pace.FAST: 3.0, Pace.REAL_TIME: 6.0}
 """Time limit in seconds until a server on the ROS graph is connected with the judge's client."""
 QUIET = {Pace.FAST: 2.0, Pace.REAL_TIME: 6.0}
 """The seconds without any event after which the judge no longer waits for an answer, for each pace."""
-SURE = 2
-"""The minimum number of answers that prove that a server answers calls, even if it then ended by itself."""
+LIVES_ON = (2.0, 3.0)
+"""The range of the seconds of the server's time that pass before the last call, in which its timers may end it."""
 
 Fields = Mapping[str, Any]
 """The fields of a request or of a response, by name."""
@@ -94,7 +94,8 @@ class ServerSeen:
         """Decide whether all given calls were made and answered correctly.
 
         If two servers have the same name, chance decides which of them answers a call. So one wrong answer counts
-        against every call, because any of them could have received it.
+        against every call, because any of them could have received it. If the server ended by itself, chance decides
+        which calls came before its end. So no criterion about calls is met.
 
         Args:
             calls: Some of the calls in :attr:`asked`.
@@ -104,7 +105,9 @@ class ServerSeen:
         wrong = self.objections(self.asked if self.count > 1 else calls, objection)
         many = "1 more call answered" if len(calls) == 1 else f"{len(calls)} calls answered"
         right = f"{many}, as expected" if calls else "not asked any more" if self.asked else "not asked"
-        return Finding(bool(calls) and not wrong, expected, wrong[0] if wrong else right)
+        if ended := self.part.ending is not None:
+            right = "the program ended by itself"
+        return Finding(bool(calls) and not wrong and not ended, expected, wrong[0] if wrong else right)
 
 
 class Asks:
@@ -137,15 +140,15 @@ class Asks:
 
     def _all_answered(self, bench: Bench, caller: Caller) -> bool:
         """Make all calls. Return False at the first one that is not answered."""
-        for request in self._singly(bench.random):
-            caller.ask(request)
+        random = bench.random
+        singly = [[request] for request in self._singly(random)]
+        for requests in (*singly, [self._ordinary(random) for _ in range(CALLS_AT_ONCE)]):
+            caller.ask(*requests)
             if not caller.await_answers(QUIET[bench.pace]):
                 return False
-        for number in (CALLS_AT_ONCE, 1):
-            caller.ask(*(self._ordinary(bench.random) for _ in range(number)))
-            if not caller.await_answers(QUIET[bench.pace]):
-                return False
-        return True
+        bench.pass_time(random.uniform(*LIVES_ON), "service", bench.reference.only("service")[0])
+        caller.ask(self._ordinary(random))
+        return caller.await_answers(QUIET[bench.pace])
 
     def seen(self, evidence: Evidence) -> ServerSeen:
         """Return the subject's server, with the calls that the judge made and the answers."""
@@ -157,17 +160,19 @@ class Asks:
         return ServerSeen(part, len(part.of("asked")))
 
     def serves(self, evidence: Evidence) -> Finding:
-        """Decide whether the subject has exactly one server with the right name and type, and it answers."""
+        """Decide whether the subject has exactly one server with the right name and type, and it answers.
+
+        A server whose callback raised an exception was there, so the exception costs only the answers.
+        """
         name, type_name = evidence.reference.only("service")
         seen, expected = self.seen(evidence), f"one server of {name} ({type_name}) that answers"
         if wrong := common.misfit(evidence, "service"):
             return Finding(False, expected, wrong)
-        # If a program answers and then ends at once, chance decides whether the answer arrives. If it crashes, it has
-        # not sent an answer.
-        enough = SURE if seen.part.traceback else max(SURE, len(seen.asked))
-        if seen.part.ending is not None and len(seen.answers) < enough:
+        raised = bool(seen.asked and seen.part.traceback)
+        if seen.part.ending is not None and not raised:
             return Finding(False, expected, "the program ended by itself while the judge called its service")
-        return Finding(bool(seen.answers), expected, "it answers" if seen.answers else "no call was answered")
+        answered = bool(seen.answers)
+        return Finding(answered or raised, expected, "it answers" if answered else "no call was answered")
 
     @property
     def ladder(self) -> tuple[Mistake, ...]:

@@ -84,8 +84,11 @@ class Calls:
 
     def _is_right(self, part: Part) -> bool:
         """Return True if a run has the right number of calls, each with the right numbers."""
-        made = requests(part)
-        return len(made) == self._calls and list(map(pair, made)) == list(map(sorted, self._right(part)))
+        return len(requests(part)) == self._calls and self._is_right_so_far(part)
+
+    def _is_right_so_far(self, part: Part) -> bool:
+        made = list(map(pair, requests(part)))
+        return made == list(map(sorted, self._right(part)))[: len(made)]
 
     def calls_right(self, evidence: Evidence) -> Finding:
         """Decide whether each run has the right calls."""
@@ -119,6 +122,22 @@ class Calls:
         found = self.calls_right(evidence)
         as_many = self.seen(evidence).called(self.expected(evidence).calls)
         return found.seen if as_many and not found.passed else ""
+
+    def _dislikes_zero(self, evidence: Evidence) -> bool:
+        """Return True if the client is wrong only in runs in which it took an answer of 0 for a missing answer."""
+        served = self.seen(evidence).served
+        wrong = [part for part in served if part.ending and not (self._is_right(part) and reports(part))]
+        misread = all(
+            _own_sum_for_zero(part)
+            or (
+                answers(part)[-1:] == [0]
+                and not reports(part)
+                and not ended_before_its_answer(part)
+                and self._is_right_so_far(part)
+            )
+            for part in wrong
+        )
+        return bool(wrong) and misread and any(map(reports, served))
 
     def _no_call(self, evidence: Evidence) -> bool:
         """Return True if the subject has a client and ends by itself, but makes no call."""
@@ -185,6 +204,14 @@ class Calls:
             ),
             OWN,
             mistake(
+                "zero_taken_for_failure",
+                self._dislikes_zero,
+                "The service answered 0, but your client treated 0 as a missing answer. 0 is a valid sum.",
+                "An `if` or an `or` that tests only the sum takes 0 for False, too. Test done() of the future that "
+                "call_async returned, or compare the answer with `is not None`.",
+                certain=True,
+            ),
+            mistake(
                 "wrong_arguments",
                 self._wrong_numbers,
                 f"A call has wrong numbers ({{}}); the task asks for {self._wanted}.",
@@ -193,7 +220,6 @@ class Calls:
                 "both fields again.",
                 certain=True,
             ),
-            ZERO_TAKEN_FOR_FAILURE,
             NOT_RETURNED,
             WAIT.too_short(),
             ANSWER_NOT_AWAITED,
@@ -202,10 +228,10 @@ class Calls:
             mistake(
                 "no_call",
                 self._no_call,
-                "Your client never called the service.",
-                "Make a request, set its fields a and b, and send it with call_async. Check whether a return or "
-                "raise ends your function before the call. A sum that you compute yourself is not the server's "
-                "answer.",
+                "No call of your client reached the service.",
+                "Wait for the service before you call: a call that is sent earlier is lost, even if your client waits "
+                "after it. Send the request with call_async. Check whether a return or raise ends your function before "
+                "the call. A sum that you compute yourself is not the server's answer.",
             ),
             *self._about_the_sum(),
             WAIT.silent_end(certain=True),
@@ -283,22 +309,13 @@ ANSWER_NOT_USED = mistake(
 )
 
 
-def _dislikes_zero(evidence: Evidence) -> bool:
-    """Return True if the client fails to report the answer only in runs in which the last answer is 0."""
-    served = ClientSeen(evidence).served
-    wrong = [part for part in served if part.ending and not reports(part)]
-    zero = all(answers(part)[-1:] == [0] and not ended_before_its_answer(part) for part in wrong)
-    return bool(wrong) and zero and any(map(reports, served))
-
-
-ZERO_TAKEN_FOR_FAILURE = mistake(
-    "zero_taken_for_failure",
-    _dislikes_zero,
-    "The service answered 0, but your client treated 0 as a missing answer. 0 is a valid sum.",
-    "An `if` that tests only the sum is False for 0, too. Test done() of the future that call_async returned, or "
-    "compare the answer with `is not None`.",
-    certain=True,
-)
+def _own_sum_for_zero(part: Part) -> bool:
+    """Return True if a call that follows an answer of 0 has the client's own sum instead of this answer."""
+    made = list(map(pair, requests(part)))
+    return any(
+        answer == 0 and sum(before) in after
+        for before, after, answer in zip(made, made[1:], answers(part), strict=False)
+    )
 
 
 def _returns_another_each_time(evidence: Evidence) -> str | None:

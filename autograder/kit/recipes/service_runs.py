@@ -6,7 +6,8 @@ always include a 0, which is easily mistaken for a missing answer, and negative 
 back for a while.
 
 In the first run, the service is only a little late. If the run without a service does not show that the client waits
-long enough, the first run is made again with a service that comes as late as the task allows.
+long enough, or another run shows that it may go by a clock, the first run is made again with a service that comes as
+late as the task allows.
 
 The judge repeats a run only while a repetition can still save points. For example, a client of another type of service
 is served in one run only.
@@ -26,6 +27,7 @@ from autograder.kit.giving_up import LATENESS, PATIENCE, drawn_patience, patienc
 from autograder.kit.lateness import (
     ANSWERS_LATE,
     ANSWERS_SOON,
+    SOON,
     TRIES,
     again_while,
     called_before_server,
@@ -35,6 +37,7 @@ from autograder.kit.lateness import (
     may_be_impatient,
     meets_late,
     meets_present,
+    second_lateness,
     was_patient_with_an_answer,
 )
 from autograder.kit.model import Bench, Pace
@@ -85,7 +88,8 @@ def scenario(bench: Bench, runs: Sequence[Run], nobody: Sequence[int], *, calls:
     """
     late, *others = runs
     _begin(bench, late)
-    if not called_late(bench, late, calls, late_at_first(bench)) or called_before_server(bench.seen()):
+    again = second_lateness([part for part in bench.before or () if part.name != LATE], "request")
+    if not called_late(bench, late, calls, late_at_first(bench), again) or called_before_server(bench.seen()):
         return
     first = bench.seen()
     order: list[Run | None] = [*others, None]
@@ -101,9 +105,11 @@ def scenario(bench: Bench, runs: Sequence[Run], nobody: Sequence[int], *, calls:
             _begin(bench, run)
             hangs = not called(bench, run, calls, served)
             served.append(bench.seen())
-    if impatient and requests(first):
+    again = second_lateness(served[1:], "request")
+    clock = bench.pace is Pace.FAST and again > SOON
+    if (impatient or clock) and requests(first):
         bench.again(LATE)
-        called_late(bench, late, calls, LATENESS)
+        called_late(bench, late, calls, LATENESS, again)
 
 
 def _begin(bench: Bench, run: Run) -> None:
@@ -111,10 +117,15 @@ def _begin(bench: Bench, run: Run) -> None:
     bench.part(run.name, numbers=list(run.numbers), patience_sec=drawn_patience(bench))
 
 
-def called_late(bench: Bench, run: Run, calls: int, lateness: float) -> bool:
+def called_late(bench: Bench, run: Run, calls: int, lateness: float, again: float) -> bool:
     """Make the run in which the service comes late. Return True if the subject finished its work."""
     done = meets_late(
-        bench, lambda late: meets_service(bench, run, calls, lateness=late), "client", "request", lateness
+        bench,
+        lambda late: meets_service(bench, run, calls, lateness=late),
+        "client",
+        "request",
+        lateness,
+        again,
     )
     return _with_quick_answers(bench, run, calls, done)
 

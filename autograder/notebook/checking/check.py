@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any
 from autograder import course
 from autograder.cards import html_rendering
 from autograder.messages import judge_messages as messages
-from autograder.notebook.cell_output import notebook_shell
+from autograder.messages import run_messages
+from autograder.notebook.cell_output import notebook_shell, say
 from autograder.notebook.cell_runs import raise_if_stale
 from autograder.notebook.checking.card_display import (
     CardDisplay,
@@ -25,6 +26,7 @@ from autograder.notebook.checking.subject_runs import PathRun, SubjectRun, Tell,
 from autograder.notebook.nodes.ros_session import prepare_environment
 from autograder.student import check_journal
 from autograder.verdict import Verdict, not_checked
+from autograder.workspaces.sources import full_disk
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -71,7 +73,7 @@ def check(exercise: str, subject: Any) -> float:
         StaleCodeError: The cell that redefines the subject ended with an error, so the check would judge the old
             code.
     """
-    if not (inspect.isclass(subject) or callable(subject) or is_path(subject)):
+    if not (inspect.isclass(subject) or callable(subject) or is_path(subject)) or is_quoted(subject):
         raise TypeError(what_to_pass(exercise, subject))
     if is_live():
         raise_if_stale(subject)
@@ -100,6 +102,8 @@ def _plainly_interrupted() -> Iterator[None]:
 
 
 def _ask(exercise: str, subject: Any, progress: Progress) -> Verdict | None:
+    if is_live() and is_path(subject) and (trouble := full_disk(subject)):
+        return not_checked(exercise, exercise, 0.0, trouble, key="disk_full")
     try:
         link = JudgeLink()
     except JudgeUnreachable as error:
@@ -142,10 +146,10 @@ def converse(link: JudgeLink, exercise: str, subject: Any, progress: Progress) -
 
     with (
         CheckContext(first.domain, first.keeper) as check_context,
-        CapturedOutput(lambda line, logged: tell(messages.Output, text=line, logged=logged)) as captured,
+        CapturedOutput(lambda line, logged: tell(run_messages.Output, text=line, logged=logged)) as captured,
         ToldCalls(captured.is_captured, tell) as calls,
     ):
-        link.say(messages.Ready())
+        link.say(run_messages.Ready())
         try:
             while True:
                 match order := link.hear():
@@ -154,7 +158,7 @@ def converse(link: JudgeLink, exercise: str, subject: Any, progress: Progress) -
                         link.say(
                             messages.EndpointsMet(check_context.sees(order.there, order.gone, order.within))
                         )
-                    case messages.Start():
+                    case run_messages.Start():
                         # Only a class or function runs in this kernel's context. A path runs in a new process.
                         if not is_path(subject):
                             check_context.ensure(fresh=order.fresh)
@@ -169,14 +173,14 @@ def converse(link: JudgeLink, exercise: str, subject: Any, progress: Progress) -
                         run.start(order.arguments, order.options)
                     case messages.Release() if run is not None:
                         run.release()
-                    case messages.Interrupt() if isinstance(run, PathRun):
+                    case run_messages.Interrupt() if isinstance(run, PathRun):
                         run.interrupt()
                     case messages.Stack() if run is not None:
                         link.say(messages.Stacks(number, captured.stacks()))
-                    case messages.Stop() if run is not None:
+                    case run_messages.Stop() if run is not None:
                         if not run.stop():
                             check_context.renew()  # the run still uses the old context, so the next run gets a new one
-                        link.say(messages.Stopped(number))
+                        link.say(run_messages.Stopped(number))
                         progress.doing(f"the judge examines run {number}")
                         run = None
                     case messages.SoFar():
@@ -208,7 +212,8 @@ def _chapter_ended_by(verdict: Verdict) -> tuple[str, float, float] | None:
     """Return the title, points and completion time of the chapter that this check completed; None if there is none."""
     journal = check_journal.session_journal_path()
     before = check_journal.best(check_journal.entries(journal))
-    check_journal.note_check(verdict, journal)
+    if not check_journal.note_check(verdict, journal) and journal is not None:
+        say(f"This check is not in your progress, because {journal} cannot be written: is the disk full?")
     if journal is None or not verdict.passed:
         return None
     after = check_journal.best(check_journal.entries(journal))
@@ -245,11 +250,20 @@ def _retold(tell: Tell, progress: Progress) -> Tell:
     """Return a function that calls ``tell`` and also shows the last printed line of a program on the card."""
 
     def told(message: Message) -> None:
-        if isinstance(message, messages.Output) and message.text.strip() and not message.text.startswith("@"):
+        if (
+            isinstance(message, run_messages.Output)
+            and message.text.strip()
+            and not message.text.startswith("@")
+        ):
             progress.doing(message.text.strip()[:LINE])
         tell(message)
 
     return told
+
+
+def is_quoted(subject: Any) -> bool:
+    """Return True if a string is the name of a class or function of the notebook, and so no path."""
+    return isinstance(subject, str) and callable(getattr(notebook_shell(), "user_ns", {}).get(subject))
 
 
 def what_to_pass(exercise: str, subject: Any, call: str = "check") -> str:
@@ -261,4 +275,6 @@ def what_to_pass(exercise: str, subject: Any, call: str = "check") -> str:
             f"{kind} is an object now, and not the class, because a line of yours says {kind} = {kind}(...). Give the "
             f"object another name there, as in node = {kind}(...), and run the cell that defines the class again."
         )
+    if is_quoted(subject):
+        return f"{call}({exercise!r}, {subject}) takes your class or function itself, without quotation marks"
     return f"{call}({exercise!r}, …) takes your class or function itself, without parentheses after it, not a {kind}"

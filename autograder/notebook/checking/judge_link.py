@@ -25,12 +25,12 @@ from rclpy.context import Context
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 
+from autograder.command_name import COMMAND
 from autograder.dds_discovery import DOMAIN_VARIABLE, UNNAMED, receivers_wait
 from autograder.messages.json_lines import Hangup, Lines, NotUnderstood
 from autograder.messages.judge_messages import SOCKET_VARIABLE, FromJudge
 from autograder.notebook.nodes.background_nodes import destroy_nodes_on
 from autograder.safe_files import HeldFolder
-from environment.installation import COMMAND
 from environment.python_child import python_child
 
 if TYPE_CHECKING:

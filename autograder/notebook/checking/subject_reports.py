@@ -56,9 +56,11 @@ class CapturedOutput:
         captured = self.is_captured
 
         def log(logger: RcutilsLogger, message: Any, severity: Any, **options: Any) -> bool:
-            if captured():
+            # A line below the level, or dropped by a filter such as `once`, is on no terminal, so it says nothing.
+            shown = bool(usual_log(logger, message, severity, **options))
+            if shown and captured():
                 self._tell(str(message)[:MAX_TEXT], True)
-            return bool(usual_log(logger, message, severity, **options))
+            return shown
 
         setattr(RcutilsLogger, "log", log)  # noqa: B010  (mypy forbids to assign to a method)
         self._streams = [_CapturedStream(stream, self._tell, captured) for stream in self._usual_streams]

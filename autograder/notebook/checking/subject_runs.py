@@ -19,7 +19,8 @@ from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 from std_msgs.msg import Empty
 
-from autograder.messages.judge_messages import Constructed, Exited, Output, Raised, Returned, Sources, Started
+from autograder.messages.judge_messages import Constructed, Raised, Returned, Sources, Started
+from autograder.messages.run_messages import Exited, Output
 from autograder.messages.workspace_messages import Source
 from autograder.notebook.cell_output import meant_name, student_frames
 from autograder.notebook.checking.judge_link import MAX_TEXT

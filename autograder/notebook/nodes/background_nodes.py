@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from autograder.notebook.cell_output import let_log_lines_arrive, point_at_raising_lines, say
 from autograder.notebook.cell_runs import CellTracker, TrackedRun
+from autograder.notebook.nodes import action_types
 from autograder.notebook.nodes.node_errors import (
     CallbackError,
     CallbackErrors,
@@ -346,6 +347,7 @@ _lock = threading.Lock()
 _cells = CellTracker()
 _made = KernelNodes(current_run=lambda: _cells.current, before_making=_make_room)
 _made.start_recording()
+action_types.check_from_now_on()
 _cells.before_each_run(_undo_earlier_run)
 prepare_environment()
 point_at_raising_lines()

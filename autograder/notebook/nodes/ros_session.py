@@ -49,6 +49,9 @@ _DEFAULTS = {
     "PYTHONUNBUFFERED": "1",
     # Make messages raise an error if a field is set to a value of the wrong type.
     _CHECK_FIELDS: "1",
+    # Make `colcon build` in a cell use the build type of a check, as environment/activate.sh does in a terminal.
+    # Otherwise, a check cannot use what it has built, and builds it again.
+    "CMAKE_BUILD_TYPE": "Release",
 }
 _DISCOVERY_VARIABLES = ("ROS_AUTOMATIC_DISCOVERY_RANGE", "ROS_LOCALHOST_ONLY")
 

@@ -236,7 +236,7 @@ class _Drawing:
     def svg(self) -> str:
         """Return the whole picture."""
         width, height = (extent + 2 * _MARGIN for extent in self._turned(self._layout.extent))
-        boxes = "".join(self._box(name) for name in self._layout.centres)
+        boxes = "".join(self._box(name) for name in self._layout.centers)
         lines = "".join(self._line(arrow) for arrow in self._layout.arrows)
         head = f"<title>The running graph</title><desc>{escape(self._words)}</desc>"
         return svg_page(width, height, head, _STYLE, lines + boxes)
@@ -250,7 +250,7 @@ class _Drawing:
 
     def _box(self, name: str) -> str:
         label = self._labels[name]
-        x, y = self._xy(self._layout.centres[name])
+        x, y = self._xy(self._layout.centers[name])
         round_corners = _HEIGHT / 2 if label.shape == "node" else 3
         rect = (
             f'<rect x="{x - label.width / 2:.1f}" y="{y - _HEIGHT / 2:.1f}" width="{label.width:.1f}" '
@@ -304,12 +304,12 @@ class GraphLayout:
     """The positions of boxes and arrows, in pixels.
 
     Attributes:
-        centres: The center of each box.
+        centers: The center of each box.
         arrows: The arrows, in the same order as the input.
         extent: The size of the whole layout: first in the direction of the arrows, then across it.
     """
 
-    centres: Mapping[str, Point]
+    centers: Mapping[str, Point]
     arrows: tuple[Arrow, ...]
     extent: Point
 
@@ -348,16 +348,16 @@ def lay_out(sizes: Mapping[str, Point], arrows: Sequence[tuple[str, str]], gap: 
     def middle(place: float, layer: float) -> Point:
         return along[round(layer)], (place - first) * unit + start
 
-    centres = {box: middle(*places[index]) for box, index in number.items()}
+    centers = {box: middle(*places[index]) for box, index in number.items()}
     ways = [
-        [centres[a], *(middle(*point) for point in routed), centres[b]]
+        [centers[a], *(middle(*point) for point in routed), centers[b]]
         for (a, b), routed in zip(drawn, routing, strict=True)
     ]
     extent = (
-        max(centres[box][0] + sizes[box][0] / 2 for box in boxes),
-        max(beside for way in (*ways, [*centres.values()]) for _, beside in way) + start,
+        max(centers[box][0] + sizes[box][0] / 2 for box in boxes),
+        max(beside for way in (*ways, [*centers.values()]) for _, beside in way) + start,
     )
-    return GraphLayout(centres, _with_ports(drawn, ways, sizes), extent)
+    return GraphLayout(centers, _with_ports(drawn, ways, sizes), extent)
 
 
 def _push_apart(places: Sequence[list[float]]) -> None:
@@ -393,11 +393,11 @@ def _with_ports(
     for (box, after), there in ends.items():
         width, height = sizes[box]
         for place, (_, index, leaves) in enumerate(sorted(there)):
-            centre = ways[index][0 if leaves else -1]
+            center = ways[index][0 if leaves else -1]
             share = (place + 1) / (len(there) + 1) - 0.5
             ports[index, leaves] = (
-                centre[0] + (width / 2 if after else -width / 2),
-                centre[1] + share * height * _PORTS,
+                center[0] + (width / 2 if after else -width / 2),
+                center[1] + share * height * _PORTS,
             )
     return tuple(
         Arrow(a, b, (ports[index, True], *ways[index][1:-1], ports[index, False]))

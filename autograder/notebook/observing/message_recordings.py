@@ -16,7 +16,7 @@ from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 
-from autograder.mcap_files import ROS_2, MessageFile, definition
+from autograder.mcap_files import MessageFile, definition
 from autograder.notebook.observing.live_picture import GONE
 from autograder.notebook.observing.ros_graph import hidden_node, is_shown_topic, message_class
 
@@ -99,7 +99,7 @@ class Recording:
         except OSError:
             self._node.destroy_node()
             raise
-        self._messages = MessageFile(self._file, ROS_2)
+        self._messages = MessageFile(self._file)
         self._look_for_topics()
         self._thread = threading.Thread(target=self._record, name="recorder", daemon=True)
         self._thread.start()
@@ -150,7 +150,7 @@ class Recording:
             kind, text = message_class(type_name), definition(type_name)
         except LookupError:
             return  # the package that defines the type is not installed, so skip the topic
-        channel = self._messages.channel(topic, type_name, text, about={"offered_qos_profiles": ""})
+        channel = self._messages.channel(topic, type_name, text)
         self.counts[topic] = 0
         self._subscriptions[channel] = self._node.create_subscription(
             kind, topic, lambda _: None, _as_offered(self._node, topic), raw=True

@@ -76,15 +76,6 @@ def keeps_telling(evidence: Evidence) -> Finding:
 first_move.asks("rate", 4, "Keeps telling it", keeps_telling)
 
 
-first_move.knows(
-    "no_movement",
-    lambda seen, _: commands(seen) and not any(any(command.values()) for command in commands(seen)),
-    "Your commands arrive, but all their numbers are 0: the robot is told not to move.",
-    "Set command.linear.x = 0.5 before you publish the command.",
-    certain=True,
-)
-
-
 @first_move.mistake("wrong_movement", certain=True)
 def wrong_movement(seen: Publisher, expected: Publisher) -> Advice | None:
     """Commands arrive that mean another movement."""

@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from autograder.kit.draft import Draft
 from autograder.kit.model import Advice, Finding
 from autograder.kit.recipes.launch_file import Launched, LaunchFile
 from autograder.kit.runners import Launches
+
+if TYPE_CHECKING:
+    from autograder.kit.evidence import Evidence
 
 OLD_NAME = "chatter"
 """The topic's name in the code of the programs."""
@@ -161,8 +166,19 @@ def one_node_only(seen: Launched, _: Launched) -> Advice | None:
     )
 
 
+def nodes_of_one_name(evidence: Evidence) -> str:
+    """Return a remark if two nodes have the same name."""
+    surveys = [event.data.get("nodes", []) for event in evidence.main.of("interface")]
+    twin = next((name for names in surveys for name in names if names.count(name) > 1), "")
+    words = (
+        f"Two of your nodes are called {twin}: name=... in a launch file renames every node of the process."
+    )
+    return words if twin else ""
+
+
 EXERCISE = remap.exercise(
     limit=400.0,
+    remarks=(nodes_of_one_name,),
     runner=Launches(),
     wraps_commands=True,
     recorded=(),  # how many messages come before the listener is there is up to the machine

@@ -55,7 +55,7 @@ def extreme(random: Random) -> tuple[int, int, int]:
 def chained(part: Part) -> tuple[tuple[int, int], ...]:
     """The first call adds the first two numbers, the second its answer and the third number."""
     a, b, c = part.inputs["numbers"]
-    return (a, b), (answers(part)[0], c)
+    return (a, b), *((total, c) for total in answers(part)[:1])
 
 
 recipe = Calls(
@@ -92,10 +92,10 @@ adder.asks("limit", 1, "Ends clearly when there is no service", service_calls.gi
 def first_answer_ignored(seen: ClientSeen, _: ClientSeen) -> Advice | None:
     """The first call is right, and its answer is not in the second."""
     part = seen.evidence.part(BIASED)
-    made = requests(part)
-    if len(made) < 2:
+    made, sums = requests(part), answers(part)
+    if len(made) < 2 or not sums:
         return None
-    first = answers(part)[0]
+    first = sums[0]
     # With another sign it is used, but wrongly.
     used = abs(first) in map(abs, pair(made[1]))
     if used or pair(made[0]) != sorted(part.inputs["numbers"][:2]):

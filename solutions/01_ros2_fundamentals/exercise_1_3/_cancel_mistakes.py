@@ -115,7 +115,8 @@ def cancel_too_early(evidence: Evidence) -> Advice | None:
     return Advice(
         f"Your client asked to cancel after {counted(count, 'feedback message')}; the task asks for {FIRST_FEEDBACK} "
         f"to {LAST_FEEDBACK}.",
-        f"Count the calls of the feedback callback and cancel when the count reaches {FIRST_FEEDBACK}.",
+        f"Count the calls of the feedback callback and cancel when the count reaches {FIRST_FEEDBACK}. (A timer of a "
+        "fixed length does not know how fast the server is.)",
     )
 
 

@@ -10,11 +10,13 @@ The judge waits for nothing that cannot change the verdict any more. The look in
 which time may have played a part, and its server comes sooner if the client has already waited for a late one. Once the
 moment for the request is over, the remaining feedback comes quickly. A client that does not say how its first goal
 ended has lost the points for the ends of all goals.
+
+In real time, the feedback of the first run comes several times as fast as that of the second: no clock, only a count,
+says in both when the third message has come.
 """
 
 from __future__ import annotations
 
-import time
 from typing import TYPE_CHECKING
 
 from exercise_1_3._cancel_evidence import (
@@ -26,7 +28,6 @@ from exercise_1_3._cancel_evidence import (
     OUTCOMES,
     Request,
     after_result,
-    feedbacks_before_cancel,
     goals,
     in_the_window,
     request_of,
@@ -35,15 +36,7 @@ from exercise_1_3._cancel_evidence import (
 
 from autograder.kit.giving_up import LATENESS
 from autograder.kit.goal_reports import REFUSED, refused_as_seen
-from autograder.kit.lateness import (
-    ANSWERS_SOON,
-    SOON,
-    again_while,
-    await_goal,
-    hold_back,
-    meets_late_action,
-    meets_present,
-)
+from autograder.kit.lateness import SOON, await_goal, hold_back, meets_late_action, meets_present
 from autograder.kit.model import Bench, Pace
 from autograder.kit.recipes.action_client import needs_no_search, refuse
 
@@ -51,14 +44,10 @@ if TYPE_CHECKING:
     from autograder.kit.counterparts import ActionCounterpart
     from autograder.kit.evidence import Evidence, Part
 
-A_MOMENT = 2
-"""Feedback messages that may come before a crowded machine lets a client go on whose sleep is over."""
-LATEST = LAST_FEEDBACK + A_MOMENT
-"""Feedback messages after which a request is too late for certain."""
 WITHOUT_CANCEL = 19
 """Feedback messages that are sent to a client that does not cancel: all that a goal of order 20 has."""
-CLOCKS = 5.5
-"""Seconds from the answer to the goal in which a client that goes by a clock may still ask, far too late: the card then
+CLOCKS = 2.5
+"""Seconds after the last feedback in which a client that goes by a clock may still ask, far too late: the card then
 says so."""
 WITH_LATE = 14
 """Feedback messages that are sent in all to one that does, to see that those after its request are not acted on."""
@@ -75,15 +64,19 @@ FIRST_STATUS = 2
 """The goal's status is published before this feedback message: some time after its acceptance, before any cancel is
 due.
 """
-FEEDBACK_GAP = {Pace.FAST: 0.03, Pace.REAL_TIME: 0.5}
-"""Seconds between two feedback messages outside the window in which a cancel is expected."""
+FEEDBACK_GAP = 0.03
+"""Seconds between two feedback messages in a fast look, outside the window in which a cancel is expected."""
+QUICK, SLOW = (0.47, 0.52), (2.35, 2.45)
+"""The ranges of the same seconds in real time, in the first run and in the second. The lab's server is as quick as the
+first.
+
+The window of the quick run, from the third message to the sixth, ends before that of the slow run begins, even counted
+from the client's start. So a request that comes a fixed time after anything is outside of one of the two windows.
+"""
 FIRST_AFTER = 0.25
-"""Seconds from the answer to the goal to its first feedback message in real time: then a client that asks to cancel
-after a whole or a half second does so between two messages."""
+"""Seconds from the answer to the goal to its first feedback message in real time."""
 LATE_GAP = 0.2
-"""The same in real time after the request."""
-SHORTEST_GAP = 0.25
-"""The least seconds between two messages, even if a busy machine has delayed the judge."""
+"""Seconds between two feedback messages in real time after the request."""
 WINDOW_WAIT = 0.2
 """Seconds that a fast look waits for a cancel after each feedback message inside that window."""
 PROMPT = 0.05
@@ -162,19 +155,12 @@ def run(bench: Bench, name: str, first: Part | None = None, *, accept: bool, pau
         serve_goal(bench, name, first, accept=accept, pause=pause, late=late, held=held)
         return True
 
-    def may_be_late(seen: Part) -> bool:
-        by_chance = asked_a_moment_late(seen) and not (before and counts_messages(before, seen))
-        # Of its moments, one wrong one is enough.
-        return by_chance and (first is None or in_the_window(first))
-
-    bench.part(name)
+    bench.part(name, gap=bench.random.uniform(*(SLOW if name == CANCEL_REFUSED else QUICK)))
     if first is None:
         waited = before is not None and bool(goals(before.part(name)))
         meets_late_action(bench, serve, ["goal", "cancel"], SOON if waited else LATENESS)
     else:
         meets_present(bench, serve, "goal", known=True)
-    if bench.pace is Pace.REAL_TIME:
-        again_while(bench, may_be_late, lambda: serve(SOON, ANSWERS_SOON), done=True)
     bench.stop()
     return bench.seen()
 
@@ -200,21 +186,6 @@ def asks_at_a_message(before: Evidence) -> bool:
     """Return True if feedback caused the requests of the fast look."""
     honoured, refused = request_of(before.part(HONOURED)), request_of(before.part(CANCEL_REFUSED))
     return honoured is not None and refused is not None and caused_by_feedback(honoured, refused)
-
-
-def counts_messages(before: Evidence, seen: Part) -> bool:
-    """Return True if a client asked after as many messages as in both runs of the fast look, which came much faster."""
-    parts = (before.part(HONOURED), before.part(CANCEL_REFUSED), seen)
-    return len({feedbacks_before_cancel(part) for part in parts}) == 1
-
-
-def asked_a_moment_late(seen: Part) -> bool:
-    """Return whether it asked to cancel just after the last moment: one that goes by the clock may be a right one.
-
-    A crowded machine lets it wake up late, and never early. One that is late by itself is late again.
-    """
-    count = feedbacks_before_cancel(seen)
-    return count is not None and LAST_FEEDBACK < count <= LATEST
 
 
 def serve_goal(
@@ -254,7 +225,7 @@ def serve_goal(
         send_late_feedback(bench, server, sequence, name)
     never_asks = first is not None and first.first("result_request") is None
     in_vain = not cancelled or never_asks
-    server.await_result_request(FEEDBACK_GAP[Pace.REAL_TIME] if in_vain else END_LIMIT[bench.pace])
+    server.await_result_request(QUICK[0] if in_vain else END_LIMIT[bench.pace])
     if cancelled:
         hold_back(bench, "result_request")
     else:
@@ -271,7 +242,7 @@ def send_feedback_until_cancelled(
     bench: Bench, server: ActionCounterpart, sequence: list[int], pause: float
 ) -> bool:
     """Send feedback until a cancel is requested, or until none is left. Return True if a cancel was requested."""
-    began = time.monotonic()
+    gap = bench.seen().inputs["gap"]
     for count in range(WITHOUT_CANCEL + 1):
         if count == FIRST_STATUS:
             say_that_it_runs(bench, server)
@@ -287,40 +258,18 @@ def send_feedback_until_cancelled(
                 return True
             if early:
                 continue
-        elif count > LATEST:
+        elif count > LAST_FEEDBACK:
             bench.settle()
             if server.await_cancel(AT_ONCE):
                 return True
             continue
-        wait = (
-            wait_after(count) if bench.pace is Pace.FAST else wait_for_next(count, time.monotonic() - began)
-        )
-        if server.await_cancel(wait):
+        quick = WINDOW_WAIT if FIRST_FEEDBACK <= count <= LAST_FEEDBACK else FEEDBACK_GAP
+        usual = gap if count else FIRST_AFTER
+        if server.await_cancel(quick if bench.pace is Pace.FAST else usual):
             # Nothing that was sent just now has caused it: perhaps a clock did, and it needs the real pace.
             bench.doubt()
             return True
-    return bench.pace is Pace.REAL_TIME and server.await_cancel(max(0.0, CLOCKS - (time.monotonic() - began)))
-
-
-def wait_after(count: int) -> float:
-    """Seconds that a fast look waits for a cancel after so many feedback messages, before it does what comes next."""
-    return WINDOW_WAIT if FIRST_FEEDBACK <= count <= LAST_FEEDBACK else FEEDBACK_GAP[Pace.FAST]
-
-
-def wait_for_next(count: int, elapsed: float) -> float:
-    """The same in real time, where messages come at moments of the wall's clock, as those of the lab's server do.
-
-    A judge that waited longer on a crowded machine would be late for a client that cancels by the clock.
-
-    Args:
-        count: Feedback messages that were sent.
-        elapsed: Seconds since the goal was accepted.
-    """
-    left = FIRST_AFTER + count * FEEDBACK_GAP[Pace.REAL_TIME] - elapsed
-    if count + 1 == FIRST_STATUS:
-        # The status takes the rest of the time to the next message.
-        left -= LATE_GAP
-    return max(left, SHORTEST_GAP if count else 0.0)
+    return bench.pace is Pace.REAL_TIME and server.await_cancel(CLOCKS)
 
 
 def say_that_it_runs(bench: Bench, server: ActionCounterpart) -> None:
@@ -344,7 +293,7 @@ def send_late_feedback(bench: Bench, server: ActionCounterpart, sequence: list[i
             # A timer may have requested again, and would do so during late feedback at its real pace.
             bench.doubt()
     else:
-        bench.run_time(FEEDBACK_GAP[bench.pace])
+        bench.run_time(FEEDBACK_GAP if bench.pace is Pace.FAST else QUICK[0])
     for left in reversed(range(enough - len(sequence))):
         send_next(server, sequence)
         if bench.pace is Pace.REAL_TIME:
@@ -352,7 +301,7 @@ def send_late_feedback(bench: Bench, server: ActionCounterpart, sequence: list[i
         # Also in real time: a client on a busy machine may not have come to what is due.
         if left % AT_A_TIME == 0:
             bench.settle()
-    bench.run_time(FEEDBACK_GAP[Pace.FAST])
+    bench.run_time(FEEDBACK_GAP)
 
 
 def send_next(server: ActionCounterpart, sequence: list[int]) -> None:

@@ -71,9 +71,13 @@ _WORDS = ("kitchen", "garage", "tower", "harbour", "meadow", "attic", "bridge", 
 def scenario(bench: Bench) -> None:
     """Three runs, in an order that is drawn: a late service, one of another type, and none at all."""
     random = bench.random
-    asked = random.sample(sorted(TEMPTING), len(TEMPTING))
-    for name, type_name in zip(random.sample((LATE, OTHER, ABSENT), 3), asked, strict=True):
-        another = random.choice([other for other in asked if other != type_name])
+    # The type with a twin is asked for in the same run of each check, so a subject that takes the twin always loses the
+    # same points.
+    (twin,), others = TWIN, sorted(TEMPTING.keys() - TWIN.keys())
+    asked = dict(zip((LATE, ABSENT, OTHER), (*random.sample(others, len(others)), twin), strict=True))
+    for name in random.sample(list(asked), len(asked)):
+        type_name = asked[name]
+        another = random.choice([other for other in asked.values() if other != type_name])
         right, misleading = named_services(random, another, hidden=name == OTHER)
         # Of the lab's own type in each run, so that who always looks for that one is wrong in each.
         misleading[TEMPTING[type_name]] = ADDER
@@ -201,9 +205,9 @@ def returns_it(part: Part) -> bool:
 
 
 def gave_up_at_once(part: Part) -> bool:
-    """True if the subject ended without the late service, and much too early."""
+    """True if the subject ended much too early, without the name of a service."""
     seen = part.first("interface")
-    if part.ending is None or names_it(part):
+    if part.ending is None or named(part):
         return False
     return seen is None or part.ending.t < seen.t + IMPATIENT
 

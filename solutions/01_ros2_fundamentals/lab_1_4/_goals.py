@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
@@ -16,21 +16,24 @@ if TYPE_CHECKING:
 
 GOALS = "goals"
 BAD_ORDERS = "bad orders"
+CANCELED_ALONE = "a goal alone is canceled"
+"""The run that is made only if two goals at once have ended the server before it was asked to cancel one."""
 ORDERS = (5, 4)
 """Orders of the goal alone, which is sent again after the cancel; the seed decides. Either has enough numbers to show
 feedback that leaves some out."""
-LARGE_ORDER = 25
-"""The order of the goal that goes on beside the others: its last number does not fit into 16 bits."""
+LARGE_ORDER = 37
+"""The order of the goal that goes on beside the others. Its last numbers fit neither into 16 bits nor into the 24 of a
+short float, and are not those of the golden ratio with a few digits."""
 SMALLEST = (1, 0, 1, 0, 1, 1, 1, 1, 0, 1)
 """Orders that take no time, one after another: the edge of what there is, and enough for a server that dies of many."""
 SINGLE = 0
 """The order of a single number. A server may also answer it with both numbers that it begins with."""
 LAST_ORDER = 2
 """The order of the two goals after the bad ones, and of two equal ones that are sent at once."""
+SMALL = 20
+"""Numbers of that goal after which the others that run beside it are over."""
 NEXT_ORDER = 3
 """The order of the goal that is sent as soon as the server has agreed to cancel the one before it."""
-OLDER_ORDER = 5
-"""The order of the goal beside which a younger one is canceled."""
 NO_TIME = 0.009
 """Seconds between two feedback messages that no pause makes: the shortest that a person would write is longer, and in a
 notebook none is made shorter than that. Two goals that never pause take turns of Python's 0.005 s."""
@@ -48,7 +51,7 @@ FIRST_TOO_LARGE = 47
 ALONE = 0
 TINY = range(1, 1 + len(SMALLEST))
 TWINS = range(TINY.stop, TINY.stop + 2)
-LONG, BESIDE, AGAIN, LONG_ALONE, NEXT, OLDER, YOUNGER = range(TWINS.stop, TWINS.stop + 7)
+LONG, BESIDE, AGAIN, LONG_ALONE, NEXT, YOUNGER = range(TWINS.stop, TWINS.stop + 6)
 """The goals of the first part by their numbers. In the second part the last two are good, those before them are bad."""
 LONG_ORDER = 46
 """The order of the goals that are canceled: the largest that there is."""
@@ -121,14 +124,29 @@ def ended_by_a_younger(part: Part) -> FibonacciGoal | None:
 
 def to_be_canceled(evidence: Evidence) -> FibonacciGoal:
     """Return the goal that is canceled: next to a newer one, or alone if the server ended it for that one."""
-    part = evidence.part(GOALS)
+    part, alone = evidence.part(GOALS), evidence.part(CANCELED_ALONE)
+    if alone.events:
+        return goal(alone, LONG_ALONE)
     return goal(part, LONG_ALONE if ended_by_a_younger(part) else LONG)
 
 
 def canceled_later(part: Part) -> list[FibonacciGoal]:
-    """The goals that were canceled after the first one: one to which a new goal came, and one beside an older goal."""
-    sent = [goal(part, number) for number in (LONG_ALONE, YOUNGER)]
+    """The goals that were canceled after the first one: one beside an older goal, and one to which a new goal came."""
+    sent = [goal(part, number) for number in (YOUNGER, LONG_ALONE)]
     return [] if ended_by_a_younger(part) else [seen for seen in sent if seen.accepted]
+
+
+def before_any_cancel(part: Part) -> Part:
+    """The events before the judge asked to cancel a goal."""
+    kinds = [event.kind for event in part.events]
+    return replace(part, events=part.events[: kinds.index("cancel_sent")]) if "cancel_sent" in kinds else part
+
+
+def died_of_two(part: Part) -> bool:
+    """True if the server ended with an exception when two goals were sent at once."""
+    seen = before_any_cancel(part)
+    two_at_once = goal(seen, TWINS[0]).order is not None
+    return two_at_once and seen.ending is not None and bool(seen.traceback)
 
 
 def takes_no_time(part: Part) -> bool:
@@ -246,6 +264,13 @@ def feedback_slip(evidence: Evidence, seen: FibonacciGoal) -> str:
 
 def _first_messages(seen: FibonacciGoal) -> str:
     return ", ".join(map(str, seen.partials[:4]))
+
+
+def is_wrong_when_large(evidence: Evidence, seen: FibonacciGoal) -> bool:
+    """True if a goal is right as long as another one may run beside it, and its large numbers are wrong."""
+    wanted = expected_sequence(evidence, int(seen.order or 0))
+    right_so_far = len(wanted) > SMALL and seen.sequence[:SMALL] == wanted[:SMALL]
+    return seen.status == SUCCEEDED and right_so_far and seen.sequence != wanted
 
 
 def is_beginning(numbers: Sequence[int], start: Sequence[int]) -> bool:

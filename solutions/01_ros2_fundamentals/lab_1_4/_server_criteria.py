@@ -16,7 +16,6 @@ from lab_1_4._goals import (
     LONG,
     LONG_ALONE,
     NEXT,
-    OLDER,
     ORDERS,
     ROUNDS_LEFT,
     TWINS,
@@ -32,6 +31,7 @@ from lab_1_4._goals import (
     goal,
     goals_alone,
     is_beginning,
+    is_wrong_when_large,
     objection,
     paced_goals_alone,
     takes_no_time,
@@ -49,38 +49,51 @@ if TYPE_CHECKING:
     from autograder.kit.evidence import Evidence, Part
 
 
-def of_one_server(judge: Callable[[Evidence], Finding]) -> Callable[[Evidence], Finding]:
-    """A criterion about goals that fails where two servers share the action's name.
+ENDED = "the program ended by itself"
 
-    Each goal reaches both of them, and chance decides whose answers the client takes.
+
+def of_one_server(judge: Callable[[Evidence], Finding]) -> Callable[[Evidence], Finding]:
+    """A criterion about goals that fails where two servers share the action's name, or the server ended by itself.
+
+    Each goal reaches two servers, and chance decides whose answers the client takes. Chance decides, too, which goals
+    come before a program ends.
     """
 
     @functools.wraps(judge)
     def judged(evidence: Evidence) -> Finding:
-        found, count = judge(evidence), servers(evidence.main)
+        found, count, part = judge(evidence), servers(evidence.main), evidence.main
+        if part.ending is not None and not part.traceback:
+            return Finding(False, found.expected, ENDED)
         return found if count < 2 else Finding(False, found.expected, f"each goal reached {count} servers")
 
     return judged
 
 
 def serves(evidence: Evidence) -> Finding:
-    """One action server of the right name and type, and it accepts a goal."""
+    """One action server of the right name and type, and it accepts a goal.
+
+    A server whose callback raised an exception was there, so the exception costs only the goals.
+    """
     name, type_name = evidence.reference.only("action_server")
     part, expected = evidence.main, f"one server of {name} ({type_name}) that accepts goals"
     if wrong := misfit(evidence, "action_server"):
         return Finding(False, expected, wrong)
     first = goal(part, ALONE)
-    if part.ending is not None and not first.over and not first.feedback:
-        # The answer of a program that exits with it may or may not get out of it.
-        return Finding(False, expected, "it ended with the first goal")
-    taken = bool(first.accepted)
-    return Finding(taken, expected, "it accepts goals" if taken else objection(evidence, first))
+    raised = first.order is not None and bool(part.traceback)
+    if part.ending is not None and not raised:
+        return Finding(False, expected, ENDED)
+    seen = "it accepts goals" if first.accepted else objection(evidence, first)
+    return Finding(bool(first.accepted) or raised, expected, seen)
 
 
 @of_one_server
 def counts(evidence: Evidence) -> Finding:
-    """Every good goal that has the server to itself succeeds with the reference's sequence."""
-    goals = goals_alone(evidence)
+    """Every good goal that has the server to itself succeeds with the reference's sequence.
+
+    So does the large goal, as far as the numbers go that come when the others are over.
+    """
+    beside = goal(evidence.part(GOALS), BESIDE)
+    goals = [*goals_alone(evidence), *([beside] if is_wrong_when_large(evidence, beside) else [])]
     wrong = [_told(evidence, seen, text) for seen in goals if (text := objection(evidence, seen))]
     expected = f"succeeds with {expected_sequence(evidence, max(ORDERS))} for order {max(ORDERS)}, and so on"
     return _all_right(goals, wrong, expected)
@@ -103,7 +116,7 @@ def gives_feedback(evidence: Evidence) -> Finding:
     So does that of the large goal, if two at once do not disturb each other.
     """
     goals, beside = paced_goals_alone(evidence), goal(evidence.part(GOALS), BESIDE)
-    if beside.over and not fault_beside_another(evidence, beside):
+    if beside.over and not (objection(evidence, beside) or feedback_slip(evidence, beside)):
         goals.append(beside)
     wrong = [_told(evidence, seen, text) for seen in goals if (text := feedback_objection(evidence, seen))]
     if tells_at_the_end(evidence.part(GOALS)):
@@ -117,7 +130,7 @@ def serves_two_at_once(evidence: Evidence) -> Finding:
     part = evidence.part(GOALS)
     twins, beside = [goal(part, number) for number in TWINS], goal(part, BESIDE)
     wrong = [text for one in twins if one.order is not None and (text := objection(evidence, one))]
-    others = (beside, goal(part, NEXT), goal(part, OLDER))
+    others = (beside, goal(part, NEXT))
     wrong += [
         text for one in others if one.order is not None and (text := fault_beside_another(evidence, one))
     ]
@@ -148,7 +161,8 @@ def goes_on_beside_another(part: Part) -> list[FibonacciGoal]:
 
 
 def fault_beside_another(evidence: Evidence, seen: FibonacciGoal) -> str:
-    return objection(evidence, seen) or feedback_slip(evidence, seen)
+    fault = objection(evidence, seen) or feedback_slip(evidence, seen)
+    return "" if is_wrong_when_large(evidence, seen) else fault
 
 
 @of_one_server

@@ -6,18 +6,20 @@ from statistics import median
 from typing import TYPE_CHECKING
 
 from lab_1_4._goals import (
+    AGAIN,
     ALONE,
     BAD_ORDERS,
     BESIDE,
+    CANCELED_ALONE,
     FIRST_TOO_LARGE,
     GOALS,
     LARGE_ORDER,
     LAST_ORDER,
     LONG,
+    LONG_ALONE,
     LONG_ORDER,
+    NEXT,
     NEXT_ORDER,
-    OLDER,
-    OLDER_ORDER,
     ORDERS,
     PACED,
     ROUNDS_LEFT,
@@ -25,6 +27,7 @@ from lab_1_4._goals import (
     TWINS,
     YOUNGER,
     FibonacciGoal,
+    died_of_two,
     ended_by_a_younger,
     goal,
     is_told_at_the_end,
@@ -51,7 +54,7 @@ QUIET = {Pace.FAST: 3.0, Pace.REAL_TIME: 8.0}
 """Seconds without any event after which something is taken not to come."""
 SILENCE = {Pace.FAST: 3.0, Pace.REAL_TIME: 16.0}
 """The same while a server may be busy with a goal of the large order, and tell nothing of it."""
-GOAL_LIMIT = 75.0
+GOAL_LIMIT = 100.0
 """Seconds in which a goal must have ended, however much happens."""
 CANCEL_LIMIT = {Pace.FAST: 4.0, Pace.REAL_TIME: 8.0}
 """Seconds in which a cancel must have been honoured; a server looks once for each number."""
@@ -68,9 +71,20 @@ AFTERMATH = 0.5
 
 
 def scenario(bench: Bench) -> None:
-    """One run with good goals, one of which is canceled; one run with bad ones."""
+    """One run with good goals, one of which is canceled; one run with bad ones.
+
+    If two goals at once are too much for the server, it gets a goal to cancel alone, in a run of its own.
+    """
     if run(bench, GOALS, send_good_goals):
+        if died_of_two(bench.seen()):
+            run(bench, CANCELED_ALONE, cancel_one)
         run(bench, BAD_ORDERS, send_bad_goals)
+
+
+def cancel_one(bench: Bench, caller: ActionCaller) -> bool:
+    """Cancel a goal that has a new server to itself."""
+    _cancel_another(bench, caller, LONG_ALONE, after=CANCEL_AFTER)
+    return True
 
 
 def run(bench: Bench, name: str, goals: Callable[[Bench, ActionCaller], bool]) -> bool:
@@ -105,75 +119,72 @@ def send_good_goals(bench: Bench, caller: ActionCaller) -> bool:
     caller.send_goal(order=LARGE_ORDER)
     _await_feedback(bench, LONG, CANCEL_AFTER)
     if bench.wait_until(lambda e: ended_by_a_younger(e.main) is not None, 0.0):
-        if not ended(bench, BESIDE, quiet=SILENCE[bench.pace]) or not one_by_one(bench, caller, order):
+        if not ended(bench, BESIDE, quiet=SILENCE[bench.pace]) or not _once_more(bench, caller, order):
             return False
         # A policy of one goal at a time must not cost the points for canceling.
-        _cancel_alone(bench, caller, after=CANCEL_AFTER)
+        _cancel_another(bench, caller, LONG_ALONE, after=CANCEL_AFTER)
         return True
     caller.cancel(LONG)
     honoured = _await_cancel(bench, LONG)
     if goal(bench.seen(), BESIDE).accepted is None:
         return True  # one thread, and it is busy: the younger goal has not been read either
+    if _canceled_in_time(bench):
+        _wait_half_a_round(bench)
+        _cancel_another(bench, caller, YOUNGER, after=1)
     if not ended(bench, BESIDE, quiet=SILENCE[bench.pace]):
         return False
     # A notebook's node ends with the exception that has aborted a goal: no other goal must lose by that.
     if goal(bench.seen(), BESIDE).status == ABORTED and bench.await_end(AFTERMATH):
         return False
-    if not one_by_one(bench, caller, order):
+    if not _once_more(bench, caller, order):
         return False
     # Results may overtake feedback on their way to a busy judge.
     bench.wait_until(lambda e: all(_tells_all(goal(e.main, n)) for n in PACED), GOAL_LIMIT, quiet=AFTERMATH)
     if not honoured:
         # If two threads work on two goals, the cancel request is read only when one of them is done.
         _await_cancel(bench, LONG)
-    return _cancel_more(bench, caller)
-
-
-def _cancel_more(bench: Bench, caller: ActionCaller) -> bool:
-    """Cancel a goal to which a new one comes, and the younger one of two; False if a goal does not end.
-
-    A server that agreed to cancel the first goal and went on with it is sent one more to cancel, alone.
-    """
-    first, beside = (goal(bench.seen(), number) for number in (LONG, BESIDE))
+    first = goal(bench.seen(), LONG)
     if first.cancel_accepted and first.status != CANCELED and ended(bench, LONG):
-        _cancel_alone(bench, caller, after=1)
-    in_time = first.status == CANCELED and first.sent_after(first.cancel_answered_at) <= ROUNDS_LEFT
-    if not (in_time and beside.accepted):
-        return True
-    if not _cancel_alone(bench, caller, after=1, then=NEXT_ORDER):
-        return True
-    caller.send_goal(order=OLDER_ORDER)
-    _await_feedback(bench, OLDER, 1)
-    _wait_half_a_round(bench)
-    caller.send_goal(order=LONG_ORDER)
-    _await_feedback(bench, YOUNGER, 1)
-    if not goal(bench.seen(), YOUNGER).over:
-        caller.cancel(YOUNGER)
-    if not ended(bench, OLDER):
-        return False
-    _await_cancel(bench, YOUNGER)
+        # It agreed to cancel and went on: is that so alone, too?
+        _cancel_another(bench, caller, LONG_ALONE, after=1)
+    elif _canceled_in_time(bench):
+        _cancel_another(bench, caller, LONG_ALONE, after=1, then=NEXT_ORDER)
     return True
 
 
-def _cancel_alone(bench: Bench, caller: ActionCaller, *, after: int, then: int | None = None) -> bool:
-    """Cancel a goal that has the server to itself; whether it was canceled.
+def _once_more(bench: Bench, caller: ActionCaller, order: int) -> bool:
+    """Send the first goal again; whether it ended."""
+    return ended(bench, caller.send_goal(AGAIN, order=order))
+
+
+def _canceled_in_time(bench: Bench) -> bool:
+    first = goal(bench.seen(), LONG)
+    in_time = first.status == CANCELED and first.sent_after(first.cancel_answered_at) <= ROUNDS_LEFT
+    return in_time and bool(goal(bench.seen(), BESIDE).accepted)
+
+
+def _cancel_another(
+    bench: Bench, caller: ActionCaller, number: int, *, after: int, then: int | None = None
+) -> None:
+    """Send the largest goal again, and cancel it.
 
     Args:
         bench: The bench of the scenario.
         caller: The judge's client.
+        number: The number of the goal.
         after: Feedback messages after which the cancel is asked for.
         then: The order of a goal that is sent as soon as the server has agreed, before it looks at the request.
     """
-    number = caller.send_goal(order=LONG_ORDER)
+    caller.send_goal(number, order=LONG_ORDER)
     _await_feedback(bench, number, after)
     if goal(bench.seen(), number).over:
-        return False
+        return
     caller.cancel(number)
     if then is not None:
         bench.wait_until(lambda e: goal(e.main, number).cancel_accepted is not None, QUIET[bench.pace])
-        if not ended(bench, caller.send_goal(order=then)):
-            return False
-    return _await_cancel(bench, number) and goal(bench.seen(), number).status == CANCELED
+        if not ended(bench, caller.send_goal(NEXT, order=then)):
+            return
+    _await_cancel(bench, number)
 
 
 def _wait_half_a_round(bench: Bench) -> None:

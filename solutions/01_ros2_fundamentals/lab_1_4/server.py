@@ -1,12 +1,12 @@
 """Lab 1.4: an action server that counts Fibonacci numbers, with feedback, cancel and refusal.
 
 The judge is the client. In one run of the server it sends a goal alone, many that take no time, and the largest one,
-which it cancels while a younger goal goes on beside it; then the first goal again. A server that has canceled rightly
-is asked to cancel twice more: a goal to which a new one comes as soon as the server has agreed, and the younger one of
-two. If the server ends the older goal for the younger one, or agrees to cancel it and goes on, the largest is sent and
-canceled once more, alone. In another run it sends orders that must be
-refused, and two good goals to see that the node is still alive. A server may pace its work as it likes, so orders are
-small where nothing else is going on.
+which it cancels while a younger goal, nearly as large, goes on beside it; then the first goal again. A server that has
+canceled rightly is asked to cancel twice more: a still younger goal beside the one that goes on, and a goal to which a
+new one comes as soon as the server has agreed. If the server ends the older goal for the younger one, or agrees to
+cancel it and goes on, the largest is sent and canceled once more, alone. In another run the judge sends orders that
+must be refused, and two good goals to see that the node is still alive. A server may pace its work as it likes, so
+orders are small where nothing else is going on.
 """
 
 from __future__ import annotations
@@ -24,11 +24,11 @@ from lab_1_4._goals import (
     LAST_ORDER,
     LONG_ALONE,
     NEXT,
-    OLDER,
     ROUNDS_LEFT,
     TWINS,
     YOUNGER,
     all_goals,
+    before_any_cancel,
     ended_by_a_younger,
     expected_sequence,
     feedback_objection,
@@ -78,7 +78,7 @@ def only_bad_orders(seen: Evidence, _: Evidence) -> Advice | None:
 def goal_rejected(seen: Evidence, _: Evidence) -> Advice | None:
     """A good goal is refused."""
     last = [one for one in all_goals(seen.part(BAD_ORDERS)) if one.order == LAST_ORDER]
-    beside = [goal(seen.part(GOALS), number) for number in (*TWINS, BESIDE, LONG_ALONE, NEXT, OLDER, YOUNGER)]
+    beside = [goal(seen.part(GOALS), number) for number in (*TWINS, BESIDE, LONG_ALONE, NEXT, YOUNGER)]
     good = (*good_goals(seen), to_be_canceled(seen), *beside, *last)
     refused = [one for one in good if one.accepted is False]
     if not refused or traceback_of(seen):
@@ -115,6 +115,14 @@ server.knows(
 
 server.knows(
     "older_goal_ended",
+    lambda seen, _: any(CANCELED_UNASKED in str(e.data) for e in before_any_cancel(seen.part(GOALS)).events),
+    "When a second goal came, your server called canceled() for the older one. No client had asked to cancel that "
+    "goal, so canceled() raised an error.",
+    "Serve both goals, each with its own sequence. (A server that gives up a goal by itself calls abort().)",
+    certain=True,
+)
+server.knows(
+    "older_goal_ended",
     lambda seen, _: (
         not traceback_of(seen)
         and (older := ended_by_a_younger(seen.part(GOALS)))
@@ -132,10 +140,10 @@ server.knows(
 def goals_mixed_up(seen: Evidence, _: Evidence) -> Advice | None:
     """Alone it is right, two at once are not."""
     part = seen.part(GOALS)
-    alone, beside, again, *later = (goal(part, number) for number in (ALONE, BESIDE, AGAIN, NEXT, OLDER))
+    alone, beside, again, following = (goal(part, number) for number in (ALONE, BESIDE, AGAIN, NEXT))
     if objection(seen, alone) or feedback_objection(seen, alone):
         return None
-    ended = [one for one in (beside, again, *later) if one.status is not None]
+    ended = [one for one in (beside, again, following) if one.status is not None]
     slips = [(one, text) for one in ended if (text := feedback_slip(seen, one))]
     wrong = slips or [(one, text) for one in ended if (text := objection(seen, one))]
     astray = criteria.goes_on_beside_another(part)
@@ -188,9 +196,9 @@ def wrong_feedback(seen: Evidence, _: Evidence) -> Advice | None:
     if not wrong:
         return None
     return Advice(
-        f"The feedback does not grow by one number each time ({wrong[0][1]}).",
+        f"The feedback is not one more number each time, up to the last number of the sequence ({wrong[0][1]}).",
         "Publish in each turn of the loop, right after you have appended a number: all numbers found so far, in "
-        "partial_sequence.",
+        "partial_sequence. End the loop when the sequence is complete: for order 4 it has five numbers.",
     )
 
 
@@ -239,8 +247,17 @@ def bad_order_accepted(seen: Evidence, _: Evidence) -> Advice | None:
     )
 
 
+def feedback_after_the_end(evidence: Evidence) -> str:
+    """Return a remark if the server sent feedback after it had said that the goal was over."""
+    part = evidence.part(GOALS)
+    ends = [(goal(part, int(event.data["goal"])), event.data["sent"]) for event in part.of("goal_ended")]
+    words = "Your server publishes feedback after it has ended the goal. Later releases of ROS drop such feedback."
+    return words if any(one.sent_after(end) for one, end in ends) else ""
+
+
 EXERCISE = server.exercise(
     limit=180.0,
+    remarks=(feedback_after_the_end,),
     text={
         "Reject a goal whose order is negative or greater than 46, and accept any other.": "refuse sequence",
         "0 is a good order: its sequence is a single number.": "sequence",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from summary._night import before_the_lamp, commands, goals, lamps, near_messages, published, too_soon
+from summary._night import commands, goals, lamps, near_messages
 
 from autograder.kit.mistakes.unfinished import STEP_MISSING
 from autograder.kit.rules import another_rate
@@ -20,42 +20,6 @@ MISTAKES: tuple[tuple[str, Callable[[Part, Part], object], str, str, dict[str, A
         lambda seen, expected: next((told for told in commands(seen) if told not in commands(expected)), ""),
         "A command of yours says {}; the task asks for linear.x = 0.4, angular.z = 1.",
         "Make a new Twist() for each command, and set command.linear.x and command.angular.z before you publish it.",
-        {"certain": True},
-    ),
-    (
-        "keeps_driving",
-        lambda seen, expected: (many := published(seen.of("message"))) > len(commands(expected)) and many,
-        "Your node published {} commands; a round has twelve.",
-        "Count the commands, and end the timer at the twelfth: self.timer.cancel().",
-        {"certain": True},
-    ),
-    (
-        "lamp_too_early",
-        lambda seen, expected: lamps(seen) and before_the_lamp(seen) < len(commands(expected)),
-        "Your node asked for the lamp before the round was over.",
-        "Count the commands in the callback of the timer, and call the service there, when the count is twelve.",
-        {},
-    ),
-    (
-        "lamp_switched_off",
-        lambda seen, _: False in lamps(seen),
-        "Your node switched the lamp off: the field data of its request was False.",
-        "Write SetBool.Request(data=True), because a field that you do not set is False.",
-        {"certain": True},
-    ),
-    (
-        "goal_too_early",
-        too_soon,
-        "Your node sent the goal of its walk before the lamp had answered.",
-        "Send the goal in the callback that ROS calls with the lamp's answer, and hand this callback over without "
-        "parentheses: answered.add_done_callback(your_callback).",
-        {},
-    ),
-    (
-        "wrong_goal",
-        lambda seen, expected: goals(seen) and goals(seen) != goals(expected),
-        "Your node sent another goal, or more than one; the task asks for x = 4.0, y = 2.0, once.",
-        "Write WalkTo.Goal(x=4.0, y=2.0), and send it in the callback that gets the lamp's answer.",
         {"certain": True},
     ),
     (

@@ -121,6 +121,20 @@ def test_an_unknown_license_is_a_warning(ros2: Ros2) -> None:
     assert ros2("pkg", "create", "x", "--license", "?").stdout.startswith("Supported licenses:\nApache-2.0\n")
 
 
+def test_nothing_is_left_of_a_package_that_cannot_be_written(ros2: Ros2, tmp_path: Path) -> None:
+    # A file longer than this cannot be written, as on a full disk.
+    limited = "ulimit -f 1; trap '' XFSZ; exec"
+    words = ("my_pkg", "--build-type", "ament_python", "--license", "Apache-2.0")
+    done = subprocess.run(
+        ["bash", "-c", f'{limited} "$@"', "bash", *ros2("pkg", "create", "--help").args[:-3], "pkg", "create", *words],
+        cwd=tmp_path, capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert done.returncode == 1
+    assert "./my_pkg cannot be written, and nothing of it is left: File too large" in done.stderr
+    assert "Traceback" not in done.stderr
+    assert list(tmp_path.iterdir()) == []
+
+
 @pytest.mark.parametrize(
     ("words", "error"),
     [

@@ -19,9 +19,10 @@ from tiny_class import LISTENER, TALKER, TinyClass
 from autograder import course
 from autograder.boxes.sandbox import why_impossible
 from autograder.grading.batch import grade
-from autograder.grading.classes.class_directory import ClassDirectory
+from autograder.grading.classes import class_directory
+from autograder.grading.classes.class_directory import ClassDirectory, switch_sandbox_off
 from autograder.grading.grading_errors import GradingError
-from autograder.grading.running import execution_backends, task_dispatcher
+from autograder.grading.running import task_dispatcher
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -47,7 +48,7 @@ def _unboxed(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.fixture
 def unboxed(tiny: TinyClass) -> TinyClass:
-    execution_backends.switch_sandbox_off(tiny.path)
+    switch_sandbox_off(tiny.path)
     return tiny
 
 
@@ -234,10 +235,10 @@ def test_a_worker_of_another_version_is_refused_by_name_and_the_batch_goes_on(
 def test_where_nobody_can_execute_anything_the_class_stays_as_it_is(
     cluster: DaskCluster, tiny: TinyClass, with_fake_judge: str
 ) -> None:
-    execution_backends.switch_sandbox_off(tiny.path)
+    switch_sandbox_off(tiny.path)
     tiny.submit("ada", 4)
     tiny.grade(judge=with_fake_judge)
-    execution_backends._off.clear()
+    class_directory._unboxed.clear()
     with (
         cluster.worker("bare"),
         pytest.raises(GradingError, match=rf"bare .*the worker has no sandbox: {UNBOXED}"),
@@ -254,13 +255,13 @@ GRADE = """
 import sys
 from pathlib import Path
 from rich.console import Console
-from autograder.grading.rebuilding import task_making
-from autograder.grading.running import execution_backends
+from autograder.grading.tasks import task_making
+from autograder.grading.classes.class_directory import switch_sandbox_off
 from autograder.grading.batch import grade
 from autograder.grading.running import task_dispatcher as dispatcher
 task_making.course_version = lambda: "test"
 dispatcher.course_version = lambda: "test"
-execution_backends.switch_sandbox_off(Path(sys.argv[1]))
+switch_sandbox_off(Path(sys.argv[1]))
 grade(Path(sys.argv[1]), judge="fake_judge:FakeJudge", feedback=False, scheduler=sys.argv[2],
       console=Console(stderr=True, width=200))
 """
@@ -296,7 +297,7 @@ def test_a_lab_is_graded_on_a_worker_as_it_is_here(
     cluster: DaskCluster, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The real judge, in boxes where this machine can make them."""
-    from autograder.grading.classes.new_class import new_class
+    from autograder.grading.new_classes.new_class import new_class
 
     path = tmp_path / "class"
     new_class(path, course.root(), assignments=["lab_1_2"], cell_seconds=30, notebook_seconds=120)
@@ -306,7 +307,7 @@ def test_a_lab_is_graded_on_a_worker_as_it_is_here(
         (path / "submitted" / student / "lab_1_2" / "lab_1_2.ipynb").write_text(text)
     obstacle = why_impossible()
     if obstacle:
-        execution_backends.switch_sandbox_off(path)
+        switch_sandbox_off(path)
     options: dict[str, Any] = {"console": Console(quiet=True), "feedback": False}
     with cluster.worker("one", 2, obstacle=obstacle):
         there = grade(path, scheduler=cluster.address, **options)

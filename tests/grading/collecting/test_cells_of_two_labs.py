@@ -11,8 +11,8 @@ from test_collect import why, work
 from test_where_it_goes import MOODLE, gathered
 
 from autograder.grading.classes.class_directory import ClassDirectory
-from autograder.grading.classes.new_class import release
 from autograder.grading.collecting.collected_files import LineState
+from autograder.grading.new_classes.new_class import release
 from autograder.grading.table.rows import remarks_on
 
 if TYPE_CHECKING:
@@ -67,8 +67,8 @@ def test_a_notebook_with_the_cells_of_two_labs_is_refused_with_both_names(
     report = gathered(klass, tmp_path, file)
     assert not report.having(LineState.PLACED)
     assert report.exit_code == 2
-    assert "the file has cells of lab_1_2 and of lab_1_3" in why(report)
-    assert "write the name of one of these assignments under assignment" in why(report)
+    assert "lab_1_2 or lab_1_3 by its cells" in why(report)
+    assert "write the assignment under assignment" in why(report)
 
 
 def test_the_instructor_says_for_which_of_them_it_is_and_grade_repeats_what_is_left(

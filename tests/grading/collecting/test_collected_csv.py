@@ -211,6 +211,19 @@ def test_excel_in_germany_saves_it_and_no_cell_is_taken_for_an_edit(klass: TinyC
     assert stamp(klass, "0017") == "2025-10-04 07:30:00.000000 UTC"
 
 
+def test_in_a_table_with_semicolons_no_reader_that_splits_at_commas_finds_a_formula(
+    klass: TinyClass, tmp_path: Path
+) -> None:
+    klass.configure('c.NbGraderAPI.timezone = "Europe/Berlin"')
+    names = ("x,+cmd|' /C calc'!A0,y.ipynb", 'x,"=1+1,y.txt', "x, @SUM(A1),y.txt")
+    files = dict.fromkeys((f"Ada Lovelace_101_assignsubmission_file_/{name}" for name in names), "x")
+    collect(klass.path, [write_zip(tmp_path / "c.zip", files)])
+    text = (klass.path / "collected.csv").read_text(encoding="utf-8-sig")
+    for separator in ";,\t|":
+        cells = [cell for row in csv.reader(io.StringIO(text), delimiter=separator) for cell in row]
+        assert not [cell for cell in cells if cell.lstrip()[:1] in tuple("=+-@")], separator
+
+
 def test_a_table_that_was_open_while_others_collected_is_compared_with_itself(
     klass: TinyClass, tmp_path: Path
 ) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import ctypes
 import errno
 import io
 import os
@@ -14,6 +15,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
 
 import pytest
+from click.testing import CliRunner
 from downloads import ROSTER, write_zip
 from test_collect import lies, placed, stamp, why, work
 from test_collected_csv import edit, read, save
@@ -22,6 +24,7 @@ from tiny_class import LISTENER, TALKER
 
 from autograder.boxes.process_isolation import leave_the_host, mount_tmpfs
 from autograder.boxes.sandbox import why_impossible
+from autograder.cli import cli
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.collecting import collected_csv, collected_files, submitted_folder
 from autograder.grading.collecting.collect import collect
@@ -29,6 +32,7 @@ from autograder.grading.collecting.collected_files import LineState
 from autograder.grading.grading_errors import ClassBusy, GradingError
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from types import ModuleType
 
     from tiny_class import FakeEngine, TinyClass
@@ -224,25 +228,53 @@ def test_a_disk_that_really_fills_up_loses_nothing(klass: TinyClass, tmp_path: P
     )
     disk = tmp_path / "disk"
     disk.mkdir()
+
+    def work_there() -> None:
+        mount_tmpfs(disk, 6_000_000, 10_000)
+        copy = type(klass)(Path(shutil.copytree(klass.path, disk / "class")))
+        collect(copy.path, [small])
+        before = outcome(copy)
+        with pytest.raises(GradingError, match="is full"):
+            collect(copy.path, [large])
+        assert not [*copy.path.rglob("*.new")]
+        assert collect(copy.path, [small]).exit_code == 0
+        assert outcome(copy) == before
+
+    away_from_the_host(work_there)
+
+
+def away_from_the_host(call: Callable[[], None]) -> None:
+    """Call a function in a child process whose mounts no other process sees."""
     if (child := os.fork()) == 0:
         code = 1
         try:
             leave_the_host()
-            mount_tmpfs(disk, 6_000_000, 10_000)
-            copy = type(klass)(Path(shutil.copytree(klass.path, disk / "class")))
-            collect(copy.path, [small])
-            before = outcome(copy)
-            with pytest.raises(GradingError, match="is full"):
-                collect(copy.path, [large])
-            assert not [*copy.path.rglob("*.new")]
-            assert collect(copy.path, [small]).exit_code == 0
-            assert outcome(copy) == before
+            call()
             code = 0
         except BaseException:
             traceback.print_exc()
         finally:
             os._exit(code)
     assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0
+
+
+def test_a_class_on_a_disk_that_is_only_read_is_one_sentence(klass: TinyClass, tmp_path: Path) -> None:
+    if reason := why_impossible():
+        pytest.skip(reason)
+    archive = blackboard(klass, tmp_path, ada=(3, 1))
+    (disk := tmp_path / "disk").mkdir()
+
+    def work_there() -> None:
+        mount_tmpfs(disk, 6_000_000, 10_000)
+        copy = Path(shutil.copytree(klass.path, disk / "class"))
+        read_only = ctypes.c_ulong(0x20 | 0x2 | 0x4 | 0x1)  # remounted without setuid, devices and writing
+        assert ctypes.CDLL(None, use_errno=True).mount(None, os.fsencode(disk), None, read_only, None) == 0
+        result = CliRunner().invoke(cli, ["collect", str(copy), str(archive)])
+        assert result.exit_code == 2, result.output
+        assert "Read-only file system" in result.output
+        assert "Traceback" not in result.output
+
+    away_from_the_host(work_there)
 
 
 def killed_at(klass: Path, archive: Path, moment: int) -> int:

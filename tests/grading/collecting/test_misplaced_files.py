@@ -10,8 +10,8 @@ from downloads import zipped
 from tiny_class import LISTENER, TALKER
 
 from autograder.grading.classes.class_directory import ClassDirectory
-from autograder.grading.classes.new_class import release
 from autograder.grading.grading_errors import MasterUnusable
+from autograder.grading.new_classes.new_class import release
 
 if TYPE_CHECKING:
     from tiny_class import FakeEngine, TinyClass

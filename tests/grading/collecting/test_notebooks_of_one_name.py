@@ -59,13 +59,13 @@ def test_of_another_assignment_it_is_refused(klass: TinyClass, tmp_path: Path) -
     report = gathered(klass, tmp_path, of(klass, "ps2"), "problem1.ipynb", "ps1")
     assert "the file is the notebook of ps2, not of ps1" in why(report)
     report = gathered(klass, tmp_path, work(klass), "problem1.ipynb")
-    assert "the file's name is that of ps1 or ps2, but the cells are those of lab_1_2" in why(report)
+    assert "(ps1 or ps2 by its name, lab_1_2 by its cells)" in why(report)
 
 
 def test_where_cells_say_nothing_the_instructor_does(klass: TinyClass, tmp_path: Path) -> None:
     nameless = work(klass).replace('"grade_id"', '"nobody"')
     report = gathered(klass, tmp_path, nameless, "problem1.ipynb")
-    assert "(ps1, ps2): write the assignment under assignment" in why(report)
+    assert "(ps1 or ps2 by its name): write the assignment under assignment" in why(report)
     report = gathered(klass, tmp_path, nameless, "problem1.ipynb", "ps1")
     assert [one.assignment for one in report.having(LineState.PLACED)] == ["ps1"]
 

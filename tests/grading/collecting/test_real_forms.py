@@ -38,11 +38,10 @@ import pytest
 from downloads import ROSTER, read_path, write_zip
 from test_collect import lies, stamp, why, work
 
-from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.collecting.collect import collect
 from autograder.grading.collecting.collected_files import LineState
 from autograder.grading.collecting.downloaded_files import read_list
-from autograder.grading.table.roster import read_students_csv
+from autograder.grading.table.students_csv import read_students_csv
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -97,7 +96,7 @@ submission_700000003:
     ],
 )
 def test_a_name_says_whose_it_is(form: str, name: str, who: str, file: str) -> None:
-    found = read_path(name.split("/"), form, lambda _: False)
+    found = read_path(name.split("/"), form)
     assert found is not None
     assert (str(found.identity), found.file) == (who, file)
     assert found.late == ("late" in name.lower())
@@ -253,7 +252,7 @@ def test_a_list_of_the_lms_is_a_list_of_students(
     tiny: TinyClass, text: str, expected: tuple[object, ...]
 ) -> None:
     (tiny.path / "students.csv").write_text(text, encoding="utf-8")
-    (student,) = read_students_csv(ClassDirectory(tiny.path))
+    (student,) = read_students_csv(tiny.path / "students.csv").students
     assert (student.id, student.first_name, student.last_name, student.email, student.lms) == expected
 
 

@@ -16,7 +16,7 @@ from test_collect import placed, stamp, why, work
 from test_collected_csv import edit
 
 from autograder.grading.collecting.collect import collect
-from autograder.grading.collecting.submitted_file_names import read_time
+from autograder.grading.collecting.written_times import read_time
 from autograder.grading.grading_errors import GradingError
 
 if TYPE_CHECKING:

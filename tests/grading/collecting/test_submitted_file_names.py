@@ -13,9 +13,9 @@ from test_collect import lies, placed, stamp, why, work
 
 from autograder.cli import cli
 from autograder.grading.classes.class_directory import ClassDirectory
-from autograder.grading.classes.new_class import release
 from autograder.grading.collecting.collect import collect
 from autograder.grading.collecting.collected_files import LineState
+from autograder.grading.new_classes.new_class import release
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -67,7 +67,7 @@ def test_brightspace_writes_dates_as_the_country_does_in_folders_and_in_files(
     name: str, date: str, time: str
 ) -> None:
     parts = tuple(name.format("12345-67890", date).split("/"))
-    found = read_path(parts, "brightspace", lambda _: True)
+    found = read_path(parts, "brightspace")
     assert found is not None
     assert (found.identity.name, found.file) == ("Eve O'Neill", "lab_1_2.ipynb")
     assert found.when == datetime.fromisoformat(time)

@@ -120,3 +120,20 @@ def test_the_order_of_one_system_says_nothing_of_a_file_from_elsewhere(
         in line.reason
     )
     assert not report.having(LineState.EARLIER)
+
+
+@pytest.mark.parametrize("letters", ["utf-16", "utf-16-le", "latin-1"])
+@pytest.mark.parametrize("name", ["lab_1_2.ipynb", "homework.ipynb"])
+def test_a_notebook_that_cannot_be_read_waits_instead_of_being_zero(
+    klass: TinyClass, tmp_path: Path, letters: str, name: str
+) -> None:
+    text = work(klass, 3).replace('"cells"', '"größe": 1, "cells"', 1)
+    archive = write_zip(tmp_path / "c.zip", {f"ada/{name}": text.encode(letters), "ben/lab_1_2.ipynb": text})
+    report = collect(klass.path, [archive])
+    assert [one.student for one in report.having(LineState.PLACED)] == ["ben"]
+    (line,) = report.having(LineState.NOT_PLACED)
+    assert (line.student, report.exit_code) == ("ada", 2)
+    assert "The file is not a notebook: it is not " in line.reason
+    edit(klass, name, use="yes", assignment="lab_1_2")
+    placed = {one.student for one in collect(klass.path).having(LineState.PLACED)}
+    assert "ada" in placed, "a person may have it graded as it is"

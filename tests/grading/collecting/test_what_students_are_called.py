@@ -26,7 +26,7 @@ def test_in_canvas_nobody_is_called_so_that_the_name_is_not_the_systems(
 ) -> None:
     """Of 🙂 Canvas leaves nothing. A table was the instructor's list then, and an archive a download."""
     listed = "user_id,submitted_at,login_id\n102,2031-01-01T12:00:00Z,ben\n"
-    files = {"barben_102_5_lab_1_2.ipynb": work(klass, 1), f"{hers}t.csv": listed}
+    files = {"barben_102_5005_lab_1_2.ipynb": work(klass, 1), f"{hers}t.csv": listed}
     folder(tmp_path / "d", files)
     forged = {name: work(klass, 9) for name in ("barben_102_99999_lab_1_2.ipynb", "zoe/lab_1_2.ipynb")}
     write_zip(tmp_path / "d" / f"{hers}x.zip", forged)

@@ -222,9 +222,9 @@ def test_who_hands_in_the_first_work_again_has_it_counted_again(klass: TinyClass
         name = f"Lab_ada_attempt_2025-10-0{day}-14-00-00_lab_1_2.ipynb"
         gathered(klass, tmp_path, {name: work(klass, points)})
         assert lies(klass, "ada") == work(klass, points)
-    assert stamp(klass, "ada").startswith("2025-10-05")
+    assert stamp(klass, "ada").startswith("2025-10-03"), "the first time of the same bytes"
     gathered(klass, tmp_path, {"Lab_ada_attempt_2025-10-03-14-00-00_lab_1_2.ipynb": work(klass, 1)})
-    assert stamp(klass, "ada").startswith("2025-10-05"), "nothing is overwritten by something older"
+    assert lies(klass, "ada") == work(klass, 1)
 
 
 def other_lab(klass: TinyClass) -> str:
@@ -245,7 +245,7 @@ def test_the_cells_say_which_assignment_it_is(klass: TinyClass, tmp_path: Path) 
         assert "the file is the notebook of lab_1_3, not of lab_1_2" in beside.reason
         assert lies(klass, "ada") == work(klass, 3)
     report = gathered(klass, tmp_path, {ada: other})
-    assert "the file's name is that of lab_1_2, but the cells are those of lab_1_3" in why(report)
+    assert "(lab_1_2 by its name, lab_1_3 by its cells)" in why(report)
     report = gathered(klass, tmp_path, {MOODLE.format("Ada Lovelace", "homework.ipynb"): other})
     assert [one.assignment for one in report.having(LineState.PLACED)] == ["lab_1_3"]
 
@@ -262,7 +262,7 @@ def test_a_notebook_without_a_place_is_named_whatever_else_its_student_has_hande
         assert [one.assignment for one in report.having(LineState.PLACED)] in ([], ["lab_1_2"])
         (waits,) = report.having(LineState.NOT_PLACED)
         assert (report.exit_code, waits.label.endswith(f"work.zip/{name}")) == (2, True)
-        assert f"{waits.label} {waits.key}" in {
+        assert f"{waits.label} {waits.key[:11]}" in {
             one.label for one in Table(ClassDirectory(klass.path)).waiting()
         }
 
@@ -272,7 +272,7 @@ def test_a_second_copy_under_another_labs_name_waits(klass: TinyClass, tmp_path:
     held = zipped({"lab_1_2 (1).ipynb": other, "lab_1_3.ipynb": other})
     report = gathered(klass, tmp_path, {MOODLE.format("Ada Lovelace", "work.zip"): held})
     assert [one.assignment for one in report.having(LineState.PLACED)] == ["lab_1_3"]
-    assert "the file's name is that of lab_1_2, but the cells are those of lab_1_3" in why(report)
+    assert "(lab_1_2 by its name, lab_1_3 by its cells)" in why(report)
 
 
 def test_a_notebook_of_the_course_that_is_no_assignment_here_is_beside_the_work(
@@ -369,7 +369,7 @@ def test_whatever_is_collected_in_any_order_and_again_gives_the_same(
                 # Of two attempts without a time, the first one counts until a person has said which.
                 said = "no" if line["student"] in yes else chance.choice(["yes", "no"])
                 yes |= {line["student"]} if said == "yes" else set()
-                written[line["file"].rpartition(" ")[2]] = said
+                written[line["file"].rpartition(" ")[2][:11]] = said
         for key, word in written.items():
             edit(copy, key, use=word)
         collect(copy.path)

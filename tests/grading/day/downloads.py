@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from autograder.grading.collecting.submitted_file_names import read_lms_name
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Mapping, Sequence
     from pathlib import Path
 
     from autograder.grading.collecting.submitted_file_names import NameFacts
@@ -35,10 +35,10 @@ BOMB = b" " * 60_000_000
 """What unpacks to more than a notebook may have."""
 
 
-def read_path(parts: Sequence[str], form: str, is_notebook: Callable[[str], bool]) -> NameFacts | None:
+def read_path(parts: Sequence[str], form: str) -> NameFacts | None:
     """The facts in a path of the form of one system, by its topmost name of that form."""
     parts = [unicodedata.normalize("NFC", part) for part in parts]
-    ways = (read_lms_name(parts, place, form, is_notebook) for place in range(len(parts)))
+    ways = (read_lms_name(parts, place, form) for place in range(len(parts)))
     return next((way for way in ways if way is not None), None)
 
 

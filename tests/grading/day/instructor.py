@@ -8,7 +8,7 @@ import nbformat
 from nbgrader.api import Gradebook
 
 from autograder.grading.classes.class_directory import ClassDirectory
-from autograder.grading.classes.new_class import release
+from autograder.grading.new_classes.new_class import release
 
 if TYPE_CHECKING:
     from datetime import datetime

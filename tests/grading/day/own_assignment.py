@@ -13,7 +13,7 @@ from autograder.boxes.run_limits import Ended
 from autograder.execution.executed_cells import Cell, CellRun, CellType, Execution
 from autograder.execution.verdicts_without_judge import verdict_by_tests, zero_points
 from autograder.grading.classes.class_directory import ClassDirectory
-from autograder.grading.classes.new_class import release
+from autograder.grading.new_classes.new_class import release
 
 if TYPE_CHECKING:
     from pathlib import Path

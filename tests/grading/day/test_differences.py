@@ -12,11 +12,11 @@ from test_true_table import DUE, EARLY, LATE, shown, total
 from tiny_class import LISTENER, TALKER
 
 from autograder.cli import cli
-from autograder.grading import batch
+from autograder.grading import batch_steps
 from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.class_directory import ClassDirectory
-from autograder.grading.rebuilding import task_making
 from autograder.grading.running import execution_backends
+from autograder.grading.tasks import task_making
 
 if TYPE_CHECKING:
     import pytest
@@ -153,7 +153,7 @@ def test_another_version_of_the_course_is_said(
     tiny.submit("ada", 4, 7)
     assert not any("another version" in notice for notice in tiny.grade().notices)
     assert not any("another version" in notice for notice in tiny.grade().notices)
-    monkeypatch.setattr(batch, "course_version", lambda: "next")
+    monkeypatch.setattr(batch_steps, "course_version", lambda: "next")
     monkeypatch.setattr(task_making, "course_version", lambda: "next")
     report = tiny.grade()
     assert any("1 submissions had been graded with another version" in notice for notice in report.notices)

@@ -22,8 +22,8 @@ from autograder.cli import cli
 from autograder.execution.executed_cells import Execution
 from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.class_directory import ClassDirectory, Submission
-from autograder.grading.rebuilding.task_making import tasks_of
 from autograder.grading.running import execution_backends
+from autograder.grading.tasks.task_making import tasks_of
 from autograder.judge import evidence_files, one_check
 from autograder.kit.evidence import Evidence
 
@@ -93,6 +93,9 @@ def test_every_command_of_the_guide_runs(
     (tiny.path / "students.csv").write_text(
         "id,first_name,last_name,email,section\nada,Ada,Lovelace,ada@uni.example,Monday\n"
         "ben,Ben,Bär,ben@uni.example,Tuesday\n"
+    )
+    (tmp_path / "Downloads" / "Grades.csv").write_text(
+        'Student,ID,SIS User ID,SIS Login ID,Section\n"Lovelace, Ada",1,,ada,Monday\n"Bär, Ben",2,,ben,Tuesday\n'
     )
     notebook = tiny.submit("x", 4, 7)
     names = ("lovelaceada_1_2_lab_1_2.ipynb", "barben_2_3_lab_1_2.ipynb")

@@ -12,9 +12,9 @@ import pytest
 from rich.console import Console
 from tiny_class import LISTENER, MASTER, TALKER, FakeEngine, TinyClass, write_master
 
-from autograder.grading.classes import class_checks
-from autograder.grading.classes.new_class import new_class, renew
+from autograder.grading import class_checks
 from autograder.grading.grading_errors import DiskFull, GradingError
+from autograder.grading.new_classes.new_class import new_class, renew
 
 pytestmark = pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning")
 

@@ -14,7 +14,7 @@ from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook
 from own_assignment import EngineWithAsserts, marked
 
 from autograder.grading.classes.class_directory import ClassDirectory
-from autograder.grading.classes.new_class import release
+from autograder.grading.new_classes.new_class import release
 from autograder.grading.running import execution_backends
 
 if TYPE_CHECKING:

@@ -11,7 +11,7 @@ from instructor import by_person
 from test_true_table import page, rows, total
 from tiny_class import MASTER, FakeEngine, TinyClass, write_master
 
-from autograder.grading.classes.new_class import new_class
+from autograder.grading.new_classes.new_class import new_class
 from autograder.grading.returning.page_exporter import without_dead_links
 
 if TYPE_CHECKING:

@@ -9,9 +9,9 @@ import pytest
 
 from autograder import course
 from autograder.grading.classes.class_directory import ClassDirectory
-from autograder.grading.classes.new_class import release
+from autograder.grading.new_classes.new_class import release
 from autograder.grading.rebuilding import nbformat_nodes
-from autograder.grading.rebuilding.task_making import LEFT_OUT, demonstrations_of, is_demonstration
+from autograder.grading.tasks.task_making import LEFT_OUT, demonstrations_of, is_demonstration
 from autograder.masters.master_files import masters
 from autograder.masters.notebook_release import release_text
 from autograder.masters.source_notebooks import SET_UP_CELL as SET_UP_CELL

@@ -7,7 +7,7 @@ from nbformat import NotebookNode
 from autograder.execution.executed_cells import CellType
 from autograder.grading.rebuilding.notebook_rebuilding import rebuild, rebuild_unreadable
 from autograder.grading.rebuilding.submitted_notebook import SubmittedCell
-from autograder.grading.rebuilding.task_making import cells_of
+from autograder.grading.tasks.task_making import cells_of
 
 
 def master_cell(

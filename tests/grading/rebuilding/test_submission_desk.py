@@ -24,13 +24,22 @@ from autograder.grading.rebuilding.submission_desk import (
     checked,
     document_of,
     read_notebook,
-    why_unreadable,
 )
 from autograder.grading.rebuilding.submitted_notebook import MAX_CELL_CHARACTERS, UnreadableSubmission
 from tests.grading.rebuilding.hostile_desk import CRAFTED, SCRIPT
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
+
+
+def why_unreadable(data: bytes) -> str:
+    """Why a file cannot be read; empty if it can."""
+    try:
+        read_notebook(data)
+    except UnreadableSubmission as error:
+        return str(error)
+    return ""
+
 
 ROOT = Path(__file__).resolve().parents[3]
 HOSTILE = "tests.grading.rebuilding.hostile_desk"
@@ -43,7 +52,7 @@ FAULTS = {
     "crash": FAILED_ON_IT,
     "leave": FAILED_ON_IT,
     "late": "nothing waits",
-    "reach": "reached: ",
+    "reach": "reached:",
     **{f"crafted {number}": FAILED_ON_IT for number in range(len(CRAFTED))},
 }
 """A function of the hostile program, and a part of the sentence about the submission that names it."""
@@ -105,13 +114,13 @@ def test_hostile_code_at_a_desk_is_the_fault_of_its_own_file(taken_over: Desk, a
 def test_a_desk_reaches_nothing_not_even_without_a_box(
     taken_over: Desk, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    assert why_unreadable(notebook("reach")) == "reached: "
+    assert why_unreadable(notebook("reach")) == "reached:"
     which = shutil.which
     monkeypatch.setattr(shutil, "which", lambda name: None if name == "bwrap" else which(name))
     plain = Desk(HOSTILE, {"PYTHONPATH": str(ROOT)})
     try:
         assert not plain.is_boxed
-        with pytest.raises(UnreadableSubmission, match=r"^reached: $"):
+        with pytest.raises(UnreadableSubmission, match=r"^reached:$"):
             checked(document_of(plain, notebook("reach")))
     finally:
         plain.close()

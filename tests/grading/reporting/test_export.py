@@ -388,16 +388,16 @@ def test_who_takes_the_name_of_somebody_else_in_the_lms_does_not_get_her_points(
 def test_a_column_of_another_name_is_named(graded: TinyClass, tmp_path: Path) -> None:
     gradebook = tmp_path / "canvas.csv"
     gradebook.write_text(
-        'Student,ID,SIS User ID,SIS Login ID,Section,Lab 1.2 (5001)\n"    Points Possible",,,,,20\n'
+        'Student,ID,SIS User ID,SIS Login ID,Section,Week 2 (5001)\n"    Points Possible",,,,,20\n'
         '"Lovelace, Ada",101,,al,A,\n"Zuse, Zoë",105,,zz,A,\n'
     )
     command = ["export", str(graded.path), "--to", "canvas", "--into", str(gradebook)]
     result = CliRunner().invoke(cli, command)
-    assert 'for example: --column "lab_1_2=Lab 1.2 (5001)"' in result.output
-    assert CliRunner().invoke(cli, [*command, "--column", "lab_1_2=Lab 1.2"]).exit_code == 0
+    assert 'for example: --column "lab_1_2=Week 2 (5001)"' in result.output
+    assert CliRunner().invoke(cli, [*command, "--column", "lab_1_2=Week 2"]).exit_code == 0
     lines = rows(graded.path / "export" / "canvas.csv")
     assert [row[-1] for row in lines[2:]] == ["18.5", ""]
-    result = CliRunner().invoke(cli, [*command[:4], "--column", "lab_1_2=Lab 1.2"])
+    result = CliRunner().invoke(cli, [*command[:4], "--column", "lab_1_2=Week 2"])
     assert (result.exit_code, "--column names a column of the list in --into" in result.output) == (2, True)
 
 

@@ -6,16 +6,23 @@ import csv
 import io
 import shutil
 import zipfile
+from datetime import timedelta
 from typing import TYPE_CHECKING
 
 import pytest
 import tiny_class
 from click.testing import CliRunner
 from downloads import ROSTER, write_zip
+from instructor import due, penalty
+from test_true_table import DUE
 
 from autograder.cli import cli
 from autograder.grading.collecting.collect import collect
+from autograder.grading.collecting.systems import EACH, LIST_FORMS
+from autograder.grading.grading_errors import GradingError
 from autograder.grading.reporting.export_files import export
+from autograder.grading.reporting.lms_gradebooks import _point_columns
+from autograder.grading.reporting.report_page import write_report
 from autograder.verdict import not_checked
 
 if TYPE_CHECKING:
@@ -114,7 +121,7 @@ def test_only_moodle_says_who_a_participant_is(klass: TinyClass, tmp_path: Path)
     assert "555" not in (folder / "moodle.csv").read_text("utf-8")
     with zipfile.ZipFile(folder / "feedback-moodle-lab_1_2.zip") as pages:
         assert pages.namelist() == ["Eve O'Neill_555_assignsubmission_file/lab_1_2.html"]
-    (feedback,) = done.notices
+    feedback, _ = done.notices
     assert "the zip has no feedback on lab_1_2 for ben:" in feedback
 
 
@@ -148,9 +155,7 @@ GRADEBOOK = (
 )
 
 
-@pytest.mark.parametrize(
-    "name", ["Lab 1.2 (9001)", "LAB-1_2: talker, listener (9001)", "Woche 3 - lab 1.2 (9001)"]
-)
+@pytest.mark.parametrize("name", ["Woche 3 - lab 1.2 (9001)", "lab 1.2 late (9001)"])
 def test_the_likeliest_column_is_advised_and_no_column_that_names_a_student_is_written(
     klass: TinyClass, tmp_path: Path, name: str
 ) -> None:
@@ -163,13 +168,81 @@ def test_the_likeliest_column_is_advised_and_no_column_that_names_a_student_is_w
     command = ["export", str(klass.path), "--to", "canvas", "--into", str(into)]
     said = CliRunner().invoke(cli, command)
     assert (said.exit_code, f'--column "lab_1_2={name}"' in said.output) == (2, True), said.output
-    for wrong in ("Final Result", "Section", "Student", "SIS Login ID"):
+    for wrong in ("Final Result", "Section", "Student", "SIS Login ID", "Final Score", "Current Score"):
         said = CliRunner().invoke(cli, [*command, "--column", f"lab_1_2={wrong}"])
         assert (said.exit_code, f'--column "lab_1_2={name}"' in said.output) == (2, True), said.output
+        assert "(read only) columns take no points: Current Score, Final Score." in said.output
     assert not (klass.path / "export").exists()
     said = CliRunner().invoke(cli, [*command, "--column", f"lab_1_2={name}"])
     assert said.exit_code == 0, said.output
     assert rows(klass.path / "export" / "list.csv")[2][5:] == ["18", "", "7.0", "7.0"]
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "lab_1_2 (815)",
+        "Lab 1.2 (9001)",
+        "LAB-1_2",
+        "Lab 1.2: A talker and a listener (9001)",
+        "lab_1_2: all (9001)",
+    ],
+)
+def test_a_column_that_has_the_assignments_name_or_title_is_found(
+    klass: TinyClass, tmp_path: Path, name: str
+) -> None:
+    klass.submit("ada", 8, 10)
+    klass.grade()
+    into = tmp_path / "list.csv"
+    columns = f'Lab 1.20 (9000),"{name}",Lab 1 (9003)'
+    into.write_text(GRADEBOOK.format(columns=columns, possible="1,20,3", cells=",,"), encoding="utf-8")
+    export(klass.path, "canvas", into=into)
+    assert rows(klass.path / "export" / "list.csv")[2][5:8] == ["", "18", ""]
+
+
+def test_of_two_columns_that_fit_neither_is_filled(klass: TinyClass, tmp_path: Path) -> None:
+    into = tmp_path / "list.csv"
+    columns = "Lab 1.2: bonus (9000),Lab 1.2: work (9001)"
+    into.write_text(GRADEBOOK.format(columns=columns, possible="1,2", cells=","), encoding="utf-8")
+    with pytest.raises(GradingError, match="called lab_1_2, or more than one is"):
+        export(klass.path, "canvas", into=into)
+
+
+def test_all_columns_that_are_missing_are_named_at_once(klass: TinyClass) -> None:
+    header = ["Student", "ID", "SIS User ID", "SIS Login ID", "Section", "First lab (1)", "Second lab (2)"]
+    form = next(one for one in LIST_FORMS if one.lms == "canvas" and one.points == EACH)
+    with pytest.raises(GradingError) as caught:
+        _point_columns(klass.path, [header], form, ["first_lab_1", "second_lab_2", "third"], {})
+    for word in ("first_lab_1, second_lab_2, third", '--column "first_lab_1=First lab (1)"', "third="):
+        assert word in str(caught.value)
+
+
+def test_who_has_points_and_no_line_is_named(klass: TinyClass, tmp_path: Path) -> None:
+    klass.submit("ada", 8, 10)
+    klass.grade()
+    into = tmp_path / "list.csv"
+    into.write_text(CANVAS, encoding="utf-8")
+    assert any(
+        "the list has no line for ben, so their points are not in it" in one
+        for one in export(klass.path, "canvas", into=into).notices
+    )
+
+
+def test_canvas_own_late_penalty_is_warned_of_where_work_is_late(klass: TinyClass) -> None:
+    said = "Canvas may subtract its own late penalty"
+    penalty(klass)
+    due(klass, DUE)
+    assert not any(said in one for one in export(klass.path, "canvas").notices)
+    late = DUE + timedelta(hours=30)
+    (klass.path / "submitted" / "ben" / "lab_1_2" / "timestamp.txt").write_text(
+        f"{late:%Y-%m-%d %H:%M:%S} UTC"
+    )
+    klass.grade()
+    assert sum(said in one for one in export(klass.path, "canvas").notices) == 1
+    assert said in write_report(klass.path).read_text()
+    (klass.path / "students.csv").write_text("id,first_name\nben,Ben\n")
+    assert not any(said in one for one in export(klass.path, "moodle").notices)
+    assert sum(said in one for one in export(klass.path, "canvas").notices) == 1
 
 
 def test_a_gradebook_without_an_assignment_says_so(klass: TinyClass, tmp_path: Path) -> None:

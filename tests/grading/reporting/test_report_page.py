@@ -19,12 +19,12 @@ from autograder.cli import cli
 from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.grading_errors import GradingError
-from autograder.grading.rebuilding.source_points import read_released
-from autograder.grading.rebuilding.submission_fingerprints import Fingerprints
 from autograder.grading.reporting import class_statistics as figures
+from autograder.grading.reporting.class_table import ClassTable, read_table
 from autograder.grading.reporting.report_page import write_report
-from autograder.grading.table.class_table import ClassTable, read_table
 from autograder.grading.table.rows import Row
+from autograder.grading.tasks.source_points import read_released
+from autograder.grading.tasks.submission_fingerprints import Fingerprints
 from autograder.verdict import CriterionResult, Diagnosis, Verdict
 
 if TYPE_CHECKING:
@@ -180,7 +180,7 @@ def test_what_turns_the_direction_of_writing_is_shown_as_an_escape(
     monkeypatch.setattr(tiny_class, "verdict", lambda *words: replace(plain(*words), diagnosis=said))
     graded.submit("ben", 3, 3)
     graded.grade()
-    (graded.path / "students.csv").write_text("id,first_name\nada,\u202enimda\u2066\x1b\n")
+    (graded.path / "students.csv").write_text("id,first_name\nada,\u202enimda\u2066\x1b\nben,\n")
     text = write_report(graded.path).read_text()
     assert "\\u202egro.live" in text
     assert "\\u202enimda" in text

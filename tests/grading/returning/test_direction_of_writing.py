@@ -7,9 +7,10 @@ from typing import Any
 import nbformat
 import pytest
 
-from autograder.cards.readable_text import one_line, printable
+from autograder.cards.readable_text import one_line
 from autograder.grading.returning.sanitize import escape_direction_marks, make_harmless
 from autograder.grading.table.spreadsheet_csv import defused
+from autograder.standard_output import printable
 
 TURNS = [chr(code) for code in (0x061C, 0x200E, 0x200F, *range(0x202A, 0x202F), *range(0x2066, 0x206A))]
 

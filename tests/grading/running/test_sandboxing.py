@@ -9,6 +9,8 @@ from click.testing import CliRunner
 
 from autograder import cli
 from autograder.boxes import sandbox
+from autograder.grading.classes import class_directory
+from autograder.grading.classes.class_directory import switch_sandbox_off
 from autograder.grading.grading_errors import GradingError
 from autograder.grading.running import execution_backends
 from autograder.grading.running.execution_backends import UNBOXED_NOTE
@@ -25,7 +27,7 @@ WHY = "bubblewrap is not installed: type this"
 def _no_sandbox(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     monkeypatch.setattr(sandbox, "why_impossible", lambda: WHY)
     yield
-    execution_backends._off.clear()
+    class_directory._unboxed.clear()
 
 
 @pytest.mark.usefixtures("_no_sandbox")
@@ -43,7 +45,7 @@ def test_what_was_typed_is_noted_in_the_report_and_in_the_feedback(
     tiny: TinyClass, with_fake_judge: str
 ) -> None:
     tiny.submit("ada", 10, 7)
-    execution_backends.switch_sandbox_off(tiny.path)
+    switch_sandbox_off(tiny.path)
     report = tiny.grade(judge=with_fake_judge, feedback=True)
     assert tiny.scores("ada") == {"lab_1_2-talker": 10, "lab_1_2-listener": 7}
     assert report.note == UNBOXED_NOTE
@@ -66,10 +68,10 @@ def test_a_class_of_which_nothing_is_executed_needs_none(
 
 def test_a_result_without_a_sandbox_never_stands_for_one_with(tiny: TinyClass, with_fake_judge: str) -> None:
     tiny.submit("ada", 10)
-    execution_backends.switch_sandbox_off(tiny.path)
+    switch_sandbox_off(tiny.path)
     assert tiny.grade(judge=with_fake_judge).executed == 1
     assert tiny.grade(judge=with_fake_judge).executed == 0
-    execution_backends._off.clear()
+    class_directory._unboxed.clear()
     report = tiny.grade(judge=with_fake_judge)
     assert (report.executed, report.note) == (1, "")
 

@@ -12,7 +12,6 @@ from tiny_class import FakeEngine, TinyClass
 from autograder.boxes.run_limits import Ended
 from autograder.execution.executed_cells import CellRun, Execution
 from autograder.grading.classes.class_directory import ClassDirectory
-from autograder.grading.rebuilding.task_making import tasks_of
 from autograder.grading.running.worker_messages import (
     LARGEST_ANSWER,
     LARGEST_OFFER,
@@ -21,6 +20,7 @@ from autograder.grading.running.worker_messages import (
     admitted,
     admitted_offer,
 )
+from autograder.grading.tasks.task_making import tasks_of
 from autograder.verdict import State
 
 if TYPE_CHECKING:
@@ -72,7 +72,7 @@ def test_trouble_without_cells_comes_through(task: Task, execution: Execution) -
     said = replace(execution, cells=(), trouble="the worker process ended")
     assert admitted(msgspec.json.encode(said), task) == said
     said = replace(said, trouble="it\x1b[2J\nended" + "!" * 100_000)
-    assert admitted(msgspec.json.encode(said), task).trouble.startswith("it [2J ended!!!")
+    assert admitted(msgspec.json.encode(said), task).trouble.startswith("it\\x1b[2J ended!!!")
     assert len(admitted(msgspec.json.encode(said), task).trouble) == 1_000
 
 

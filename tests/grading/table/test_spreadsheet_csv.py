@@ -12,11 +12,10 @@ from typing import TYPE_CHECKING
 import pytest
 from nbgrader.api import Gradebook
 
-from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.reporting.export_files import export
-from autograder.grading.table.roster import read_students_csv
 from autograder.grading.table.rows import Row, write_csv
 from autograder.grading.table.spreadsheet_csv import csv_rows, csv_text, defused, original
+from autograder.grading.table.students_csv import read_students_csv
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -52,6 +51,9 @@ pytestmark = pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning")
         ("a|  @b", "a|'  @b"),
         ("a;＝1", "a;'＝1"),
         ("a|−1;﹢2", "a|'−1;'﹢2"),
+        ("x,+1,y", "x,'+1,y"),
+        ('a,"=1', "a,'\"=1"),
+        ('a; "=1', "a;' \"=1"),
         ("", ""),
         ("   ", "   "),
         ("'=1", "'=1"),
@@ -75,7 +77,7 @@ def test_every_column_of_the_grades_is_defused(tmp_path: Path) -> None:
     write_csv(tmp_path / "grades.csv", [row])
     _, *rows = csv.reader(io.StringIO((tmp_path / "grades.csv").read_text()))
     assert rows == [
-        ["'=s", "'+a", "'-e", "1", "2", "'@st", "'=d e", '\'=HYPERLINK("x"),  =2', "-1", "", "", "", "'=n"]
+        ["'=s", "'+a", "'-e", "1", "2", "'@st", "'=d e", "'=HYPERLINK(\"x\"),'  =2", "-1", "", "", "", "'=n"]
     ]
 
 
@@ -95,7 +97,7 @@ def test_plain_nbgrader_export_is_defused_too(tiny: TinyClass, fake_engine: Fake
     rows = list(csv.DictReader(io.StringIO((tiny.path / "nbgrader_export.csv").read_text("utf-8-sig"))))
     wanted = ("student_id", "last_name", "email", "score", "max_score")
     assert {tuple(row[name] for name in wanted) for row in rows} == {
-        ("'-ada", "'=cmd,\" +1", "'@x", "14", "20"),
+        ("'-ada", "'=cmd,'\" +1", "'@x", "14", "20"),
         ("ben", "", "", "", "20"),
     }
 
@@ -114,7 +116,7 @@ def test_an_id_that_looks_like_a_formula_goes_out_defused_and_comes_back_as_it_i
         assert any(student in map(original, row) for row in csv_rows(text.encode())[0]), path
     # A table that this program wrote is a list of students again.
     (tiny.path / "students.csv").write_text(f"id,first_name\n{defused(student)},Ada\n")
-    assert [one.id for one in read_students_csv(ClassDirectory(tiny.path))] == [student]
+    assert [one.id for one in read_students_csv(tiny.path / "students.csv").students] == [student]
 
 
 def exported(tiny: TinyClass) -> list[Path]:
@@ -137,4 +139,6 @@ def test_a_table_is_read_as_excel_in_germany_or_an_old_mac_saves_it(
     data = text.encode(encoding)
     assert csv_rows(data) == ([["id", "first_name"], ["bär", "Jörg"]], separator)
     (tiny.path / "students.csv").write_bytes(data)
-    assert [(one.id, one.name) for one in read_students_csv(ClassDirectory(tiny.path))] == [("bär", "Jörg")]
+    assert [(one.id, one.name) for one in read_students_csv(tiny.path / "students.csv").students] == [
+        ("bär", "Jörg")
+    ]

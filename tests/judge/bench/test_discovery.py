@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, cast
 
-from autograder.judge.bench.discovery import NodeName, subject_nodes
+from autograder.judge.bench.discovery import NodeName, every_node, subject_nodes
 
 if TYPE_CHECKING:
     from rclpy.node import Node
@@ -46,4 +46,6 @@ def test_where_no_keeper_is_expected_none_is_left_out() -> None:
 
 
 def test_nodes_without_a_name_yet_are_left_out_and_each_name_counts_once() -> None:
-    assert subject_nodes(cast("Node", SeenBy("_NODE_NAME_UNKNOWN_", "a", "a")), "") == [NodeName("a", "/")]
+    judge = cast("Node", SeenBy("_NODE_NAME_UNKNOWN_", "a", "a"))
+    assert subject_nodes(judge, "") == [NodeName("a", "/")]
+    assert every_node(judge, "") == [NodeName("a", "/")] * 2

@@ -15,8 +15,7 @@ from autograder.judge.machine_fitness import SLOWEST, Patience
 
 
 def test_events_keep_their_order_and_their_data_as_it_was() -> None:
-    book = Recorder()
-    book.begin("part", {"a": 1})
+    book = Recorder("part", {"a": 1})
     numbers = [1]
     book.record("message", "/chatter", fields=numbers)
     numbers.append(2)
@@ -27,30 +26,19 @@ def test_events_keep_their_order_and_their_data_as_it_was() -> None:
     assert part.inputs == {"a": 1}
 
 
-def test_a_new_part_forgets_the_one_before() -> None:
-    book = Recorder()
-    book.begin("one", {})
-    book.record("log", "x", text="old")
-    book.begin("two", {})
-    assert book.part().events == ()
-
-
 def test_waiting_ends_at_the_event_and_not_at_the_limit() -> None:
     book = Recorder()
-    book.begin("part", {})
     threading.Timer(0.02, lambda: book.record("goal", "/fibonacci")).start()
     assert book.wait(lambda: bool(book.part().of("goal")), within=60.0, poll=60.0)
 
 
 def test_waiting_gives_up_at_its_limit() -> None:
     book = Recorder()
-    book.begin("part", {})
     assert not book.wait(lambda: False, within=0.01)
 
 
 def test_silence_ends_the_wait_and_every_event_puts_it_off() -> None:
     book = Recorder()
-    book.begin("part", {})
     asked: list[int] = []
 
     def speak_at_first() -> bool:
@@ -81,7 +69,6 @@ def test_a_crowded_machine_gives_more_time_and_the_judges_own_pace_stays(
 
 def test_a_flood_is_cut(monkeypatch: object) -> None:
     book = Recorder()
-    book.begin("part", {})
     for number in range(recorder.MAX_EVENTS + 5):
         book.record("message", "/flood", number=number)
     assert len(book.part().events) == recorder.MAX_EVENTS
@@ -89,7 +76,6 @@ def test_a_flood_is_cut(monkeypatch: object) -> None:
 
 def test_of_long_speech_the_end_is_kept_and_all_else_too() -> None:
     book = Recorder()
-    book.begin("part", {})
     book.record("request", "/add_two_ints", fields={"a": 1, "b": 2})
     book.record("output", "notebook", text="@workspace {}")
     for number in range(300):
@@ -103,7 +89,6 @@ def test_of_long_speech_the_end_is_kept_and_all_else_too() -> None:
 
 def test_huge_messages_are_cut() -> None:
     book = Recorder()
-    book.begin("part", {})
     book.record("looked", "list", fields=[1] * (recorder.MAX_TEXT + 5))
     text = "x" * 4_000_000
     for _ in range(recorder.MAX_TEXTS // recorder.MAX_TEXT + 5):
@@ -117,7 +102,6 @@ def test_huge_messages_are_cut() -> None:
 
 def test_of_lists_of_small_items_no_more_is_kept_than_of_texts() -> None:
     book = Recorder()
-    book.begin("part", {})
     for _ in range(20):
         book.record("subject", "started", accepted=[""] * recorder.MAX_TEXT)
     kept = [len(event.data["accepted"]) for event in book.part().events]
@@ -128,44 +112,21 @@ def test_of_lists_of_small_items_no_more_is_kept_than_of_texts() -> None:
 
 def test_what_is_no_text_can_be_written_down_all_the_same() -> None:
     book = Recorder()
-    book.begin("part", {})
     book.record("output", "notebook", text="Grüße \ud800")
     (event,) = book.part().events
     assert event.data["text"].encode() == "Grüße ?".encode()
 
 
-def test_what_a_run_said_is_not_taken_for_the_next_ones() -> None:
-    recorder = Recorder()
-    recorder.begin("first", {})
-    slow_reader = recorder.in_this_part()
-    slow_reader("output", "stdout", text="now")
-    assert [event.data["text"] for event in recorder.part().of("output")] == ["now"]
-    recorder.begin("second", {})
-    slow_reader("output", "stdout", text="late")
-    assert not recorder.part().events
-
-
 def test_an_end_is_behind_all_that_was_sent_before_and_keeps_its_moment() -> None:
     book, ended = Recorder(), threading.Event()
-    book.begin("part", {})
 
     def take_in() -> None:
         time.sleep(0.01)
         book.record("request", "/sent")
 
     book.take_in = take_in
-    book.end_of_this_part()("exited", ended.set, code=0)
+    book.end("exited", ended.set, code=0)
     request, end = book.part().events
     assert (request.kind, end.kind, end.name, end.data) == ("request", "subject", "exited", {"code": 0})
     assert end.t < request.t
-    assert ended.is_set()
-
-
-def test_the_end_of_a_run_is_not_one_of_the_next() -> None:
-    book, ended = Recorder(), threading.Event()
-    book.begin("part", {})
-    end = book.end_of_this_part()
-    book.begin("the next part", {})
-    end("exited", ended.set, code=0)
-    assert book.part().events == ()
     assert ended.is_set()

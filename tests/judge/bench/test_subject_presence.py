@@ -35,10 +35,9 @@ def _presence(
 ) -> tuple[Presence, Recorder]:
     """A subject's presence on a graph that shows this, and where it is written down."""
     monkeypatch.setattr(discovery, "survey", survey)
-    monkeypatch.setattr(discovery, "subject_nodes", lambda *_: nodes)
+    monkeypatch.setattr(discovery, "every_node", lambda *_: nodes)
     monkeypatch.setattr(discovery, "topic_ends", lambda *_: [])
     recorder = Recorder()
-    recorder.begin("a part", {})
     seen = cast("Subject", subject)
     return Presence(cast("Any", None), recorder, seen, Pace.FAST, announced=lambda: announced), recorder
 

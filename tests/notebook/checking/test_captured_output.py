@@ -12,6 +12,7 @@ from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
 import pytest
+from rclpy.logging import get_logger
 from rclpy.node import Node
 from std_msgs.msg import String
 
@@ -140,6 +141,19 @@ def test_a_stream_that_lets_nobody_change_it_is_heard_by_its_name(
     assert sys.stdout is own
 
 
+def test_a_log_line_that_nobody_is_shown_is_not_told(told: list[str]) -> None:
+    log = get_logger("listener")
+
+    def say() -> None:
+        log.debug("below the level")
+        for text in ("one", "two"):
+            log.info(text, once=True)
+
+    with CapturedOutput(lambda line, _: told.append(line)):
+        in_a_thread(say)
+    assert told == ["one"]
+
+
 @pytest.mark.ros
 def test_a_listener_with_a_logger_of_pythons_own_passes() -> None:
     log = logging.Logger("listener")
@@ -156,6 +170,23 @@ def test_a_listener_with_a_logger_of_pythons_own_passes() -> None:
     with a_judge() as checked:
         verdict = checked("lab_1_2.listener", ListenerNode)
     assert verdict.score == verdict.max_score
+
+
+@pytest.mark.ros
+def test_a_listener_that_logs_at_a_level_that_is_not_shown_says_nothing() -> None:
+    class ListenerNode(Node):
+        def __init__(self) -> None:
+            super().__init__("listener_node")
+            self.create_subscription(String, "chatter", self.hear, 10)
+
+        def hear(self, message: String) -> None:
+            self.get_logger().debug(message.data)  # type: ignore[no-untyped-call]
+
+    with a_judge() as checked:
+        verdict = checked("lab_1_2.listener", ListenerNode)
+    assert verdict.diagnosis is not None
+    assert verdict.diagnosis.key == "not_logged"
+    assert "debug(...) are not shown" in verdict.diagnosis.next_step
 
 
 def test_a_subject_that_asks_for_input_finds_none_and_the_front_end_shows_no_box(

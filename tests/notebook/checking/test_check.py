@@ -11,12 +11,18 @@ import pytest
 from autograder import course, exercises
 from autograder.messages.judge_messages import SOCKET_VARIABLE
 from autograder.notebook.checking import check as check_cell
+from autograder.notebook.checking.card_display import Progress
 from autograder.student import check_journal
 from autograder.student.check_journal import JournalEntry
 from autograder.verdict import State, Verdict
+from autograder.workspaces import sources
 
 if TYPE_CHECKING:
+    import subprocess
+    from collections.abc import Callable
     from pathlib import Path
+
+    RunScript = Callable[..., subprocess.CompletedProcess[str]]
 
 
 def passed(exercise: str) -> Verdict:
@@ -101,3 +107,29 @@ def test_a_class_whose_name_was_given_to_its_object_is_told_so(monkeypatch: pyte
         check_cell.check("lab_9_1.talker", talker)
     with pytest.raises(TypeError, match="takes your class or function itself"):
         check_cell.check("lab_9_1.talker", Talker())
+
+
+@pytest.mark.usefixtures("shown")
+def test_a_check_that_cannot_be_kept_says_so(kept: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    kept.mkdir()  # as on a full disk, nothing can be written there
+    check_cell.record_check(passed("lab_1_2.talker"))
+    assert f"This check is not in your progress, because {kept} cannot be written" in capsys.readouterr().out
+
+
+@pytest.mark.usefixtures("shown")
+def test_on_a_full_disk_no_workspace_is_judged(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sources, "ROOM", 1 << 62)
+    verdict = check_cell._ask("lab_1_1.hello", tmp_path, Progress())
+    assert verdict is not None
+    assert verdict.state is State.NOT_CHECKED
+    assert verdict.diagnosis is not None
+    assert f"The disk with {tmp_path} is full" in verdict.diagnosis.text
+
+
+@pytest.mark.ros
+def test_an_exercise_that_does_not_exist_is_answered_with_those_that_are_near(run_script: RunScript) -> None:
+    done = run_script("from autograder.notebook import check\ncheck('lab_1_2.taker', print)")
+    shown = " ".join(done.stdout.split())
+    assert "no exercise is called 'lab_1_2.taker'; did you mean lab_1_2.talker" in shown
+    assert "Correct the name of the exercise in this cell, and run the cell again." in shown
+    assert "instructor" not in shown

@@ -104,6 +104,14 @@ from std_msgs.msg import String
     assert said in done.stderr.splitlines()[-1]
 
 
+@pytest.mark.parametrize(("chosen", "used"), [(None, "Release"), ("Debug", "Debug")])
+def test_a_cell_builds_interfaces_as_a_check_does_so_that_the_check_can_use_them(
+    run_script: RunScript, chosen: str | None, used: str
+) -> None:
+    script = "import autograder.notebook, os; print(os.environ['CMAKE_BUILD_TYPE'])"
+    assert run_script(script, CMAKE_BUILD_TYPE=chosen).stdout == f"{used}\n"
+
+
 def test_the_users_own_settings_stay(run_script: RunScript) -> None:
     script = """
 import os

@@ -18,7 +18,7 @@ def laid(boxes: str, *arrows: str) -> GraphLayout:
 
 
 def column(layout: GraphLayout, box: str) -> float:
-    return layout.centres[box][0]
+    return layout.centers[box][0]
 
 
 def test_arrows_point_to_the_right() -> None:
@@ -43,7 +43,7 @@ def test_no_arrow_begins_or_ends_where_another_does(arrows: tuple[str, ...]) -> 
     assert len(set(ends)) == len(ends)
     # Also where there is a box between, an arrow passes beside it.
     for arrow in layout.arrows:
-        for box, (along, beside) in layout.centres.items():
+        for box, (along, beside) in layout.centers.items():
             for x, y in arrow.points[1:-1]:
                 assert abs(x - along) >= 50 or abs(y - beside) >= 20, f"{arrow} runs through {box}"
 
@@ -54,7 +54,7 @@ def test_each_arrow_begins_and_ends_on_the_edge_of_its_box(arrows: tuple[str, ..
     assert [(arrow.start, arrow.end) for arrow in layout.arrows] == [(arrow[0], arrow[1]) for arrow in arrows]
     for arrow in layout.arrows:
         for box, (x, y) in ((arrow.start, arrow.points[0]), (arrow.end, arrow.points[-1])):
-            along, beside = layout.centres[box]
+            along, beside = layout.centers[box]
             assert abs(x - along) == 50
             assert abs(y - beside) < 20
         # It leaves to the side on which the other box is, and goes one way only.
@@ -72,7 +72,7 @@ def test_an_arrow_that_is_given_twice_is_drawn_once() -> None:
 
 def test_arrows_do_not_cross_without_need() -> None:
     layout = laid("abxy", "ay", "bx")
-    height = {box: place for box, (_, place) in layout.centres.items()}
+    height = {box: place for box, (_, place) in layout.centers.items()}
     assert (height["a"] < height["b"]) == (height["y"] < height["x"])
 
 
@@ -88,11 +88,11 @@ def test_boxes_never_overlap_and_nothing_leaves_the_picture() -> None:
         arrows = [(chance.choice(boxes), chance.choice(boxes)) for _ in range(chance.randint(0, 15))]
         layout = lay_out(sizes, arrows, GAP)
         for one, other in itertools.combinations(boxes, 2):
-            (x1, y1), (x2, y2) = layout.centres[one], layout.centres[other]
+            (x1, y1), (x2, y2) = layout.centers[one], layout.centers[other]
             beside = abs(y1 - y2) - 40 >= GAP_BESIDE - 1e-6
             assert beside or abs(x1 - x2) - (sizes[one][0] + sizes[other][0]) / 2 >= GAP - 1e-6
         width, height = layout.extent
-        for box, (x, y) in layout.centres.items():
+        for box, (x, y) in layout.centers.items():
             assert sizes[box][0] / 2 - 1e-6 <= x <= width - sizes[box][0] / 2 + 1e-6
             assert 20 - 1e-6 <= y <= height - 20 + 1e-6
         assert all(0 <= x <= width and 0 <= y <= height for arrow in layout.arrows for x, y in arrow.points)

@@ -15,7 +15,7 @@ import rclpy
 from rclpy.executors import SingleThreadedExecutor
 from std_msgs.msg import String
 
-from autograder.messages.judge_messages import Output
+from autograder.messages.run_messages import Output
 
 check_module = sys.modules["autograder.notebook.checking.check"]
 

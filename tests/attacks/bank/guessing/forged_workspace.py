@@ -10,7 +10,7 @@ import sys
 
 import rclpy
 
-from autograder.messages.judge_messages import Output
+from autograder.messages.run_messages import Output
 
 package = {"name": "my_robot_pkg", "build_type": "ament_python", "programs": ["simple_node = my_robot_pkg.simple_node:main"], "interfaces": [], "dependencies": []}
 report = {"phase": "built", "built": True, "trouble": "", "package": "", "line": "", "log": "", "packages": [package], "missing": ""}

@@ -8,7 +8,7 @@ import threading
 import time
 
 import autograder.notebook.checking.judge_link as judge_link
-from autograder.messages.judge_messages import Output, Start
+from autograder.messages.run_messages import Output, Start
 
 
 class ListenerNode(Node):

@@ -10,11 +10,13 @@ window._JUPYTERLAB["ros2-course-buttons"] = (() => {
 
   const CHECK = /^check\((["'])([^"']+)\1,\s*(.+?)\s*\)\s*$/m;
   const NEXT = /Next: \[[^\]]*\]\(([^)#]+\.ipynb)\)/;
-  const ENDED = ["restarting", "autorestarting", "terminating", "dead"]; // states of a kernel
+  const CRASHED = ["autorestarting", "dead"]; // states of a kernel that nobody has ended
+  const ENDED = ["restarting", "terminating", ...CRASHED];
   const NAME = /^[A-Za-z_]\w*$/;
 
   // For each key, metres a second ahead and radians a second to the left.
   const KEYS = { ArrowUp: [0.5, 0], ArrowDown: [-0.5, 0], ArrowLeft: [0, 1.5], ArrowRight: [0, -1.5] };
+  const SILENCE = 20; // seconds until it is sure that Validate does not begin
   const AGAIN = 300; // milliseconds; the robot obeys a command for a second
 
   const SHOWN = `
@@ -62,8 +64,8 @@ window._JUPYTERLAB["ros2-course-buttons"] = (() => {
       shared = scope;
     },
     async get() {
-      const [{ Notification }, { INotebookTracker }] = await Promise.all(
-        ["@jupyterlab/apputils", "@jupyterlab/notebook"].map(module_),
+      const [{ Notification }, { INotebookTracker }, { PageConfig }] = await Promise.all(
+        ["@jupyterlab/apputils", "@jupyterlab/notebook", "@jupyterlab/coreutils"].map(module_),
       );
       const say = message => Notification.info(message, { autoClose: 5000 });
 
@@ -97,7 +99,7 @@ window._JUPYTERLAB["ros2-course-buttons"] = (() => {
       }
 
       // A check ends with its kernel, or when its page is closed: its card must not say for ever that it goes on.
-      function endCards(panel, why) {
+      function endCards(panel, whyOf) {
         for (const cell of panel.content.widgets) {
           const outputs = cell.model.type === "code" ? cell.model.outputs : [];
           for (let at = 0; at < outputs.length; at++) {
@@ -107,6 +109,7 @@ window._JUPYTERLAB["ros2-course-buttons"] = (() => {
             const page = new DOMParser().parseFromString(html, "text/html");
             const card = page.querySelector(".agc-waiting");
             if (!card) continue;
+            const why = whyOf(cell);
             card.classList.replace("agc-waiting", "agc-over");
             card.querySelector(".agc-state").textContent = why;
             card.setAttribute("aria-label", why);
@@ -115,13 +118,30 @@ window._JUPYTERLAB["ros2-course-buttons"] = (() => {
         }
       }
 
+      // Why a check has no result whose kernel has ended. If the check itself ends it, a third one would, too.
+      const crashed = new WeakSet(); // the cells whose check has ended with a crash
+      function whyEnded(cell, crash) {
+        const ended = "The kernel ended during this check";
+        const again = crash && crashed.has(cell.model);
+        if (crash) crashed.add(cell.model);
+        if (!again) return `${ended}, so there is no result: check again.`;
+        return `${ended} again, so your code ends it. Look at the cell that defines ${CHECK.exec(text(cell))?.[3]}, and at what `
+          + "that code calls: exit(), os._exit(), a call of itself without an end, or a library that crashes.";
+      }
+
       function endCardsWithKernel(panel) {
         const { context, sessionContext } = panel;
+        let crash = false;
         sessionContext.statusChanged.connect((_, status) => {
-          if (ENDED.includes(status)) endCards(panel, "The kernel ended during this check, so there is no result: check again.");
+          crash ||= CRASHED.includes(status);
+          // JupyterLab says "restarting" first if a kernel has crashed, too, and "autorestarting" just after.
+          if (ENDED.includes(status)) setTimeout(() => {
+            endCards(panel, cell => whyEnded(cell, crash));
+            crash = false;
+          });
         });
         Promise.all([context.ready, sessionContext.ready]).then(
-          () => endCards(panel, "The notebook was closed during this check, so there is no result: check again."),
+          () => endCards(panel, () => "The notebook was closed during this check, so there is no result: check again."),
         );
       }
 
@@ -203,11 +223,30 @@ window._JUPYTERLAB["ros2-course-buttons"] = (() => {
         say("Drive with the arrow keys. Any other key ends it.");
       }
 
+      // Say how far nbgrader's Validate is, which runs the whole notebook in a new kernel.
+      async function tellOfValidation(panel) {
+        const url = `${PageConfig.getBaseUrl()}course/validation?notebook=${encodeURIComponent(panel.context.path)}`;
+        const id = Notification.emit("Validate runs your notebook in a new kernel.", "in-progress", { autoClose: false });
+        for (let silent = 0; silent < SILENCE; silent++) {
+          await new Promise(done => setTimeout(done, 1000));
+          const { at } = await fetch(url).then(answer => answer.json()).catch(() => ({}));
+          if (at === undefined) continue; // it has not begun yet, or has ended
+          silent = SILENCE - 3;
+          const of = panel.content.widgets.length;
+          if (at) Notification.update({ id, message: `Validate: cell ${at} of ${of} runs, ${of - at} are left.` });
+        }
+        Notification.dismiss(id);
+      }
+
       const plugin = {
         id: "ros2-course-buttons:buttons",
         autoStart: true,
         optional: [INotebookTracker],
         activate(app, tracker) {
+          document.addEventListener("click", event => {
+            const panel = notebook(app);
+            if (panel && event.target.closest?.("jp-button, button")?.textContent.trim() === "Validate") tellOfValidation(panel);
+          }, true);
           tracker?.widgetAdded.connect((_, panel) => endCardsWithKernel(panel));
           const style = document.createElement("style");
           style.textContent = SHOWN;

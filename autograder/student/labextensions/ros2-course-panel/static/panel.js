@@ -13,7 +13,7 @@ window._JUPYTERLAB["ros2-course-panel"] = (() => {
   const DIALOGS = `body .jp-Dialog-content { box-sizing: border-box; max-width: min(1000px, 100vw - 16px); }
     body .jp-Dialog-content pre { overflow-wrap: anywhere; white-space: pre-wrap; }`;
 
-  // Where a student writes there is a coloured edge. A given cell takes no key, and says so while it has the cursor.
+  // Where a student writes there is a colored edge. A given cell takes no key, and says so while it has the cursor.
   const CELLS = `.jp-NotebookPanel .jp-Notebook .jp-CodeCell .jp-InputArea .jp-InputArea-editor:not(:has(.jp-mod-readOnly)) {
       border-left: 4px solid var(--jp-success-color1, #2f8f57);
     }
@@ -23,7 +23,7 @@ window._JUPYTERLAB["ros2-course-panel"] = (() => {
       color: var(--jp-content-font-color1, #222); background: var(--jp-layout-color2, #eee);
     }`;
 
-  // JupyterLab paints what is of this class in the colour of its theme.
+  // JupyterLab paints what is of this class in the color of its theme.
   const ICON = `<svg xmlns="http://www.w3.org/2000/svg" width="16" viewBox="0 0 24 24"><g class="jp-icon3" fill="#616161">
     <path d="M5 6h2v12H5zM7 11h10v2H7z"/><circle cx="6" cy="4.5" r="3"/><circle cx="6" cy="19.5" r="3"/><circle cx="18" cy="12" r="3"/>
   </g></svg>`;

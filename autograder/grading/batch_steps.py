@@ -1,0 +1,385 @@
+"""The steps of a run over a class: :data:`autograder.grading.batch.FLOW` lists them in their order."""
+
+from __future__ import annotations
+
+import contextlib
+import functools
+import time
+from typing import TYPE_CHECKING
+
+from autograder.command_name import COMMAND
+from autograder.grading.batch_work import Work, due_dates, find_work, without_grade, would_change
+from autograder.grading.class_checks import changed_master_warnings, limits_of
+from autograder.grading.classes import gradebook_reading
+from autograder.grading.classes.gradebook_reading import SubmissionEntry
+from autograder.grading.collecting.submitted_folder import misplaced_files, rename_decomposed_folders
+from autograder.grading.course_version import course_version
+from autograder.grading.grading_errors import MasterUnusable, is_disk_full
+from autograder.grading.reporting.grade_report import GradeReport
+from autograder.grading.running import execution_backends
+from autograder.grading.running.batch_progress import BatchProgress, Timings, plain_line
+from autograder.grading.table.rows import rows_of, write_csv
+from autograder.grading.table.student_list import enter_roster
+from autograder.grading.table.weighted_rows import read_what_counts, true_rows
+from autograder.grading.tasks.source_points import check_release, read_released
+from autograder.grading.tasks.submission_fingerprints import Fingerprints
+from autograder.grading.tasks.submission_times import handed_in_at
+
+# Some modules are imported inside functions, because they import nbgrader, which takes a second.
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+    from rich.console import Console
+
+    from autograder.grading.batch_work import AskedFor
+    from autograder.grading.class_store import ClassStore
+    from autograder.grading.classes.class_directory import ClassDirectory, Submission
+    from autograder.grading.grading_task import Task
+    from autograder.grading.reporting.class_table import Difference
+    from autograder.grading.result_writer import Writer
+    from autograder.grading.running.execution_backends import Execute
+    from autograder.grading.running.task_dispatcher import Done
+    from autograder.grading.table.roster import Roster
+    from autograder.grading.table.rows import Row
+
+
+class Batch:
+    """A run over a class. Its public methods are the steps of :data:`autograder.grading.batch.FLOW`.
+
+    A step gets what the step before it returned, or yields one by one.
+
+    Args:
+        directory: The class, which this process has locked.
+        asked: The chosen assignments and students.
+        backend: Finds the workers that execute tasks.
+        stack: Ends what the run began.
+        again: True to execute every notebook again.
+        feedback: True to make feedback pages.
+        dry_run: True to leave the gradebook unchanged.
+
+    Raises:
+        MasterUnusable: No assignment of the class can be graded.
+    """
+
+    def __init__(
+        self,
+        directory: ClassDirectory,
+        store: ClassStore,
+        console: Console,
+        roster: Roster,
+        asked: AskedFor,
+        backend: contextlib.AbstractContextManager[Execute],
+        stack: contextlib.ExitStack,
+        *,
+        again: bool,
+        feedback: bool,
+        dry_run: bool,
+    ) -> None:
+        self._began = time.monotonic()
+        self._backend, self._stack = backend, stack
+        self._execute: Execute | None = None
+        self._again = again
+        self._roster = roster
+        self._asked = asked
+        self._dry_run = dry_run
+        self._directory = directory
+        self._store = store
+        self._console = console
+        self._fingerprints = Fingerprints(directory)
+        # Read before any step, so that a class without a usable source is refused while it is unchanged.
+        self._released = released = read_released(directory, store, self._fingerprints)
+        self._cells = released.cells
+        self._what_counts = read_what_counts(directory, released.cells)
+        if not released.cells and released.unusable:
+            raise MasterUnusable(next(iter(released.unusable.values())))
+        self._problems: list[str] = []
+        self._notices: list[str] = []
+        self._timings = Timings()
+        self._feedback = feedback
+        self._executed = 0
+        self._reused = 0
+        self._written = 0
+
+    @functools.cached_property
+    def _writer(self) -> Writer:
+        from autograder.grading.result_writer import Writer
+
+        return Writer(self._directory, self._store)
+
+    def find(self, _: Iterable[Work]) -> list[Work]:
+        """Return the chosen submissions of the class, and note what has to be said about others.
+
+        Raises:
+            GradingError: The gradebook does not contain a chosen assignment as it is in the source, or a chosen name
+                is not an assignment or a student.
+        """
+        assignments = self._asked.assignments
+        asked = {name: cells for name, cells in self._cells.items() if not assignments or name in assignments}
+        # An assignment that cannot be graded has no cells; `find_work` says so, more exactly than the gradebook.
+        if asked or not assignments:
+            check_release(self._directory, asked)
+        # A dry run changes neither the gradebook nor the folder ``submitted``.
+        if not self._dry_run:
+            enter_roster(self._directory)
+            self._notices += rename_decomposed_folders(self._directory)
+        beside, notices = misplaced_files(self._directory)
+        self._notices += notices
+        for text in changed_master_warnings(self._directory, self._store, assignments or self._cells):
+            self._notices.append(text)
+            plain_line(self._console, f"note: {text}")
+        work = find_work(
+            self._directory, self._asked, self._released, self._roster, self._fingerprints, beside
+        )
+        self._works, self._others, self._refused = work.works, work.others, work.refused
+        self._notices += work.notices
+        return work.works
+
+    def settle(self, works: list[Work]) -> list[Work]:
+        """Mark the submissions whose present files have their grades in the gradebook. The others have to be graded."""
+        self._entries = gradebook_reading.read_entries(self._directory.gradebook_url)
+        self._entered = self._store.entered()
+        for work in self._others:
+            self._settle(work)
+        older = sum(
+            work.key in self._entered and self._entered[work.key].course != course_version() for work in works
+        )
+        if older:
+            self._notices.append(
+                f"{older} submissions had been graded with another version of the course. To see whose points have "
+                f"changed, type `{COMMAND} compare` after the run, or `{COMMAND} grade --dry-run` before a run."
+            )
+        if self._again:
+            self._store.forget_results(work.submission for work in works)
+            return works
+        for work in works:
+            self._settle(work)
+        return works
+
+    def find_workers(self, works: list[Work]) -> list[Work]:
+        """Find out who executes tasks, if something has to be graded.
+
+        Raises:
+            GradingError: Nothing can be executed.
+        """
+        if any(not work.written for work in works):
+            self._execute = self._stack.enter_context(self._backend)
+        return works
+
+    def take_back(self, works: list[Work]) -> list[Work]:
+        """Set to zero the grades of all submissions that still have to be graded."""
+        unsettled = [work.submission for work in works if not work.written]
+        if unsettled and not self._dry_run:
+            self._writer.take_back(unsettled)
+        return works
+
+    def make_tasks(self, works: list[Work]) -> Iterator[Task]:
+        """Yield the tasks to execute. Each task is made only when a worker is free, to save memory."""
+        for work in works:
+            if work.rows is not None:
+                continue
+            for task in self._tasks_of(work.submission):
+                if task.problem:
+                    work.results[task.notebook] = task, task.without_execution()
+                elif task.notebook not in work.results:
+                    yield task
+
+    def execute(self, tasks: Iterable[Task]) -> Iterator[Done]:
+        """Execute tasks, and yield each result as soon as it is there."""
+        waiting = [work for work in self._works if work.rows is None]
+        if not waiting or self._execute is None:
+            return
+        missing = sum(len(work.notebooks) - len(work.results) for work in waiting)
+        longest = limits_of(self._directory).longest
+        with BatchProgress(self._console, missing, longest=longest) as progress:
+            self._timings.first_started = time.monotonic() - self._began
+            results = self._execute(tasks, lambda task: progress.started(task.label))
+            with contextlib.closing(results):
+                for done in results:
+                    self._timings.last_ended = time.monotonic() - self._began
+                    yield done
+                    progress.finished(done.task.label, failed=bool(done.execution.trouble))
+
+    def keep(self, results: Iterable[Done]) -> Iterator[Work]:
+        """Store each result, and yield each submission whose results are complete.
+
+        Submissions for which nothing has to be executed come first, because nothing is executed before the first result
+        is asked for.
+        """
+        for work in self._works:
+            if work.written:
+                self._reused += len(work.notebooks)
+            else:
+                self._take_stored_results(work)
+            if work.written or work.complete:
+                yield work
+        works = {work.key: work for work in self._works}
+        for done in results:
+            work, task = works[done.task.student, done.task.assignment], done.task
+            self._executed += 1
+            self._timings.count(task.cells, done.execution)
+            execution = self._store.keep(task, done.execution)
+            if execution.trouble:
+                self._problems.append(f"{task.label} could not be checked: {execution.trouble}")
+            work.results[task.notebook] = task, execution
+            if work.complete:
+                yield work
+        # No notebook of these had to be executed after all, because none could be read.
+        yield from [work for work in self._works if work.rows is None and work.complete]
+
+    def enter(self, works: Iterable[Work]) -> Iterator[tuple[Work, SubmissionEntry]]:
+        """Enter submissions into the gradebook and ``autograded``, and yield each with its entry in the gradebook.
+
+        In a dry run, enter and yield nothing.
+        """
+        for work in works:
+            if work.written:
+                if not self._dry_run:
+                    yield work, self._keep_time(work)
+                continue
+            rows = tuple(row for pair in work.pairs for row in rows_of(*pair))
+            if self._dry_run:
+                work.rows = rows
+            elif self._write(work, rows):
+                yield work, gradebook_reading.read_entry(self._directory.gradebook_url, *work.key)
+            work.results.clear()
+
+    def show(self, entered: Iterable[tuple[Work, SubmissionEntry]]) -> Iterator[Work]:
+        """Make the feedback pages of submissions, except of those whose pages show what the gradebook contains."""
+        for work, entry in entered:
+            is_shown = work.shown == entry.shown() and self._directory.has_pages(
+                work.submission, work.notebooks
+            )
+            if self._feedback and not is_shown:
+                self._make_pages(work, entry)
+            yield work
+
+    def report(self, works: Iterable[Work]) -> GradeReport:
+        """Take all submissions through the steps before, return the report on them, and write ``grades.csv``.
+
+        ``grades.csv`` contains the whole class.
+        """
+        for _ in works:
+            pass
+        url = self._directory.gradebook_url
+        submissions = {work.key: work for work in (*self._works, *self._others)}
+        entries = gradebook_reading.read_entries(url)
+        # For a submission that this run did not grade, use the diagnoses from the run that entered its points.
+        judged = {key: one.rows for key, one in self._entered.items()}
+        judged |= {key: work.rows for key, work in submissions.items() if work.rows is not None}
+        for student, assignment in sorted((entries.keys() & self._entered.keys()) - submissions.keys()):
+            self._notices.append(
+                f"{student}/{assignment} is no longer in submitted; its points stay in the gradebook."
+            )
+        rows = true_rows(
+            self._roster,
+            self._cells,
+            judged,
+            entries,
+            submissions,
+            what_counts=self._what_counts,
+            zone=self._directory.time_zone,
+        )
+        self._notices += self._roster.notices(self._directory.assignments(), entries, self._roster.students)
+        changes: list[Difference] = []
+        if self._dry_run:
+            changes = would_change(self._directory, self._works, entries, self._cells)
+        else:
+            write_csv(self._directory.path / "grades.csv", rows)
+            self._store.keep_run(course_version(), rows)
+        return GradeReport(
+            path=self._directory.path,
+            rows=tuple(row for row in rows if self._asked.has(row.student, row.assignment)),
+            refused=tuple(one for one in self._refused if self._asked.tells_of(one, self._directory.path)),
+            problems=tuple(self._problems),
+            notices=tuple(self._notices),
+            would_change=tuple(changes) if self._dry_run else None,
+            executed=self._executed,
+            reused=self._reused,
+            written=self._written,
+            seconds=time.monotonic() - self._began,
+            timings=self._timings,
+            note=execution_backends.UNBOXED_NOTE if self._directory.is_sandbox_off else "",
+            gradebook=gradebook_reading.gradebook_file(url),
+            due=due_dates(self._directory, self._asked.assignments or self._cells),
+        )
+
+    def _settle(self, work: Work) -> None:
+        """Mark a submission as written if the gradebook contains the grades of its present files."""
+        entered, entry = self._entered.get(work.key), self._entries.get(work.key, SubmissionEntry())
+        if entered is None or not entered.is_in(entry):
+            return
+        if not self._directory.has_converted(work.submission, entered.tasks):
+            return
+        try:
+            handed_in_at(work.submission.folder, believed=entry.handed_in)
+        except ValueError:
+            return  # the timestamp file is invalid; the writer will reject the submission, with the reason
+        if entered.fingerprint != work.fingerprint:
+            # The files have changed, but perhaps no cell has: for example, the student saved the notebook again, or
+            # another part of the course changed.
+            if entered.tasks != {task.notebook: task.key() for task in self._tasks_of(work.submission)}:
+                return
+            self._store.note_fingerprint(work.submission, work.fingerprint)
+        work.rows = entered.rows
+        work.shown = entered.shown
+        work.written = True
+
+    def _take_stored_results(self, work: Work) -> None:
+        stored = self._store.results(*work.key)
+        for task in self._tasks_of(work.submission) if stored else ():
+            if (key := task.key()) in stored:
+                self._reused += 1
+                work.results[task.notebook] = task, stored[key]
+
+    def _tasks_of(self, submission: Submission) -> list[Task]:
+        from autograder.grading.tasks.task_making import tasks_of
+
+        with self._timings.measure("rebuild"):
+            return tasks_of(self._directory, submission)
+
+    def _write(self, work: Work, rows: tuple[Row, ...]) -> bool:
+        """Write the results of a submission. Return False if the gradebook now has zero points for it."""
+        from autograder.grading.result_writer import NotWritten
+
+        try:
+            with self._timings.measure("gradebook"):
+                if self._fingerprints.of(work.submission) != work.fingerprint:
+                    # The files changed during the run, so the tasks may have been made from files with another
+                    # fingerprint.
+                    name = f"{work.submission.student}/{work.submission.assignment}"
+                    raise NotWritten(f"{name} was changed while it was graded: grade it again")
+                self._writer.write(work.submission, work.fingerprint, work.pairs, rows)
+        except NotWritten as error:
+            if is_disk_full(error):
+                raise
+            self._problems.append(str(error))
+            work.rows = tuple(without_grade(row) for row in rows)
+        else:
+            work.rows = rows
+            work.written = True
+            self._written += 1
+        return work.written
+
+    def _keep_time(self, work: Work) -> SubmissionEntry:
+        """Enter a changed submission time into the gradebook, and compute the late penalty again."""
+        entry = self._entries.get(work.key, SubmissionEntry())
+        at = handed_in_at(work.submission.folder, believed=entry.handed_in)
+        moved = at is not None and at != entry.handed_in
+        if not (moved or entry.is_late or entry.penalty):
+            return entry
+        with self._timings.measure("gradebook"):
+            self._writer.enter_time(work.submission, at if moved else None)
+        return gradebook_reading.read_entry(self._directory.gradebook_url, *work.key)
+
+    def _make_pages(self, work: Work, entry: SubmissionEntry) -> None:
+        submission = work.submission
+        with self._timings.measure("feedback"):
+            is_made = self._writer.write_feedback(submission)
+        if is_made:
+            self._store.note_shown(submission, entry.shown())
+        else:
+            log = self._directory.state / "nbgrader.log"
+            self._problems.append(
+                f"feedback for {submission.student}/{submission.assignment} could not be made (see {log})"
+            )

@@ -1,0 +1,205 @@
+"""Makes the sample class of ``demo``, with right, wrong and broken submissions, as a data file describes them."""
+
+from __future__ import annotations
+
+import hashlib
+import shutil
+import tomllib
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import msgspec
+
+from autograder import course, standard_output
+from autograder.boxes import sandbox
+from autograder.execution.executed_cells import CellType
+from autograder.grading.batch import grade
+from autograder.grading.classes.class_directory import CONFIG_NAME, STATE_NAME, SUFFIX, switch_sandbox_off
+from autograder.grading.grading_errors import GradingError
+from autograder.grading.new_classes.new_class import CONFIG, new_class
+from autograder.grading.rebuilding import nbformat_nodes
+from autograder.grading.rebuilding.notebook_rebuilding import grade_id
+from autograder.grading.reporting.grade_report import show
+from autograder.masters.master_files import lab_name, masters
+
+if TYPE_CHECKING:
+    from nbformat import NotebookNode
+    from rich.console import Console
+
+    from autograder.grading.reporting.grade_report import GradeReport
+
+DATA = Path(__file__).with_suffix(".toml")
+CELL_SECONDS = 8.0
+"""The time limit of a cell in seconds. It is short, because one sample student wrote an endless loop."""
+NOTEBOOK_SECONDS = 120.0
+BANK = Path("tests", "submissions", "notebooks")
+"""The path, in the course, of a folder with right and wrong sample answers."""
+_STAMP = "sample"
+
+
+@dataclass(frozen=True)
+class SampleNotebook:
+    """The description of one student's notebook, with the fields that the data file ``sample_class.toml`` explains."""
+
+    student: str
+    assignment: str
+    about: str
+    expected: dict[str, tuple[float, str]]
+    bank: tuple[str, ...] = ()
+    answers: dict[str, str] = field(default_factory=dict)
+    delete: tuple[str, ...] = ()
+    duplicate: tuple[str, ...] = ()
+    retype: dict[str, CellType] = field(default_factory=dict)
+    insert: dict[str, str] = field(default_factory=dict)
+    unsolved: bool = False
+    file: str = ""
+
+
+@dataclass(frozen=True)
+class _Answer:
+    """A student's text for a solution cell, and the texts of the cells that the student added before it."""
+
+    source: str
+    extra: tuple[str, ...]
+
+
+def sample_notebooks() -> tuple[SampleNotebook, ...]:
+    """Return the descriptions of the sample class's notebooks."""
+    data = tomllib.loads(DATA.read_text(encoding="utf-8"))
+    return msgspec.convert(data["notebook"], tuple[SampleNotebook, ...])
+
+
+def _submit_sample(path: Path) -> None:
+    """Write every sample notebook into ``submitted`` of the class at ``path``."""
+    for notebook in sample_notebooks():
+        folder = path / "submitted" / notebook.student / notebook.assignment
+        folder.mkdir(parents=True, exist_ok=True)
+        text = notebook.file or nbformat_nodes.text(made_notebook(path, notebook))
+        (folder / f"{notebook.assignment}{SUFFIX}").write_text(text, encoding="utf-8")
+
+
+def demo(path: Path, *, console: Console | None = None) -> GradeReport:
+    """Make the sample class, grade it, and print the results.
+
+    If an earlier call made the class from the same version of the course, the class is only graded again, which takes
+    seconds. If this machine cannot run sandboxes, the class is graded without them, which is safe because the course's
+    own samples are harmless.
+
+    Args:
+        path: The class directory, which is made if it does not exist.
+        console: The console to print on; by default standard output.
+
+    Raises:
+        GradingError: ``path`` contains something other than the sample class, or grading is not possible.
+    """
+    console = console or standard_output.console()
+    if sandbox.why_impossible():
+        switch_sandbox_off(path)
+    _make(path, console)
+    report = grade(path)
+    show(report, console)
+    return report
+
+
+def _make(path: Path, console: Console) -> None:
+    stamp = path / STATE_NAME / _STAMP
+    version = _version(course.root())
+    if stamp.is_file():
+        if stamp.read_text() == version:
+            return
+        console.print(f"The course has changed: making {path} again.", highlight=False)
+        shutil.rmtree(path)
+    elif (path / CONFIG_NAME).exists():
+        raise GradingError(
+            f"{path} contains a class that is not the sample. Choose another folder: autograder demo FOLDER"
+        )
+    new_class(
+        path,
+        course.root(),
+        assignments=sorted({notebook.assignment for notebook in sample_notebooks()}),
+        cell_seconds=CELL_SECONDS,
+        notebook_seconds=NOTEBOOK_SECONDS,
+    )
+    _submit_sample(path)
+    stamp.write_text(version)
+
+
+def _version(root: Path) -> str:
+    """Return a hash of all files from which the sample class is made."""
+    digest = hashlib.sha256(DATA.read_bytes() + CONFIG.encode())
+    notebooks = sample_notebooks()
+    names = {notebook.assignment for notebook in notebooks}
+    used = [path for path in masters(root) if lab_name(path) in names]
+    answers = [
+        root / BANK / file for file in sorted({file for notebook in notebooks for file in notebook.bank})
+    ]
+    for path in (*used, *answers):
+        digest.update(path.read_bytes())
+    return digest.hexdigest()
+
+
+def made_notebook(path: Path, wanted: SampleNotebook) -> NotebookNode:
+    """Return a sample student's notebook.
+
+    Args:
+        path: The class, with notebooks in ``source`` and ``release``.
+        wanted: The description of the notebook.
+    """
+    name = f"{wanted.assignment}{SUFFIX}"
+    notebook = nbformat_nodes.read((path / "release" / wanted.assignment / name).read_text(encoding="utf-8"))
+    right: dict[str, str] = {}
+    if not wanted.unsolved:
+        source = nbformat_nodes.read((path / "source" / wanted.assignment / name).read_text(encoding="utf-8"))
+        right = {grade_id(cell): _without_markers(cell.source) for cell in source.cells}
+    answers = {name: answer for file in wanted.bank for name, answer in _bank_answers(file).items()}
+    answers |= {name: _Answer(text.strip(), ()) for name, text in wanted.answers.items()}
+    notebook.cells = [
+        changed for cell in notebook.cells for changed in _changed(cell, wanted, right, answers)
+    ]
+    return notebook
+
+
+def _changed(
+    cell: NotebookNode, wanted: SampleNotebook, right: dict[str, str], answers: dict[str, _Answer]
+) -> list[NotebookNode]:
+    """Return the cells that replace one cell of the released notebook in the student's notebook."""
+    name = grade_id(cell)
+    if not name:
+        return [cell]
+    answer = answers.get(name)
+    cell.source = answer.source if answer else right.get(name, cell.source)
+    before = [nbformat_nodes.cell(CellType.CODE, source) for source in (answer.extra if answer else ())]
+    if name in wanted.insert:
+        before.append(nbformat_nodes.cell(CellType.CODE, wanted.insert[name]))
+    if name in wanted.delete:
+        return before
+    if name in wanted.retype:
+        retyped = nbformat_nodes.cell(wanted.retype[name], cell.source)
+        retyped.metadata = cell.metadata
+        return [*before, retyped]
+    if name in wanted.duplicate:
+        twin = nbformat_nodes.copied(cell)
+        twin.id = f"{cell.id}-again"[:64]
+        return [*before, cell, twin]
+    return [*before, cell]
+
+
+def _bank_answers(file: str) -> dict[str, _Answer]:
+    """Read a sample answer from a file in which each cell begins with ``# %% extra`` or ``# %% solution NAME``."""
+    text = (course.root() / BANK / file).read_text(encoding="utf-8")
+    answers: dict[str, _Answer] = {}
+    extra: list[str] = []
+    for part in text.split("# %% ")[1:]:
+        head, _, source = part.partition("\n")
+        kind, _, name = head.strip().partition(" ")
+        if kind == "solution":
+            answers[name] = _Answer(source.strip(), tuple(extra))
+            extra = []
+        else:
+            extra.append(source.strip())
+    return answers
+
+
+def _without_markers(source: str) -> str:
+    return "\n".join(line for line in source.split("\n") if not line.strip().startswith("### "))

@@ -1,0 +1,1 @@
+"""Makes the tasks of a submission, from the folder of its class."""

@@ -1,0 +1,171 @@
+"""The whole way with real ROS: the sample class graded by our command, and a part of it by plain nbgrader."""
+
+from __future__ import annotations
+
+import csv
+import shutil
+import subprocess
+import sys
+from typing import TYPE_CHECKING
+
+import pytest
+from nbgrader.api import Gradebook
+from tiny_class import QUIET
+
+from autograder import exercises
+from autograder.appeals import appeal_file, replaying
+from autograder.grading.appeal_writing import write_appeal
+from autograder.grading.grading_errors import GradingError
+from autograder.grading.new_classes import sample_class
+from autograder.grading.new_classes.sample_class import SampleNotebook, demo, sample_notebooks
+from autograder.judge.machine_fitness import TOO_BUSY
+from tests.tiers import asked_for
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+    from autograder.grading.reporting.grade_report import GradeReport
+
+pytestmark = pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning")
+NBGRADER = (sys.executable, "-W", "ignore", "-m", "nbgrader")
+
+
+@pytest.fixture(scope="module")
+def handed_in(request: pytest.FixtureRequest) -> tuple[SampleNotebook, ...]:
+    """The samples that this session asks for."""
+    asked = asked_for(request, "notebook")
+    return tuple(notebook for notebook in sample_notebooks() if notebook in asked)
+
+
+@pytest.fixture(scope="module")
+def graded(
+    handed_in: tuple[SampleNotebook, ...], tmp_path_factory: pytest.TempPathFactory
+) -> Iterator[GradeReport]:
+    """The class of these samples, graded as ``./course demo`` does it."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(sample_class, "sample_notebooks", lambda: handed_in)
+        yield demo(tmp_path_factory.mktemp("demo") / "demo-class", console=QUIET)
+
+
+def test_the_data_names_students_and_exercises_once() -> None:
+    notebooks = sample_notebooks()
+    assert len({(notebook.student, notebook.assignment) for notebook in notebooks}) == len(notebooks)
+    assert len({notebook.student for notebook in notebooks}) >= 12
+    for notebook in notebooks:
+        assert set(notebook.expected) == {
+            e for e in exercises.all_ids() if e.startswith(f"{notebook.assignment}.")
+        }
+
+
+@pytest.mark.ros
+@pytest.mark.slow
+@pytest.mark.parametrize("notebook", sample_notebooks(), ids=lambda n: f"{n.student}-{n.assignment}")
+def test_every_sample_earns_what_it_must(
+    handed_in: tuple[SampleNotebook, ...], graded: GradeReport, notebook: SampleNotebook
+) -> None:
+    rows = {row.exercise: row for row in graded.rows if row.student == notebook.student}
+    got = {exercise: (rows[exercise].score, rows[exercise].diagnosis) for exercise in notebook.expected}
+    assert got == notebook.expected, notebook.about
+
+
+@pytest.mark.ros
+@pytest.mark.slow
+def test_gradebook_csv_and_feedback_say_the_same(
+    graded: GradeReport, handed_in: tuple[SampleNotebook, ...]
+) -> None:
+    with (graded.path / "grades.csv").open(encoding="utf-8-sig") as file:
+        judged = [row for row in csv.DictReader(file) if row["score"]]
+    in_csv = {(row["student"], row["exercise"]): float(row["score"]) for row in judged}
+    with Gradebook(f"sqlite:///{graded.gradebook}") as book:
+        for notebook in handed_in:
+            name = notebook.assignment
+            for exercise, (score, _) in notebook.expected.items():
+                grade = book.find_grade(exercises.grade_id(exercise), name, name, notebook.student)
+                assert grade.auto_score == in_csv[notebook.student, exercise] == score
+            total = sum(score for score, _ in notebook.expected.values())
+            page = (graded.feedback / notebook.student / name / f"{name}.html").read_text()
+            assert f"(Score: {total:.1f} /" in page
+
+
+@pytest.mark.ros
+@pytest.mark.slow
+def test_each_check_that_began_can_be_appealed_and_is_judged_the_same_again(
+    graded: GradeReport, handed_in: tuple[SampleNotebook, ...]
+) -> None:
+    refused, appealed = dict[str, str](), 0
+    for row in graded.rows:
+        if row.state not in ("passed", "failed"):
+            continue
+        try:
+            file = write_appeal(graded.path, row.student, row.exercise)
+        except GradingError as error:
+            refused[row.diagnosis] = str(error)
+            continue
+        seen = appeal_file.read(file).seen
+        again = replaying.replay(seen)
+        assert (again.differences, again.notes) == ([], []), row
+        diagnosis = seen.verdict.diagnosis.key if seen.verdict.diagnosis else ""
+        assert (seen.verdict.score, seen.verdict.state, diagnosis) == (row.score, row.state, row.diagnosis)
+        appealed += 1
+    assert appealed > 0
+    assert refused or len(handed_in) < len(sample_notebooks())
+    assert all(words.startswith("No evidence of") for words in refused.values())
+
+
+@pytest.mark.ros
+@pytest.mark.slow
+def test_a_second_run_takes_what_is_known(graded: GradeReport) -> None:
+    again = demo(graded.path, console=QUIET)
+    assert (again.executed, again.written) == (0, 0)
+    assert again.rows == graded.rows
+
+
+@pytest.mark.ros
+@pytest.mark.slow
+def test_plain_nbgrader_gives_the_same_points(graded: GradeReport, tmp_path: Path) -> None:
+    path = tmp_path / "class"
+    shutil.copytree(graded.path, path)
+    (path / ".autograder" / "class.db").unlink()
+    (path / "gradebook.db").unlink()
+    for command in (
+        ("generate_assignment", "lab_1_2", "--force"),
+        ("autograde", "lab_1_2", "--student=partly-right", "--force"),
+    ):
+        subprocess.run([*NBGRADER, *command], cwd=path, check=True, capture_output=True)
+    with Gradebook(f"sqlite:///{path / 'gradebook.db'}") as book:
+        notebook = book.find_submission_notebook("lab_1_2", "lab_1_2", "partly-right")
+        scores = {grade.name: grade.auto_score for grade in notebook.grades}
+    assert scores == {"lab_1_2-talker": 8, "lab_1_2-listener": 10, "lab_1_2-programs": 10}
+    subprocess.run([*NBGRADER, "export"], cwd=path, check=True, capture_output=True)
+    assert "partly-right" in (path / "nbgrader_export.csv").read_text()
+
+
+@pytest.mark.ros
+@pytest.mark.slow
+def test_validate_tells_a_student_the_truth(graded: GradeReport) -> None:
+    """Outside of any class and without the grader's judge: the notebook starts one of its own."""
+    said = {}
+    for student in ("all-right", "partly-right"):
+        notebook = graded.path / "submitted" / student / "lab_1_2" / "lab_1_2.ipynb"
+        result = subprocess.run(
+            # Beside other work a build and two programs may take longer than the 30 s that nbgrader gives a cell.
+            [*NBGRADER, "validate", "--Execute.timeout=300", str(notebook)],
+            cwd=graded.path,
+            capture_output=True,
+            text=True,
+            check=True,
+        )
+        said[student] = " ".join(result.stdout.split())
+    assert "Success! Your notebook passes all the tests." in said["all-right"]
+    assert "VALIDATION FAILED ON 1 CELL(S)" in said["partly-right"]
+    if TOO_BUSY in said["partly-right"]:
+        pytest.skip("The machine was too busy for a failure to count, and Validate says so.")
+    assert "8 of 10" in said["partly-right"]
+
+
+def test_a_class_of_ones_own_is_not_taken_for_the_sample(tmp_path: Path) -> None:
+    (tmp_path / "nbgrader_config.py").write_text("c = get_config()\n")
+    with pytest.raises(GradingError, match="a class that is not the sample"):
+        demo(tmp_path)
+    assert [path.name for path in tmp_path.iterdir()] == ["nbgrader_config.py"]

@@ -1,0 +1,119 @@
+"""An option that the conversion does not know is refused, in a sentence, before anything is touched."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from typing import TYPE_CHECKING
+
+import pytest
+from nbgrader.converters import NbGraderException
+from test_nbgrader_and_ours import nbgrader_autograde, nbgrader_generate_feedback
+from tiny_class import TALKER, FakeEngine, TinyClass
+
+from autograder.grading.class_checks import check_configuration
+from autograder.grading.classes.class_directory import ClassDirectory
+from autograder.grading.grading_errors import GradingError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+
+pytestmark = pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning")
+
+
+def test_what_new_class_writes_is_honoured(tiny: TinyClass) -> None:
+    check_configuration(ClassDirectory(tiny.path))
+
+
+def test_who_reads_it_waits_for_no_import_of_nbgrader(tiny: TinyClass) -> None:
+    asked = (
+        "import pathlib, sys; from autograder.grading.classes.class_directory import ClassDirectory; "
+        "ClassDirectory(pathlib.Path(sys.argv[1])).config; print(*{'nbgrader', 'nbconvert'} & set(sys.modules))"
+    )
+    command = [sys.executable, "-c", asked, str(tiny.path)]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    assert done.stdout.split() == []
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        'c.CourseDirectory.course_id = "ros2"',
+        "c.CourseDirectory.max_file_size = 1000",
+        'c.LateSubmissionPlugin.penalty_method = "zero"',
+        "c.LimitOutput.max_lines = 10",
+        "c.WireExecute.memory_bytes = 4_000_000_000",
+    ],
+)
+def test_what_the_conversion_honours_is_not_refused(tiny: TinyClass, line: str) -> None:
+    tiny.configure(line)
+    check_configuration(ClassDirectory(tiny.path))
+
+
+@pytest.mark.parametrize(
+    ("line", "option"),
+    [
+        (
+            'c.Autograde.autograde_preprocessors.append("nbgrader.preprocessors.ClearOutput")',
+            "Autograde.autograde_preprocessors",
+        ),
+        ("c.Autograde.permissions = 664", "Autograde.permissions"),
+        ("c.SaveAutoGrades.enabled = False", "SaveAutoGrades.enabled"),
+        ('c.CourseDirectory.feedback_directory = "out"', "CourseDirectory.feedback_directory"),
+        (
+            'c.GenerateFeedback.preprocessors = ["nbgrader.preprocessors.ClearOutput"]',
+            "GenerateFeedback.preprocessors",
+        ),
+        ('c.HTMLExporter.template_name = "lab"', "HTMLExporter.template_name"),
+        ("c.WireExecute.memory = 4_000_000_000", "WireExecute.memory"),
+        ("c.Execute.timeout = 300", "Execute.timeout"),
+        ("c.ExecutePreprocessor.timeout = 300", "ExecutePreprocessor.timeout"),
+        ("c.IgnorePattern.pattern = 'x'", "IgnorePattern.pattern"),
+    ],
+)
+def test_what_it_does_not_know_is_refused(tiny: TinyClass, line: str, option: str) -> None:
+    tiny.configure(line)
+    with pytest.raises(GradingError, match=rf"sets c\.{option}, .*delete the line"):
+        check_configuration(ClassDirectory(tiny.path))
+
+
+@pytest.mark.parametrize(
+    "line", ["memory_bytes = '4 GB'", "cell_seconds = None", "processes = -1", "cpu_seconds = float('nan')"]
+)
+def test_a_limit_that_is_no_number_takes_back_nothing(
+    tiny: TinyClass, fake_engine: FakeEngine, line: str
+) -> None:
+    tiny.submit("ada", 4)
+    tiny.grade()
+    tiny.submit("ada", 9)
+    tiny.configure(f"c.WireExecute.{line}")
+    with pytest.raises(GradingError, match=rf"c\.WireExecute\.{line.split()[0]} .*a number above zero"):
+        tiny.grade()
+    assert tiny.scores("ada")[TALKER] == 4
+
+
+@pytest.mark.parametrize("way", [TinyClass.grade, nbgrader_autograde, nbgrader_generate_feedback])
+def test_where_something_is_refused_nothing_is_touched(
+    tiny: TinyClass, fake_engine: FakeEngine, way: Callable[[TinyClass], object]
+) -> None:
+    tiny.submit("ada", 4)
+    tiny.grade(feedback=True)
+    tiny.submit("ada", 9)
+    tiny.configure("c.Execute.timeout = 300")
+    page = tiny.path / "feedback" / "ada" / "lab_1_2" / "lab_1_2.html"
+    made = page.stat().st_mtime_ns
+    with pytest.raises((GradingError, NbGraderException), match=r"sets c\.Execute\.timeout, .*delete"):
+        way(tiny)
+    assert tiny.scores("ada")[TALKER] == 4
+    assert fake_engine.ran == ["ada"]
+    assert page.stat().st_mtime_ns == made
+
+
+@pytest.mark.parametrize("section", ["Autograde", "GenerateFeedback"])
+def test_without_the_lines_that_lead_here_nothing_is_graded(tiny: TinyClass, section: str) -> None:
+    config = tiny.path / "nbgrader_config.py"
+    config.write_text(config.read_text().replace(f"c.{section}.exporter_class", "unused"))
+    tiny.submit("ada")
+    with pytest.raises(GradingError, match=rf"does not set c\.{section}\.exporter_class"):
+        tiny.grade()

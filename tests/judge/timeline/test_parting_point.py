@@ -1,0 +1,112 @@
+"""Where a run leaves the reference solution's: kinds of events, how many of them, and how they came out."""
+
+from __future__ import annotations
+
+import pytest
+
+from autograder.authoring.answer_bank import answers
+from autograder.judge import evidence_files
+from autograder.judge.timeline.parting_point import parting_point
+from autograder.kit.evidence import Event, Evidence, Part, Reference
+from tests.measure import evidence as kept_evidence
+
+ACTION = "/fibonacci"
+
+
+def _goal(order: int, feedback: int, *, status: int = 4, accepted: bool = True) -> list[Event]:
+    sent = Event(0.0, "goal_sent", ACTION, {"goal": 0, "fields": {"order": order}})
+    told = [
+        Event(0.2, "feedback_heard", ACTION, {"goal": 0, "fields": {"n": number}})
+        for number in range(feedback)
+    ]
+    ended = Event(0.3, "result_heard", ACTION, {"goal": 0, "status": status, "fields": {"n": order}})
+    return [sent, Event(0.1, "goal_answer", ACTION, {"goal": 0, "accepted": accepted}), *told, ended]
+
+
+def _parted(mine: list[Event], reference: list[Event]) -> str:
+    return parting_point(
+        Evidence([Part("goals", {}, mine)], Reference("x", {}, [Part("goals", {}, reference)]))
+    )
+
+
+def test_a_run_of_the_same_kinds_does_not_part() -> None:
+    assert _parted(_goal(4, 3), _goal(4, 3)) == ""
+    assert _parted(_goal(5, 4), _goal(4, 3)) == ""
+
+
+@pytest.mark.parametrize(
+    ("mine", "says"),
+    [
+        (
+            _goal(4, 0),
+            "until the goal is accepted, your run is as asked. Then: no feedback. Asked: feedback 0.",
+        ),
+        (
+            _goal(5, 0),
+            "until the goal is accepted, your run is as asked. Then: no feedback. Asked: feedback 0.",
+        ),
+        (_goal(4, 4), "until feedback 2, your run is as asked. Then: feedback 3. Asked: no more feedback."),
+        (_goal(4, 2), "until feedback 1, your run is as asked. Then: no more feedback. Asked: feedback 2."),
+        (_goal(4, 3, status=6), "Then: the result ABORTED 4. Asked: the result SUCCEEDED 4."),
+        (_goal(4, 3)[:-1], "Then: no result. Asked: the result SUCCEEDED 4."),
+        (
+            _goal(4, 3, accepted=False),
+            "until goal, order 4, your run is as asked. Then: the goal is rejected.",
+        ),
+    ],
+    ids=[
+        "no feedback",
+        "another order",
+        "one too many",
+        "one too few",
+        "another status",
+        "no result",
+        "rejected",
+    ],
+)
+def test_the_first_event_that_differs_is_told(mine: list[Event], says: str) -> None:
+    assert says in _parted(mine, _goal(4, 3))
+
+
+def test_feedback_that_overtakes_the_answer_to_its_goal_is_no_difference() -> None:
+    sent, answer, first, *rest = _goal(4, 3)
+    assert _parted([sent, first, answer, *rest], _goal(4, 3)) == ""
+
+
+def _talking(texts: list[str]) -> Part:
+    events = [
+        Event(0.5 * n, "message", "/chatter", {"fields": {"data": text}}, sim=0.5 * n)
+        for n, text in enumerate(texts)
+    ]
+    return Part("talking", {}, events)
+
+
+@pytest.mark.parametrize(
+    ("texts", "says"),
+    [
+        ([], "On /chatter: no message. Asked: “0”."),
+        (["0"], "until “0”, your run is as asked. Then: no more messages. Asked: “1”, 0.5 s later."),
+        (["0", "x", "2", "3"], "until “0”, your run is as asked. Then: “x”. Asked: “1”, 0.5 s later."),
+    ],
+)
+def test_a_message_that_does_not_come_is_told_with_the_one_that_is_due(texts: list[str], says: str) -> None:
+    reference = Reference("x", {}, [_talking(["0", "1", "2", "3"])])
+    assert says in parting_point(Evidence([_talking(texts)], reference))
+
+
+def test_a_topic_on_which_much_came_says_nothing_of_its_end() -> None:
+    reference = Reference("x", {}, [_talking(["0", "1", "2", "3", "4"])])
+    assert parting_point(Evidence([_talking(["0", "1", "2"])], reference)) == ""
+
+
+def test_hardly_a_right_answer_of_the_bank_parts() -> None:
+    """A criterion may allow for more than the reference solution does: here one feedback message more."""
+    parted = []
+    for answer in answers():
+        if answer.diagnoses:
+            continue
+        record = kept_evidence.record_of(answer, kept_evidence.kept(answer.exercise).get(answer.name))
+        evidence = evidence_files.evidence_of(record.seen, evidence_files.load_reference(answer.exercise))
+        if parting_point(evidence):
+            parted.append(answer.name)
+    assert len(parted) <= 3, parted

@@ -1,0 +1,71 @@
+"""A wrong type of an action server or client is an error, and does not end the kernel."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+
+if TYPE_CHECKING:
+    import subprocess
+    from collections.abc import Callable
+
+    RunScript = Callable[..., subprocess.CompletedProcess[str]]
+
+pytestmark = pytest.mark.ros
+
+MADE = """
+import re, sys
+from autograder.notebook import start_ros
+from my_robot_interfaces.action import Fibonacci
+from my_robot_interfaces.srv import AddTwoInts
+from rclpy.action import ActionClient, ActionServer
+from rclpy.node import Node
+from std_msgs.msg import String
+
+class OwnClient(ActionClient):
+    pass
+
+start_ros()
+node = Node("node")
+ways = (
+    lambda kind: ActionServer(node, kind, "fibonacci", print),
+    lambda kind: ActionServer(node=node, action_name="fibonacci", execute_callback=print, action_type=kind),
+    lambda kind: ActionClient(node, kind, "fibonacci"),
+    lambda kind: OwnClient(node, action_name="fibonacci", action_type=kind),
+)
+"""
+WRONG = """
+wrong = (Fibonacci.Goal, Fibonacci.Goal(), Fibonacci.Result, Fibonacci.Feedback, AddTwoInts, AddTwoInts.Request, String)
+for kind in wrong:
+    for make in ways:
+        try:
+            make(kind)
+        except TypeError as error:
+            print(error)
+"""
+RIGHT = """
+class Own(Fibonacci):
+    pass
+
+for make in ways:
+    make(Fibonacci).destroy()
+    make(Own).destroy()
+print("made")
+"""
+
+
+def test_what_is_not_the_type_of_an_action_is_an_error_that_names_it(run_script: RunScript) -> None:
+    done = run_script(MADE + WRONG)
+    assert done.returncode == 0
+    lines = done.stdout.splitlines()
+    assert len(lines) == 7 * 4
+    assert (
+        lines[0]
+        == "rclpy needs the type of an action here, such as Fibonacci, and Fibonacci.Goal is not an action"
+    )
+
+
+def test_an_action_is_made_as_before(run_script: RunScript) -> None:
+    done = run_script(MADE + RIGHT)
+    assert (done.returncode, done.stdout) == (0, "made\n")
