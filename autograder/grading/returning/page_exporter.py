@@ -104,7 +104,8 @@ class PageExporter(HTMLExporter):
         """
         language = notebook.metadata.get("language_info", {})
         lexer = language.get("pygments_lexer", language.get("name", None))
-        self._set_filter("highlight_code", _highlighter(lexer))
+        make_filter: Any = Highlight2HTML
+        self._set_filter("highlight_code", make_filter(pygments_lexer=lexer))
         self._set_filter("part_of_page", functools.partial(self._part, lexer))
         resources = self._resources.copy()
         resources["nbgrader"] = dict(names)
@@ -229,28 +230,6 @@ def without_scripts(head: str) -> str:
     """
     policy = f'<meta http-equiv="Content-Security-Policy" content="{POLICY}" />'
     return _SCRIPT.sub("", head).replace("<head>", f"<head>\n{policy}", 1)
-
-
-_REMEMBERED = 1024
-"""The maximum number of code cells in the cache of highlighted code; enough for a chapter, which has a few hundred
-given cells.
-"""
-
-
-@functools.lru_cache(maxsize=8)
-def _highlighter(lexer: str | None) -> Any:
-    """Return nbconvert's filter for highlighting code, with a cache of its results."""
-    make: Any = Highlight2HTML
-    highlight = make(pygments_lexer=lexer)
-
-    @functools.lru_cache(maxsize=_REMEMBERED)
-    def highlighted(source: str, language: str | None, magics: str | None) -> Any:
-        return highlight(source, language, {"magics_language": magics} if magics else {})
-
-    def filtered(source: str, language: str | None = None, metadata: Any = None) -> Any:
-        return highlighted(source, language, (metadata or {}).get("magics_language"))
-
-    return filtered
 
 
 _PICTURE = re2.compile(r"(?i)<img\b([^>]*)")

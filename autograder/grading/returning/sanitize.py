@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 SHOWN = (*IMAGES, "text/plain")
 """The media types that an output of a student's cell may have, because they cannot contain scripts."""
-TYPED = '<pre style="white-space: pre-wrap">\n'
+TYPED = '<pre style="white-space: pre-wrap; word-break: normal; overflow-wrap: anywhere">\n'
 """The beginning of a text cell that is shown as typed. Every Markdown renderer copies such a cell into the page."""
 _LEFT_OUT = "[picture left out: it is too large, or damaged]"
 _ADDRESS = r"attachment:(?P<{0}name>[\w.%+-]+)|(?P<{0}data>data:image/(?:png|jpeg);base64,[A-Za-z0-9+/=]+)"
