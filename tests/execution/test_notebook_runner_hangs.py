@@ -85,7 +85,7 @@ def test_a_cell_that_is_no_python_blames_nobody() -> None:
 
 
 def test_a_name_in_a_comment_a_string_or_an_attribute_is_not_used() -> None:
-    mentions = Cell("# Talker hangs\nprint('Talker', \"\"\"\nTalker\n\"\"\")\nnode.Talker = 1", own=True)
+    mentions = Cell('# Talker hangs\nprint(\'Talker\', """\nTalker\n""")\nnode.Talker = 1', own=True)
     given, _ = seconds([TALKER, SHOWN, mentions], "Talker()")
     assert given == [120, 120, 120]
 
