@@ -35,7 +35,6 @@ MAY_IMPORT = {
     "execution": frozenset({"boxes", "messages", "verdict", "process_trees", "safe_files"}),
     "masters": frozenset({"course", "exercises", "safe_files", "standard_output"}),
     "mcap_files": frozenset[str](),
-    "known_classes": frozenset({"standard_output"}),
     "process_trees": frozenset[str](),
     "safe_files": frozenset[str](),
     "standard_output": frozenset[str](),
@@ -201,6 +200,46 @@ def test_what_was_handed_in_is_parsed_by_a_desk_alone() -> None:
         )
     }
     assert users == of_the_class
+
+
+PARSERS = (
+    "ast",
+    "bs4",
+    "catkin_pkg",
+    "codeop",
+    "difflib",
+    "html.parser",
+    "IPython",
+    "mistune",
+    "nbconvert",
+    "pygments",
+    "tokenize",
+    "xml",
+    "yaml",
+)
+MAY_PARSE = {
+    "cards/card_content.py": "difflib",  # two texts of at most 120 characters
+    "grading/collecting/lms_lists.py": "yaml",  # at a desk
+    "grading/nbgrader_commands.py": "nbconvert",  # has nbgrader use our pages
+    "grading/rebuilding/cell_matching.py": "ast",  # the stubs of the master
+    "grading/rebuilding/trusted_master.py": "ast",  # the master
+    "grading/returning/page_exporter.py": "nbconvert",  # the course's own text
+    "workspaces/graded_builds.py": "xml",  # a package.xml of at most 20,000 bytes
+    "workspaces/packages.py": "ast catkin_pkg xml",  # files of at most 50,000 bytes, 100,000 together
+}
+"""What parses text in the processes of the grader, and why a student's text cannot keep them busy."""
+
+
+def test_a_students_text_is_parsed_by_no_process_that_others_wait_for() -> None:
+    """Parsers take quadratic time for some texts, and nothing interrupts them."""
+    used: dict[str, set[str]] = {}
+    for part in ("boxes", "cards", "execution", "grading", "messages", "workspaces"):
+        for path, _, name in imports(PACKAGE / part):
+            for parser in PARSERS:
+                if f"{name}.".startswith(f"{parser}."):
+                    used.setdefault(path.relative_to(PACKAGE).as_posix(), set()).add(parser)
+
+    assert used == {path: set(parsers.split()) for path, parsers in MAY_PARSE.items()}
 
 
 def test_the_process_with_the_gradebook_imports_nothing_that_executes_a_submission() -> None:

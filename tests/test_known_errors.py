@@ -131,7 +131,7 @@ SAYS = {
     "rclpy.action.ActionClient(Trigger, 'x')": "Here self is written by hand",
     "Trigger.Request(1, 2)": "fields of a message are given by name",
     "String('hello')": "fields of a message are given by name",
-    "Trigger(a=1)": "Trigger only groups other types",
+    "Trigger(a=1)": "Trigger itself has no fields",
     "node.create_service(Trigger(), 'x', on_message)": "Write Trigger without parentheses",
     "node.create_service(Trigger.Request, 'x', on_message)": "Write Trigger in place of Trigger.Request",
     "node.create_client(srv_type=Trigger.Response, srv_name='x')": "Write Trigger in place of Trigger.Response",

@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from autograder.judge.one_check import Checked
+    from autograder.kit.evidence import Part, Reference
 
 
 _PROGRAMS = {name: str(installed_program(name)) for name in ("python3", "ros2")}
@@ -46,6 +47,8 @@ class Answer:
         base: The workspace that the answer edits; None for a program.
         edit: The answer's entry in a table, if the answer is stored there as an edit.
         says: Words that the diagnosis has to contain.
+        advice: What the card of a node that does the same says, and the next step; empty if the answer is not recorded
+            next to the solution.
     """
 
     exercise: str
@@ -55,6 +58,7 @@ class Answer:
     base: Path | None = None
     edit: ListedAnswer | None = None
     says: str = ""
+    advice: tuple[str, ...] = ()
 
     @property
     def name(self) -> str:
@@ -103,6 +107,13 @@ class Answer:
         with HeldFolder("autograder-answer-") as folder:
             return checked_here(exercise, self.unpack(folder.path), seed, None)
 
+    def recorded(self, reference: Reference) -> Sequence[Part]:
+        """Record the answer in this process, in all parts that the recording of the solution has."""
+        from autograder.judge.command_check import recorded_here
+
+        with HeldFolder("autograder-answer-") as folder:
+            return recorded_here(exercises.get(self.exercise), self.unpack(folder.path), reference)
+
     def verdict(self, seed: str) -> bytes:
         """Judge the answer in this process. Return the verdict as JSON."""
         return to_json(self.checked(seed)[0])
@@ -145,7 +156,8 @@ def answers(of: Sequence[str] = ()) -> Iterator[Answer]:
             diagnoses = (one.entry.diagnosis, *one.entry.also) if one.entry.diagnosis else ()
             base = folder / usual.base if one.file.suffix == WORKSPACE else None
             edit = one if one.entry.change else None
-            yield Answer(exercise_id, one.file, command, diagnoses, base, edit, one.entry.says)
+            advice = (one.entry.card, one.entry.next_step) if one.entry.card else ()
+            yield Answer(exercise_id, one.file, command, diagnoses, base, edit, one.entry.says, advice)
 
 
 def answers_folder(exercise_id: str) -> Path:

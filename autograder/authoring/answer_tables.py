@@ -81,6 +81,8 @@ class AnswerEntry(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
             answer.
         also: Other diagnoses that are accepted, as keys.
         says: Words that the answer's card must contain, if the key alone does not identify the mistake.
+        card: If the answer is to be recorded next to the solution: what the card of a node that does the same says.
+        next_step: The next step on that card.
         command: The command that runs the answer; empty for the usual command of the folder.
         base: The file in the folder ``right`` that the edit changes. Empty for a program in a file of its own, and for
             a workspace, which is an edit of the workspace in ``settings.toml``.
@@ -93,6 +95,8 @@ class AnswerEntry(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     diagnosis: str = ""
     also: tuple[str, ...] = ()
     says: str = ""
+    card: str = ""
+    next_step: str = ""
     command: tuple[str, ...] = ()
     base: str = ""
     shows: str = ""

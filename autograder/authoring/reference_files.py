@@ -9,10 +9,16 @@ import json
 import os
 import secrets
 import subprocess
+from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING
 
 from autograder import course, exercises
+from autograder.authoring import answer_bank
+from autograder.judge import evidence_files
+from autograder.judge.check_process import Child
 from autograder.judge.controlled_judge import JudgeDied, JudgeProcess
+from autograder.kit.evidence import Reference, Variant
 from autograder.masters.master_files import MasterError
 from autograder.masters.reference_solutions import reference_source
 from autograder.messages.judge_messages import SOCKET_VARIABLE
@@ -23,6 +29,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
     from pathlib import Path
 
+    from autograder.kit.model import Exercise
     from autograder.messages.judge_messages import Report
     from autograder.verdict import Verdict
 
@@ -96,7 +103,28 @@ def recording(exercise_id: str) -> str:
         raise CannotRecord(
             f"{exercise.id}: the solution in {course.LAB} does not meet the criteria of its exercise.{has_none}{missed}"
         )
-    return report.reference
+    return _with_variants(report.reference, exercise)
+
+
+def _with_variants(text: str, exercise: Exercise) -> str:
+    """Return a recording with the records of the wrong answers that have a card's text in their table."""
+    reference = evidence_files.parse_reference(json.loads(text))
+    variants = []
+    for answer in answer_bank.answers([exercise.id]):
+        if answer.advice:
+            parts = Child(partial(_variant, answer, reference), _RUN_LIMIT).result()
+            if parts.data is None:
+                raise CannotRecord(f"{answer.name}: {parts.trouble}")
+            recorded = evidence_files.parse_reference(json.loads(parts.data)).parts
+            card, next_step = answer.advice
+            variants.append(Variant(answer.diagnoses[0], card, next_step, recorded))
+    with_variants = replace(reference, variants=variants)
+    return evidence_files.dump_reference(with_variants, exercise.recorded) if variants else text
+
+
+def _variant(answer: answer_bank.Answer, reference: Reference) -> bytes:
+    parts = answer.recorded(reference)
+    return evidence_files.dump_reference(replace(reference, parts=parts), None).encode()
 
 
 def unsolved(exercise_id: str) -> Verdict | None:

@@ -12,7 +12,6 @@ from autograder.grading.batch_work import Work, due_dates, find_work, without_gr
 from autograder.grading.class_checks import changed_master_warnings, limits_of
 from autograder.grading.classes import gradebook_reading
 from autograder.grading.classes.gradebook_reading import SubmissionEntry
-from autograder.grading.collecting.submission_times import handed_in_at
 from autograder.grading.collecting.submitted_folder import misplaced_files, rename_decomposed_folders
 from autograder.grading.course_version import course_version
 from autograder.grading.grading_errors import MasterUnusable, is_disk_full
@@ -24,6 +23,7 @@ from autograder.grading.table.student_list import enter_roster
 from autograder.grading.table.weighted_rows import read_what_counts, true_rows
 from autograder.grading.tasks.source_points import check_release, read_released
 from autograder.grading.tasks.submission_fingerprints import Fingerprints
+from autograder.grading.tasks.submission_times import handed_in_at
 
 # Some modules are imported inside functions, because they import nbgrader, which takes a second.
 

@@ -12,10 +12,10 @@ from autograder.command_name import COMMAND
 from autograder.grading.classes.class_directory import RefusedFile
 from autograder.grading.classes.gradebook_reading import CellEntry, SubmissionEntry, read_due_dates
 from autograder.grading.collecting.collected_csv import NAME, Table
-from autograder.grading.collecting.submission_times import handed_in_at, is_not_believed
 from autograder.grading.grading_errors import MasterUnusable, check_known, course_command
 from autograder.grading.reporting.class_table import Difference
 from autograder.grading.table.rows import LATE, Row
+from autograder.grading.tasks.submission_times import handed_in_at, is_not_believed
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence

@@ -264,7 +264,7 @@ class ClassStore:
         return {name: Origin(*fields) for name, *fields in self._rows("SELECT * FROM origin")}
 
     def keep_graded_cells(self, fingerprint: str, cells: bytes) -> None:
-        """Store the cells with points in the present source notebooks, in place of all earlier ones."""
+        """Store the cells with points in the present source notebooks, instead of all earlier ones."""
         with self._step() as book:
             book.execute("DELETE FROM graded_cells")
             book.execute("INSERT INTO graded_cells VALUES (?, ?)", (fingerprint, cells))

@@ -28,7 +28,6 @@ from autograder.grading.classes import gradebook_writing
 from autograder.grading.classes.class_directory import SUFFIX
 from autograder.grading.classes.gradebook_reading import read_entries
 from autograder.grading.classes.gradebook_writing import NotebookEntry
-from autograder.grading.collecting.submission_times import companions, handed_in_at
 from autograder.grading.grading_errors import is_disk_full
 from autograder.grading.grading_task import points, scores_of, unchecked
 from autograder.grading.rebuilding import nbformat_nodes
@@ -36,6 +35,7 @@ from autograder.grading.returning import feedback_pages
 from autograder.grading.returning.sanitize import harmless_output, make_harmless
 from autograder.grading.running import execution_backends
 from autograder.grading.table.late_policy import penalties
+from autograder.grading.tasks.submission_times import companions, handed_in_at
 from autograder.grading.tasks.task_making import LEFT_OUT, task_of
 from autograder.safe_files import write_whole
 

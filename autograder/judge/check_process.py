@@ -1,37 +1,27 @@
-"""Runs a check in a child process with time limits, so that the parent can report a crash or a hang of the child.
+"""Runs a check in a child process with a time limit, so that the parent can report a crash or a hang of the child.
 
-The parent limits the wall time of the whole check. The child limits the processor time in which it computes the
-verdict, because some output of a student's program would keep a criterion busy almost forever. This limit is in
-processor time, so that it has the same effect on a busy machine as on an idle one.
+At the limit there is no verdict, so no limit in seconds decides about points.
 """
 
 from __future__ import annotations
 
-import contextlib
 import os
 import select
 import signal
 import sys
-import threading
 import time
 import traceback
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, NoReturn
 
 from autograder.judge.subject import LEFTOVERS
 from autograder.process_trees import die_with_parent, end_descendants
-from autograder.verdict import Diagnosis, failed
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
-
-    from autograder.kit.model import Exercise
-    from autograder.verdict import Verdict
+    from collections.abc import Callable, Sequence
 
 
 _ENDING_SIGNALS = (signal.SIGINT, signal.SIGTERM)
-LAST_WORDS = 2.0
-"""Seconds of wall time that a judge gets for its verdict after the time limit of the check, before it is killed."""
 
 
 @dataclass(frozen=True)
@@ -71,10 +61,9 @@ class Child:
         # Block signals while forking, for two reasons. If a signal handler raises an exception inside a fork hook,
         # Python drops the exception, so a Ctrl-C would be lost. And a signal that arrives before the child has set its
         # handlers would kill the child.
-        mask = signal.pthread_sigmask(signal.SIG_BLOCK, {*_ENDING_SIGNALS, STOP_SIGNAL})
+        mask = signal.pthread_sigmask(signal.SIG_BLOCK, _ENDING_SIGNALS)
         self.pid = os.fork()
         if self.pid == 0:
-            signal.signal(STOP_SIGNAL, signal.SIG_IGN)
             for ending in _ENDING_SIGNALS:
                 signal.signal(ending, _leave_without_result)
             die_with_parent(parent, signal.SIGTERM)
@@ -86,10 +75,7 @@ class Child:
         os.close(writing)
 
     def result(self, *, within: float | None = None) -> ChildResult:
-        """Wait for the child's result, at most until the child's time limit.
-
-        At the limit, a child that is computing the verdict is told to stop. It then returns a verdict which says that
-        the subject's output is too long to judge. A child that is still observing the subject is killed.
+        """Wait for the child's result, at most until the child's time limit. At the limit, the child is killed.
 
         Args:
             within: A shorter limit, in seconds from now.
@@ -97,16 +83,9 @@ class Child:
         hurried = within is not None and time.monotonic() + within < self._deadline
         if within is not None:
             self._deadline = min(self._deadline, time.monotonic() + within)
-        asked_to_decide = False
         while True:
             remaining = self._deadline - time.monotonic()
             ready, _, _ = select.select([self.reading], [], [], max(0.0, remaining))
-            if not ready and not asked_to_decide:
-                asked_to_decide = True
-                with contextlib.suppress(ProcessLookupError):
-                    os.kill(self.pid, STOP_SIGNAL)
-                self._deadline = time.monotonic() + LAST_WORDS
-                continue
             if not ready:
                 self.kill()
                 return ChildResult(None, "the judge did not finish in time", hurried, unfinished=True)
@@ -163,76 +142,3 @@ def _run_in_child(work: Callable[[], bytes], writing: int) -> None:
         sys.stdout.flush()
         sys.stderr.flush()
         os._exit(code)
-
-
-VERDICT_LIMIT = 10.0
-"""The limit in seconds of processor time for one verdict, which usually takes a hundredth of a second."""
-SIGNAL_AGAIN_AFTER = 0.05
-"""The seconds of processor time after which the signal is sent again if the verdict is still not ready.
-
-The signal's exception may be lost, because Python prints and drops an exception that is raised in a destructor or in a
-callback of the garbage collector.
-"""
-SURE = 1.0
-"""If a verdict has taken this many seconds of processor time, the cause is the subject's output, not a busy machine."""
-STOP_SIGNAL = signal.SIGVTALRM
-"""The signal that stops the computation of a verdict. At other times the judge ignores this signal."""
-
-
-class Undecided(BaseException):
-    """The judge did not reach a verdict in time.
-
-    This is a BaseException, so that ``except Exception`` does not catch it.
-    """
-
-
-@contextlib.contextmanager
-def limited(seconds: float = VERDICT_LIMIT) -> Iterator[None]:
-    """Run the block within a limit of processor time.
-
-    Args:
-        seconds: Limit in seconds of processor time.
-
-    Raises:
-        Undecided: The time is over, or the parent process has sent ``STOP_SIGNAL`` after the block used at least
-            :data:`SURE` seconds of processor time: the subject's output is the cause, and the verdict says so. An
-            earlier signal is ignored here: the machine is the cause, and the parent process ends the check without a
-            verdict.
-    """
-    if threading.current_thread() is not threading.main_thread():
-        yield  # only the main thread can handle signals, so elsewhere there is no limit
-        return
-
-    began = time.process_time()
-
-    def give_up(*_: object) -> None:
-        if time.process_time() - began >= min(seconds, SURE):
-            raise Undecided
-
-    before = signal.signal(STOP_SIGNAL, give_up)
-    signal.setitimer(signal.ITIMER_VIRTUAL, seconds, SIGNAL_AGAIN_AFTER)
-    try:
-        yield
-    finally:
-        _switch_limit_off(before)
-
-
-def _switch_limit_off(before: signal.Handlers | Callable[..., object] | int | None) -> None:
-    """Switch the limit off, even if the signal arrives again meanwhile."""
-    while True:
-        try:
-            signal.setitimer(signal.ITIMER_VIRTUAL, 0.0)
-            signal.signal(STOP_SIGNAL, before)
-            return
-        except Undecided:
-            continue
-
-
-def undecidable(exercise: Exercise, seed: str) -> Verdict:
-    """Return a verdict of zero points, which says that the subject's output is too long to judge."""
-    diagnosis = Diagnosis(
-        "undecidable",
-        "Your program said and sent far too much: the judge could not finish reading it.",
-        "Log what the task asks for, one short line for each thing that happens, and nothing else.",
-    )
-    return replace(failed(exercise.id, exercise.title, float(exercise.points), diagnosis), seed=seed)

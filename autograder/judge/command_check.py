@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 
     from autograder.judge.one_check import Checked
     from autograder.judge.subject import CommandBox
+    from autograder.kit.evidence import Part, Reference
     from autograder.kit.model import Exercise
 
 
@@ -135,3 +136,18 @@ def checked_here(
             return checked.verdict, checked
     except (NoFreeDomainError, evidence_files.NoReference, JudgeFailed) as error:
         return not_checked(exercise.id, exercise.title, exercise.points, str(error)), None
+
+
+def recorded_here(exercise: Exercise, command: Sequence[str], reference: Reference) -> Sequence[Part]:
+    """Record what a command does in all parts of an exercise, in this process, which was forked for it.
+
+    Raises:
+        NoFreeDomainError: Every ROS domain of this machine is in use.
+    """
+    ros_setup.prepare_judge()
+    from autograder.judge import reference_recording
+    from autograder.judge.subject import CommandSubject
+
+    with ros_setup.lease_domain() as domain_id:
+        subject = CommandSubject(_as_run(exercise, command, None))
+        return reference_recording.record_variant(exercise, subject, reference, domain_id=domain_id)

@@ -24,7 +24,7 @@ import msgspec
 
 from autograder.command_name import COMMAND
 from autograder.exercises import reference_path
-from autograder.kit.evidence import Event, Evidence, Part, Reference
+from autograder.kit.evidence import Event, Evidence, Part, Reference, Variant
 from autograder.verdict import Verdict  # noqa: TC001  (msgspec reads the annotations)
 
 if TYPE_CHECKING:
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 _RECORDED_KINDS = (
     "message", "sent", "request", "response", "goal", "feedback", "cancel", "result", "asked", "answered",
     "goal_sent", "goal_answer", "feedback_heard", "cancel_sent", "cancel_answer", "result_heard",
-    "said", "type",
+    "said", "type", "noted",
 )  # fmt: skip
 
 _UNTIL_CANCELED = ("feedback_heard", "result_heard")
@@ -80,7 +80,15 @@ def reference_digest(exercise_id: str) -> str:
 
 def parse_reference(data: Mapping[str, Any]) -> Reference:
     """Return a reference output from its JSON form."""
-    parts = [
+    variants = [
+        Variant(one["key"], one["text"], one["next_step"], _parts(one["parts"]))
+        for one in data.get("variants", ())
+    ]
+    return Reference(data["exercise"], data["interface"], _parts(data["parts"]), variants)
+
+
+def _parts(listed: Sequence[Mapping[str, Any]]) -> list[Part]:
+    return [
         Part(
             part["name"],
             part["inputs"],
@@ -89,9 +97,8 @@ def parse_reference(data: Mapping[str, Any]) -> Reference:
                 for e in part["events"]
             ],
         )
-        for part in data["parts"]
+        for part in listed
     ]
-    return Reference(data["exercise"], data["interface"], parts)
 
 
 def dump_reference(reference: Reference, kinds: Sequence[str] | None = None) -> str:
@@ -101,24 +108,29 @@ def dump_reference(reference: Reference, kinds: Sequence[str] | None = None) -> 
         reference: The recording.
         kinds: The kinds of events to write; None for the usual kinds.
     """
-    if kinds is not None:
-        parts = [replace(p, events=[e for e in p.events if e.kind in kinds]) for p in reference.parts]
-        reference = replace(reference, parts=parts)
     head = {"exercise": reference.exercise, "interface": _sorted_interface(reference.interface)}
-    lines = json.dumps(head, indent=1, ensure_ascii=False).splitlines()[:-1]
-    return (
-        "\n".join(
-            [
-                *lines[:-1],
-                lines[-1] + ",",
-                ' "parts": [',
-                ",\n".join(map(_part_text, reference.parts)),
-                " ]",
-                "}",
-            ]
-        )
-        + "\n"
-    )
+    blocks = [
+        json.dumps(head, indent=1, ensure_ascii=False).removesuffix("\n}"),
+        f' "parts": [\n{_parts_text(reference.parts, kinds)}\n ]',
+    ]
+    if reference.variants:
+        variants = ",\n".join(_variant_text(variant, kinds) for variant in reference.variants)
+        blocks.append(f' "variants": [\n{variants}\n ]')
+    return ",\n".join(blocks) + "\n}\n"
+
+
+def _variant_text(variant: Variant, kinds: Sequence[str] | None) -> str:
+    head = {"key": variant.key, "text": variant.text, "next_step": variant.next_step}
+    told = json.dumps(head, ensure_ascii=False).removesuffix("}")
+    return f'  {told}, "parts": [\n{_parts_text(variant.parts, kinds)}\n  ]}}'
+
+
+def _parts_text(parts: Sequence[Part], kinds: Sequence[str] | None) -> str:
+    kept = [
+        part if kinds is None else replace(part, events=[e for e in part.events if e.kind in kinds])
+        for part in parts
+    ]
+    return ",\n".join(map(_part_text, kept))
 
 
 def _part_text(part: Part) -> str:

@@ -11,9 +11,7 @@ from random import Random
 from typing import TYPE_CHECKING
 
 from autograder import exercises, kit
-from autograder.judge import verdict_timeline
 from autograder.judge.bench.bench import TestBench
-from autograder.judge.check_process import Undecided, limited, undecidable
 from autograder.judge.machine_fitness import (
     NOT_DELIVERED,
     SEEN_SO_FAR,
@@ -26,13 +24,14 @@ from autograder.judge.machine_fitness import (
     TooBusy,
     delivers,
 )
-from autograder.judge.parting_point import parting_point
+from autograder.judge.timeline import verdict_timeline
+from autograder.judge.timeline.parting_point import parting_point
 from autograder.kit.evidence import Evidence, Reference
 from autograder.kit.in_words import of_its_kind, shortened, visible
 from autograder.kit.mistakes.package_mistakes import changed_since_build
 from autograder.kit.model import Advice, Exercise, Finding, Mistake, Pace
 from autograder.kit.runners import runner_trouble
-from autograder.verdict import CriterionResult, Diagnosis, State, Verdict
+from autograder.verdict import CriterionResult, Diagnosis, State, Verdict, failed
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -45,8 +44,16 @@ UNKNOWN = "unknown"
 """The key of the diagnosis if the mistake is unknown."""
 MAX_DETAIL = 6_000
 """The maximum length of a traceback on a card, in characters."""
+MOST_EVENTS = 20_000
+"""The maximum number of events in all parts of one look. With more, a check fails, because the decision would take
+minutes. The bank's answers have at most about a thousand in a part.
+"""
 MAX_WORDS = 500
 """The maximum length of one sentence of a verdict, in characters; it may quote the subject's output."""
+
+
+class TooManyEvents(Exception):
+    """The subject said and sent more than the judge reads."""
 
 
 @dataclass(frozen=True)
@@ -92,8 +99,8 @@ def check(
     """Judge a subject in one look, or in two looks if the first does not decide.
 
     A subject that passes the first look, in simulated time, has passed. If it fails, a second look in real time
-    decides, unless the evidence proves the mistake whatever the load is. A check whose verdict takes longer than
-    :data:`autograder.judge.check_process.VERDICT_LIMIT` has failed.
+    decides, unless the evidence proves the mistake whatever the load is. A check with more than :data:`MOST_EVENTS` has
+    failed.
 
     Args:
         exercise: The exercise that the subject has to fulfill.
@@ -146,35 +153,30 @@ def _check(
     seen = next_look(Pace.FAST)
     evidence = seen.evidence
     try:
-        with limited():
-            verdict = judge(exercise, evidence, seed)
+        verdict = judge(exercise, evidence, seed)
         # A wrong name should fail only one criterion. So the judge looks again and uses the subject's names, with which
         # it can decide the other criteria.
         names = {} if verdict.passed or exercise.runner else misnamed(evidence, verdict)
         if names:
             seen = next_look(Pace.FAST)
             evidence = seen.evidence
-            with limited():
-                verdict = judge(exercise, evidence, seed)
-        with limited():
-            again = exercise.second_look and (seen.doubtful or not verdict.passed)
-            again = again and not _is_explained(exercise, evidence, verdict, names)
+            verdict = judge(exercise, evidence, seed)
+        again = exercise.second_look and (seen.doubtful or not verdict.passed)
+        again = again and not _is_explained(exercise, evidence, verdict, names)
         if again:
             if not marks_crowded:  # code of a submission must not learn the verdict
                 subject.tell_so_far(_so_far(verdict))
             with Crowding() as crowding:
                 seen = next_look(Pace.REAL_TIME, evidence)
             evidence = replace(seen.evidence, before=evidence)
-            with limited():
-                verdict = judge(exercise, evidence, seed)
+            verdict = judge(exercise, evidence, seed)
         if not verdict.passed:
-            with limited():
-                certain = is_certain(exercise, evidence)
+            certain = is_certain(exercise, evidence)
             crowded = not certain and (seen.unmet or (again and crowding.too_busy))
             if not certain and not (delivered and delivers()):
                 raise NotDelivered(NOT_DELIVERED)
-    except Undecided:
-        verdict = undecidable(exercise, seed)
+    except TooManyEvents:
+        verdict = _undecidable(exercise, seed)
     if crowded and not marks_crowded:
         raise _too_busy(verdict)
     return Checked(replace(verdict, seconds=round(time.monotonic() - began, 3)), evidence, crowded)
@@ -204,12 +206,20 @@ def _so_far(verdict: Verdict) -> str:
 
 
 def decide(exercise: Exercise, evidence: Evidence, seed: str) -> Verdict:
-    """Return the verdict that follows from evidence; a fail if it takes too long to compute."""
+    """Return the verdict that follows from evidence; a fail if there are too many events to judge."""
     try:
-        with limited():
-            return judge(exercise, evidence, seed)
-    except Undecided:
-        return undecidable(exercise, seed)
+        return judge(exercise, evidence, seed)
+    except TooManyEvents:
+        return _undecidable(exercise, seed)
+
+
+def _undecidable(exercise: Exercise, seed: str) -> Verdict:
+    diagnosis = Diagnosis(
+        "undecidable",
+        f"Your program said and sent far too much: the judge reads at most {MOST_EVENTS:,} lines, messages and calls.",
+        "Log what the task asks for, one short line for each thing that happens, and nothing else.",
+    )
+    return replace(failed(exercise.id, exercise.title, float(exercise.points), diagnosis), seed=seed)
 
 
 def look(
@@ -249,7 +259,13 @@ def look(
 
 
 def judge(exercise: Exercise, evidence: Evidence, seed: str) -> Verdict:
-    """Return the verdict that follows from the evidence. Call this only within :func:`limited`."""
+    """Return the verdict that follows from the evidence.
+
+    Raises:
+        TooManyEvents: There are more than :data:`MOST_EVENTS`.
+    """
+    if sum(len(part.events) for part in evidence) > MOST_EVENTS:
+        raise TooManyEvents
     lost = {event.data["costs"]: event for part in evidence for event in part.of("misnamed")}
     criteria = tuple(
         CriterionResult(c.name, c.title, c.points, finding.passed, _cut(finding.expected), _cut(finding.seen))
@@ -301,7 +317,7 @@ def diagnose(
             _cut(of_its_kind(shortened(visible(words)), in_a_notebook), 2 * MAX_WORDS)
             for words in (advice.text, advice.next_step)
         )
-        return Diagnosis(mistake.key, text, next_step), advice.traceback
+        return Diagnosis(advice.key or mistake.key, text, next_step), advice.traceback
     failed = next((one for one in criteria if not one.passed), None)
     seen = f"“{failed.title}” is not met: {failed.seen}. Asked: {failed.expected}." if failed else ""
     text = of_its_kind(shortened(visible(parting_point(evidence) or seen)), evidence.in_a_notebook)

@@ -13,7 +13,10 @@ from autograder.kit.model import Exercise, Pace
 from autograder.kit.runners import RunsPrograms, processes, report_of
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from autograder.judge.subject import Subject
+    from autograder.kit.evidence import Part
 
 
 SEED = "reference"
@@ -67,6 +70,15 @@ def record(exercise: Exercise, subject: Subject, *, domain_id: int) -> Reference
         f"{exercise.id}: the reference solution did not follow the simulated clock, or canceled at a different time in "
         "each run. Wait until the machine is less busy, and record again."
     )
+
+
+def record_variant(
+    exercise: Exercise, subject: Subject, reference: Reference, *, domain_id: int
+) -> Sequence[Part]:
+    """Return the record of a wrong answer in all parts, for cards of nodes that do the same."""
+    subject.begin(domain_id)
+    bare = Reference(exercise.id, reference.interface)
+    return look(exercise, subject, bare, Pace.FAST, seed=SEED, domain_id=domain_id).evidence.parts
 
 
 def as_evidence(recorded: Reference) -> Evidence:

@@ -335,6 +335,23 @@ class Evidence:
 
 
 @dataclass(frozen=True)
+class Variant:
+    """What the judge recorded of a wrong answer of the bank, with the text for a student whose node does the same.
+
+    Attributes:
+        key: The key of the mistake.
+        text: What the node does wrong.
+        next_step: What the student should do now.
+        parts: The record of the wrong answer, with the same parts as the reference solution's.
+    """
+
+    key: str
+    text: str
+    next_step: str
+    parts: Sequence[Part]
+
+
+@dataclass(frozen=True)
 class Reference:
     """A reference output: what the judge recorded on the wire when it ran the reference solution.
 
@@ -342,11 +359,13 @@ class Reference:
         exercise: The exercise's id.
         interface: For each role, the types of the reference solution's endpoints by name.
         parts: The record of the reference solution, with the same parts as a subject's.
+        variants: The records of wrong answers that a card can name.
     """
 
     exercise: str
     interface: Mapping[str, Mapping[str, str]]
     parts: Sequence[Part] = ()
+    variants: Sequence[Variant] = ()
 
     def part(self, name: str) -> Part:
         """Return the part with this name.

@@ -12,7 +12,7 @@ from enum import StrEnum
 from typing import TYPE_CHECKING, Any, Protocol
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Callable, Container, Mapping, Sequence
     from random import Random
 
     from autograder.kit.counterparts import ActionCaller, ActionCounterpart, Caller, Server, Speaker
@@ -70,11 +70,14 @@ class Advice:
         next_step: What the student should do now.
         traceback: The traceback that shows the mistake, for the card; empty if the mistake was recognized from
             something else.
+        key: The key of the mistake if only the recording of the exercise has it; empty for the key of the
+            :class:`Mistake`.
     """
 
     text: str
     next_step: str
     traceback: str = ""
+    key: str = ""
 
 
 @dataclass(frozen=True)
@@ -194,6 +197,8 @@ class Bench(Protocol):
         answer: Callable[[Mapping[str, Any]], Mapping[str, Any]],
         *,
         hold: int = 0,
+        late: Mapping[int, float] = ...,
+        never: Container[int] = (),
     ) -> Server:
         """Serve a service, and record each request and response.
 
@@ -203,6 +208,9 @@ class Bench(Protocol):
             answer: Returns the fields of the response, given the fields of the request.
             hold: The number of the request, counted from 1, that is not answered until :meth:`Server.release` is
                 called; 0 for none.
+            late: The requests that are answered late, with the delay in seconds of the subject's time. The answers are
+                sent while :meth:`run_time` lets time pass.
+            never: The requests that are never answered.
         """
 
     def call(self, service: str, type_name: str) -> Caller:
@@ -234,6 +242,12 @@ class Bench(Protocol):
 
     def note_its_log(self) -> None:
         """Record, for the reference output, each text that the subject logs, but only once."""
+
+    def note(self, name: str, **data: Any) -> None:
+        """Record an event of the kind ``noted``: a fact that the scenario derives from what it has seen so far.
+
+        Use this for facts that are the same in each run, although the events behind them are not.
+        """
 
     def seen(self) -> Part:
         """Return the events of this part that were recorded so far."""

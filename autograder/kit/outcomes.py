@@ -234,8 +234,8 @@ def _with_status_names(line: str) -> str:
 
 
 def _most_telling(part: Part, others: Sequence[Part]) -> str:
-    """Return the last line whose words occur in no other run; if there is none, the last line with words."""
-    lines = [line for line in all_lines(part) if re2.search(r"\pL", line) and line != "None"]
+    """Return the last line whose words occur in no other run; if there is none, the last line with a word or number."""
+    lines = [line for line in all_lines(part) if re2.search(r"[\pL\pN]", line) and line != part.returned]
     usual = _shapes(others)
     new = [line for line in lines if shape(line) not in usual]
     return (new or lines or [""])[-1]

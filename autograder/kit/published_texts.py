@@ -214,7 +214,7 @@ def counts(seen: Publisher, expected: Publisher) -> Finding:
         found = f"{counted(more, 'message')} more before {found}"
     passed = steady and seen.went_on and _starts_right(seen, expected) and not seen.replaced
     if passed and (lost := seen.number_of_first - 1):
-        found += f" after {counted(lost, 'message')} before anybody could hear"
+        found += f" after {counted(lost, 'message')} before the judge could receive one"
     found = seen.replaced or found or "no whole number arrived"
     return Finding(passed, _row(expected.counters[:5]), found)
 

@@ -138,7 +138,7 @@ def not_filled_in(lines: Sequence[str]) -> Advice | None:
     return Advice(
         f"Your program said “{line}”: Python did not replace the braces by a value, because there is no f before the "
         "string.",
-        'Write f directly before the quotation mark: f"...". Python then puts the value where the braces are.',
+        'Write f directly before the quotation mark: f"...". Python then replaces the braces by the value.',
     )
 
 

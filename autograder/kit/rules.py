@@ -51,7 +51,7 @@ ON_THE_WAY = 0.3
 sending is ignored.
 """
 SUCCESSIVE, APART = 3, 0.3
-"""The minimum number of endpoints that count as made anew for each message, and the seconds between two of them."""
+"""The minimum number of endpoints that count as made again for each message, and the seconds between two of them."""
 ROUNDING = 0.005
 """The number of seconds by which a message may seem to arrive before it was sent, because times are rounded."""
 

@@ -201,7 +201,7 @@ class _FailedCells:
             if type(error).__name__ == "UsageError":  # IPython shows only the message
                 error.args = (f"{error}\n{advice}",)
             error.add_note(advice)
-        shell.showtraceback(running_compiled_code=True)
+        shell.showtraceback(running_compiled_code=not isinstance(error, SyntaxError))
 
     def _what_to_run(self, name: str) -> str:
         if not re.search(_CHECKED.format(re.escape(name)), self._source, re.MULTILINE):

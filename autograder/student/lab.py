@@ -12,8 +12,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from autograder.dds_discovery import DOMAIN_VARIABLE, DomainClaim, claim_free_domain, domain_from_environment
-from autograder.known_classes import is_known
 from autograder.student import check_journal
+from autograder.student.known_classes import is_known
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -16,9 +16,9 @@ from typing import Any
 from nbgrader.apps import NbGrader
 from nbgrader.server_extensions.validate_assignment.handlers import ValidateAssignmentHandler
 
-from autograder.known_classes import is_known
 from autograder.process_trees import die_with_parent
 from autograder.standard_output import private_stdout
+from autograder.student.known_classes import is_known
 
 
 def validate(folder: str, notebook: str) -> None:

@@ -47,7 +47,8 @@ def test_an_appeal_file_brings_the_same_verdict_again(seen: Kept, tmp_path: Path
         looks = Evidence(look.parts, NO_REFERENCE, look.real_time, looks)
     assert looks is not None
     file = tmp_path / "appeal.zip"
-    packed = evidence_files.pack(seen.verdict, looks, seen.reference, at=seen.at)
+    digest = evidence_files.reference_digest(seen.verdict.exercise)
+    packed = evidence_files.pack(seen.verdict, looks, digest, at=seen.at)
     file.write_bytes(appeal_file.dump(CHECK, packed, {}))
     again = replay(appeal_file.read(file).seen)
     assert (again.differences, again.notes) == ([], [])

@@ -9,7 +9,7 @@ import pytest
 
 from autograder.cards.card_traffic import traffic
 from autograder.cards.timeline_layout import HALF_WIDTH, TURNS, WIDTH, picture
-from autograder.judge.verdict_timeline import moments
+from autograder.judge.timeline.verdict_timeline import moments
 from autograder.kit.evidence import Event, Evidence, Part, Reference
 from tests.cards.test_timeline_layout import assert_legible
 

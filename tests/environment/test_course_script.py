@@ -76,6 +76,7 @@ def course(tmp_path: Path) -> Course:
     (root / "tests").mkdir()
     shutil.copy(ROOT / "course", root / "course")
     (root / "tests/nothing_left.py").write_text("import os, sys\nos.execvp(sys.argv[1], sys.argv[1:])\n")
+    (root / "tests/english.py").write_text("")
     (root / "pyproject.toml").write_text("[project]\n")
     (root / "environment/__init__.py").write_text("")
     (root / "environment/bootstrap.py").write_text(SET_UP)

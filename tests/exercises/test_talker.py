@@ -74,7 +74,7 @@ def told(key: str, evidence: Evidence) -> str:
 
 @pytest.mark.parametrize(("heard", "number"), [(1, 1), (2, 2), (3, 3)])
 def test_a_counter_that_starts_at_one_is_not(heard: int, number: int) -> None:
-    """Also where the first messages came before anybody could hear them."""
+    """Also where the first messages came before the judge could receive one them."""
     evidence = _evidence(_messages(list(range(heard, heard + 20)), 0.5, first=number))
     assert not judged("counter", evidence)
     assert told("counter_start", evidence) == (

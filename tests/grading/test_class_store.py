@@ -548,6 +548,15 @@ def test_a_class_that_may_only_be_read_is_read(
         for words in (("attempts", "ada"), ("compare",), ("report", "--output", page)):
             done = CliRunner().invoke(cli, [words[0], str(tiny.path), *words[1:]])
             assert done.exit_code == 0, done.output
+        for line in (
+            ["export", "--to", "csv", "--output", str(tmp_path)],
+            ["grade"],
+            ["students"],
+            ["collect"],
+        ):
+            done = CliRunner().invoke(cli, [line[0], str(tiny.path), *line[1:]])
+            said = "You do not have the right to read or write"
+            assert (done.exit_code, said in done.output, done.output.count("\n")) == (2, True, 1), done.output
         store = ClassStore(ClassDirectory(tiny.path))
         with pytest.raises(StoreTrouble, match=r"readonly.*Check the owner"):
             store.forget_entered([submission()])

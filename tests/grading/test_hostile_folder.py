@@ -16,7 +16,7 @@ from click.testing import CliRunner
 
 from autograder.cli import cli
 from autograder.grading.classes.class_directory import ClassDirectory
-from autograder.known_classes import CONFIG_NAME, reason_against
+from autograder.student.known_classes import CONFIG_NAME, reason_against
 from environment.python_child import installed_program
 
 if TYPE_CHECKING:

@@ -18,7 +18,7 @@ import pytest
 from nbgrader.api import Gradebook
 from tiny_class import LISTENER, TALKER, FakeEngine, TinyClass, make_tiny_class
 
-from autograder.grading.classes import gradebook_reading
+from autograder.grading.classes import gradebook_reading, gradebook_writing
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.grading_errors import GradingError
 from autograder.grading.new_classes.new_class import release
@@ -144,6 +144,13 @@ def test_it_has_the_same_grades(tiny: TinyClass, moved: Moved, fake_engine: Fake
     entry = gradebook_reading.read_entries(moved.url)["ada", "lab_1_2"]
     assert {name: cell.judged for name, cell in entry.cells["lab_1_2"].items()} == found["ada"]
     assert not (moved.tiny.path / "gradebook.db").exists()
+    gradebook_writing.rename(moved.url, {"ada": ".ben", "ben": ".ada"})
+    gradebook_writing.rename(moved.url, {".ben": "ben", ".ada": "ada"})
+    assert scores(moved.url) == {**found, "ada": found["ben"], "ben": found["ada"]}
+    gradebook_writing.rename(moved.url, {"ada": "ben"})
+    assert scores(moved.url) == {
+        name: of for name, of in {**found, "ben": found["ada"]}.items() if name != "ada"
+    }
 
 
 def test_what_is_missing_is_said(

@@ -21,11 +21,11 @@ from autograder.grading import result_writer
 from autograder.grading.classes import gradebook_writing
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.classes.gradebook_reading import read_entries
-from autograder.grading.collecting.submission_times import handed_in_at
 from autograder.grading.grading_task import points
 from autograder.grading.returning.feedback_pages import mark_waiting
 from autograder.grading.returning.page_exporter import PageExporter
 from autograder.grading.returning.sanitize import make_harmless
+from autograder.grading.tasks.submission_times import handed_in_at
 from autograder.verdict import State, Verdict
 
 if TYPE_CHECKING:

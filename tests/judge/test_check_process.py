@@ -1,4 +1,4 @@
-"""Whatever happens to a check in a child process, the parent can say so; a verdict that takes too long is a zero."""
+"""Whatever happens to a check in a child process, the parent can say so; too much to judge is a zero."""
 
 from __future__ import annotations
 
@@ -9,16 +9,16 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import pytest
-
 from autograder import exercises
-from autograder.judge import check_process, evidence_files, one_check
-from autograder.judge.check_process import Child, Undecided, limited
-from autograder.kit.evidence import Evidence, Part
-from autograder.kit.model import Criterion, Finding
+from autograder.judge import evidence_files, one_check
+from autograder.judge.check_process import Child
+from autograder.judge.one_check import MOST_EVENTS
+from autograder.kit.evidence import Event, Evidence, Part
 from autograder.verdict import State
 
 if TYPE_CHECKING:
+    import pytest
+
     from autograder.kit.model import Exercise
 
 
@@ -78,64 +78,15 @@ def test_a_child_that_is_ended_before_its_time_is_told_from_one_that_had_it() ->
     assert not slow.hurried
 
 
-def test_a_judge_that_is_deciding_at_its_limit_says_so_and_one_that_is_looking_is_killed(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    heard, tells = os.pipe()
-
-    def ponders() -> bytes:
-        try:
-            with limited(600.0):
-                os.write(tells, b"!")
-                while True:
-                    pass
-        except Undecided:
-            return b"undecided"
-
-    with monkeypatch.context() as patched:
-        patched.setattr(check_process, "LAST_WORDS", 600.0)
-        patched.setattr(check_process, "SURE", 0.0)
-        child = Child(ponders, limit=600.0)
-        os.read(heard, 1)
-        assert child.result(within=0.0).data == b"undecided"
-    os.close(heard)
-    os.close(tells)
-    assert Child(_hangs, limit=0.3).result().data is None
-
-
-def test_a_judge_that_has_hardly_begun_to_decide_at_its_limit_has_no_verdict(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    heard, tells = os.pipe()
+def test_a_judge_that_is_deciding_at_its_limit_has_no_verdict() -> None:
+    """However slow the processor is, no limit in seconds gives zero points."""
 
     def decides() -> bytes:
-        try:
-            with limited(600.0):
-                os.write(tells, b"!")
-                time.sleep(60.0)  # the machine gives it no processor
-        except Undecided:
-            return b"undecided"
-        return b""
+        while True:
+            pass
 
-    monkeypatch.setattr(check_process, "LAST_WORDS", 0.3)
-    child = Child(decides, limit=600.0)
-    os.read(heard, 1)
-    outcome = child.result(within=0.0)
-    os.close(heard)
-    os.close(tells)
+    outcome = Child(decides, limit=0.3).result()
     assert (outcome.data, outcome.trouble) == (None, "the judge did not finish in time")
-
-
-def ponders(_: Evidence) -> Finding:
-    while True:
-        pass
-
-
-def raises(_: Evidence) -> Finding:
-    try:
-        return ponders(_)
-    except Exception:
-        return Finding(True, "", "")
 
 
 class Anybody:
@@ -148,69 +99,40 @@ class Anybody:
         del domain_id
 
 
-def looked(exercise: Exercise, monkeypatch: pytest.MonkeyPatch) -> list[str]:
-    """Have every look bring nothing; the looks that were made."""
+def with_events(exercise: Exercise, count: int, kind: str) -> Evidence:
+    """Evidence of one part with so many events of a kind."""
+    event = Event(1.0, kind, "chatter", {"text": "a"})
+    return Evidence([Part("main", events=[event] * count)], evidence_files.load_reference(exercise.id))
+
+
+def test_more_events_than_the_judge_reads_are_zero_with_a_reason(monkeypatch: pytest.MonkeyPatch) -> None:
+    exercise = exercises.get("lab_1_2.listener")
     looks: list[str] = []
 
     def look(*words: object, **_: object) -> one_check.Seen:
         looks.append(str(words[3]))
-        return one_check.Seen(
-            Evidence([Part("main")], evidence_files.load_reference(exercise.id)), doubtful=False
-        )
+        return one_check.Seen(with_events(exercise, MOST_EVENTS + 1, "matched"), doubtful=False)
 
     monkeypatch.setattr(one_check, "look", look)
-    monkeypatch.setattr(one_check, "limited", lambda: check_process.limited(0.3))
-    return looks
-
-
-@pytest.mark.parametrize("judge", [ponders, raises])
-def test_a_criterion_without_an_end_is_zero_with_a_reason(
-    monkeypatch: pytest.MonkeyPatch, judge: object
-) -> None:
-    usual = exercises.get("lab_1_2.listener")
-    endless = Criterion("endless", "Endless", 10, judge)  # type: ignore[arg-type]
-    exercise = replace(usual, criteria=(endless,))
-    looks = looked(usual, monkeypatch)
     subject: object = Anybody()
     verdict = one_check.check(
         exercise,
         subject,  # type: ignore[arg-type]
-        evidence_files.load_reference(usual.id),
+        evidence_files.load_reference(exercise.id),
         seed="s",
         domain_id=0,
     ).verdict
     assert (verdict.state, verdict.score, verdict.max_score) == (State.FAILED, 0.0, 10.0)
     assert verdict.diagnosis
     assert verdict.diagnosis.key == "undecidable"
-    assert len(looks) == 1  # another look would bring the same words
+    assert len(looks) == 1  # another look would bring the same events
+    assert one_check.decide(exercise, with_events(exercise, MOST_EVENTS + 1, "matched"), "s") == replace(
+        verdict, seconds=0.0
+    )
 
 
-def test_what_is_decided_in_time_is_not_disturbed() -> None:
-    with check_process.limited(0.2):
-        pass
-    for _ in range(2_000_000):
-        pass
-
-
-def test_a_decision_that_loses_the_first_word_is_told_once_more() -> None:
-    """What is raised within a destructor is printed and forgotten."""
-    lost = []
-
-    def loses_the_first(evidence: Evidence) -> None:
-        try:
-            ponders(evidence)
-        except check_process.Undecided as told:
-            lost.append(told)
-        ponders(evidence)
-
-    with pytest.raises(check_process.Undecided), check_process.limited(0.05):
-        loses_the_first(Evidence([], evidence_files.load_reference("lab_1_2.listener")))
-    assert lost
-
-
-def test_nothing_is_told_when_the_decision_is_over() -> None:
-    before = signal.getsignal(check_process.STOP_SIGNAL)
-    with check_process.limited(60.0):
-        pass
-    assert signal.getitimer(signal.ITIMER_VIRTUAL) == (0.0, 0.0)
-    assert signal.getsignal(check_process.STOP_SIGNAL) == before
+def test_as_many_events_as_the_judge_reads_are_judged() -> None:
+    exercise = exercises.get("lab_1_2.listener")
+    verdict = one_check.decide(exercise, with_events(exercise, MOST_EVENTS, "parameters"), "s")
+    assert verdict.diagnosis
+    assert verdict.diagnosis.key != "undecidable"

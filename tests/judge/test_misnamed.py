@@ -11,7 +11,7 @@ from autograder import exercises
 from autograder.judge import evidence_files
 from autograder.judge.command_check import check_and_keep
 from autograder.judge.one_check import decide, misnamed
-from autograder.judge.verdict_timeline import moments
+from autograder.judge.timeline.verdict_timeline import moments
 from autograder.kit.evidence import Event, Evidence, Part, Reference
 from autograder.verdict import CriterionResult, State, Verdict
 

@@ -28,7 +28,13 @@ CHECK = "check('lab', Talker)"
 
 def text_of(output: Any) -> str:
     if output.output_type == "error":
-        assert output.ename in {"NameError", "ModuleNotFoundError", "StaleCodeError"}
+        assert output.ename in {
+            "NameError",
+            "ModuleNotFoundError",
+            "StaleCodeError",
+            "SyntaxError",
+            "TypeError",
+        }
     if output.output_type == "stream":
         return " ".join(output.text.split())
     text = "\n".join(output.traceback) if output.output_type == "error" else output.data["text/plain"]
@@ -149,3 +155,17 @@ def test_other_name_errors_keep_their_traceback(said: Callable[..., list[str]]) 
     for number, shown in enumerate(said(*((source,) for source in sources))):
         assert f"there is no Talker{number} yet" not in shown
         assert f"name 'Talker{number}' is not defined" in shown
+
+
+def test_a_known_error_of_a_cell_is_told_below_it_without_lines_of_ipython(
+    said: Callable[..., list[str]],
+) -> None:
+    command, magic, quoted = said(
+        ["ros2 topic list"],
+        ["# my file\n%%writefile talker.py\nimport rclpy"],
+        [RIGHT, "check('lab', 'Talker')"],
+    )
+    assert "Write %%bash --no-raise-error as the first line of the cell" in command
+    assert "interactiveshell" not in command
+    assert "Move %%writefile to the first line of the cell" in magic
+    assert "takes your class or function itself, without quotation marks" in quoted

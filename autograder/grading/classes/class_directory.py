@@ -13,13 +13,14 @@ from zoneinfo import ZoneInfo
 
 from traitlets.config.loader import PyFileConfigLoader
 
-from autograder import course, known_classes
+from autograder import course
 from autograder.command_name import COMMAND
 from autograder.grading.classes.class_lock import held
 from autograder.grading.classes.class_secret import create_secret, read_secret
 from autograder.grading.grading_errors import GradingError, NotAClass, clear_disk_errors
 from autograder.grading.rebuilding.submitted_notebook import reason_against_file
 from autograder.safe_files import remove_unfinished
+from autograder.student import known_classes
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -38,6 +39,8 @@ COURSE_NAME = "course"
 installed package cannot find that folder otherwise.
 """
 SUFFIX = ".ipynb"
+TIMESTAMP = "timestamp.txt"
+"""The name of nbgrader's timestamp file, which lies next to the notebooks of a submission."""
 _LONGEST_NAME = 100
 _STUDENTS_FILES = ("submitted", "autograded", "feedback", "downloaded")
 """nbgrader's names for the folders of a class that contain students' files."""
@@ -306,6 +309,15 @@ def refuse_students_folder(folder: Path) -> None:
                 f"{folder} is among students' files, so it cannot be a class. Use the class that contains it: "
                 f"{outer}"
             )
+
+
+def timestamp_text(when: datetime) -> str:
+    """Return a time as text in the format of nbgrader's timestamp file.
+
+    Args:
+        when: A time in UTC.
+    """
+    return f"{when:%Y-%m-%d %H:%M:%S.%f} UTC"
 
 
 def in_zone(when: datetime, zone: tzinfo) -> str:

@@ -86,73 +86,85 @@ def enter(
     Raises:
         LookupError: The gradebook does not contain the assignment or one of its notebooks.
     """
+    names: dict[str, object] = {"assignment": assignment, "student": student}
     with opened(url) as book:
-        row = book.execute(
-            sql("SELECT id, duedate FROM assignment WHERE name = :name"), {"name": assignment}
-        ).first()
-        if row is None:
-            raise LookupError(f"the gradebook has no assignment named {assignment}")
-        assignment_id, due = row
-        submission = _submission(book, assignment_id, student, timestamp)
-        cells = _cells(book, assignment_id)
-        for name, entry in notebooks.items():
-            if name not in cells:
-                raise LookupError(f"the gradebook has no notebook named {name} in {assignment}")
-            _enter_notebook(book, submission, cells[name], entry)
-        # A notebook without a result also gets an entry, with zero points.
-        for name in cells.keys() - notebooks.keys():
-            _enter_notebook(book, submission, cells[name], NotebookEntry({}, {}))
-    return due is not None
-
-
-@dataclass(frozen=True)
-class _Cells:
-    """The id of a notebook in the gradebook, and its cells: pairs of an id in the gradebook and a grade_id."""
-
-    notebook: str
-    graded: tuple[tuple[str, str], ...]
-    commented: tuple[tuple[str, str], ...]
-
-
-def _cells(book: Connection, assignment: str) -> dict[str, _Cells]:
-    rows = book.execute(
-        sql(
-            "SELECT n.id, n.name, b.id, b.name, b.type FROM notebook n"
-            " LEFT JOIN base_cell b ON b.notebook_id = n.id WHERE n.assignment_id = :id"
-        ),
-        {"id": assignment},
-    ).all()
-    return {
-        name: _Cells(
-            notebook,
-            tuple((row[2], row[3]) for row in rows if row[0] == notebook and row[4] in _GRADED),
-            tuple((row[2], row[3]) for row in rows if row[0] == notebook and row[4] in _COMMENTED),
+        of_assignment = sql(
+            "SELECT n.name, a.duedate FROM assignment a JOIN notebook n ON n.assignment_id = a.id"
+            " WHERE a.name = :assignment"
         )
-        for notebook, name in {(row[0], row[1]) for row in rows}
-    }
+        due = {row.name: row.duedate for row in book.execute(of_assignment, names)}
+        if missing := notebooks.keys() - due.keys():
+            raise LookupError(
+                f"the gradebook has no assignment named {assignment} with a notebook named {min(missing)}"
+            )
+        _submit(book, names, timestamp)
+        _put(
+            book,
+            [{**names, "id": uuid.uuid4().hex, "notebook": name, "no": False} for name in due],
+            "INSERT INTO submitted_notebook (id, assignment_id, notebook_id, flagged) SELECT :id, s.id, n.id, :no"
+            " FROM submitted_assignment s JOIN assignment a ON a.id = s.assignment_id"
+            " JOIN notebook n ON n.assignment_id = a.id"
+            " WHERE a.name = :assignment AND s.student_id = :student AND n.name = :notebook"
+            " ON CONFLICT (notebook_id, assignment_id) DO UPDATE SET late_submission_penalty = NULL",
+        )
+        _enter_cells(book, names, notebooks)
+    return any(due.values())
 
 
-def _submission(book: Connection, assignment: str, student: str, timestamp: datetime | None) -> str:
-    """Return the id of a submission in the gradebook, after adding a missing submission and setting its time."""
-    if not book.execute(sql("SELECT 1 FROM student WHERE id = :id"), {"id": student}).first():
-        book.execute(sql("INSERT INTO student (id) VALUES (:id)"), {"id": student})
-    pair = {"a": assignment, "s": student}
-    book.execute(
-        sql(
-            "INSERT INTO submitted_assignment (id, assignment_id, student_id) VALUES (:id, :a, :s)"
-            " ON CONFLICT (assignment_id, student_id) DO NOTHING"
-        ),
-        {"id": uuid.uuid4().hex, **pair},
-    )
+def _submit(book: Connection, names: Mapping[str, object], timestamp: datetime | None) -> None:
+    """Add a missing student and a missing submission, and set the time of the submission."""
+    for statement in (
+        "INSERT INTO student (id) VALUES (:student) ON CONFLICT (id) DO NOTHING",
+        "INSERT INTO submitted_assignment (id, assignment_id, student_id)"
+        " SELECT :id, a.id, :student FROM assignment a WHERE a.name = :assignment"
+        " ON CONFLICT (assignment_id, student_id) DO NOTHING",
+    ):
+        _put(book, [{**names, "id": uuid.uuid4().hex}], statement)
     if timestamp is not None:
-        book.execute(
-            sql(
-                "UPDATE submitted_assignment SET timestamp = :at WHERE assignment_id = :a AND student_id = :s"
-            ).bindparams(sqlalchemy.bindparam("at", type_=sqlalchemy.DateTime())),
-            {"at": timestamp, **pair},
+        setting = sql(
+            "UPDATE submitted_assignment SET timestamp = :at WHERE student_id = :student"
+            " AND assignment_id IN (SELECT id FROM assignment WHERE name = :assignment)"
         )
-    found = sql("SELECT id FROM submitted_assignment WHERE assignment_id = :a AND student_id = :s")
-    return str(book.execute(found, pair).scalar_one())
+        typed = setting.bindparams(sqlalchemy.bindparam("at", type_=sqlalchemy.DateTime()))
+        book.execute(typed, {**names, "at": timestamp})
+
+
+def _enter_cells(
+    book: Connection, names: Mapping[str, object], notebooks: Mapping[str, NotebookEntry]
+) -> None:
+    """Enter the points and comments of all cells. A notebook without a result gets zero points."""
+    cells = sql(
+        "SELECT n.name AS notebook, sn.id AS submitted, b.id AS cell, b.name AS name, b.type AS type,"
+        f" g.manual_score AS by_hand FROM {SUBMITTED} JOIN base_cell b ON b.notebook_id = n.id"
+        " LEFT JOIN grade g ON g.notebook_id = sn.id AND g.cell_id = b.id"
+        " WHERE a.name = :assignment AND s.student_id = :student"
+    )
+    graded: list[dict[str, object]] = []
+    commented: list[dict[str, object]] = []
+    for row in book.execute(cells, names).all():
+        entry = notebooks.get(row.notebook, NotebookEntry({}, {}))
+        place = {"id": uuid.uuid4().hex, "n": row.submitted, "cell": row.cell}
+        if row.type in _GRADED:
+            score = entry.scores.get(row.name, 0.0)
+            # Mark a cell for review if a person gave points or still has to give them, as nbgrader's SaveAutoGrades
+            # does.
+            look = row.by_hand is not None or score is None or row.name in entry.unchecked
+            graded.append({**place, "score": score, "look": look})
+        if row.type in _COMMENTED:
+            commented.append({**place, "comment": entry.comments.get(row.name)})
+    _put(
+        book,
+        graded,
+        "INSERT INTO grade (id, notebook_id, cell_id, auto_score, needs_manual_grade)"
+        " VALUES (:id, :n, :cell, :score, :look) ON CONFLICT (cell_id, notebook_id)"
+        " DO UPDATE SET auto_score = excluded.auto_score, needs_manual_grade = excluded.needs_manual_grade",
+    )
+    _put(
+        book,
+        commented,
+        "INSERT INTO comment (id, notebook_id, cell_id, auto_comment) VALUES (:id, :n, :cell, :comment)"
+        " ON CONFLICT (cell_id, notebook_id) DO UPDATE SET auto_comment = excluded.auto_comment",
+    )
 
 
 def enter_time(url: str, assignment: str, student: str, timestamp: datetime) -> None:
@@ -163,11 +175,7 @@ def enter_time(url: str, assignment: str, student: str, timestamp: datetime) -> 
         timestamp: The time in UTC.
     """
     with opened(url) as book:
-        assignment_id = book.execute(
-            sql("SELECT id FROM assignment WHERE name = :name"), {"name": assignment}
-        ).scalar()
-        if assignment_id is not None:
-            _submission(book, assignment_id, student, timestamp)
+        _submit(book, {"assignment": assignment, "student": student}, timestamp)
 
 
 def enter_penalties(url: str, assignment: str, student: str, penalties: Mapping[str, float | None]) -> None:
@@ -188,56 +196,6 @@ def enter_penalties(url: str, assignment: str, student: str, penalties: Mapping[
             "UPDATE submitted_notebook SET late_submission_penalty = :costs WHERE id IN"
             f" (SELECT sn.id FROM {SUBMITTED} WHERE a.name = :a AND s.student_id = :s AND n.name = :n)",
         )
-
-
-def _enter_notebook(book: Connection, submission: str, cells: _Cells, entry: NotebookEntry) -> None:
-    pair = {"s": submission, "n": cells.notebook}
-    book.execute(
-        sql(
-            "INSERT INTO submitted_notebook (id, assignment_id, notebook_id, flagged) VALUES (:id, :s, :n, :no)"
-            " ON CONFLICT (notebook_id, assignment_id) DO UPDATE SET late_submission_penalty = NULL"
-        ),
-        {"id": uuid.uuid4().hex, "no": False, **pair},
-    )
-    found = sql("SELECT id FROM submitted_notebook WHERE assignment_id = :s AND notebook_id = :n")
-    notebook = str(book.execute(found, pair).scalar_one())
-    scores = entry.scores
-    by_hand = {
-        row.cell_id
-        for row in book.execute(
-            sql("SELECT cell_id FROM grade WHERE notebook_id = :n AND manual_score IS NOT NULL"),
-            {"n": notebook},
-        )
-    }
-    graded: list[dict[str, object]] = [
-        {
-            "id": uuid.uuid4().hex,
-            "n": notebook,
-            "cell": cell,
-            "score": scores.get(name, 0.0),
-            # Mark a cell for review if a person gave points or still has to give them, as nbgrader's SaveAutoGrades
-            # does.
-            "look": cell in by_hand or scores.get(name, 0.0) is None or name in entry.unchecked,
-        }
-        for cell, name in cells.graded
-    ]
-    _put(
-        book,
-        graded,
-        "INSERT INTO grade (id, notebook_id, cell_id, auto_score, needs_manual_grade)"
-        " VALUES (:id, :n, :cell, :score, :look) ON CONFLICT (cell_id, notebook_id)"
-        " DO UPDATE SET auto_score = excluded.auto_score, needs_manual_grade = excluded.needs_manual_grade",
-    )
-    commented: list[dict[str, object]] = [
-        {"id": uuid.uuid4().hex, "n": notebook, "cell": cell, "comment": entry.comments.get(name)}
-        for cell, name in cells.commented
-    ]
-    _put(
-        book,
-        commented,
-        "INSERT INTO comment (id, notebook_id, cell_id, auto_comment) VALUES (:id, :n, :cell, :comment)"
-        " ON CONFLICT (cell_id, notebook_id) DO UPDATE SET auto_comment = excluded.auto_comment",
-    )
 
 
 def rename(url: str, ids: Mapping[str, str]) -> None:

@@ -294,17 +294,12 @@ class Table:
 
     def waiting(self) -> list[Waiting]:
         """Return the lines that wait for a person, from the table that ``collect`` wrote last."""
-        return [
-            Waiting(
-                _KEY.sub(lambda key: key[0][:SHORT_KEY], row["file"]),
-                row["reason"],
-                row["student"],
-                row["assignment"],
-                number,
-            )
-            for number, row in enumerate(self.lines(), 2)
-            if row["counts"] == _WAITS
-        ]
+        waiting = []
+        for number, row in enumerate(self.lines(), 2):
+            label = _KEY.sub(lambda key: key[0][:SHORT_KEY], row["file"])
+            if row["counts"] == _WAITS:
+                waiting.append(Waiting(label, row["reason"], row["student"], row["assignment"], number))
+        return waiting
 
 
 def _rows(data: bytes, *, whole: bool = False) -> tuple[list[dict[str, str]] | None, int]:

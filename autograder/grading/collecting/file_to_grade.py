@@ -109,20 +109,16 @@ def _of_notebook(place: Place, files: list[Line], folders: ClassFolders) -> Iter
             if present
             else "is graded, because yes is written under use"
         )
-        for one in files:
-            if one not in chosen:
-                same = best and one.content == best.content
-                yield (
-                    one,
-                    *((LineState.UNCHANGED, "") if same else (LineState.EARLIER, f"{chosen[0].label} {why}")),
-                )
+        for one in (one for one in files if one not in chosen):
+            is_same = best and one.content == best.content
+            yield (
+                (one, LineState.UNCHANGED, "")
+                if is_same
+                else (one, LineState.EARLIER, f"{chosen[0].label} {why}")
+            )
         return
-    for one in by_hand:
-        yield (
-            one,
-            LineState.EARLIER,
-            "the file was in submitted before: write yes under use to put it there again",
-        )
+    before = "the file was in submitted before: write yes under use to put it there again"
+    yield from ((one, LineState.EARLIER, before) for one in by_hand)
     pool = [one for one in files if not one.is_by_hand]
     for sift in (_ambiguous_names, _unreadable):
         doubts = sift(place, pool, folders)

@@ -73,13 +73,14 @@ def read_lms_name(parts: Sequence[str], place: int, system: str) -> NameFacts | 
     form, is_file = NAME_FORMS[system], place == len(parts) - 1
     match = _compiled(system).match(parts[place])
     found = {group: value or "" for group, value in match.groupdict().items()} if match else {}
-    if not match or (form.needs_file and is_file and not found.get("file")):
+    order = int(found.get("order") or 0)
+    if not match or (form.needs_file and is_file and not found.get("file")) or order < form.least_order:
         return None
     return NameFacts(
         _identities(form, found),
         found.get("file", parts[place]) if is_file else parts[-1],
         read_time(found.get("when", "")),
-        int(found.get("order") or 0),
+        order,
         bool(found.get("late")),
         rivals=_rivals(form, parts[place]),
     )

@@ -14,7 +14,13 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from autograder.command_name import COMMAND
-from autograder.grading.classes.class_directory import SUFFIX, ClassDirectory, RefusedFile
+from autograder.grading.classes.class_directory import (
+    SUFFIX,
+    TIMESTAMP,
+    ClassDirectory,
+    RefusedFile,
+    timestamp_text,
+)
 from autograder.grading.collecting.collected_files import (
     BY_HAND,
     Arrival,
@@ -24,7 +30,6 @@ from autograder.grading.collecting.collected_files import (
     Inbox,
     LineState,
 )
-from autograder.grading.collecting.submission_times import TIMESTAMP, timestamp_text
 from autograder.grading.rebuilding.submitted_notebook import UnreadableSubmission, read_bytes
 from autograder.safe_files import write_whole
 
@@ -213,19 +218,13 @@ def misplaced_files(directory: ClassDirectory) -> tuple[list[RefusedFile], list[
     notebooks = {name: directory.notebooks(name) for name in directory.assignments()}
     students = _folders(submitted)
     folders: list[tuple[Path, list[str]]] = [(one, []) for one in (submitted, *students)]
-    folders += [
-        (folder, notebooks[folder.name])
-        for student in students
-        for folder in _folders(student)
-        if folder.name in notebooks
-    ]
+    submissions = [folder for student in students for folder in _folders(student) if folder.name in notebooks]
+    folders += [(folder, notebooks[folder.name]) for folder in submissions]
     refused, notices = [], []
     for folder, names in folders:
         places = [folder / f"{name}{SUFFIX}" for name in names]
-        others = [
-            one for one in _entries(folder) if one.suffix.lower() in (SUFFIX, ".zip") and one not in places
-        ]
-        others = [one for one in others if one.is_file() and not one.is_symlink()]
+        others = [one for one in _entries(folder) if one.is_file() and not one.is_symlink()]
+        others = [one for one in others if one.suffix.lower() in (SUFFIX, ".zip") and one not in places]
         if not others:
             continue
         more = f", nor are {len(others) - 1} more files in this folder" if others[1:] else ""
@@ -235,17 +234,10 @@ def misplaced_files(directory: ClassDirectory) -> tuple[list[RefusedFile], list[
                 f"{others[0].relative_to(submitted)} is not graded{more}: the notebook in the same folder is graded"
             )
             continue
-        place = (
-            f"rename the notebook to grade to {missing}"
-            if missing
-            else f"move the file into {submitted}/STUDENT/ASSIGNMENT"
-        )
-        refused.append(
-            RefusedFile(
-                others[0],
-                f"the file is not graded in this place{more}: {place}, or give the file to `{COMMAND} collect`",
-            )
-        )
+        what_to_do = f"move the file into {submitted}/STUDENT/ASSIGNMENT"
+        what_to_do = f"rename the notebook to grade to {missing}" if missing else what_to_do
+        why = f"the file is not graded in this place{more}: {what_to_do}, or give the file to `{COMMAND} collect`"
+        refused.append(RefusedFile(others[0], why))
     return refused, notices
 
 

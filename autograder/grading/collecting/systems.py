@@ -24,6 +24,7 @@ class NameForm:
     system: str
     pattern: str
     divide: str = ""
+    least_order: int = 0
     needs_file: bool = False
     needs_from: bool = False
     list: str = ""

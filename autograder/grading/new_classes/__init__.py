@@ -1,1 +1,1 @@
-"""Makes a new class, and the sample class, which is graded at once."""
+"""Makes a new class and the sample class, and changes the students of a class."""

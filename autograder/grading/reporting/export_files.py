@@ -203,7 +203,7 @@ def class_csv(table: ClassTable, assignments: Sequence[str]) -> bytes:
 def _class_xlsx(table: ClassTable, assignments: Sequence[str]) -> bytes:
     """Return a workbook with two sheets: a line for each student, and a line for each result in an exercise."""
     exercises: list[_Cells] = [list(COLUMNS)]
-    exercises += [list(csv_cells(row)) for row in table.rows if row.assignment in assignments]
+    exercises += [csv_cells(row) for row in table.rows if row.assignment in assignments]
     data = io.BytesIO()
     # A text from a student or an LMS must never become a formula, a link or a number.
     options = {

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 
 from autograder.cards.readable_text import one_line
 from autograder.grading.grading_task import points
-from autograder.grading.table.spreadsheet_csv import csv_text
+from autograder.grading.table.spreadsheet_csv import blank, csv_text
 from autograder.safe_files import write_whole
 from autograder.verdict import State
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Callable, Iterable, Mapping
     from pathlib import Path
 
     from autograder.execution.executed_cells import Execution
@@ -155,21 +155,22 @@ def remarks_on(rows: Iterable[Row]) -> dict[tuple[str, str], str]:
     return {key: one_line(" ".join(remarks), _LONGEST_REMARKS) for key, remarks in found.items() if remarks}
 
 
-COLUMNS = (
-    "student",
-    "assignment",
-    "exercise",
-    "score",
-    "max",
-    "state",
-    "diagnosis",
-    "reason",
-    "judge",
-    "by_hand",
-    "extra",
-    "waits_for_a_person",
-    "name",
-)
+COLUMNS: Mapping[str, Callable[[Row], str | float]] = {
+    "student": lambda row: row.student,
+    "assignment": lambda row: row.assignment,
+    "exercise": lambda row: row.exercise,
+    "score": lambda row: blank(row.shown_score),
+    "max": lambda row: row.max_score,
+    "state": lambda row: row.state,
+    "diagnosis": lambda row: row.diagnosis,
+    "reason": lambda row: row.reason,
+    "judge": lambda row: blank(row.judged),
+    "by_hand": lambda row: blank(row.by_hand),
+    "extra": lambda row: row.extra or "",
+    "waits_for_a_person": lambda row: "yes" if row.waits else "",
+    "name": lambda row: row.name,
+}
+"""The columns of a table of results, each with its value in a row."""
 
 
 def write_csv(path: Path, rows: Iterable[Row]) -> None:
@@ -181,20 +182,6 @@ def write_csv(path: Path, rows: Iterable[Row]) -> None:
     write_whole(path, csv_text([COLUMNS, *map(csv_cells, rows)]).encode("utf-8-sig"))
 
 
-def csv_cells(row: Row) -> tuple[str | float, ...]:
+def csv_cells(row: Row) -> list[str | float]:
     """Return the values of a row in the order of :data:`COLUMNS`."""
-    return (
-        row.student,
-        row.assignment,
-        row.exercise,
-        "" if row.is_blank else row.score,
-        row.max_score,
-        row.state,
-        row.diagnosis,
-        row.reason,
-        "" if row.judged is None else row.judged,
-        "" if row.by_hand is None else row.by_hand,
-        row.extra if row.extra else "",
-        "yes" if row.waits else "",
-        row.name,
-    )
+    return [value(row) for value in COLUMNS.values()]

@@ -1,4 +1,4 @@
-"""Who is in a class, and what a new list of students changes: a student is dropped, joins, or gets another id.
+"""The students of a class, and the changes by a new list: a student is dropped, joins, or gets another id.
 
 The class remembers the list that it used last, in ``.autograder/students.json``. A student is the same person as before
 if an LMS has the same number for both. If the lists contain no numbers, an equal id or address decides.
@@ -6,6 +6,8 @@ if an LMS has the same number for both. If the lists contain no numbers, an equa
 
 from __future__ import annotations
 
+import contextlib
+import glob
 from collections import defaultdict
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
@@ -50,7 +52,7 @@ class ListChanges:
         unclear: Pairs of a known and a new id whose students have the same name, and may be one person.
         dropped: The ids that are no longer listed.
         added: The new ids.
-        moved: The ids of students in another section than before, each with both sections.
+        moved: The ids of students whose section has changed, each with the old and the new section.
     """
 
     renamed: Mapping[str, str] = field(default_factory=dict)
@@ -81,28 +83,33 @@ def compare(known: KnownStudents, new: Mapping[str, Student], said: Mapping[str,
     for old, student in before.items():
         if old in renamed or old not in new:
             continue
+        # If only the number was corrected, the student is still the same person.
         theirs = {owner for number in new[old].numbers for owner in owners[number]} - {old}
-        if _is_another(student, new[old], is_of_other=bool(theirs and student.name)):
+        is_other = _differ(student, new[old]) or (theirs and student.name)
+        if is_other and not _has_name(student, new[old]) and not _has_address(student, new[old]):
             renamed[old] = _free_id(student, {*before, *new})
     gone = [student for student in before.values() if student.id not in new and student.id not in renamed]
     came = [one for one in new.values() if one.id not in before and one.id not in renamed.values()]
+    alike: dict[str, set[str]] = defaultdict(set)
+    for student in new.values():
+        for text in filter(None, (student.id, student.email)):
+            alike[folded(text)].add(student.id)
     for student in gone:
-        same = [one.id for one in new.values() if _is_same(student, one)]
+        same = {id_ for text in (student.id, student.email) for id_ in alike.get(folded(text), ())}
+        same = {id_ for id_ in same if not _differ(student, new[id_])}
         if len(same) == 1:
-            renamed[student.id] = same[0]
+            renamed[student.id] = same.pop()
     unclear = [
         (old.id, one.id)
         for old in gone
         for one in came
-        if old.id not in renamed
-        and not _differ(old, one)
-        and not name_forms(old.name).isdisjoint(name_forms(one.name))
+        if old.id not in renamed and not _differ(old, one) and _has_name(old, one)
     ]
     renamed = {old: now for old, now in renamed.items() if old != now}
     now = {renamed.get(old, old): old for old in known.listed}
     return ListChanges(
         renamed,
-        tuple(pair for pair in unclear if before[pair[0]].name),
+        tuple(unclear),
         tuple(old for old in known.listed if renamed.get(old, old) not in new),
         tuple(one for one in new if one not in now),
         tuple(
@@ -119,24 +126,12 @@ def _differ(one: Student, other: Student) -> bool:
     return any(theirs.get(lms, number) != number for lms, number in one.numbers)
 
 
-def _is_same(one: Student, other: Student) -> bool:
-    """Return True if two students have the same address, or ids that differ only in upper and lower case."""
-    if _differ(one, other):
-        return False
-    return folded(one.id) == folded(other.id) or bool(one.email and folded(one.email) == folded(other.email))
+def _has_address(one: Student, other: Student) -> bool:
+    return bool(one.email and folded(one.email) == folded(other.email))
 
 
-def _is_another(one: Student, other: Student, *, is_of_other: bool) -> bool:
-    """Return True if two students with the same id are different persons, and not one whose number was corrected.
-
-    Args:
-        one: The known student.
-        other: The student in the new list.
-        is_of_other: True if the number in the new list is that of a third student.
-    """
-    has_name = not name_forms(one.name).isdisjoint(name_forms(other.name)) and bool(one.name)
-    has_address = bool(one.email and folded(one.email) == folded(other.email))
-    return (is_of_other or _differ(one, other)) and not has_name and not has_address
+def _has_name(one: Student, other: Student) -> bool:
+    return bool(one.name) and not name_forms(one.name).isdisjoint(name_forms(other.name))
 
 
 def _free_id(student: Student, taken: Iterable[str]) -> str:
@@ -161,25 +156,12 @@ def read_known(directory: ClassDirectory) -> KnownStudents:
     return KnownStudents(known.listed, {**others, **known.former})
 
 
-class _Line(msgspec.Struct):
-    lms: str = ""
-    number: str = ""
-    is_sure: bool = False
-
-
-class _Record(msgspec.Struct):
-    now: dict[str, _Line]
-
-
 def _with_number(directory: ClassDirectory, student: Student) -> Student:
-    for folder in sorted((directory.state / "collected").glob("*")):
-        try:
-            record = msgspec.json.decode((folder / f"{student.id}.json").read_bytes(), type=_Record)
-        except (OSError, msgspec.MsgspecError):
-            continue
-        for line in record.now.values():
-            if line.lms == "canvas" and line.is_sure and line.number:
-                return replace(student, lms={"canvas": line.number})
+    for path in sorted((directory.state / "collected").glob(f"*/{glob.escape(student.id)}.json")):
+        with contextlib.suppress(OSError, msgspec.MsgspecError, LookupError):
+            for line in msgspec.json.decode(path.read_bytes())["now"].values():
+                if line["lms"] == "canvas" and line["is_sure"]:
+                    return replace(student, lms={"canvas": line["number"]})
     return student
 
 
@@ -205,18 +187,13 @@ def read_roster(directory: ClassDirectory) -> Roster:
         return Roster(in_gradebook.values())
     listed, known = {student.id for student in file.students}, read_known(directory)
     former = [one for id_, one in {**known.former, **known.listed}.items() if id_ not in listed]
-    students = []
-    for student in file.students:
-        entry = in_gradebook.get(student.id, student)
-        students.append(
-            replace(
-                student,
-                first_name=student.first_name or entry.first_name,
-                last_name=student.last_name or entry.last_name,
-                email=student.email or entry.email,
-            )
-        )
+    students = [_completed(student, in_gradebook.get(student.id, student)) for student in file.students]
     return Roster(students, is_whole=True, former=former, unknown=file.unknown)
+
+
+def _completed(student: Student, entry: Student) -> Student:
+    names = ("first_name", "last_name", "email")
+    return replace(student, **{name: getattr(student, name) or getattr(entry, name) for name in names})
 
 
 def enter_roster(directory: ClassDirectory) -> None:
@@ -270,18 +247,20 @@ def accept_list(directory: ClassDirectory, file: StudentsFile, renamed: Mapping[
     with opened(directory.gradebook_url) as book:
         if not has_tables(book):
             return  # a later step will report that the gradebook is not usable
-        for student in file.students:
-            book.execute(
-                sql(
-                    "INSERT INTO student (id, first_name, last_name, email) VALUES (:id, :first, :last, :email)"
-                    " ON CONFLICT (id) DO UPDATE SET first_name = COALESCE(excluded.first_name, student.first_name),"
-                    " last_name = COALESCE(excluded.last_name, student.last_name),"
-                    " email = COALESCE(excluded.email, student.email)"
-                ),
+        book.execute(
+            sql(
+                "INSERT INTO student (id, first_name, last_name, email) VALUES (:id, :first, :last, :email)"
+                " ON CONFLICT (id) DO UPDATE SET first_name = COALESCE(excluded.first_name, student.first_name),"
+                " last_name = COALESCE(excluded.last_name, student.last_name),"
+                " email = COALESCE(excluded.email, student.email)"
+            ),
+            [
                 {
-                    "id": student.id,
-                    "first": student.first_name or None,
-                    "last": student.last_name or None,
-                    "email": student.email or None,
-                },
-            )
+                    "id": one.id,
+                    "first": one.first_name or None,
+                    "last": one.last_name or None,
+                    "email": one.email or None,
+                }
+                for one in file.students
+            ],
+        )

@@ -113,7 +113,7 @@ def _check_columns(path: Path, header: Sequence[str], columns: Sequence[str], kn
         GradingError: It is not so.
     """
     need = (
-        f"Its first line has to contain the names of the columns: id and, if you have them, {', '.join(COLUMNS[1:])}. "
+        f"The first line has to contain the names of the columns: id and, if you have them, {', '.join(COLUMNS[1:])}. "
         "You can also use Canvas's gradebook, Moodle's participants or Gradescope's roster without changes."
     )
     often = Counter(name for name in columns if name in known)

@@ -11,8 +11,7 @@ import functools
 import hashlib
 from typing import TYPE_CHECKING
 
-from autograder.grading.classes.class_directory import CONFIG_NAME, SUFFIX
-from autograder.grading.collecting.submission_times import TIMESTAMP
+from autograder.grading.classes.class_directory import CONFIG_NAME, SUFFIX, TIMESTAMP
 from autograder.grading.course_version import course_version
 from autograder.grading.rebuilding.submitted_notebook import UnreadableSubmission, read_bytes
 

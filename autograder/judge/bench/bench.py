@@ -14,7 +14,7 @@ from autograder.judge.bench import discovery
 from autograder.judge.bench.discovery import Announcements, process_of
 from autograder.judge.bench.judge_nodes import DecoyNodes, Wire
 from autograder.judge.bench.recorded_actions import RecordedActionClient, ScriptedActionServer
-from autograder.judge.bench.recorded_services import Answer, RecordedCaller, RecordedServer
+from autograder.judge.bench.recorded_services import NONE_LATE, Answer, RecordedCaller, RecordedServer
 from autograder.judge.bench.recorded_topics import LogReader, RecordedPublisher, RecordedSubscription
 from autograder.judge.bench.recorder import Recorder
 from autograder.judge.bench.ros_interfaces import expected_hashes, served_hashes, service_fields
@@ -26,7 +26,7 @@ from autograder.kit.giving_up import patience
 from autograder.kit.model import STEP, Pace
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping
+    from collections.abc import Callable, Container, Iterable, Mapping
     from random import Random
 
     from autograder.judge.subject import Subject
@@ -82,6 +82,7 @@ class TestBench:
         self._announcements = None if subject.shares_participant else Announcements(domain_id)
         self._older_processes: set[bytes] = set()
         self._open = contextlib.ExitStack()
+        self._servers: list[RecordedServer] = []
         self._on_graph: Presence | None = None
         self._time_of_part: SubjectTime | None = None
         self._there: set[discovery.Endpoint] = set()
@@ -143,6 +144,7 @@ class TestBench:
         self.parts.append(self._recorder.part())
         self._subject.stop()
         self._open.close()
+        self._servers.clear()
         self._gone, self._there = self._gone | self._there, set()
         if self._decoys is not None:
             self._decoys.clear()
@@ -247,6 +249,9 @@ class TestBench:
         self._presence.subscriptions[at] = subscription
         self._open.callback(self._wire.node.destroy_subscription, subscription.subscription)
 
+    def note(self, name: str, **data: Any) -> None:
+        self._recorder.record("noted", name, **data)
+
     def seen(self) -> Part:
         return self._recorder.part()
 
@@ -264,10 +269,29 @@ class TestBench:
         assert self._decoys is not None
         self._there |= self._decoys.plant(name, publishes=publishes, subscribes=subscribes)
 
-    def serve(self, service: str, type_name: str, answer: Answer, *, hold: int = 0) -> RecordedServer:
+    def serve(
+        self,
+        service: str,
+        type_name: str,
+        answer: Answer,
+        *,
+        hold: int = 0,
+        late: Mapping[int, float] = NONE_LATE,
+        never: Container[int] = (),
+    ) -> RecordedServer:
         self._get_ready_to_serve(service)
-        at = self._real(service)
-        server = RecordedServer(self._wire, self._recorder, service, type_name, answer, at=at, hold=hold)
+        server = RecordedServer(
+            self._wire,
+            self._recorder,
+            service,
+            type_name,
+            answer,
+            at=self._real(service),
+            hold=hold,
+            late=late,
+            never=never,
+        )
+        self._servers.append(server)
         self._open.callback(server.close)
         self._announce(server.services)
         return server
@@ -326,7 +350,12 @@ class TestBench:
         quiet: float | None = None,
         step: float = STEP,
     ) -> bool:
-        return self._time.run(seconds, until=until, quiet=quiet, step=step)
+        def until_then() -> bool:
+            for server in self._servers:
+                server.answer_due()
+            return until is not None and until()
+
+        return self._time.run(seconds, until=until_then, quiet=quiet, step=step)
 
     def pass_time(self, seconds: float, role: str, name: str) -> None:
         self._time.lend(seconds, role, self._real(name))

@@ -6,6 +6,7 @@ import threading
 import warnings
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from rclpy.qos import qos_profile_parameters
@@ -14,6 +15,8 @@ from autograder.judge.bench.ros_interfaces import filled, interface, to_data
 from autograder.judge.bench.subject_presence import GRAPH_POLL
 
 if TYPE_CHECKING:
+    from collections.abc import Container
+
     from rclpy.service import Service
 
     from autograder.judge.bench.judge_nodes import Wire
@@ -26,8 +29,11 @@ Answer = Callable[[Mapping[str, Any]], Mapping[str, Any]]
 """A function of the request's fields that returns the response's fields."""
 
 
+NONE_LATE: Mapping[int, float] = MappingProxyType({})
+
+
 class RecordedServer:
-    """A service that the judge offers until :meth:`close`. It can hold one answer back until :meth:`release`.
+    """A service that the judge offers until :meth:`close`, with answers at once, late, or after :meth:`release`.
 
     Attributes:
         services: A tuple with the full name of the service.
@@ -43,6 +49,8 @@ class RecordedServer:
         *,
         at: str = "",
         hold: int = 0,
+        late: Mapping[int, float] = NONE_LATE,
+        never: Container[int] = (),
     ) -> None:
         """Create the service.
 
@@ -54,14 +62,17 @@ class RecordedServer:
             answer: Returns the response to a request.
             at: The full name that the subject's client uses for the service, if this name is different.
             hold: Which request, counted from 1, is answered only after :meth:`release`; 0 for none.
+            late: The requests that are answered late, with the delay in seconds of the subject's time.
+            never: The requests that are never answered.
         """
         self._wire = wire
         self._recorder = recorder
         self._name = service
         self.services = (at or service,)
         self._answer = answer
-        self._hold, self._count = hold, 0
+        self._hold, self._late, self._never, self._count = hold, late, never, 0
         self._held: list[tuple[Any, Any]] = []
+        self._delayed: list[tuple[float, Any, Any]] = []
         self._holding = threading.Lock()
         made = threading.Event()
         self._service = wire.node.create_service(
@@ -82,6 +93,11 @@ class RecordedServer:
             if self._count == self._hold:
                 self._held.append((response, header))
                 return
+            if self._count in self._late:
+                self._delayed.append((self._recorder.moment + self._late[self._count], response, header))
+                return
+            if self._count in self._never:
+                return
         self._answer_now(response, header)
 
     def _answer_now(self, response: Any, header: Any) -> None:
@@ -94,6 +110,15 @@ class RecordedServer:
             self._hold = 0
             held, self._held = self._held, []
         for response, header in held:
+            self._answer_now(response, header)
+
+    def answer_due(self) -> None:
+        """Send the answers whose delay is over."""
+        with self._holding:
+            now = self._recorder.moment
+            due = [one for one in self._delayed if one[0] <= now]
+            self._delayed = [one for one in self._delayed if one[0] > now]
+        for _, response, header in due:
             self._answer_now(response, header)
 
     def close(self) -> None:

@@ -111,6 +111,12 @@ class Recorder:
         self._said = sum(len(event.data["text"]) for event in self._events if _is_speech(event))
 
     @property
+    def moment(self) -> float:
+        """The subject's time now, in seconds: simulated time, or the time since the part began."""
+        now = self.simulated_now
+        return time.monotonic() - self._start if now is None else now
+
+    @property
     def count(self) -> int:
         """The number of events so far, with those that were dropped."""
         return self._count

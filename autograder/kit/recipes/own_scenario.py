@@ -68,26 +68,45 @@ def once_met(happens: Callable[[Met], bool]) -> Callable[[Bench], None]:
         happens: Returns True if everything for which it waited has arrived. If it returns False, the judge checks
             whether the subject is spun.
     """
+    return lambda bench: meet(bench, "met", happens)
 
-    def scenario(bench: Bench) -> None:
-        roles = {role: dict(sorted(ends.items())) for role, ends in bench.reference.interface.items()}
-        publishers, heard, services = (roles.get(r, {}) for r in ("publisher", "subscription", "service"))
-        bench.part("met")
-        for topic, kind in publishers.items():
-            bench.listen(topic, kind)
-        speakers = [bench.speak(topic, kind) for topic, kind in heard.items()]
-        callers = [bench.call(service, kind) for service, kind in services.items()]
-        bench.start()
-        if all(bench.await_endpoint(role, name) for role, ends in roles.items() for name in ends):
-            bench.release()
-            if speakers:
-                bench.await_attention()
-            called = all(caller.await_server(SERVED) for caller in callers)
-            if not (called and happens(Met(bench, tuple(publishers), speakers, callers))):
-                bench.note_whether_it_spins()
-        bench.stop()
 
-    return scenario
+def meet(
+    bench: Bench,
+    part: str,
+    happens: Callable[[Met], bool],
+    serves: Callable[[str, str], object] | None = None,
+    *,
+    listens: bool = True,
+) -> None:
+    """Run one part of a scenario like :func:`once_met`.
+
+    Args:
+        bench: The bench of the scenario.
+        part: The name of the part.
+        happens: As for :func:`once_met`.
+        serves: Called with the name and type of each service that the reference solution calls; it makes the server.
+        listens: True if the judge subscribes before the subject starts.
+    """
+    roles = {role: dict(sorted(ends.items())) for role, ends in bench.reference.interface.items()}
+    publishers, heard, services = (roles.get(r, {}) for r in ("publisher", "subscription", "service"))
+    bench.part(part)
+    for topic, kind in publishers.items() if listens else ():
+        bench.listen(topic, kind)
+    speakers = [bench.speak(topic, kind) for topic, kind in heard.items()]
+    callers = [bench.call(service, kind) for service, kind in services.items()]
+    if serves is not None:
+        for service, kind in roles.get("client", {}).items():
+            serves(service, kind)
+    bench.start()
+    if all(bench.await_endpoint(role, name) for role, ends in roles.items() for name in ends):
+        bench.release()
+        if speakers:
+            bench.await_attention()
+        called = all(caller.await_server(SERVED) for caller in callers)
+        if not (called and happens(Met(bench, tuple(publishers), speakers, callers))):
+            bench.note_whether_it_spins()
+    bench.stop()
 
 
 class OwnScenario:

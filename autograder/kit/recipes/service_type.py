@@ -166,7 +166,8 @@ class ServiceType(SeenAsItIs):
         return Advice(
             f"{texts[0][0]} has the fields {finding.seen}; the task asks for {finding.expected}.",
             "A field has a type and a name, as in `int64 a`. Types, names and order must be the same, because other "
-            "programs use them.",
+            "programs use them. A field's name has small letters, digits and single underscores, begins with a letter "
+            "and does not end with an underscore: ROS refuses to build any other name.",
         )
 
     def _interface_in_python_package(self, evidence: Evidence) -> Advice | None:

@@ -286,7 +286,7 @@ def says_nothing_else(evidence: Evidence) -> Finding:
     elif again:
         seen = "“{}” {} times".format(*_most_often(again))
     elif anew:
-        seen = f"with each string also all strings before it: “{anew}”"
+        seen = f"with each string also all earlier strings: “{anew}”"
     else:
         seen = "only what was sent" if heard_any else "none of the strings"
     return Finding(

@@ -73,7 +73,7 @@ def check(exercise: str, subject: Any) -> float:
         StaleCodeError: The cell that redefines the subject ended with an error, so the check would judge the old
             code.
     """
-    if not (inspect.isclass(subject) or callable(subject) or is_path(subject)):
+    if not (inspect.isclass(subject) or callable(subject) or is_path(subject)) or is_quoted(subject):
         raise TypeError(what_to_pass(exercise, subject))
     if is_live():
         raise_if_stale(subject)
@@ -261,6 +261,11 @@ def _retold(tell: Tell, progress: Progress) -> Tell:
     return told
 
 
+def is_quoted(subject: Any) -> bool:
+    """Return True if a string is the name of a class or function of the notebook, and so no path."""
+    return isinstance(subject, str) and callable(getattr(notebook_shell(), "user_ns", {}).get(subject))
+
+
 def what_to_pass(exercise: str, subject: Any, call: str = "check") -> str:
     """Return a sentence that says what to pass instead of an object that cannot be checked."""
     kind = type(subject).__name__
@@ -270,4 +275,6 @@ def what_to_pass(exercise: str, subject: Any, call: str = "check") -> str:
             f"{kind} is an object now, and not the class, because a line of yours says {kind} = {kind}(...). Give the "
             f"object another name there, as in node = {kind}(...), and run the cell that defines the class again."
         )
+    if is_quoted(subject):
+        return f"{call}({exercise!r}, {subject}) takes your class or function itself, without quotation marks"
     return f"{call}({exercise!r}, …) takes your class or function itself, without parentheses after it, not a {kind}"

@@ -56,7 +56,7 @@ class CapturedOutput:
         captured = self.is_captured
 
         def log(logger: RcutilsLogger, message: Any, severity: Any, **options: Any) -> bool:
-            # A line that the logger's level or a filter such as `once` drops is shown to nobody, so it says nothing.
+            # The logger's level or a filter such as `once` drops some lines: no terminal shows them.
             shown = bool(usual_log(logger, message, severity, **options))
             if shown and captured():
                 self._tell(str(message)[:MAX_TEXT], True)

@@ -93,8 +93,10 @@ def launch_not_installed(*_: Sequence[str]) -> Advice:
     """The build has not installed the launch file, or there is none in the package."""
     return Advice(
         f"The build does not install {SHOWN}: `ros2 launch` finds only what the build has put into share/{PACKAGE}.",
-        f"Copy the file into the folder ros2_ws/src/{PACKAGE}/launch. The list data_files in setup.py needs one more "
-        f"pair: the folder {FOLDER}, and a list with the path of the file, seen from the folder of the package.",
+        f"The file belongs in the folder ros2_ws/src/{PACKAGE}/launch. The list data_files in setup.py needs one more "
+        f"pair: the folder {FOLDER}, and a list with the path of the file, seen from the folder of the package. A "
+        "pattern in glob(...) looks from there, too, and has to begin with launch/ and to match the ending of the "
+        "file: another one finds nothing, and the build does not say so.",
     )
 
 

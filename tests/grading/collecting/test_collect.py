@@ -25,8 +25,8 @@ from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.collecting.collect import collect
 from autograder.grading.collecting.collected_csv import Table
 from autograder.grading.collecting.collected_files import Inbox, LineState
-from autograder.grading.collecting.submission_times import is_not_believed, read_timestamp
 from autograder.grading.grading_errors import GradingError
+from autograder.grading.tasks.submission_times import is_not_believed, read_timestamp
 
 if TYPE_CHECKING:
     from tiny_class import FakeEngine, TinyClass
@@ -520,7 +520,7 @@ def test_without_a_list_of_students_folders_have_the_names_of_the_lms(
     ("text", "words"),
     [
         ("name\nada\n", "no column named id"),
-        ("id\nada\nada\n", "also stands in an earlier line"),
+        ("id\nada\nada\n", "also stands in line 2"),
         ("id,email\n,a@b\n", "it has no id"),
     ],
 )

@@ -16,10 +16,10 @@ from rich.console import Console
 from tiny_class import LISTENER, TALKER, FakeEngine, TinyClass
 
 from autograder.grading.classes.class_directory import ClassDirectory
-from autograder.grading.collecting import submission_times
 from autograder.grading.grading_errors import GradingError
 from autograder.grading.reporting.grade_report import report_json, show
 from autograder.grading.returning.feedback_pages import FeedbackPages
+from autograder.grading.tasks import submission_times
 
 if TYPE_CHECKING:
     from autograder.grading.reporting.grade_report import GradeReport

@@ -172,6 +172,23 @@ def test_a_listener_with_a_logger_of_pythons_own_passes() -> None:
     assert verdict.score == verdict.max_score
 
 
+@pytest.mark.ros
+def test_a_listener_that_logs_at_a_level_that_is_not_shown_says_nothing() -> None:
+    class ListenerNode(Node):
+        def __init__(self) -> None:
+            super().__init__("listener_node")
+            self.create_subscription(String, "chatter", self.hear, 10)
+
+        def hear(self, message: String) -> None:
+            self.get_logger().debug(message.data)  # type: ignore[no-untyped-call]
+
+    with a_judge() as checked:
+        verdict = checked("lab_1_2.listener", ListenerNode)
+    assert verdict.diagnosis is not None
+    assert verdict.diagnosis.key == "not_logged"
+    assert "debug(...) are not shown" in verdict.diagnosis.next_step
+
+
 def test_a_subject_that_asks_for_input_finds_none_and_the_front_end_shows_no_box(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from datetime import UTC, datetime, timedelta
 from typing import TYPE_CHECKING
 
-from autograder.grading.classes.class_directory import STATE_NAME
+from autograder.grading.classes.class_directory import STATE_NAME, TIMESTAMP, timestamp_text
 from autograder.grading.collecting.collected_files import CollectedRecords
 from autograder.grading.rebuilding.submitted_notebook import UnreadableSubmission, read_bytes
 
@@ -13,8 +13,6 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 
-TIMESTAMP = "timestamp.txt"
-"""The name of nbgrader's timestamp file, which lies next to the notebooks of a submission."""
 SECRET = "submission_secret.txt"
 """The name of a file that nbgrader's exchange writes next to collected notebooks. From this file, nbgrader knows to
 which student a feedback page belongs.
@@ -71,15 +69,6 @@ def is_not_believed(folder: Path) -> bool:
     if not records.is_used or not (folder / TIMESTAMP).exists():
         return False
     return _text(folder / TIMESTAMP) != read_timestamp(folder)
-
-
-def timestamp_text(when: datetime) -> str:
-    """Return a time as text in the format of nbgrader's timestamp file.
-
-    Args:
-        when: A time in UTC.
-    """
-    return f"{when:%Y-%m-%d %H:%M:%S.%f} UTC"
 
 
 def handed_in_at(folder: Path, *, believed: datetime | None = None) -> datetime | None:

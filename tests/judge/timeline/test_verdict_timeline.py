@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from autograder.judge.verdict_timeline import MAX_MOMENTS, moments
+from autograder.judge.timeline.verdict_timeline import MAX_MOMENTS, moments
 from autograder.kit import runners
 from autograder.kit.evidence import Event, Evidence, Part, Reference
 from autograder.kit.runners import WorkspaceReport, workspace_report_line

@@ -11,7 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from autograder.judge import verdict_timeline
+from autograder.judge.timeline import verdict_timeline
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence

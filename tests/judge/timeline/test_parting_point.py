@@ -6,7 +6,7 @@ import pytest
 
 from autograder.authoring.answer_bank import answers
 from autograder.judge import evidence_files
-from autograder.judge.parting_point import parting_point
+from autograder.judge.timeline.parting_point import parting_point
 from autograder.kit.evidence import Event, Evidence, Part, Reference
 from tests.measure import evidence as kept_evidence
 

@@ -8,6 +8,7 @@ ids. The file ``.autograder/renaming.json`` says which pass is being made, so th
 from __future__ import annotations
 
 import contextlib
+import itertools
 from typing import TYPE_CHECKING
 
 import msgspec
@@ -44,7 +45,7 @@ def change_students(path: Path, new: Path | None, said: Mapping[str, str], *, is
     Args:
         path: The class directory.
         new: The new list, which replaces ``students.csv``; None if ``students.csv`` itself is the new list.
-        said: The new ids of students, by their old ones, where the lists do not show that they are the same.
+        said: The new ids of students, by their old ones, if the lists do not show that both are one student.
         is_final: True to make the changes; False to only return what would change.
 
     Returns:
@@ -131,29 +132,25 @@ def _check_doubles(directory: ClassDirectory, changes: ListChanges, entries: Ent
     Raises:
         GradingError: A person has put both notebooks into ``submitted``, or has given points under the old id.
     """
-    inbox = Inbox(directory.state)
-    submitted, records = Submitted(directory, inbox), CollectedRecords(directory.state)
-    for old, new in changes.renamed.items():
-        for assignment in directory.assignments() if new not in changes.renamed else ():
-            folders = [directory.path / "submitted" / id_ / assignment for id_ in (old, new)]
-            if not all(folder.exists() for folder in folders):
-                continue
-            history = records.get(assignment, old)
-            for notebook in directory.notebooks(assignment):
-                content = submitted.content((old, assignment, notebook))
-                if content and not (history and content in history.written(notebook) and content in inbox):
-                    raise GradingError(
-                        f"{old} and {new} are one student, and both have work for {assignment} that was put into "
-                        f"{directory.path / 'submitted'} by hand: move the folder that does not count, "
-                        f"{folders[0]} or {folders[1]}, out of the class. Then type the same command again"
-                    )
-            entry = entries.get((old, assignment))
-            if (new, assignment) in entries and entry and entry.has_points_by_hand:
+    inbox, records = Inbox(directory.state), CollectedRecords(directory.state)
+    submitted, place = Submitted(directory, inbox), directory.path / "submitted"
+    pairs = [(old, new) for old, new in changes.renamed.items() if new not in changes.renamed]
+    for (old, new), assignment in itertools.product(pairs, directory.assignments()):
+        collected, entry = records.get(assignment, old), entries.get((old, assignment))
+        for notebook in directory.notebooks(assignment) if (place / new / assignment).exists() else ():
+            content = submitted.content((old, assignment, notebook))
+            if content and not (collected and content in collected.written(notebook) and content in inbox):
                 raise GradingError(
-                    f"{old} and {new} are one student, and a person has given {old} points for {assignment}, where "
-                    f"{new} has points, too: in formgrader, give {new} the points that count, and empty those of "
-                    f"{old}. Then type the same command again"
+                    f"{old} and {new} are one student, and both have work for {assignment} that was put into {place} "
+                    f"by hand: move the folder that does not count, {place / old / assignment} or "
+                    f"{place / new / assignment}, out of the class. Then type the same command again"
                 )
+        if (new, assignment) in entries and entry and entry.has_points_by_hand:
+            raise GradingError(
+                f"{old} and {new} are one student, and a person has given {old} points for {assignment}, where {new} "
+                f"has points, too: in formgrader, give {new} the points that count, and empty those of {old}. Then "
+                "type the same command again"
+            )
 
 
 class _Renaming(msgspec.Struct):

@@ -1,0 +1,141 @@
+"""A subject is compared with the recorded solution in the same drawing, step by step, or message by message."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from autograder.kit.evidence import Event, Evidence, Part, Reference, Variant
+from autograder.kit.oracle.same_as_solution import SameAsSolution, Sets, To
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from autograder.kit.model import Exercise
+
+INTERFACE = {"publisher": {"/cmd_vel": "x/msg/Y", "/beat": "x/msg/Y"}, "subscription": {"/scan": "x/msg/Y"}}
+GIVEN = ("0.75 s without an input", "/scan", "speed = 2.5")
+
+
+def exercise() -> Exercise:
+    """Commands after each step, beats in all, and a parameter."""
+    return SameAsSolution(
+        "a.b",
+        "A",
+        "B",
+        gives=lambda random: [To("/scan", random.random()), Sets("speed", 2.5)],
+        tells={"/cmd_vel": ("linear.x", "angular.z")},
+        lists={"/beat": "data"},
+        parameters=["speed"],
+    ).exercise()
+
+
+def run(
+    commands: Sequence[Sequence[Any]],
+    beats: Sequence[int] = (1, 2, 3, 4, 5),
+    speed: Sequence[Any] = ((3, [[0.0, 2.0]]), (False, True)),
+    *,
+    drawing: int = 1,
+    simulated: bool = True,
+) -> Part:
+    """Return a run with these commands, one in each step, these beats, and what the parameter's node answered."""
+    noted = [
+        *(("/cmd_vel", step, [list(command)] if command else []) for step, command in enumerate(commands)),
+        ("speed", 0, [list(speed[0])]),
+        ("speed", 2, [list(speed[1])]),
+        ("/beat", 0, [[beat] for beat in beats]),
+    ]
+    return Part(
+        f"drawing {drawing}",
+        {},
+        [
+            Event(
+                1.0,
+                "noted",
+                name,
+                {"step": step, "given": GIVEN[step], "values": values},
+                100.0 if simulated else None,
+            )
+            for name, step, values in noted
+        ],
+    )
+
+
+RIGHT = ([0.0, 0.0], [0.2, 0.0], [0.0, 0.5])
+ALWAYS_AHEAD = ([0.0, 0.0], [0.2, 0.0], [0.2, 0.0])
+VARIANT = Variant("always_ahead", "Your robot never turns.", "Turn.", [run(ALWAYS_AHEAD)])
+
+
+def evidence_of(part: Part) -> Evidence:
+    """Return a run as evidence, with a recording in which another drawing comes first."""
+    recorded = [run([[9.0, 9.0]] * 3, drawing=0), run(RIGHT)]
+    return Evidence([part], Reference("a.b", INTERFACE, recorded, [VARIANT]))
+
+
+def failed(part: Part) -> dict[str, tuple[str, str]]:
+    """Return the criteria that fail, with what was expected and what was seen."""
+    findings = {one.name: one.judge(evidence_of(part)) for one in exercise().criteria}
+    return {name: (one.expected, one.seen) for name, one in findings.items() if not one.passed}
+
+
+def test_the_solution_in_the_same_drawing_decides() -> None:
+    assert failed(run(RIGHT)) == {}
+    assert set(failed(run(RIGHT, drawing=0))) == {"cmd_vel"}
+
+
+def test_a_card_shows_the_first_step_that_differs() -> None:
+    assert failed(run(ALWAYS_AHEAD)) == {
+        "cmd_vel": (
+            "linear.x = 0, angular.z = 0.5 after step 2 (speed = 2.5)",
+            "linear.x = 0.2, angular.z = 0 after step 2 (speed = 2.5)",
+        )
+    }
+    assert failed(run([[], *RIGHT[1:]]))["cmd_vel"][1] == "nothing at the start"
+    assert "did not get that far" in failed(run(RIGHT[:2]))["cmd_vel"][1]
+
+
+def test_a_number_may_differ_by_the_tolerance() -> None:
+    assert failed(run([RIGHT[0], [0.2001, 0.0], RIGHT[2]])) == {}
+    assert failed(run([RIGHT[0], [0.21, 0.0], RIGHT[2]]))
+
+
+@pytest.mark.parametrize(
+    ("beats", "passes"),
+    [
+        ((1, 2, 3, 4), True),
+        ((1, 2, 3, 4, 5, 6, 7), True),
+        ((1, 2), False),
+        ((1, 2, 3, 4, 5, 6, 7, 8), False),
+        ((1, 2, 4, 5), False),
+        ((0, 1, 2, 3, 4), False),
+        ((), False),
+    ],
+)
+def test_a_list_may_end_a_little_earlier_or_later(beats: Sequence[int], passes: bool) -> None:
+    assert ("beat" not in failed(run(RIGHT, beats))) == passes
+
+
+@pytest.mark.parametrize(
+    ("speed", "seen"),
+    [
+        (((3, []), (False, True)), "double without a range"),
+        (((0, []), (False, True)), "not declared without a range"),
+        (((3, [[0.0, 2.0]]), (True, False)), "taken after step 2 (speed = 2.5)"),
+        (((3, [[0.0, 2.0]]), (False, False)), "refused without a reason after step 2 (speed = 2.5)"),
+    ],
+)
+def test_a_parameter_is_described_and_refused_as_the_solutions(speed: Sequence[Any], seen: str) -> None:
+    assert seen in failed(run(RIGHT, speed=speed))["speed"][1]
+
+
+def test_a_run_like_a_recorded_wrong_answer_is_named_for_certain_in_simulated_time() -> None:
+    def told(part: Part) -> list[tuple[str, bool]]:
+        found = (
+            (one, one.recognise(evidence_of(part))) for one in exercise().mistakes if one.key == "variant"
+        )
+        return [(advice.key, one.certain) for one, advice in found if advice]
+
+    assert told(run(ALWAYS_AHEAD)) == [("always_ahead", True), ("always_ahead", False)]
+    assert told(run(ALWAYS_AHEAD, simulated=False)) == [("always_ahead", False)]
+    assert told(run(RIGHT)) == told(run(ALWAYS_AHEAD, drawing=0)) == told(run([[0.1, 0.0]] * 3)) == []
