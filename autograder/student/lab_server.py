@@ -168,7 +168,8 @@ _MAX_ANSWER = 10_000_000
 @web.authenticated
 async def _validate(handler: ValidateAssignmentHandler) -> None:
     """Validate a notebook in a process of its own, so that the server can tell how far it is."""
-    notebook = json.loads(handler.request.body)["path"]
+    # JupyterLab's toolbar sends the path as an argument, and the list of assignments sends it as JSON.
+    notebook = handler.get_argument("path", None) or json.loads(handler.request.body)["path"]
     command = python_child("-m", "autograder.student.validation", str(handler.root_dir), notebook).command
     progress = handler.settings.setdefault(_PROGRESS, {})
     progress[notebook] = said = {"at": 0}
