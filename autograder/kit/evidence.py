@@ -61,9 +61,14 @@ class Part:
             after: If given, only lines after this event are returned.
         """
         start = self.events.index(after) + 1 if after is not None else 0
-        # A traceback that began before the event ``after`` may continue beyond it.
+        return [text for i, text in self._spoken if i >= start]
+
+    @functools.cached_property
+    def _spoken(self) -> list[tuple[int, str]]:
+        """The subject's lines, each with the index of its event. A verdict asks for them a hundred times."""
+        # A traceback may begin before an event and continue beyond it, so all events are read.
         own = without_tracebacks(self.events)
-        return [text for i, e in own if i >= start and (text := spoken_by(e)) is not None]
+        return [(i, text) for i, event in own if (text := spoken_by(event)) is not None]
 
     def endpoints(self, role: str) -> dict[str, str]:
         """Return all endpoints of a role that the subject had on the ROS graph in this part, as name -> type."""

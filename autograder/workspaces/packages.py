@@ -49,8 +49,9 @@ MAX_PACKAGE_XML = 20_000
 The limit is needed because validating takes quadratic time. Entities (``<!ENTITY``) are refused, because they let two
 thousand bytes expand to eight million.
 """
-MAX_SETUP = 50_000
-"""The maximum size of a setup.py in bytes. It is needed because Python's parser takes minutes for an f-string of half a
+MAX_SETUP = 10_000
+"""The maximum size of a setup.py in bytes; a usual file has a thousand. It is needed because Python's parser takes time
+that grows with the square of an f-string's length: a fortieth of a second for this many bytes, minutes for half a
 megabyte.
 """
 MAX_CMAKE_LISTS = 50_000
