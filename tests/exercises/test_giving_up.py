@@ -277,7 +277,7 @@ NAMELESS = (
             id="says it again and again",
         ),
         pytest.param(_waits((5.0, "None"), ends=5.0), "it was not reported", id="None"),
-        pytest.param(_waits((5.0, "0"), ends=5.0), "it was not reported", id="a bare number"),
+        pytest.param(_waits((5.0, "0"), ends=5.0), "“0”", id="a bare number"),
         pytest.param(_waits(*NAMELESS, ends=5.0), "it was not reported", id="a slip"),
     ],
 )
