@@ -126,7 +126,7 @@ def students(folder: Path, new_list: Path | None, said: dict[str, str], yes: boo
     LIST replaces students.csv in FOLDER; without it, students.csv itself is the new list. A student with a new id keeps
     work, points and records.
     """
-    from autograder.grading.collecting.changing_students import change_students
+    from autograder.grading.new_classes.changing_students import change_students
 
     with grading_errors():
         for line in change_students(folder, new_list, said, is_final=yes):
