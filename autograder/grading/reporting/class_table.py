@@ -10,6 +10,7 @@ from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.gradebook_reading import Entries, read_entries
 from autograder.grading.collecting.collected_csv import Table, Waiting
 from autograder.grading.grading_errors import GradingError, MasterUnusable
+from autograder.grading.reporting.gradebook_layouts import LAYOUTS
 from autograder.grading.table.roster import Roster, Student
 from autograder.grading.table.rows import DROPPED, EXCUSED, NOT_SUBMITTED, Row, total
 from autograder.grading.table.student_list import read_roster
@@ -135,19 +136,13 @@ class ClassTable:
     def late_notices(self, systems: Iterable[str]) -> list[str]:
         """Return sentences about late penalties that one of these systems may subtract once more."""
         is_late = any(entry.is_late or entry.penalty for entry in self.entries.values())
-        return [_LATE_TWICE[name] for name in sorted(systems) if name in _LATE_TWICE and is_late]
+        layouts = [LAYOUTS[name] for name in sorted(systems) if name in LAYOUTS and is_late]
+        return [layout.late_twice for layout in layouts if layout.late_twice]
 
     @property
     def waiting(self) -> list[Row]:
         """The rows that a person still has to grade."""
         return [row for row in self.rows if row.waits]
-
-
-_LATE_TWICE = {
-    "canvas": "Canvas may subtract its own late penalty from these points, which are already those after the penalty "
-    "of the class: switch it off in Canvas (Grades, Settings, Late Policies), or set the status there to none"
-}
-"""For each LMS that changes imported points of late work, the warning about it."""
 
 
 def read_table(directory: ClassDirectory, sections: Sequence[str] = ()) -> ClassTable:

@@ -22,7 +22,8 @@ from autograder.grading.collecting.collected_files import CollectedRecords
 from autograder.grading.collecting.submitted_file_names import read_lms_name
 from autograder.grading.grading_errors import GradingError, check_known, clear_place_errors, course_command
 from autograder.grading.reporting.class_table import ClassTable, read_table
-from autograder.grading.reporting.lms_gradebooks import LAYOUTS, fill_list, gradebook, line_from_lms
+from autograder.grading.reporting.gradebook_layouts import LAYOUTS, GradebookLayout
+from autograder.grading.reporting.lms_gradebooks import fill_list, gradebook, line_from_lms
 from autograder.grading.table.rows import COLUMNS, DROPPED, LATE, csv_cells
 from autograder.grading.table.spreadsheet_csv import blank, csv_text
 from autograder.kit.in_words import counted
@@ -64,7 +65,7 @@ def export(
 
     Args:
         path: The class directory.
-        to: A system in :data:`LAYOUTS`, or ``ilias``, ``csv`` or ``xlsx``.
+        to: A system in :data:`LAYOUTS`, or ``csv`` or ``xlsx``.
         assignments: The assignments to export; by default all that at least one student has handed in.
         into: A list that the LMS has exported, to be filled in with points.
         folder: The folder to write into; by default ``export`` in the class.
@@ -140,7 +141,7 @@ def _assignments(table: ClassTable, wanted: Sequence[str]) -> list[str]:
 def _files(
     directory: ClassDirectory, table: ClassTable, to: str, assignments: Sequence[str], notices: list[str]
 ) -> Iterator[tuple[str, bytes, str]]:
-    records = CollectedRecords(directory.state)
+    records, layout = CollectedRecords(directory.state), LAYOUTS.get(to, GradebookLayout())
     if to == "csv":
         yield "students.csv", class_csv(table, assignments), "a line for each student"
     elif to == "xlsx":
@@ -149,15 +150,15 @@ def _files(
             _class_xlsx(table, assignments),
             "one sheet that lists the students, and one that lists their results in the exercises",
         )
-    elif to in LAYOUTS:
+    elif layout.purpose:
         text = gradebook(to, table, records, assignments)
-        yield f"{to}.csv", text.encode(), LAYOUTS[to].purpose
+        yield f"{to}.csv", text.encode(), layout.purpose
     else:
         notices.append(f"{to.upper()} cannot import points from a file, so only feedback pages are written")
-    for assignment in assignments if to in _UPLOAD_PAGES else ():
+    for assignment in assignments if layout.pages else ():
         data, unknown = _feedback_zip(directory, table, records, assignment, to)
         if data:
-            purpose = f"{to.capitalize()}: the assignment {assignment}, {_UPLOAD_PAGES[to]}"
+            purpose = f"{to.capitalize()}: the assignment {assignment}, {layout.pages}"
             yield f"feedback-{to}-{assignment}.zip", data, purpose
         if unknown:
             notices.append(
@@ -223,16 +224,6 @@ def _class_xlsx(table: ClassTable, assignments: Sequence[str]) -> bytes:
     return data.getvalue()
 
 
-_UPLOAD_PAGES = {
-    "moodle": "Upload multiple feedback files in a zip",
-    "canvas": "Upload submissions",
-    "brightspace": "Add Feedback Files",
-    "sakai": "Upload All, Feedback Attachment(s)",
-    "ilias": "Multi-Feedback",
-}
-"""For each LMS, the name of the page on which an instructor uploads the zip."""
-_WITHIN = {"sakai": "Feedback Attachment(s)/"}
-"""For each LMS that needs one, the folder for feedback pages inside a student's folder."""
 _MADE = (2000, 1, 1, 0, 0, 0)
 
 
@@ -246,7 +237,7 @@ def _feedback_zip(
         table: The table of the class.
         records: The records of what was collected.
         assignment: The assignment's name.
-        lms: A key of :data:`_UPLOAD_PAGES`.
+        lms: A system that takes feedback pages.
 
     Returns:
         The zip, empty if it would contain no page; and the students who have a page but whose name in that LMS is
@@ -290,4 +281,4 @@ def _page_name(file: str, lms: str, page: PurePath, *, is_one: bool) -> str:
     if lms == "canvas":
         return f"{PurePosixPath(given).stem}{'' if is_one else f'_{page.stem}'}.html"
     head = f"{given}/" if place < len(parts) - 1 else given.removesuffix(found.file)
-    return f"{above}{head}{_WITHIN.get(lms, '')}{page.name}"
+    return f"{above}{head}{LAYOUTS[lms].within}{page.name}"

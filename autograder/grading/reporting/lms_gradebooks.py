@@ -12,7 +12,6 @@ from __future__ import annotations
 
 import csv
 import io
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import re2
@@ -21,6 +20,7 @@ from rapidfuzz import fuzz, process
 from autograder.grading.collecting.systems import EACH, LIST_FORMS, ListForm
 from autograder.grading.grading_errors import GradingError
 from autograder.grading.rebuilding.submitted_notebook import UnreadableSubmission, read_bytes
+from autograder.grading.reporting.gradebook_layouts import LAYOUTS
 from autograder.grading.table.roster import Identity
 from autograder.grading.table.spreadsheet_csv import blank, csv_rows, csv_text, original
 
@@ -33,69 +33,6 @@ if TYPE_CHECKING:
     from autograder.grading.table.roster import Student
 
 
-@dataclass(frozen=True)
-class _GradebookLayout:
-    """The format of the gradebook file of one LMS.
-
-    Attributes:
-        purpose: The page of the system on which the file is uploaded.
-        columns: The columns before the points: each name with a template for its content. In it, ``there`` is the
-            student's number or user name in the system, and ``user`` the id if that is unknown.
-        points: A template for the name of an assignment's column, with the assignment's name and maximum points.
-        possible: The first cell of the line that contains the maximum points; empty if the file has no such line.
-        excused: The word with which the system marks an excused student.
-        end: The columns after the points, each with its content.
-    """
-
-    purpose: str
-    columns: Mapping[str, str]
-    points: str = "{name}"
-    possible: str = ""
-    excused: str = ""
-    end: Mapping[str, str] = field(default_factory=dict)
-
-
-LAYOUTS = {
-    "canvas": _GradebookLayout(
-        "Canvas: Grades, Import",
-        {
-            "Student": "{name}",
-            "ID": "{there}",
-            "SIS User ID": "",
-            "SIS Login ID": "{student.id}",
-            "Section": "{student.section}",
-        },
-        possible="    Points Possible",
-        excused="EX",
-    ),
-    "moodle": _GradebookLayout(
-        "Moodle: Grades, Import, CSV file; map Email address and the assignments",
-        {
-            "First name": "{student.first_name}",
-            "Last name": "{student.last_name}",
-            "ID number": "{student.id}",
-            "Email address": "{student.email}",
-        },
-    ),
-    "blackboard": _GradebookLayout(
-        "Blackboard: Grade Center > Work Offline > Upload",
-        {"Last Name": "{student.last_name}", "First Name": "{student.first_name}", "Username": "{user}"},
-        points="{name} [Total Pts: {most:g} Score]",
-    ),
-    "brightspace": _GradebookLayout(
-        "Brightspace: Grades > Enter Grades > Import",
-        {"OrgDefinedId": "#{student.id}"},
-        points="{name} Points Grade",
-        end={"End-of-Line Indicator": "#"},
-    ),
-    "sakai": _GradebookLayout(
-        "Sakai: Gradebook > Import Grades",
-        {"Student ID": "{user}", "Student Name": "{name}"},
-        points="{name} [{most:g}]",
-    ),
-}
-
-
 _LOCKED = "(read only)"
 
 
@@ -103,7 +40,7 @@ def gradebook(lms: str, table: ClassTable, records: CollectedRecords, assignment
     """Return the file to import into the gradebook of an LMS.
 
     Args:
-        lms: A key of :data:`LAYOUTS`.
+        lms: A system that takes points from a file.
         table: The table of the class.
         records: The records of what was collected.
         assignments: The assignments, which get a column each.

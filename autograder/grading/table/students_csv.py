@@ -6,7 +6,10 @@ import itertools
 import unicodedata
 from collections import Counter
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING
+
+import msgspec
 
 from autograder.grading.classes.class_directory import reason_against_name
 from autograder.grading.grading_errors import GradingError
@@ -15,45 +18,19 @@ from autograder.grading.table.spreadsheet_csv import csv_rows, original
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
-    from pathlib import Path
 
 
-_OTHER_NAMES = {
-    "e_mail": "email",
-    "email_address": "email",
-    "given_name": "first_name",
-    "forename": "first_name",
-    "family_name": "last_name",
-    "surname": "last_name",
-}
-"""Other names of our own columns."""
-_EXPORTED = (
-    # For each list from an LMS: the columns that identify the list; and for each column of students.csv, the columns
-    # of the list that may contain the value.
-    (
-        ("student", "id", "section"),  # Canvas: Grades, Export
-        {"id": ("sis login id", "sis user id", "id"), "full_name": ("student",), "canvas": ("id",)},
-    ),
-    (
-        ("first name", "email address"),  # Moodle: Participants, Download
-        {
-            "id": ("id number", "username", "email address"),
-            "first_name": ("first name",),
-            "last_name": ("last name", "surname"),
-            "email": ("email address",),
-        },
-    ),
-    (
-        ("sid", "email"),  # Gradescope: Roster, Download
-        {
-            "id": ("sid", "email"),
-            "first_name": ("first name",),
-            "last_name": ("last name",),
-            "full_name": ("name", "full name"),
-            "email": ("email",),
-        },
-    ),
-)
+class _Exported(msgspec.Struct):
+    has: tuple[str, ...]
+    columns: dict[str, tuple[str, ...]]
+
+
+class _Forms(msgspec.Struct):
+    other_names: dict[str, str]
+    exported: tuple[_Exported, ...]
+
+
+_FORMS = msgspec.toml.decode(Path(__file__).with_suffix(".toml").read_bytes(), type=_Forms)
 _NOBODY = ("points possible", "student, test")
 
 
@@ -84,13 +61,13 @@ def read_students_csv(path: Path) -> StudentsFile:
     except OSError as error:
         raise GradingError(f"{path} cannot be read: {error}.") from error
     columns = [name.strip().lower() for name in header]
-    forms = (form for has, form in _EXPORTED if set(has) <= set(columns))
+    forms = (form.columns for form in _FORMS.exported if set(form.has) <= set(columns))
     # A list with an id and an address is our own, whatever else it has: Moodle has no column that is called only id.
     form = next((one for one in forms if "canvas" in one or "id" not in columns), None)
     known: Sequence[str] = [name for theirs in form.values() for name in theirs] if form else ()
     if form is None:
         columns = [name.replace(" ", "_").replace("-", "_") for name in columns]
-        columns = [_OTHER_NAMES.get(name, name) for name in columns]
+        columns = [_FORMS.other_names.get(name, name) for name in columns]
         known = ("id",) if "id" not in columns else [name for name in columns if name]
     _check_columns(path, header, columns, known)
     lines = [

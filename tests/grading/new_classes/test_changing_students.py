@@ -39,9 +39,9 @@ ADA = "ada,Ada,Lovelace,ada@uni.example,Mon,101\n"
 BEN = "ben,Ben,Bär,ben@uni.example,Mon,102\n"
 EVE = "eve,Eve,O'Neill,eve@uni.example,Tue,104\n"
 FILES = {
-    "lovelaceada_101_901_lab_1_2.ipynb": 4,
-    "bärben_102_902_lab_1_2.ipynb": 7,
-    "oneilleve_104_903_lab_1_2.ipynb": 9,
+    "lovelaceada_101_5001_lab_1_2.ipynb": 4,
+    "bärben_102_5002_lab_1_2.ipynb": 7,
+    "oneilleve_104_5003_lab_1_2.ipynb": 9,
 }
 
 
@@ -130,7 +130,7 @@ def test_a_new_id_with_the_same_number_is_a_rename_that_nothing_does_by_itself(t
 def test_new_work_of_a_renamed_student_comes_under_the_new_id(term: TinyClass, tmp_path: Path) -> None:
     listed(term, ADA, NEW_BEN, EVE)
     students(term, "--yes")
-    again = {"bärben_102_909_lab_1_2.ipynb": work(term, 8)}
+    again = {"bärben_102_5009_lab_1_2.ipynb": work(term, 8)}
     report = collect(term.path, [write_zip(tmp_path / "again.zip", again)])
     assert report.exit_code == 0, report
     term.grade()

@@ -62,7 +62,7 @@ def test_a_column_without_a_meaning_is_named_and_the_student_is_found(
     tiny: TinyClass, tmp_path: Path
 ) -> None:
     """The student was not found before, and nothing said that the names of the columns were not known."""
-    file = {"lovelaceada_501_7_lab_1_2.ipynb": work(tiny, 4)}
+    file = {"lovelaceada_501_7001_lab_1_2.ipynb": work(tiny, 4)}
     (tiny.path / "students.csv").write_text("id,Vorname,Nachname,Canvas\nal01,Ada,Lovelace,501\n")
     report = collect(tiny.path, [write_zip(tmp_path / "c.zip", file)])
     assert any("no meaning, except in collect --names: Vorname, Nachname" in note for note in report.notes)
