@@ -173,7 +173,7 @@ class Card:
         solution: Solution | None = None,
         short: bool = False,
     ) -> Card:
-        """Return the content of a verdict's card, in one form. For the other arguments see :class:`Choices`."""
+        """Return the content of a verdict's card for one form. For the other arguments see :class:`Choices`."""
         mark = form.mark
         advice = card_wording.advice(verdict)
         shown = traffic(verdict.timeline, at_most=form.moments)

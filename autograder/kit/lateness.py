@@ -301,8 +301,8 @@ def meets_late_action(
 ) -> bool:
     """Run the subject with an action server that is late and that holds back its answers.
 
-    If a patient subject ends before the server starts, or before an answer comes, run the subject again with shorter
-    delays.
+    A subject may wait only for a limited time, and end before the server starts or before an answer comes. Then run the
+    subject again with shorter delays.
 
     Args:
         bench: The bench of the scenario.

@@ -314,7 +314,10 @@ class ByteBudget:
         self.sufficed = True
 
     def has(self, file: Path) -> bool:
-        """Subtract the size of a file (0 if it is missing). If too little is left, return False instead."""
+        """Subtract a file's size from the bytes that are left; if fewer are left, return False and subtract nothing.
+
+        A missing file has the size 0.
+        """
         try:
             size = file.stat().st_size
         except OSError:

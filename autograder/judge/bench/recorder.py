@@ -72,7 +72,9 @@ class Recorder:
         self.began_at = time.time()
 
     def end(self, name: str, known: Callable[[], object], **data: Any) -> None:
-        """Record the subject's end, after everything that it sent before, with the moment of this call.
+        """Record that the subject has ended. The time of the event is the time of this call.
+
+        The event comes after everything that the subject has sent.
 
         Args:
             name: The kind of end, such as ``"exited"``.

@@ -211,7 +211,7 @@ class Machine(Declared):
             bench.listen(topic, type_name)
 
     def _course(self, seen: Part, step: Step) -> list[Call]:
-        """Return the calls, each with the reply and the state that follow from a step function."""
+        """Return each call with its reply and the state after it, as the function ``step`` computes them."""
         state, course = self._state, []
         for asked in map(value, seen.of("asked")):
             new, reply = step(state, asked)
