@@ -133,7 +133,6 @@ class Enclosure:
             box: A box of this enclosure.
             server: The socket address of the fork server.
             descriptors: File descriptors for the process. The caller keeps its own copies.
-            cwd: The working folder.
             environment: All environment variables.
             call: The argument for the ``run`` function of the fork server's module.
             rlimits: Limits for a process in a box without a guard (setrlimit(2)).
@@ -189,7 +188,6 @@ class Enclosure:
             binds: As for :meth:`box`.
             environment: All environment variables; None for those of
                 :func:`autograder.boxes.visible_host.box_environment`.
-            cwd: The working folder.
             output_bytes: The maximum number of bytes of output to keep.
             scratch: As for :meth:`box`. In the enclosure's scratch, commands see each other's files.
 
@@ -234,7 +232,6 @@ class Enclosure:
             words: The arguments of `ros2`, such as ``["run", "my_package", "talker"]``.
             binds: As for :meth:`box`.
             environment: All environment variables.
-            cwd: The working folder.
         """
         of_every_box = box_environment().get("LD_LIBRARY_PATH", "").split(os.pathsep)
         libraries = environment.get("LD_LIBRARY_PATH", "").split(os.pathsep)
@@ -342,7 +339,6 @@ class OneCommandBox:
         """Return the command line that starts a command in a box, and its descriptors, which the caller has to close.
 
         Args:
-            command: The command.
             environment: The command's environment outside a box. Variables that Python and ROS need are kept.
         """
         words = box_arguments(self._scratch, list(map(Bind, (self._folder, *self._more))))

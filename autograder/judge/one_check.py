@@ -103,11 +103,8 @@ def check(
     failed.
 
     Args:
-        exercise: The exercise that the subject has to fulfill.
-        subject: The subject to judge.
         reference: The recorded behavior of the reference solution.
         seed: The seed of all random inputs.
-        domain_id: The ROS domain.
         marks_crowded: True to return a verdict with ``crowded`` set instead of raising TooBusy, as the grader does.
 
     Raises:
@@ -237,12 +234,9 @@ def look(
     """Run the scenario once and return the evidence.
 
     Args:
-        exercise: The exercise that the subject has to fulfill.
-        subject: The subject to judge.
         reference: The recorded behavior of the reference solution.
         pace: The pace of this look.
         seed: The seed of all random inputs.
-        domain_id: The ROS domain.
         before: The evidence of the first look; None if this is the first look.
         hurry: Called repeatedly while the judge waits. It may raise an exception to end the look.
         names: The wrong names that :func:`autograder.judge.one_check.misnamed` found in an earlier look.

@@ -94,7 +94,6 @@ class Draft(Generic[View]):
 
         Args:
             name: A stable key for the criterion.
-            points: The points that the criterion is worth.
             title: The criterion in one line, as the card shows it.
             judge: The recipe's function that decides the criterion.
         """
@@ -105,7 +104,6 @@ class Draft(Generic[View]):
 
         Args:
             name: A stable key for the criterion.
-            points: The points that the criterion is worth.
             title: The criterion in one line, as the card shows it.
         """
 

@@ -51,7 +51,6 @@ def add_entry_points(workspace: str | Path, entries: Iterable[str], package: str
     Args:
         workspace: The workspace folder, which contains ``src``.
         entries: Entry points, each of the form ``executable = package.module:function``.
-        package: The name of the package.
 
     Returns:
         A text for the student: the executables that the package has now, with a warning for each module without a
@@ -100,7 +99,6 @@ def add_data_files(
     Args:
         workspace: The workspace folder, which contains ``src``.
         pairs: Pairs of a folder, below the package's folder in ``install``, and the files that are installed into it.
-        package: The name of the package.
 
     Returns:
         A text for the student: the pairs that ``setup.py`` installs now, or what the student has to do.
@@ -169,7 +167,6 @@ def add_dependencies(workspace: str | Path, names: Iterable[str], package: str =
     Args:
         workspace: The workspace folder, which contains ``src``.
         names: The names of the packages on which the package depends.
-        package: The name of the package.
 
     Returns:
         A text for the student: the dependencies that the package has now, or what the student has to do.
@@ -193,7 +190,6 @@ def add_definition(workspace: str | Path, package: str, definition: str, needs: 
 
     Args:
         workspace: The workspace folder, which contains ``src``.
-        package: The name of the package.
         definition: The path of the definition file in the package, such as ``action/Fibonacci.action``.
         needs: The packages on which the generated code depends.
 

@@ -255,7 +255,6 @@ def page_html(standing: Standing, base: str, token: str) -> str:
     """Return the course page as HTML.
 
     Args:
-        standing: The progress of the student.
         base: The base address of the server. It ends with a slash.
         token: Proves to the server that a request comes from this page.
     """

@@ -235,7 +235,6 @@ def patiently(service: Service, wanted: Callable[[], bool] = lambda: True) -> Ca
     busy machine a correct client would then wait forever. So each answer is sent again until there is no warning.
 
     Args:
-        service: The service.
         wanted: Returns False once answers are not wanted any more.
     """
     usual = service.send_response
@@ -278,7 +277,6 @@ class LateAnswers:
     """Delays each answer of a service, while the service goes on taking requests.
 
     Args:
-        service: The service.
         seconds: The delay from a request to its answer, in seconds of wall time.
         sending: Called with each answer just before it is sent.
     """

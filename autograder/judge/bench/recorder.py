@@ -54,8 +54,6 @@ class Recorder:
         """Begin a part.
 
         Args:
-            name: The name of the part.
-            inputs: The inputs of the part.
             hurry: Called repeatedly during each wait. It may end the wait by raising an exception.
         """
         self._hurry = hurry

@@ -93,7 +93,6 @@ class SameAsSolution:
             ``"linear.x"``; a tuple of paths if there are several.
         lists: The same for topics of which all messages are compared, in order, however they are spread over the steps.
             The last ones may be missing, or be more.
-        serves: The services that the subject calls.
         parameters: The names of the parameters whose description (type and range) is compared, and which values of
             them are taken and which are refused with a reason, if a step :class:`Sets` them.
         late_after: Seconds of the subject's time after which the judge subscribes, and asks for the last message, too.

@@ -49,7 +49,6 @@ class Launched:
     """The programs that a launch file started, as the judge saw them: their endpoints, processes and remapping rules.
 
     Args:
-        evidence: All evidence.
         package: The package of the two programs.
         old_name: The topic's name in the programs' code.
 

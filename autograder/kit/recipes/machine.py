@@ -88,8 +88,6 @@ class Machine(Declared):
         A reply is not compared if ``step`` does not return this field for it.
 
         Args:
-            field: The field of the reply.
-            points: The points that the criterion is worth.
             title: The criterion in one line, as the card shows it.
             words: The sentence of the task that the criterion judges.
         """

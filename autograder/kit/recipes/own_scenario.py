@@ -82,8 +82,6 @@ def meet(
     """Run one part of a scenario like :func:`once_met`.
 
     Args:
-        bench: The bench of the scenario.
-        part: The name of the part.
         happens: As for :func:`once_met`.
         serves: Called with the name and type of each service that the reference solution calls; it makes the server.
         listens: True if the judge subscribes before the subject starts.
@@ -290,7 +288,6 @@ class Declared:
 
         Args:
             name: A stable key for the criterion.
-            points: The points that the criterion is worth.
             title: The criterion in one line, as the card shows it.
             role: The role of the endpoints, such as ``"subscription"``.
             words: The sentence of the task that the criterion judges, exactly as in ``lab.md``.

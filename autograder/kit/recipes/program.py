@@ -26,11 +26,7 @@ COMPARED, LONG = 200, 400
 
 
 class _Ran:
-    """A program as the judge saw it: its nodes and its lines.
-
-    Args:
-        evidence: The whole evidence.
-    """
+    """A program as the judge saw it: its nodes and its lines."""
 
     def __init__(self, evidence: Evidence) -> None:
         self._evidence = evidence

@@ -99,8 +99,6 @@ class Watch(Declared):
 
         Args:
             name: A stable key for the criterion.
-            state: The state to report.
-            points: The points that the criterion is worth.
             title: The criterion in one line, as the card shows it.
             words: The sentence of the task that the criterion judges.
         """

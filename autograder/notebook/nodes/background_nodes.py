@@ -82,7 +82,6 @@ def spin_in_background(node: Node, *more: Node, name: str | None = None, threads
     keep spinning instead, until ``spin_in_background`` is called again with the same name.
 
     Args:
-        node: A node.
         more: Further nodes for the same executor.
         name: A name for these nodes, so that a later call with the same name replaces them.
         threads: The number of callbacks that may run at the same time. With 2 or more, the executor is a

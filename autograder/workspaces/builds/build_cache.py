@@ -131,7 +131,6 @@ def entry(key: str, base: Path, cancelled: Callable[[], bool] = lambda: False) -
     block, the entry is removed unless the caller has called :meth:`CachedBuild.finish`.
 
     Args:
-        key: The key of the build.
         base: The folder of the cache.
         cancelled: Called from time to time while another process holds the entry. If it returns True, waiting ends.
 

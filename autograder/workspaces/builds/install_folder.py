@@ -84,7 +84,6 @@ def has_service(prefix: Path, interface: str) -> bool:
     """Return True if the package in a prefix has the Python module of a service type.
 
     Args:
-        prefix: The prefix.
         interface: The name of the type, such as ``"AddTwoInts"``.
     """
     words = (f"_{c.lower()}" if c.isupper() and i else c.lower() for i, c in enumerate(interface))

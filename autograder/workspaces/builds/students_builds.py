@@ -116,7 +116,6 @@ def _ask(socket: str, found: Build, chosen: Iterable[Package], install: Path) ->
     Args:
         socket: The path of the grader's socket.
         found: The workspace, as :func:`autograder.workspaces.builds.colcon_build.describe_workspace` returns it.
-        chosen: The packages.
         install: The folder to create for the build. It must not exist yet.
 
     Returns:
