@@ -354,6 +354,20 @@ class ActionClient(SeenAsItIs):
             ``bench.reference.only("action_client")``.
         ladder: The mistakes of the exercise, most specific first. They are checked after mistakes that prevent any
             right goal, and before mistakes that are checked only if nothing more specific is recognized.
+
+    Example::
+
+        def scenario(bench: Bench) -> None:
+            bench.part("one goal")
+            server = bench.serve_action(*bench.reference.only("action_client"))
+            bench.start()
+            bench.release()
+            if server.await_goal(15.0) and server.await_result_request(8.0):
+                server.finish("succeeded", sequence=[0, 1, 1, 2])
+                bench.await_end(1.0)
+            bench.stop()
+
+        recipe = ActionClient(scenario, goals.RESULT_NOT_REPORTED)
     """
 
     roles = ("action_client",)

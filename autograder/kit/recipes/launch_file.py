@@ -224,6 +224,17 @@ class LaunchFile:
     Args:
         package: The package of the two programs.
         old_name: The topic's name in the programs' code.
+
+    Example::
+
+        recipe = LaunchFile("my_robot_pkg", "chatter")
+        remap = Draft("lab_8_1.remap", "Lab 8.1 · Remapping", "Start both programs with another topic.", recipe)
+
+        @remap.criterion("talker", 10, "The talker publishes under the new name")
+        def talker(seen: Launched, expected: Launched) -> Finding:
+            return Finding(bool(seen.heard), f"messages on {seen.topic}", ", ".join(seen.heard) or "none")
+
+        EXERCISE = remap.exercise(limit=400.0, runner=Launches(), wraps_commands=True)
     """
 
     roles = ("publisher",)

@@ -67,6 +67,16 @@ def once_met(happens: Callable[[Met], bool]) -> Callable[[Bench], None]:
     Args:
         happens: Returns True if everything for which it waited has arrived. If it returns False, the judge checks
             whether the subject is spun.
+
+    Example::
+
+        def switching(met: Met) -> bool:
+            (caller,) = met.callers
+            caller.ask({"data": True})
+            met.bench.run_time(3.0, until=lambda: met.heard >= 3)
+            return caller.await_answers(3.0) and met.heard >= 3
+
+        recipe = OwnScenario(once_met(switching), "publisher", "service")
     """
     return lambda bench: meet(bench, "met", happens)
 
@@ -116,6 +126,16 @@ class OwnScenario:
             ``bench.reference.interface[role]`` has their types by name.
         roles: The roles of the subject's endpoints, such as ``"publisher"``. The first role is the one whose endpoint
             shows most about the subject.
+
+    Example::
+
+        def listening(met: Met) -> bool:
+            met.speakers[0].send(data=19)
+            return met.bench.wait_until(lambda evidence: bool(evidence.main.said()), 5.0)
+
+        recipe = OwnScenario(once_met(listening), "subscription")
+        guard = Draft("lab_8_1.guard", "Lab 8.1 · The guard", "Warn of a charge below 20 percent.", recipe)
+        guard.asks("topic", 2, "Subscribes to the right topic and type", recipe.has("subscription"))
     """
 
     def __init__(self, scenario: Callable[[Bench], None], *roles: str) -> None:

@@ -71,6 +71,17 @@ class Watch(Declared):
         waits: Seconds of wall time before the first message, in which the node must not report anything.
         field: The path of the message field that contains the state.
         words: The states, if the node logs or prints them instead of publishing.
+
+    Example::
+
+        def state(beats: Sequence[Given], limit: float = 1.0) -> object:
+            return "lost" if beats and beats[-1].age >= limit else "back"
+
+        beats = [({}, seconds) for seconds in (0.3, 0.75, 0.45, 1.65, 1.7, 0.57, 0.4, 2.95, 0.42, 0.25, 2.3)]
+        task = Watch("lab_8_1.watchdog", "Lab 8.1 · Watchdog", "Report.", state=state, gives=beats, within=0.3)
+        task.says("lost", "lost", 5, "Says lost after a second without a heartbeat")
+        task.once("once", 5, "Says each change once")
+        EXERCISE = task.exercise()
     """
 
     def __init__(
