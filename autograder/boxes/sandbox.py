@@ -210,6 +210,7 @@ class Enclosure:
         except BaseException:
             os.close(reading)
             raise
+        # The box has its own copies. While this one is open, reading would not end with the command.
         finally:
             close_all([nothing, writing])
         return Running(box, reading, output_bytes)
@@ -236,6 +237,8 @@ class Enclosure:
         of_every_box = box_environment().get("LD_LIBRARY_PATH", "").split(os.pathsep)
         libraries = environment.get("LD_LIBRARY_PATH", "").split(os.pathsep)
         own_libraries = [Path(folder) for folder in libraries if folder not in of_every_box]
+        # The program's process has already read where to look for libraries, so this box links the build's folders to
+        # the places in that fixed list.
         links = [SymbolicLink(*pair) for pair in zip(library_folders(programs), own_libraries, strict=False)]
         box = self.box(self._next_name(), [*binds, *links], scratch=False, guarded=True)
         reading, writing = os.pipe()

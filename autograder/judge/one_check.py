@@ -281,6 +281,7 @@ def judge(exercise: Exercise, evidence: Evidence, seed: str) -> Verdict:
         remarks=tuple(_cut(text) for remark in remarks if (text := remark(evidence))),
         timeline=verdict_timeline.moments(evidence, " ".join(told), missed=not passed),
         seed=seed,
+        # The last lines of a traceback name the error and the student's line.
         detail=traceback[-MAX_DETAIL:],
     )
 
@@ -311,6 +312,7 @@ def diagnose(
             _cut(of_its_kind(shortened(visible(words)), in_a_notebook), 2 * MAX_WORDS)
             for words in (advice.text, advice.next_step)
         )
+        # One entry of a ladder may recognize several variants of a mistake; then its advice names the key.
         return Diagnosis(advice.key or mistake.key, text, next_step), advice.traceback
     failed = next((one for one in criteria if not one.passed), None)
     seen = f"“{failed.title}” is not met: {failed.seen}. Asked: {failed.expected}." if failed else ""

@@ -216,6 +216,8 @@ class Draft(Generic[View]):
 
             usual = self._own[id(OWN_LATE if late else OWN)]
             own = self._before.setdefault(before, []) if before else usual
+            # Added twice: the first copy recognizes the mistake only if the evidence proves it, the second one in all
+            # other evidence.
             if callable(certain):
                 own.append(Mistake(key, proven, certain=True))
             own.append(Mistake(key, advice, certain=certain is True))
@@ -234,6 +236,7 @@ class Draft(Generic[View]):
         """
         before, mistakes = dict(self._before), list[Mistake]()
         for common in self._recipe.ladder:
+            # Both placeholders have an empty key, so they are told apart by identity.
             mistakes += [*before.pop(common.key, ()), *self._own.get(id(common), [common])]
         if before:
             raise ValueError(

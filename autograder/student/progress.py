@@ -352,6 +352,7 @@ def standing_json(standing: Standing) -> str:
                     "finished": chapter.finished,
                     "notebooks": [
                         {
+                            # msgspec encodes only fields; the three values below are computed properties.
                             **msgspec.to_builtins(one),
                             "state": one.state,
                             "points": one.points,

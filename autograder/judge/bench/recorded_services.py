@@ -79,6 +79,7 @@ class RecordedServer:
             interface(type_name), at or service, once_it_is_set(made, self._serve)
         )
         self._send = patiently(self._service)
+        # rclpy sends what the callback returns at once; the judge decides itself when an answer is sent.
         self._service.send_response = self._answer_or_hold  # type: ignore[method-assign]
         made.set()
 

@@ -152,6 +152,7 @@ class Recorder:
         heard = self._count
         while True:
             self._hurry()
+            # Read the count before the condition, so that an event during the check is not slept through below.
             seen = self._count
             if condition():
                 return True

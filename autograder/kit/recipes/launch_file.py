@@ -78,6 +78,7 @@ class Launched:
         """The ids of the processes that publish under the new name, and of those that subscribe to it. The id 0 stands
         for an unknown process.
         """
+        # An endpoint does not show how it got its name; a remapping rule in its process's command line does.
         self._given = {_lower(process.pid) for process in self._processes if self._has_a_rule(process.argv)}
         self._own = {
             _lower(process.pid)

@@ -109,6 +109,7 @@ def meet(
     bench.start()
     if all(bench.await_endpoint(role, name) for role, ends in roles.items() for name in ends):
         bench.release()
+        # A subscription loses what is sent before it has discovered the judge's publisher.
         if speakers:
             bench.await_attention()
         called = all(caller.await_server(SERVED) for caller in callers)

@@ -240,11 +240,15 @@ class Watch(Declared):
                     f"last at most {self._within} s."
                 )
         inputs = [event.t for event in sent]
+        # A node that reports from its subscription's callback is never late for a change that an input causes, so only
+        # changes by time alone show how often it checks the time.
         by_time = [
             s.begin for s in spans if s.end - s.begin > late and min(abs(s.begin - t) for t in inputs) > GRAIN
         ]
         parts = sorted(begin % 1.0 for begin in by_time)
         gap = max((b - a for a, b in pairwise([*parts, parts[0] + 1.0])), default=0.0) if parts else 0.0
+        # If all changes fall into a part of the second as short as the time limit, a check at the end of this part is
+        # in time for each of them.
         if gap > 0 and 1.0 - gap <= late < 1.0:
             shown = in_words([round(part, 2) for part in parts])
             raise ValueError(

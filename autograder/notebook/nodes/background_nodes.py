@@ -98,6 +98,7 @@ def spin_in_background(node: Node, *more: Node, name: str | None = None, threads
     if name is not None:
         if not isinstance(name, str) or not name:
             raise SettingError(f'name must be a string, such as name="talker", not {name!r}')
+        # End the old nodes before the new ones are checked: a node that is given again would still count as busy.
         replace_named(name, keep=nodes)
     check_nodes("spin_in_background", nodes)
     background = Background(nodes, threads=threads, name=name)

@@ -142,6 +142,7 @@ def entry(key: str, base: Path, cancelled: Callable[[], bool] = lambda: False) -
         marker = folder / _MARKER
         complete = _is_of(key, marker) and _is_ones_own(folder)
         if complete:
+            # make_room takes this time for the time of the last use.
             os.utime(marker)
         else:
             shutil.rmtree(folder, ignore_errors=True)
@@ -216,6 +217,7 @@ def make_room(base: Path, limit: int = LIMIT, in_use: float = IN_USE) -> list[st
     total = sum(sizes.values())
     removed = []
     for used, folder in entries:
+        # The entries are sorted by their last use: if this one is in use, so are all after it.
         if total <= limit or time.time() - used < in_use:
             break
         if _remove(base, folder, used):

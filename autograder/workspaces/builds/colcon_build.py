@@ -188,6 +188,8 @@ def copy_to_workspace(made: Build) -> Path:
     try:
         target.mkdir(exist_ok=True)
         with scratch_folder(target, ".new-") as fresh:
+            # Copy first, so that an error while copying leaves the earlier builds as they are; into the same file
+            # system, so that a rename moves each package to its place.
             copied = fresh / "install"
             shutil.copytree(made.install, copied, symlinks=True, ignore=shutil.ignore_patterns("__pycache__"))
             rename_paths(copied, str(made.install), str(target))

@@ -129,6 +129,7 @@ def with_prefixes(
     for name, folders in additions.items():
         there = [part for part in environment.get(name, "").split(os.pathsep) if part]
         ours = [str(folder) for folder in folders if str(folder) not in there or not last]
+        # Name each folder only once, because the first occurrence would decide which package takes precedence.
         there = [part for part in there if part not in ours]
         if joined := [*there, *ours] if last else [*ours, *there]:
             result[name] = os.pathsep.join(joined)
