@@ -89,7 +89,6 @@ def slowness(runnable: float, processors: int) -> float:
 
     Args:
         runnable: The number of threads that run or wait for a processor.
-        processors: The number of processors.
     """
     return min(SLOWEST, max(1.0, runnable / (CROWDED * processors)))
 

@@ -177,7 +177,6 @@ def _read_file(file: str | Path, name: str, largest: int, folder: int | None = N
     """Read a source file. Return None if it is unreadable, compiled, or not a regular file.
 
     Args:
-        file: The path of the file.
         name: The file's path among the sources.
         largest: The maximum size in bytes.
         folder: The descriptor of the folder to which the path is relative.

@@ -54,8 +54,6 @@ class Recorder:
         """Begin a part.
 
         Args:
-            name: The name of the part.
-            inputs: The inputs of the part.
             hurry: Called repeatedly during each wait. It may end the wait by raising an exception.
         """
         self._hurry = hurry
@@ -156,6 +154,7 @@ class Recorder:
         heard = self._count
         while True:
             self._hurry()
+            # Read the count before the condition, so that an event during the check is not slept through below.
             seen = self._count
             if condition():
                 return True
