@@ -183,7 +183,15 @@ class Asks:
         if seen.part.ending is not None and not raised:
             return Finding(False, expected, "the program ended by itself while the judge called its service")
         answered = bool(seen.answers)
-        return Finding(answered or raised, expected, "it answers" if answered else "no call was answered")
+        return Finding(
+            answered or raised,
+            expected,
+            "it answers"
+            if answered
+            else "its callback raised an exception"
+            if raised
+            else "no call was answered",
+        )
 
     @property
     def ladder(self) -> tuple[Mistake, ...]:
