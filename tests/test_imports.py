@@ -64,7 +64,7 @@ NOTEBOOK_MAY_IMPORT = {
 GRADING_FROM_BELOW = (
     *("grading_errors", "grading_task", "course_version"),
     *("rebuilding", "classes", "returning", "running", "cluster"),
-    *("table", "export", "class_records", "class_forms", "class_store", "class_checks"),
+    *("table", "export", "class_records", "store_tables", "class_store", "class_checks"),
     *("collecting", "tasks", "similarity", "result_writer", "reporting", "appeal_writing"),
     *("batch_work", "batch_steps", "batch", "nbgrader_commands", "new_classes"),
 )

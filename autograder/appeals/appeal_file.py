@@ -32,7 +32,7 @@ CHECK, EVIDENCE = "check.json", "evidence.jsonl"
 MAX_BYTES = 16_000_000
 """The maximum size of an appeal file, in bytes."""
 _MAX_CHECK = 4_000_000
-"""The maximum size of ``check.json``, in bytes. A submitted notebook has at most as much text."""
+"""The maximum size of ``check.json``, in bytes. A submitted notebook has at most as much text as this."""
 
 
 class BadAppeal(ValueError):

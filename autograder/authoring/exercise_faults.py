@@ -98,7 +98,6 @@ def faults_of_text(exercise: Exercise, lab_text: str) -> Iterator[str]:
     """Yield the faults of ``Exercise.text``: sentences that the lab does not contain, missing or unknown criteria.
 
     Args:
-        exercise: The exercise.
         lab_text: All texts of the lab, in one string.
     """
     words_of_lab = " ".join(lab_text.split())

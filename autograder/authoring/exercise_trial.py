@@ -119,6 +119,7 @@ def try_exercise(
     _refuse_edits_that_do_not_fit(wanted)
     if not (only and exercises.reference_path(exercise_id).exists()) and not _is_recorded(exercise_id, tell):
         return False
+    # `only` asks about single answers, so whatever concerns the whole exercise is left out.
     gifts = [] if only else list(_points_of_unsolved(exercise_id))
     if transcript is not None:
         wanted = [_Transcribed(**vars(answer), folder=transcript) for answer in wanted]
@@ -198,6 +199,7 @@ def _judged(
         surprise = _Surprise(name, f"no verdict: {trouble}", "The error stands above.")
         surprises.setdefault(turn.subject.name, surprise)
 
+    # Each answer is judged in a fork of this process, which would have to import everything itself.
     warm_up()
     judge_all(turns, jobs=jobs, done=take, failed=fail)
     return [surprises[answer.name] for answer in wanted if answer.name in surprises]

@@ -76,6 +76,7 @@ def new_exercise(
     folder = _chapter(root, chapter) / lab
     _refuse_existing(root, folder)
     types = [_interface_of(root, folder.parent, interface) for interface in interfaces]
+    # Make the lab in a temporary folder first, so that an error leaves no half lab in the course.
     with HeldFolder("autograder-new-") as scratch:
         made = scratch.path / lab
         shutil.copytree(example, made, ignore=_GENERATED)

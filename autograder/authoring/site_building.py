@@ -109,6 +109,7 @@ def build_site(root: Path, folder: Path, edition: str, *, outputs: bool, tell: C
         ]
         shutil.copyfile(pages / f"{_START}.html", pages / "index.html")
         _leave_out_what_no_page_needs(pages)
+        # Replace the old pages only now, so that a build that fails leaves them as they were.
         if folder.exists():
             shutil.rmtree(folder)
         shutil.move(pages, folder)

@@ -87,6 +87,7 @@ class Channel:
         if not data:
             close_all(descriptors)
             raise ChannelClosed("the other end has closed the connection")
+        # Received descriptors are inheritable at first, and would leak into each program that this process starts.
         for descriptor in descriptors:
             os.set_inheritable(descriptor, False)
         message: dict[str, Any] = json.loads(data)

@@ -133,7 +133,6 @@ class Enclosure:
             box: A box of this enclosure.
             server: The socket address of the fork server.
             descriptors: File descriptors for the process. The caller keeps its own copies.
-            cwd: The working folder.
             environment: All environment variables.
             call: The argument for the ``run`` function of the fork server's module.
             rlimits: Limits for a process in a box without a guard (setrlimit(2)).
@@ -189,7 +188,6 @@ class Enclosure:
             binds: As for :meth:`box`.
             environment: All environment variables; None for those of
                 :func:`autograder.boxes.visible_host.box_environment`.
-            cwd: The working folder.
             output_bytes: The maximum number of bytes of output to keep.
             scratch: As for :meth:`box`. In the enclosure's scratch, commands see each other's files.
 
@@ -212,6 +210,7 @@ class Enclosure:
         except BaseException:
             os.close(reading)
             raise
+        # The box has its own copies. While this one is open, reading would not end with the command.
         finally:
             close_all([nothing, writing])
         return Running(box, reading, output_bytes)
@@ -234,11 +233,12 @@ class Enclosure:
             words: The arguments of `ros2`, such as ``["run", "my_package", "talker"]``.
             binds: As for :meth:`box`.
             environment: All environment variables.
-            cwd: The working folder.
         """
         of_every_box = box_environment().get("LD_LIBRARY_PATH", "").split(os.pathsep)
         libraries = environment.get("LD_LIBRARY_PATH", "").split(os.pathsep)
         own_libraries = [Path(folder) for folder in libraries if folder not in of_every_box]
+        # The program's process has already read where to look for libraries, so this box links the build's folders to
+        # the places in that fixed list.
         links = [SymbolicLink(*pair) for pair in zip(library_folders(programs), own_libraries, strict=False)]
         box = self.box(self._next_name(), [*binds, *links], scratch=False, guarded=True)
         reading, writing = os.pipe()
@@ -342,7 +342,6 @@ class OneCommandBox:
         """Return the command line that starts a command in a box, and its descriptors, which the caller has to close.
 
         Args:
-            command: The command.
             environment: The command's environment outside a box. Variables that Python and ROS need are kept.
         """
         words = box_arguments(self._scratch, list(map(Bind, (self._folder, *self._more))))

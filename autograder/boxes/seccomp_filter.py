@@ -235,6 +235,7 @@ def filter_for_boxes(*, hidden_memory: bool = True, machine: str = "") -> bytes:
         why = errno.EOPNOTSUPP if number in attributes else errno.EPERM
         program += [(_JUMP_EQUAL, 0, 1, number), _fail(why)]
     calls = known.calls
+    # clone3 passes its flags in memory, which a filter cannot read. After ENOSYS, the C library calls clone instead.
     program += [(_JUMP_EQUAL, 0, 1, calls["clone3"]), _fail(errno.ENOSYS)]
     program += _where(calls["clone"], _decide_on_clone())
     program += _where(calls["ioctl"], _refuse_any(1, _TERMINAL_TRICKS))

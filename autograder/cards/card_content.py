@@ -173,7 +173,8 @@ class Card:
         solution: Solution | None = None,
         short: bool = False,
     ) -> Card:
-        """Return the content of a verdict's card, in one form. For the other arguments see :class:`Choices`."""
+        """Return the content of a verdict's card for one form. For the other arguments see :class:`Choices`."""
+        # Each text may quote a student's output of any length, so it is cut to what fits on a card.
         mark = form.mark
         advice = card_wording.advice(verdict)
         shown = traffic(verdict.timeline, at_most=form.moments)

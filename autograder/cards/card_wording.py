@@ -100,7 +100,6 @@ def score_line(verdict: Verdict, before: float | None = None) -> str:
     """Return the points in words. If the check could not be made, the words differ from those for zero points.
 
     Args:
-        verdict: The verdict.
         before: The points of the previous check; None if there was none.
     """
     if verdict.state is State.NOT_CHECKED:
@@ -176,7 +175,6 @@ def moment_in_words(moment: Moment, when: str) -> str:
     """Return a moment in words, such as ``"at 0.500 s on chatter, from your code: Hello, world! 0"``.
 
     Args:
-        moment: The moment.
         when: The time of the moment; if all times are the same, its number.
     """
     where = one_line(moment.lane, 60)

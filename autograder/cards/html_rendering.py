@@ -48,7 +48,6 @@ def waiting_bundle(title: str, doing: str, *, over: bool = False) -> dict[str, s
     """Return the placeholder for a card without a result.
 
     Args:
-        title: The title of the exercise.
         doing: The current step, or why there is no result.
         over: True if the check has ended. If False, JupyterLab changes the card as soon as the kernel ends.
     """
@@ -66,10 +65,8 @@ def card_html(verdict: Verdict, *, buttons: bool = False, **choices: Unpack[Choi
     """Return a verdict as HTML, with all texts escaped: for JupyterLab, nbgrader's feedback or any other page.
 
     Args:
-        verdict: The verdict.
         buttons: True to add the buttons Check, Watch and Next, which appear only in JupyterLab with the course's
             commands.
-        choices: Further options for the card.
     """
     card = Card.of(verdict, ON_A_PAGE, **choices)
     width = WIDTH if len(card.traffic.parts) <= 2 else HALF_WIDTH
@@ -170,8 +167,6 @@ def certificate_svg(title: str, points: float, finished: float) -> str:
     """Return the certificate as SVG, with all texts escaped.
 
     Args:
-        title: The title of the chapter.
-        points: The total points of the chapter.
         finished: The Unix time in seconds at which the last point was reached.
     """
     template = _templates().get_template("certificate.svg.j2")
@@ -188,8 +183,6 @@ def certificate_text(title: str, points: float, finished: float) -> str:
     """Return the certificate in words.
 
     Args:
-        title: The title of the chapter.
-        points: The total points of the chapter.
         finished: The Unix time in seconds at which the last point was reached.
     """
     return (

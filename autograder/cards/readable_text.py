@@ -84,6 +84,7 @@ def wrap(text: str, limit: int, first: str = "", later: str = "") -> list[str]:
             line, taken = line + word, taken + needed
             empty = False
             continue
+        # The word is longer than a line, such as a path or a list without spaces, and has to be broken.
         for character in word:
             if taken + _columns(character) > limit:
                 lines.append(line)
@@ -193,6 +194,7 @@ def students_line(detail: str, advice: str = "") -> TracebackLine | None:
             if found is None or not found[2] or found[2] not in advice:
                 found = (frame["file"], frame["line"], quote)
         elif frame and _CALLED_BY_ROS in frame["file"]:
+            # rclpy called what follows, so the line found so far only spins the node.
             found = None
     if found is None:
         return None

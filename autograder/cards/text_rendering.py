@@ -38,10 +38,8 @@ def card_text(
     """Return a verdict as text for a terminal.
 
     Args:
-        verdict: The verdict.
         width: The maximum length of a line in columns, at least 40. Lines of a traceback may be longer.
         color: True to add ANSI codes (bold, and a color for the state). The text says the same without them.
-        choices: Further options for the card.
 
     Returns:
         The lines as one text, without a newline at the end.

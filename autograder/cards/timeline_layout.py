@@ -154,6 +154,7 @@ def _lane(
     levels = 1 + max((flag.level for flag in placed if flag), default=0)
     name_end = readable_text.width(text) * (_CHARACTER_WIDTH + 0.7) + 6
     if any(flag.level == levels - 1 and flag.left < name_end for flag in placed if flag):
+        # The lane's name stands at the left of the top level, and a flag there would cover it.
         levels += 1
     line_y = top + _LANE_HEAD + levels * _LEVEL_HEIGHT + 7
     rows = _rows([xs[i] for i in members])

@@ -64,7 +64,7 @@ def _content(
     if stored is None:
         raise GradingError(_why_nothing(directory, entered, student, exercise_id, again))
     record = entered.get((student, stored.assignment))
-    # An appeal is about the grade that the student sees, so the evidence has to be that of the entered points.
+    # An appeal is about the grade that the student sees, so the evidence must come from the run that gave this grade.
     if record is None or record.tasks.get(stored.notebook) != stored.task:
         raise GradingError(
             f"The points of {student} for this check of {stored.notebook} are not in the gradebook, for example "

@@ -255,7 +255,7 @@ class Batch:
             yield work
 
     def report(self, works: Iterable[Work]) -> GradeReport:
-        """Take all submissions through the steps before, return the report on them, and write ``grades.csv``.
+        """Run the earlier steps on all submissions, return the report on them, and write ``grades.csv``.
 
         ``grades.csv`` contains the whole class.
         """

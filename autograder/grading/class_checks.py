@@ -170,7 +170,7 @@ def changed_master_warnings(
         store: The class's store. It records for each source notebook its master, as the master was then.
         assignments: The assignments to be graded.
     """
-    # Only what the class recorded when its notebooks were made tells how the masters were then.
+    # The masters may have changed since the class's notebooks were made, so use what the class recorded at that time.
     origins = store.origins()
     if not origins:
         return [

@@ -18,9 +18,9 @@ from typing import TYPE_CHECKING, Any, Self, TypeVar
 import msgspec
 
 from autograder.execution.executed_cells import Execution
-from autograder.grading.class_forms import bring_up_to_date
 from autograder.grading.class_records import Attempt, Entered, KeptEvidence, Origin
 from autograder.grading.grading_errors import DiskFull, StoreTrouble, is_disk_full, said_by_database
+from autograder.grading.store_tables import bring_up_to_date
 from autograder.grading.table.rows import Row
 from autograder.safe_files import name_as_text
 

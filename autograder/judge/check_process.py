@@ -81,6 +81,7 @@ class Child:
             within: A shorter limit, in seconds from now.
         """
         hurried = within is not None and time.monotonic() + within < self._deadline
+        # A caller in a hurry may shorten the limit, but must not give the child more time.
         if within is not None:
             self._deadline = min(self._deadline, time.monotonic() + within)
         while True:

@@ -221,8 +221,6 @@ def pack(verdict: Verdict, evidence: Evidence, digest: str, *, at: float) -> byt
     """Pack a verdict and its evidence into bytes that :func:`unpack` can read.
 
     Args:
-        verdict: The verdict.
-        evidence: The evidence for it.
         digest: The SHA-256 of the reference output.
         at: Unix time of the verdict, in seconds.
     """

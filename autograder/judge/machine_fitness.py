@@ -89,7 +89,6 @@ def slowness(runnable: float, processors: int) -> float:
 
     Args:
         runnable: The number of threads that run or wait for a processor.
-        processors: The number of processors.
     """
     return min(SLOWEST, max(1.0, runnable / (CROWDED * processors)))
 
@@ -160,9 +159,10 @@ class Crowding:
 
 
 class Hurry:
-    """Ends a check after :data:`ANSWER_WITHIN` seconds if the machine is so busy that time limits get longer.
+    """Ends a check after :data:`ANSWER_WITHIN` seconds if the machine is so busy that the student would wait too long.
 
-    If the machine is not busy, the check is not ended: it may take as long as its exercise needs.
+    A busy machine makes time limits longer, so a check could take minutes there. On a machine that is not busy, a check
+    may take as long as its exercise needs.
 
     Args:
         runnable: Returns the number of threads that run or wait for a processor now.

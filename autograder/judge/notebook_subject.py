@@ -198,6 +198,7 @@ class NotebookSubject:
                 self._take_of_run(message, self._recorder)
 
     def _take_of_run(self, message: judge_messages.OfRun, recorder: Recorder) -> None:
+        # Each text comes from a process that the student controls, so it is cut to a limit before it is kept.
         record, ended = recorder.record, partial(self._note_end, message.run)
         match message:
             case run_messages.Stopped():

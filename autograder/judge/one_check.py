@@ -103,11 +103,8 @@ def check(
     failed.
 
     Args:
-        exercise: The exercise that the subject has to fulfill.
-        subject: The subject to judge.
         reference: The recorded behavior of the reference solution.
         seed: The seed of all random inputs.
-        domain_id: The ROS domain.
         marks_crowded: True to return a verdict with ``crowded`` set instead of raising TooBusy, as the grader does.
 
     Raises:
@@ -237,12 +234,9 @@ def look(
     """Run the scenario once and return the evidence.
 
     Args:
-        exercise: The exercise that the subject has to fulfill.
-        subject: The subject to judge.
         reference: The recorded behavior of the reference solution.
         pace: The pace of this look.
         seed: The seed of all random inputs.
-        domain_id: The ROS domain.
         before: The evidence of the first look; None if this is the first look.
         hurry: Called repeatedly while the judge waits. It may raise an exception to end the look.
         names: The wrong names that :func:`autograder.judge.one_check.misnamed` found in an earlier look.
@@ -287,6 +281,7 @@ def judge(exercise: Exercise, evidence: Evidence, seed: str) -> Verdict:
         remarks=tuple(_cut(text) for remark in remarks if (text := remark(evidence))),
         timeline=verdict_timeline.moments(evidence, " ".join(told), missed=not passed),
         seed=seed,
+        # The last lines of a traceback name the error and the student's line.
         detail=traceback[-MAX_DETAIL:],
     )
 
@@ -317,6 +312,7 @@ def diagnose(
             _cut(of_its_kind(shortened(visible(words)), in_a_notebook), 2 * MAX_WORDS)
             for words in (advice.text, advice.next_step)
         )
+        # One entry of a ladder may recognize several variants of a mistake; then its advice names the key.
         return Diagnosis(advice.key or mistake.key, text, next_step), advice.traceback
     failed = next((one for one in criteria if not one.passed), None)
     seen = f"“{failed.title}” is not met: {failed.seen}. Asked: {failed.expected}." if failed else ""

@@ -52,6 +52,7 @@ def record(exercise: Exercise, subject: Subject, *, domain_id: int) -> Reference
     bare = Reference(exercise.id, interface)
     wrong: Reference | None = None
     for number in range(LOOKS):
+        # At least one look is made, however long it took to find the endpoints.
         if number and time.monotonic() > deadline:
             break
         seen = look(exercise, subject, bare, Pace.FAST, seed=SEED, domain_id=domain_id)

@@ -81,6 +81,14 @@ class Draft(Generic[View]):
         title: The title of the card; it names the lab and the subject.
         task: One sentence that states the task.
         recipe: The recipe for the kind of subject.
+
+    Example::
+
+        heard = Hears()
+        battery = Draft("lab_8_1.battery", "Lab 8.1 · The battery", "Publish the charge every 0.5 s.", heard)
+        battery.asks("topic", 3, "Publishes on the right topic", heard.on_topic)
+        battery.asks("charge", 7, "Counts down from 100", heard.counts("self.charge"))
+        EXERCISE = battery.exercise(limit=120.0)
     """
 
     def __init__(self, exercise_id: str, title: str, task: str, recipe: Recipe[View]) -> None:
@@ -94,9 +102,14 @@ class Draft(Generic[View]):
 
         Args:
             name: A stable key for the criterion.
-            points: The points that the criterion is worth.
             title: The criterion in one line, as the card shows it.
             judge: The recipe's function that decides the criterion.
+
+        Example::
+
+            heard = Hears()
+            talker = Draft("lab_8_1.talker", "Lab 8.1 · The talker", "Publish a greeting every 0.5 s.", heard)
+            talker.asks("rate", 3, "Keeps the rate", heard.keeps_rate)
         """
         self._criteria.append(Criterion(name, title, points, judge))
 
@@ -105,8 +118,16 @@ class Draft(Generic[View]):
 
         Args:
             name: A stable key for the criterion.
-            points: The points that the criterion is worth.
             title: The criterion in one line, as the card shows it.
+
+        Example::
+
+            door = Draft("lab_8_1.door", "Lab 8.1", "Count who comes.", Asks(lambda _: [{}] * 3, lambda _: {}))
+
+            @door.criterion("success", 2, "Answers that all went well")
+            def success(seen: ServerSeen, expected: ServerSeen) -> Finding:
+                said = [answer["success"] for answer in seen.answers.values()]
+                return Finding(bool(said) and all(said), "success is true", f"success was {said or 'never sent'}")
         """
 
         def add(judge: Judge[View]) -> Judge[View]:
@@ -142,6 +163,17 @@ class Draft(Generic[View]):
                 such nodes are checked before this one.
             before: The key of a mistake of the recipe, just before which the new mistake is checked; by default at one
                 of the two placeholders.
+
+        Example::
+
+            hello = Draft("lab_8_1.hello", "Lab 8.1", "Say hello.", Program("my_robot_pkg", "hello", "greeting"))
+            hello.knows(
+                "wrong_text",
+                lambda seen, expected: bool(seen.words) and not seen.says_it,
+                "Your node says “{seen.nearest}”; the task asks for “{seen.line}”.",
+                "{seen.first_difference} Every letter counts.",
+                late=True,
+            )
         """
 
         def told(seen: View, expected: View) -> Advice | None:
@@ -160,7 +192,19 @@ class Draft(Generic[View]):
         late: bool = False,
         before: str = "",
     ) -> Callable[[Told[View]], Told[View]]:
-        """Add a known mistake; the decorated function returns the advice. For the arguments see :meth:`knows`."""
+        """Add a known mistake; the decorated function returns the advice. For the arguments see :meth:`knows`.
+
+        Example::
+
+            door = Draft("lab_8_1.door", "Lab 8.1", "Count who comes.", Asks(lambda _: [{}] * 3, lambda _: {}))
+
+            @door.mistake("counter_stuck", certain=True)
+            def counter_stuck(seen: ServerSeen, expected: ServerSeen) -> Advice | None:
+                texts = [answer["message"] for answer in seen.answers.values()]
+                if len(texts) < 3 or len(set(texts)) > 1:
+                    return None
+                return Advice(f"Every answer is “{texts[0]}”.", "Count in an attribute: self.visitors += 1.")
+        """
 
         def add(told: Told[View]) -> Told[View]:
             def advice(evidence: Evidence) -> Advice | None:
@@ -172,6 +216,8 @@ class Draft(Generic[View]):
 
             usual = self._own[id(OWN_LATE if late else OWN)]
             own = self._before.setdefault(before, []) if before else usual
+            # Added twice: the first copy recognizes the mistake only if the evidence proves it, the second one in all
+            # other evidence.
             if callable(certain):
                 own.append(Mistake(key, proven, certain=True))
             own.append(Mistake(key, advice, certain=certain is True))
@@ -190,6 +236,7 @@ class Draft(Generic[View]):
         """
         before, mistakes = dict(self._before), list[Mistake]()
         for common in self._recipe.ladder:
+            # Both placeholders have an empty key, so they are told apart by identity.
             mistakes += [*before.pop(common.key, ()), *self._own.get(id(common), [common])]
         if before:
             raise ValueError(

@@ -109,10 +109,6 @@ def patience_without_a_server(bench: Bench, name: str) -> float:
     """Draw the number of seconds that a function is told to wait in the run without a server.
 
     In the second look, the time is long only if the function did not keep to a short one in the first look.
-
-    Args:
-        bench: The bench of the scenario.
-        name: The name of the run.
     """
     known = bench.before.part(name) if bench.before else None
     kept = known is not None and known.ending is not None and not broken_patience(known)

@@ -171,8 +171,6 @@ def await_goal(bench: Bench, server: ActionCounterpart, within: float) -> bool:
     because every node on the graph may send requests.
 
     Args:
-        bench: The bench of the scenario.
-        server: The judge's server.
         within: The time limit for the goal, in seconds; a client that falls silent gets less.
 
     Returns:
@@ -190,8 +188,6 @@ def hold_back(bench: Bench, kind: str, number: int = 1, seconds: float | None = 
     On a busy machine the wait is longer, because even a subject that hardly waits needs time to report something.
 
     Args:
-        bench: The bench of the scenario.
-        kind: The kind of the request's event.
         number: The number of the request among those of its kind, counted from 1.
         seconds: The time from the request to its answer; by default that of :func:`answers_late`.
     """
@@ -211,7 +207,6 @@ def again_while(
     """Start a subject again, up to ``times`` times, as long as its last run lacks something that a new run may show.
 
     Args:
-        bench: The bench of the scenario.
         missed: Returns True if the record of a run lacks something, such as the request of a client that ended just
             before its server started.
         meet: Makes one more run. Returns True if the subject finished its work.
@@ -267,7 +262,6 @@ def meets_late(
     the request was lost, because the subject ended right after it had sent the request.
 
     Args:
-        bench: The bench of the scenario.
         meet: Makes one run with a server that is this many seconds late. Returns True if the subject finished its
             work.
         role: The role of the subject's endpoint, such as ``client``.
@@ -301,11 +295,10 @@ def meets_late_action(
 ) -> bool:
     """Run the subject with an action server that is late and that holds back its answers.
 
-    If a patient subject ends before the server starts, or before an answer comes, run the subject again with shorter
-    delays.
+    A subject may wait only for a limited time, and end before the server starts or before an answer comes. Then run the
+    subject again with shorter delays.
 
     Args:
-        bench: The bench of the scenario.
         meet: Makes one run. Its arguments are the delays of the server and of an answer, in seconds. Returns True if
             the subject finished its work.
         requests: The event kinds of the requests whose answers the judge holds back.
@@ -334,7 +327,6 @@ def meets_present(
     busy machine, a client may stop waiting before it discovers the server; a patient client is started several times.
 
     Args:
-        bench: The bench of the scenario.
         meet: Makes one run; returns True if the subject finished its work.
         request: The event kind of the subject's request to the server.
         known: True if the subject called a server in an earlier run. If False, the subject is not started again.

@@ -151,6 +151,15 @@ class Outcome:
         word: The word, in lower case; a line may contain it in any case. If the word is the name of a goal's status,
             its number after the word ``status`` also counts.
         other: A second spelling of the word, or a second word that the task allows.
+
+    Example::
+
+        REJECTED = Outcome("rejected")
+
+        def reports_rejection(evidence: Evidence) -> Finding:
+            others = [part for part in evidence if part.name != "refused"]
+            missing = REJECTED.missing(evidence.part("refused"), others)
+            return Finding(not missing, f"a line with {REJECTED}", missing or "it was reported")
     """
 
     word: str

@@ -278,6 +278,16 @@ class StateRule:
         slack: Tolerance in seconds. A report also counts as right if it was right at most this long before, or will be
             right at most this long after.
         given: The kind of event that records an input of the subject.
+
+    Example::
+
+        def text_set(asked: Sequence[Given]) -> str:
+            return asked[-1].value["data"] if asked else "Hello"
+
+        text = StateRule(text_set, slack=1.0, given="asked")
+        greeter = Draft("lab_8_1.greeter", "Lab 8.1 · The greeter", "Publish the text that was set.", recipe)
+        greeter.criterion("default", 3, "Says Hello until a text is set")(text.when(lambda asked: not asked))
+        greeter.criterion("follows", 7, "Says the text once it is set")(text.when(bool))
     """
 
     rule: State

@@ -299,6 +299,7 @@ def exercise_points(check: CheckCall) -> float:
     try:
         points = float(exercises.get(check.exercise).points)
     except exercises.UnknownExercise as error:
+        # With a cutoff of 0 some names are always suggested, however different they are.
         near = difflib.get_close_matches(check.exercise, exercises.all_ids(), n=3, cutoff=0.0)
         raise MasterError(
             check.master,

@@ -391,4 +391,5 @@ def _read_figure(svg: Path, named: str, line: int) -> tuple[str, str, bytes]:
             f"The figure {named} has changed since its PNG was drawn.",
             "Draw it: python -m autograder.masters.figure_drawing",
         )
+    # Brackets would end the alternative text of a Markdown image.
     return (png.name, " ".join(re.sub(r"[\[\]]", "", ". ".join(words)).split()), picture)

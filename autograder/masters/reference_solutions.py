@@ -125,10 +125,6 @@ def _is_constant(node: ast.stmt) -> bool:
 def solution_files(master: Path, cells: Sequence[NamedCell]) -> dict[Path, str]:
     """Return the texts of a master's solution files, by path: one for each exercise that has a file with reasons.
 
-    Args:
-        master: The master.
-        cells: The cells of the master.
-
     Raises:
         MasterError: A file with reasons does not have the right form.
     """

@@ -254,6 +254,7 @@ def _subjects_are_solutions(master: Path, named: list[NamedCell]) -> None:
     written: set[str] = set()
     on_disk = False
     for item in named:
+        # A path may be a whole workspace, so any solution cell that writes a file counts.
         if item.cell.kind is CellRole.SOLUTION and has_magic(item.cell.source):
             on_disk = True
         elif item.cell.kind is CellRole.SOLUTION:

@@ -59,6 +59,8 @@ def let_log_lines_arrive() -> None:
         return
     arrived = threading.Event()
     with _one_at_a_time:
+        # Another library may have set the stream's own write. Remember it, because deleting it would undo that
+        # library's work.
         plain_write = stream.write
         replaced = vars(stream).get("write")
 
@@ -163,6 +165,7 @@ def point_at_raising_lines() -> None:
         return
     tracebacks: Any = importlib.import_module("IPython.core.ultratb")
     count = getattr(tracebacks, _COUNTS, None)
+    # Each further call would wrap the function once more.
     if count is None or getattr(count, "knows_cells", False):
         return
 
@@ -202,6 +205,7 @@ def meant_name(error: BaseException, trace: TracebackType | None) -> str:
         while trace is not None and trace.tb_next is not None:
             trace = trace.tb_next
         local = trace.tb_frame.f_locals if trace is not None else {}
+        # Python 3.12 also looks for a forgotten `self.` before it looks for similar names.
         if missing in _attributes(local.get("self")):
             return f". Did you mean: 'self.{missing}'?"
         known = [*local, *(trace.tb_frame.f_globals if trace is not None else {}), *dir(builtins)]

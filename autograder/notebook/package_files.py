@@ -51,7 +51,6 @@ def add_entry_points(workspace: str | Path, entries: Iterable[str], package: str
     Args:
         workspace: The workspace folder, which contains ``src``.
         entries: Entry points, each of the form ``executable = package.module:function``.
-        package: The name of the package.
 
     Returns:
         A text for the student: the executables that the package has now, with a warning for each module without a
@@ -76,6 +75,7 @@ def add_entry_points(workspace: str | Path, entries: Iterable[str], package: str
         same = {n for n, old in enumerate(merged) if set(_parts(old.text)) & set(_parts(entry))}
         index = min(same, default=len(merged))
         kept = next((old for old in merged if " ".join(old.text.split()) == " ".join(entry.split())), None)
+        # The comments above a replaced entry are the student's, so they move to the new entry.
         above = tuple(comment for n in sorted(same) for comment in merged[n].above)
         merged = [old for n, old in enumerate(merged) if n not in same]
         merged.insert(index, replace(kept or _written(entry), above=above))
@@ -100,7 +100,6 @@ def add_data_files(
     Args:
         workspace: The workspace folder, which contains ``src``.
         pairs: Pairs of a folder, below the package's folder in ``install``, and the files that are installed into it.
-        package: The name of the package.
 
     Returns:
         A text for the student: the pairs that ``setup.py`` installs now, or what the student has to do.
@@ -121,6 +120,7 @@ def add_data_files(
     if listed is None:
         return f"{setup} has no list of data_files. Add: data_files={wanted!r},"
     elements, last_comments = _elements(text, tree, listed)
+    # Only entries with this mark come from an earlier call; all others are the student's own.
     kept = [element for element in elements if element.behind != _ADDED]
     merged = [*kept, *(_Element(repr(pair), repr(pair), behind=_ADDED) for pair in wanted)]
     if merged != elements:
@@ -169,7 +169,6 @@ def add_dependencies(workspace: str | Path, names: Iterable[str], package: str =
     Args:
         workspace: The workspace folder, which contains ``src``.
         names: The names of the packages on which the package depends.
-        package: The name of the package.
 
     Returns:
         A text for the student: the dependencies that the package has now, or what the student has to do.
@@ -193,7 +192,6 @@ def add_definition(workspace: str | Path, package: str, definition: str, needs: 
 
     Args:
         workspace: The workspace folder, which contains ``src``.
-        package: The name of the package.
         definition: The path of the definition file in the package, such as ``action/Fibonacci.action``.
         needs: The packages on which the generated code depends.
 
@@ -203,6 +201,7 @@ def add_definition(workspace: str | Path, package: str, definition: str, needs: 
     """
     folder = Path(workspace) / "src" / package
     file, lists = folder / definition, folder / "CMakeLists.txt"
+    # Every service and action definition has this separator, so a file without it is not finished.
     if not file.is_file() or "---" not in file.read_text(encoding="utf-8"):
         return f"{definition} is not written yet."
     text = lists.read_text(encoding="utf-8") if lists.is_file() else ""

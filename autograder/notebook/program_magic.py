@@ -100,7 +100,6 @@ def _definition(name: str, cells: list[str], defined: set[str]) -> list[_Stateme
     """Return the newest definition of a name, and before it the imports and helpers that it uses.
 
     Args:
-        name: The name.
         cells: The texts of the cells that have run, the oldest first.
         defined: The names that the program defines already. The names of the returned statements are added.
     """
@@ -123,7 +122,6 @@ def _with_helpers(
     """Return a statement, and before it the imports and helpers that it uses.
 
     Args:
-        found: The statement.
         around: All statements of the same cell.
         cells: The texts of the cells that have run, the oldest first.
         defined: As in :func:`_definition`.

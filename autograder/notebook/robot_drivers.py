@@ -54,11 +54,7 @@ class _Walk:
 
 
 class WalkToServer:
-    """Serves the action ``/walk_to``. The robot walks to one goal at a time: a new goal replaces the earlier one.
-
-    Args:
-        node: The robot.
-    """
+    """Serves the action ``/walk_to``. The robot walks to one goal at a time: a new goal replaces the earlier one."""
 
     def __init__(self, node: Node) -> None:
         self._node = node
@@ -77,7 +73,6 @@ class WalkToServer:
         """Return the velocity for the next step; None if the robot is not walking to a goal.
 
         Args:
-            pose: The pose of the robot.
             bumped: True if a wall was in the way in the last step.
         """
         self._pose, walk = pose, self._walk
@@ -136,7 +131,6 @@ class Tour:
     """A scene in which the robot rolls to the door and reports its position on a topic.
 
     Args:
-        node: The robot.
         topic: The topic for the reports, of type ``std_msgs/msg/String``.
     """
 
@@ -173,9 +167,7 @@ class Spiral:
     The radius is proportional to the number. So for the Fibonacci sequence the robot walks the Fibonacci spiral.
 
     Args:
-        node: The robot.
         action_type: The type of the action. The first field of its feedback must be a list of numbers.
-        name: The name of the action.
 
     Raises:
         TypeError: The first field of the feedback is not a list.

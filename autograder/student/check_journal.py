@@ -94,7 +94,6 @@ def note_check(verdict: Verdict, journal: Path | None = None) -> bool:
     """Record a check that has ended, unless it could not be made. Return False if the journal cannot be written.
 
     Args:
-        verdict: The verdict of the check.
         journal: The journal to write to; by default this session's.
     """
     return verdict.state == "not_checked" or note(
@@ -158,7 +157,6 @@ def finished(chapter: course.Chapter, reached: dict[str, JournalEntry]) -> float
     """Return the time at which all points of a chapter were reached; None if they have not been reached.
 
     Args:
-        chapter: The chapter.
         reached: The best checks of the chapter's exercises.
 
     Returns:

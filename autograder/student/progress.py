@@ -255,7 +255,6 @@ def page_html(standing: Standing, base: str, token: str) -> str:
     """Return the course page as HTML.
 
     Args:
-        standing: The progress of the student.
         base: The base address of the server. It ends with a slash.
         token: Proves to the server that a request comes from this page.
     """
@@ -353,6 +352,7 @@ def standing_json(standing: Standing) -> str:
                     "finished": chapter.finished,
                     "notebooks": [
                         {
+                            # msgspec encodes only fields; the three values below are computed properties.
                             **msgspec.to_builtins(one),
                             "state": one.state,
                             "points": one.points,

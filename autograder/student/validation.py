@@ -28,6 +28,7 @@ def validate(folder: str, notebook: str) -> None:
         folder: The folder that JupyterLab shows.
         notebook: The path of the notebook in this folder.
     """
+    # The notebook's code may print, and must not write between the answers.
     answers = private_stdout()
 
     def tell(**said: Any) -> None:

@@ -232,6 +232,7 @@ class _WorkspaceCheck:
             if isinstance(order, run_messages.Interrupt):
                 self._interrupt(order.run)
                 continue
+            # A new run may begin only after the previous one, because both would use the same ROS domain.
             self._stop()
             if isinstance(order, run_messages.Start):
                 self._run = _ProgramRun(self._lines, self._builds, submitted, order)

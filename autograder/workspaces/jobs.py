@@ -251,7 +251,6 @@ def output_lines(
     """Yield the lines of a program's output until the output ends or is no longer needed. Long lines are cut.
 
     Args:
-        program: The program.
         wanted: Called from time to time. If it returns False, no more lines are yielded.
         within: Seconds between these calls while there is no output.
     """

@@ -131,6 +131,7 @@ def _interface_plan(runner: ServesInterface) -> Plan:
         return [p for p in made.prefixes if p.name in names and has_service(p, interface)]
 
     def missing(made: Build) -> str:
+        # A generated type is not enough: ROS finds a package only if the ament index has an entry for it.
         entered = any(map(is_indexed, generated(made)))
         return "" if entered else AMENT_PACKAGE if generated(made) else runner.file
 

@@ -174,6 +174,7 @@ def report_line(phase: str, made: Build, plan: Plan | None = None, missing: str 
     needed = set(plan.targets(made)) if plan else set[str]()
     definition = plan.definition if plan else ""
     budget = ByteBudget(MAX_LOOK)
+    # The needed packages come first, so that the texts of others cannot use up the budget.
     packages = [_described(p, definition, made, budget) for p in made.packages if p.name in needed]
     complete = budget.sufficed
     others = [_described(p, definition, made, budget) for p in made.packages if p.name not in needed]

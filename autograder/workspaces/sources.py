@@ -177,7 +177,6 @@ def _read_file(file: str | Path, name: str, largest: int, folder: int | None = N
     """Read a source file. Return None if it is unreadable, compiled, or not a regular file.
 
     Args:
-        file: The path of the file.
         name: The file's path among the sources.
         largest: The maximum size in bytes.
         folder: The descriptor of the folder to which the path is relative.
@@ -314,7 +313,10 @@ class ByteBudget:
         self.sufficed = True
 
     def has(self, file: Path) -> bool:
-        """Subtract the size of a file (0 if it is missing). If too little is left, return False instead."""
+        """Subtract a file's size from the bytes that are left; if fewer are left, return False and subtract nothing.
+
+        A missing file has the size 0.
+        """
         try:
             size = file.stat().st_size
         except OSError:

@@ -21,7 +21,7 @@ from tiny_class import TALKER, FakeEngine, TinyClass
 from autograder.boxes.run_limits import Ended, Limits
 from autograder.cli import cli
 from autograder.execution.executed_cells import Cell, CellCheck, CellRun, Execution
-from autograder.grading import class_forms, class_store
+from autograder.grading import class_store, store_tables
 from autograder.grading.class_records import Attempt, Entered, Origin
 from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.class_directory import ClassDirectory, Submission
@@ -332,7 +332,7 @@ def test_a_file_of_an_earlier_course_is_used_on_and_a_copy_stays(store: ClassSto
     assert store.entered() == {("ada", "lab"): entered()}
     assert (store.attempts("ada"), len(store.runs())) == ([attempt()], 1)
     with contextlib.closing(sqlite3.connect(file_of(store))) as book:
-        assert book.execute("PRAGMA user_version").fetchone() == (class_forms.FORM,)
+        assert book.execute("PRAGMA user_version").fetchone() == (store_tables.FORM,)
     copy = file_of(store).with_name("class.db.version-2")
     assert dump_of(copy) == before
     store.rename({"ada": "eve"})
@@ -354,7 +354,7 @@ def test_a_file_whose_conversion_was_killed_is_whole(
     def die(*_: object) -> None:
         os.kill(os.getpid(), signal.SIGKILL)
 
-    asked = class_forms._form_of
+    asked = store_tables._form_of
     times: list[int] = []
 
     def die_in_the_transaction(book: sqlite3.Connection) -> int:
@@ -366,7 +366,7 @@ def test_a_file_whose_conversion_was_killed_is_whole(
             die()
         return asked(book)
 
-    monkeypatch.setattr(class_forms, name, die if name != "_form_of" else die_in_the_transaction)
+    monkeypatch.setattr(store_tables, name, die if name != "_form_of" else die_in_the_transaction)
     os.waitpid(in_a_process(store.entered), 0)
     monkeypatch.undo()
     assert dump_of(file_of(store)) == before

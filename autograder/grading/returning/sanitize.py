@@ -28,7 +28,7 @@ TYPED = '<pre style="white-space: pre-wrap; word-break: normal; overflow-wrap: a
 """The beginning of a text cell that is shown as typed. Every Markdown renderer copies such a cell into the page."""
 _LEFT_OUT = "[picture left out: it is too large, or damaged]"
 _ADDRESS = r"attachment:(?P<{0}name>[\w.%+-]+)|(?P<{0}data>data:image/(?:png|jpeg);base64,[A-Za-z0-9+/=]+)"
-# Matches a picture in Markdown, or only the address of a picture, as in HTML.
+# Matches a whole picture in Markdown; in HTML, it matches only the address in `src`.
 _PICTURE = re2.compile(rf"!\[(?P<alt>[^\[\]\n]*)\]\((?:{_ADDRESS.format('')})\)|{_ADDRESS.format('bare_')}")
 _DIRECTION_ESCAPES = {
     code: f"\\u{code:04x}"

@@ -34,7 +34,9 @@ SHORTEST = 40
 For comparison: two independent right answers in the bank share at most 27 such words.
 """
 LEAST_SHARE = 0.5
-"""Two answers are similar only if they share at least this fraction of the own words of the shorter answer."""
+"""Two answers are similar only if they share at least this fraction of the words that the student of the shorter answer
+wrote. Given code does not count.
+"""
 _ROUNDS = 6
 """The number of times that two answers are compared. The first comparison finds passages that have the same order in
 both answers. Each further comparison ignores the passages found before, and so finds moved passages.

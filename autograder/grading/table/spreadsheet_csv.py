@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 # A list from an LMS may contain students' texts of any length, so raise Python's limit for a cell.
 csv.field_size_limit(2**31 - 1)
 _FORMULA = frozenset("=+-@\N{MINUS SIGN}")
-# A spreadsheet of another country may split a line at any of these characters, so that a formula could begin after
-# them. A quotation mark there begins a quoted cell.
+# A spreadsheet program with the settings of another country may begin a new cell at any of these characters, and a
+# formula could begin there. A quotation mark after one of them begins a quoted cell, so it is dangerous, too.
 _SEPARATOR = re2.compile(r"([,;|])")
 _SPACES = frozenset({"Cc", "Zl", "Zp", "Zs"})
 

@@ -61,7 +61,8 @@ def task_of(directory: ClassDirectory, submission: Submission, notebook: str) ->
     prose += [cell.source for cell in rebuilt.cells[:1] if rebuilt.metadata["autograder"]["remarks"]]
     demonstrations = bool(directory.config.WireExecute.get("demonstrations", False))
     cells = cells_of(rebuilt, demonstrations=demonstrations, prose=prose)
-    # The seed depends on what was handed in, but the seed is a part of the task, so hash the cells alone.
+    # The seed must depend on what was handed in. A hash of the whole task would depend on the seed itself, so only the
+    # cells are hashed.
     work = hashlib.sha256(msgspec.json.encode(cells)).hexdigest()
     pictures = [
         cell["attachments"] for cell in rebuilt.cells if "attachments" in cell and not is_the_masters(cell)

@@ -71,7 +71,6 @@ def subject_nodes(judge: Node, keeper: str) -> list[NodeName]:
     """Return the names of all nodes on the domain, each once, except the judge's and the keeper's.
 
     Args:
-        judge: The judge's node.
         keeper: The name of the node with which a notebook's check keeps its participant alive; empty if it has none.
             One node with this name is ignored, but a second node with this name belongs to the subject.
     """
@@ -151,7 +150,6 @@ def counterparts(judge: Node, heard: list[str], spoken: list[str]) -> list[NodeN
     """Return the subject's nodes that use these topics, except nodes whose names are not discovered yet.
 
     Args:
-        judge: The judge's node.
         heard: The topics to which the judge subscribes.
         spoken: The topics on which the judge publishes.
     """
@@ -223,7 +221,6 @@ def server_endpoints(node: Node, services: Iterable[str]) -> set[Endpoint]:
     both.
 
     Args:
-        node: The node.
         services: The full names of the services.
     """
     return _endpoints(node, [topic for name in services for topic in (f"rq{name}Request", f"rr{name}Reply")])
@@ -240,7 +237,6 @@ def _endpoints(node: Node, topics: Iterable[str]) -> set[Endpoint]:
     A topic's name does not identify an endpoint, because the next run may use the name of a removed endpoint again.
 
     Args:
-        node: The node.
         topics: The names of the topics in the middleware.
     """
     return {
@@ -276,11 +272,7 @@ messages neither fills the memory nor keeps the judge from other work.
 
 
 class Announcements:
-    """Listens for the announcements of DDS participants, on two sockets. A socket that cannot be opened is left out.
-
-    Args:
-        domain_id: The ROS domain.
-    """
+    """Listens for announcements of DDS participants, on two sockets. A socket that cannot be opened is left out."""
 
     def __init__(self, domain_id: int) -> None:
         self._heard: set[bytes] = set()

@@ -79,6 +79,7 @@ class RecordedServer:
             interface(type_name), at or service, once_it_is_set(made, self._serve)
         )
         self._send = patiently(self._service)
+        # rclpy sends what the callback returns at once; the judge decides itself when an answer is sent.
         self._service.send_response = self._answer_or_hold  # type: ignore[method-assign]
         made.set()
 
@@ -235,7 +236,6 @@ def patiently(service: Service, wanted: Callable[[], bool] = lambda: True) -> Ca
     busy machine a correct client would then wait forever. So each answer is sent again until there is no warning.
 
     Args:
-        service: The service.
         wanted: Returns False once answers are not wanted any more.
     """
     usual = service.send_response
@@ -278,7 +278,6 @@ class LateAnswers:
     """Delays each answer of a service, while the service goes on taking requests.
 
     Args:
-        service: The service.
         seconds: The delay from a request to its answer, in seconds of wall time.
         sending: Called with each answer just before it is sent.
     """

@@ -54,8 +54,6 @@ class Recorder:
         """Begin a part.
 
         Args:
-            name: The name of the part.
-            inputs: The inputs of the part.
             hurry: Called repeatedly during each wait. It may end the wait by raising an exception.
         """
         self._hurry = hurry
@@ -72,7 +70,9 @@ class Recorder:
         self.began_at = time.time()
 
     def end(self, name: str, known: Callable[[], object], **data: Any) -> None:
-        """Record the subject's end, after everything that it sent before, with the moment of this call.
+        """Record that the subject has ended. The time of the event is the time of this call.
+
+        The event comes after everything that the subject has sent.
 
         Args:
             name: The kind of end, such as ``"exited"``.
@@ -154,6 +154,7 @@ class Recorder:
         heard = self._count
         while True:
             self._hurry()
+            # Read the count before the condition, so that an event during the check is not slept through below.
             seen = self._count
             if condition():
                 return True

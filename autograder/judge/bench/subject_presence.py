@@ -77,10 +77,6 @@ class Presence:
         publishers: The judge's publishers, by the names that the subject uses for their topics.
 
     Args:
-        node: The judge's node.
-        recorder: The record of the part.
-        subject: The subject.
-        pace: The pace of the look.
         announced: Returns True if a process of the subject is known to have made a node.
     """
 

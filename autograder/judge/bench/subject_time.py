@@ -133,8 +133,6 @@ def _ask(recorder: Recorder, client: Any, request: Any, limit: float, *, turns: 
 
     Args:
         recorder: The record of the part. At each new event, this function looks whether the answer has come.
-        client: The client of the service.
-        request: The request.
         limit: Time limit in seconds for the service to appear, and again for each answer.
         turns: The number of executor rounds to wait for: the request is sent this many times at once, and the last
             answer counts.
@@ -232,7 +230,6 @@ class SubjectTime:
     Args:
         wire: The judge's participant.
         recorder: The record of the part. Each new event ends a wait.
-        subject: The subject.
         presence: Finds the subject's nodes on the graph.
         opened: The stack of everything that is closed at the end of the part. The clock is added to it.
         pace: Decides whether simulated time is tried at all.

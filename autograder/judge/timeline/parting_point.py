@@ -106,6 +106,7 @@ def _difference(turn: _Turn, model: _Turn, *, counted: bool) -> str:
                 (i for i, (a, b) in enumerate(zip(*outcomes, strict=False)) if a != b),
                 min(map(len, outcomes)),
             )
+            # Name the last event that was as asked, so that the student finds the place in the run.
             before = _words(came[alike - 1]) if alike else before
             nothing = f"no {'more ' * bool(alike)}{noun}"
             then = _words(came[alike]) if alike < len(came) else nothing

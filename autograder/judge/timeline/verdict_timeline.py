@@ -309,6 +309,7 @@ def _not_come(due: Sequence[_Said], came: Sequence[_Said], near: float, *, carri
     for place, (at, label) in enumerate(due):
         later = [k for k in range(last + 1, len(came)) if came[k][1] == label]
         found = next((k for k in later if abs(came[k][0] - at - shift) < near), None)
+        # The first message of either list has no message before it, and so no interval to compare.
         if found is None and place and later and later[0]:
             after = came[later[0]][0] - came[later[0] - 1][0]
             found = later[0] if abs(after - (at - due[place - 1][0])) < near else None

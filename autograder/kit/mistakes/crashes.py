@@ -93,7 +93,6 @@ def raised(how: str, traceback: str, next_step: str = "") -> Advice:
 
     Args:
         how: The beginning of the sentence for the student: what the exception ended or prevented.
-        traceback: The traceback of the exception.
         next_step: What to do now; by default the advice that fits such an exception.
     """
     why, usual = _meaning(traceback)

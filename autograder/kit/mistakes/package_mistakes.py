@@ -27,8 +27,14 @@ def build_report(part: Part) -> WorkspaceReport | None:
 def seen_of_build(report: WorkspaceReport) -> str:
     """Return the outcome of a build in a few words for the card."""
     if report.trouble in ("build", "entry_point"):
-        return f"colcon could not build {report.package or 'it'}: {report.line}"
+        why = _plain(report.line) or "its output says why"
+        return f"colcon could not build {report.package or 'it'}: {why}"
     return report.line or report.trouble.replace("_", " ")
+
+
+def _plain(line: str) -> str:
+    """Return a line of a build without the codes with which a terminal shows colors."""
+    return re2.sub(r"\x1b\[[\d;]*m", "", line).strip()
 
 
 def changed_since_build(evidence: Evidence) -> str:
@@ -52,10 +58,11 @@ def _build_failed(evidence: Evidence) -> Advice | None:
     report = _trouble(evidence, "build")
     if report is None:
         return None
-    known = known_errors.recognized(report.line, "build")
+    line = _plain(report.line)
+    known = known_errors.recognized(line, "build")
     usual = "Run `colcon build` in the workspace to see the whole log, and look for the first line with the word error."
     why, next_step = (known.means, known.do) if known else ("", usual)
-    failed = f"colcon build fails in {report.package or 'the workspace'}: {report.line}"
+    failed = f"colcon build fails in {report.package or 'the workspace'}: {line or 'its output says why'}"
     return Advice(f"{failed}{why and f' {why}'}", next_step)
 
 

@@ -93,7 +93,6 @@ class SameAsSolution:
             ``"linear.x"``; a tuple of paths if there are several.
         lists: The same for topics of which all messages are compared, in order, however they are spread over the steps.
             The last ones may be missing, or be more.
-        serves: The services that the subject calls.
         parameters: The names of the parameters whose description (type and range) is compared, and which values of
             them are taken and which are refused with a reason, if a step :class:`Sets` them.
         late_after: Seconds of the subject's time after which the judge subscribes, and asks for the last message, too.
@@ -142,6 +141,7 @@ class SameAsSolution:
         self._lists = lists.keys()
         self._draft = Draft(exercise_id, title, task, _Drawn(self._scenario, *roles))
         for name, paths in self._paths.items():
+            # Every message of std_msgs has a field named data, so this name says nothing on a card.
             what = " and ".join(path for path in paths if path != "data")
             title = f"Says the right {what or 'value'} on {name}"
             if name in parameters:
@@ -196,6 +196,7 @@ class SameAsSolution:
         bench.settle()
         events = bench.seen().events[before:]
         given = f"{step:g} s without an input" if isinstance(step, (int, float)) else step.name
+        # The words of a refusal are the student's own, so only the presence of a reason is compared.
         if isinstance(step, Sets):
             given = f"{step.parameter} = {step.value}"
             result = next(e.data["fields"]["results"][0] for e in events if e.kind == "answered")

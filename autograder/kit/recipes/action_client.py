@@ -136,8 +136,6 @@ def _late(
     """Make one run with a late server. Return True if the subject finished its work.
 
     Args:
-        bench: The bench of the scenario.
-        inputs: The inputs of the subject.
         lateness: The delay of the server, in seconds.
         again: The delay in a further run, in seconds.
         held: The delay of the answer to the goal, in seconds. It is as long as allowed even if a student waits for the
@@ -162,8 +160,6 @@ def _meets_late_server(
     """Start the subject, and its server some seconds later. Return True if the subject finished its work.
 
     Args:
-        bench: The bench of the scenario.
-        inputs: The inputs of the subject.
         lateness: The delay in seconds between the start of the client and of the server.
         held: The number of seconds for which the answer to the goal is held back.
         shown_within: The time limit in seconds, by pace, for showing each feedback message, until the client fails to
@@ -187,8 +183,6 @@ def _meets_server(
     client that ends at once reaches the judge.
 
     Args:
-        bench: The bench of the scenario.
-        begin_it: Starts the subject.
         accept: True to accept goals, False to refuse them.
         prepared: True to start the server before the subject.
     """
@@ -224,8 +218,6 @@ def works_on_a_goal(
     """Send feedback for the subject's goal, then end the goal. Return True if the subject finished its work.
 
     Args:
-        bench: The bench of the scenario.
-        server: The judge's server.
         status: The status with which the goal ends, such as ``"succeeded"``.
         feedbacks: The number of feedback messages to send first.
         shown_within: The time limit in seconds for showing each message, until the client fails to show one.
@@ -302,8 +294,6 @@ def refuse(
     """Refuse the subject's goal, and end the part.
 
     Args:
-        bench: The bench of the scenario.
-        begin_it: Starts the subject.
         known: True if the subject has already sent a goal.
         prepared: True to start the server before the subject.
         may_stay: True if the subject may keep running after the refusal. Then the judge waits only until the subject
@@ -364,6 +354,20 @@ class ActionClient(SeenAsItIs):
             ``bench.reference.only("action_client")``.
         ladder: The mistakes of the exercise, most specific first. They are checked after mistakes that prevent any
             right goal, and before mistakes that are checked only if nothing more specific is recognized.
+
+    Example::
+
+        def scenario(bench: Bench) -> None:
+            bench.part("one goal")
+            server = bench.serve_action(*bench.reference.only("action_client"))
+            bench.start()
+            bench.release()
+            if server.await_goal(15.0) and server.await_result_request(8.0):
+                server.finish("succeeded", sequence=[0, 1, 1, 2])
+                bench.await_end(1.0)
+            bench.stop()
+
+        recipe = ActionClient(scenario, goals.RESULT_NOT_REPORTED)
     """
 
     roles = ("action_client",)

@@ -49,7 +49,6 @@ class Launched:
     """The programs that a launch file started, as the judge saw them: their endpoints, processes and remapping rules.
 
     Args:
-        evidence: All evidence.
         package: The package of the two programs.
         old_name: The topic's name in the programs' code.
 
@@ -79,6 +78,7 @@ class Launched:
         """The ids of the processes that publish under the new name, and of those that subscribe to it. The id 0 stands
         for an unknown process.
         """
+        # An endpoint does not show how it got its name; a remapping rule in its process's command line does.
         self._given = {_lower(process.pid) for process in self._processes if self._has_a_rule(process.argv)}
         self._own = {
             _lower(process.pid)
@@ -225,6 +225,17 @@ class LaunchFile:
     Args:
         package: The package of the two programs.
         old_name: The topic's name in the programs' code.
+
+    Example::
+
+        recipe = LaunchFile("my_robot_pkg", "chatter")
+        remap = Draft("lab_8_1.remap", "Lab 8.1 · Remapping", "Start both programs with another topic.", recipe)
+
+        @remap.criterion("talker", 10, "The talker publishes under the new name")
+        def talker(seen: Launched, expected: Launched) -> Finding:
+            return Finding(bool(seen.heard), f"messages on {seen.topic}", ", ".join(seen.heard) or "none")
+
+        EXERCISE = remap.exercise(limit=400.0, runner=Launches(), wraps_commands=True)
     """
 
     roles = ("publisher",)

@@ -64,6 +64,17 @@ class Machine(Declared):
             run. A dictionary is a whole request; anything else is the value of its field ``data``.
         late_after: The number of calls after which the judge subscribes to the topic.
         field: The path of the field that contains the state in the topic's messages.
+
+    Example::
+
+        def step(mode: bool, asked: bool) -> tuple[bool, dict[str, Any]]:
+            return asked, {"success": asked != mode}
+
+        task = Machine("lab_8_1.mode", "Lab 8.1 · The mode", "Set a mode by a service.", state=False, step=step)
+        task.replies("success", 4, "Says success only if the mode changes")
+        task.once_at_each_change("once", 3, "Reports each change once")
+        task.late_joiner_gets_the_last("late", 3, "Tells a late subscriber the last mode")
+        EXERCISE = task.exercise()
     """
 
     def __init__(
@@ -88,8 +99,6 @@ class Machine(Declared):
         A reply is not compared if ``step`` does not return this field for it.
 
         Args:
-            field: The field of the reply.
-            points: The points that the criterion is worth.
             title: The criterion in one line, as the card shows it.
             words: The sentence of the task that the criterion judges.
         """
@@ -211,7 +220,7 @@ class Machine(Declared):
             bench.listen(topic, type_name)
 
     def _course(self, seen: Part, step: Step) -> list[Call]:
-        """Return the calls, each with the reply and the state that follow from a step function."""
+        """Return each call with its reply and the state after it, as the function ``step`` computes them."""
         state, course = self._state, []
         for asked in map(value, seen.of("asked")):
             new, reply = step(state, asked)

@@ -67,6 +67,16 @@ def once_met(happens: Callable[[Met], bool]) -> Callable[[Bench], None]:
     Args:
         happens: Returns True if everything for which it waited has arrived. If it returns False, the judge checks
             whether the subject is spun.
+
+    Example::
+
+        def switching(met: Met) -> bool:
+            (caller,) = met.callers
+            caller.ask({"data": True})
+            met.bench.run_time(3.0, until=lambda: met.heard >= 3)
+            return caller.await_answers(3.0) and met.heard >= 3
+
+        recipe = OwnScenario(once_met(switching), "publisher", "service")
     """
     return lambda bench: meet(bench, "met", happens)
 
@@ -82,8 +92,6 @@ def meet(
     """Run one part of a scenario like :func:`once_met`.
 
     Args:
-        bench: The bench of the scenario.
-        part: The name of the part.
         happens: As for :func:`once_met`.
         serves: Called with the name and type of each service that the reference solution calls; it makes the server.
         listens: True if the judge subscribes before the subject starts.
@@ -101,6 +109,7 @@ def meet(
     bench.start()
     if all(bench.await_endpoint(role, name) for role, ends in roles.items() for name in ends):
         bench.release()
+        # A subscription loses what is sent before it has discovered the judge's publisher.
         if speakers:
             bench.await_attention()
         called = all(caller.await_server(SERVED) for caller in callers)
@@ -118,6 +127,16 @@ class OwnScenario:
             ``bench.reference.interface[role]`` has their types by name.
         roles: The roles of the subject's endpoints, such as ``"publisher"``. The first role is the one whose endpoint
             shows most about the subject.
+
+    Example::
+
+        def listening(met: Met) -> bool:
+            met.speakers[0].send(data=19)
+            return met.bench.wait_until(lambda evidence: bool(evidence.main.said()), 5.0)
+
+        recipe = OwnScenario(once_met(listening), "subscription")
+        guard = Draft("lab_8_1.guard", "Lab 8.1 · The guard", "Warn of a charge below 20 percent.", recipe)
+        guard.asks("topic", 2, "Subscribes to the right topic and type", recipe.has("subscription"))
     """
 
     def __init__(self, scenario: Callable[[Bench], None], *roles: str) -> None:
@@ -290,7 +309,6 @@ class Declared:
 
         Args:
             name: A stable key for the criterion.
-            points: The points that the criterion is worth.
             title: The criterion in one line, as the card shows it.
             role: The role of the endpoints, such as ``"subscription"``.
             words: The sentence of the task that the criterion judges, exactly as in ``lab.md``.

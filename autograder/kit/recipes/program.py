@@ -26,11 +26,7 @@ COMPARED, LONG = 200, 400
 
 
 class _Ran:
-    """A program as the judge saw it: its nodes and its lines.
-
-    Args:
-        evidence: The whole evidence.
-    """
+    """A program as the judge saw it: its nodes and its lines."""
 
     def __init__(self, evidence: Evidence) -> None:
         self._evidence = evidence
@@ -104,6 +100,15 @@ class Program:
         package: The name of the package in the task.
         program: The name of the program in the task, as in ``ros2 run PACKAGE PROGRAM``.
         part: The name of the program's run in the reference output.
+
+    Example::
+
+        recipe = Program("my_robot_pkg", "simple_node", "saying hello")
+        hello = Draft("lab_8_1.hello", "Lab 8.1 · The first node", "A package with a node that says hello.", recipe)
+        hello.asks("starts", 3, "Builds, and ros2 run starts it", recipe.starts)
+        hello.asks("node", 3, "Is a node on the graph", recipe.is_a_node)
+        hello.asks("line", 4, "Says the line", recipe.says_the_line)
+        EXERCISE = hello.exercise(limit=400.0, runner=recipe.runner)
     """
 
     roles = ()

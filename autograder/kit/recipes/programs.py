@@ -152,7 +152,6 @@ class Programs:
     """An exercise about several programs of a package, which the judge builds and runs one after the other.
 
     Args:
-        name: The name of the package.
         programs: The programs, in the order of the task.
         keeps: The programs of an earlier lab. If the package still contains their modules, it must also have their
             entry points.
@@ -166,7 +165,6 @@ class Programs:
 
         Args:
             exercise_id: The exercise's id, such as ``"lab_1_2.programs"``.
-            title: The title of the card.
             task: One sentence that states the task.
             more: Further attributes of :class:`autograder.kit.model.Exercise`.
         """

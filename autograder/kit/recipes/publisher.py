@@ -55,6 +55,15 @@ class Hears:
         messages: The number of messages to wait for at first, in simulated time.
         long_run: The number of messages to wait for in simulated time if they take little time, or if something looks
             wrong. It is larger, because some faults show only late.
+
+    Example::
+
+        heard = Hears()
+        talker = Draft("lab_8_1.talker", "Lab 8.1 · The talker", "Publish a counted greeting every 0.5 s.", heard)
+        talker.asks("topic", 2, "Publishes on the right topic", heard.on_topic)
+        talker.asks("text", 3, "Says the right string", heard.says_text())
+        talker.asks("counter", 2, "Counts up from the start", heard.counts("self.count"))
+        talker.asks("rate", 3, "Keeps the rate", heard.keeps_rate)
     """
 
     roles = ("publisher",)
@@ -256,6 +265,7 @@ class Hears:
     def ladder(self) -> tuple[Mistake, ...]:
         """The common mistakes, most specific first."""
         of = Counting(self._variable)
+        # These mistakes fit only an exercise that judges texts or numbers with the kit's own criteria.
         texts, numbers = self._text is published_texts.says_text, self._course is published_texts.counts
         early = [("field_typo", published_texts.field_typo)] * texts + [("counter_stuck", of.stuck)] * numbers
         early += [("wrong_text", of.wrong_text)] * texts

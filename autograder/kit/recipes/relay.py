@@ -84,6 +84,17 @@ class Relay(Declared):
             named ``stamp`` must be a text.
         tolerance: The absolute or relative tolerance for numbers.
         roles: The roles of the subject's endpoints, the most telling first.
+
+    Example::
+
+        def due(celsius: list[float], after: float = 32.0) -> float:
+            return celsius[-1] * 9 / 5 + after
+
+        task = Relay("lab_8_1.converter", "Lab 8.1 · The converter", "Publish in °F.", field="data", due=due)
+        task.asks("listens", 2, "Subscribes to the right topic", "subscription", "Subscribe to `celsius`")
+        task.answers("converts", 8, "Publishes each temperature in Fahrenheit", "nine fifths of it, and 32 more")
+        task.wrong("offset_forgotten", {"after": 0.0}, "Your node publishes 0 for 0 °C.", "Add 32.")
+        EXERCISE = task.exercise()
     """
 
     def __init__(
@@ -209,6 +220,16 @@ class Hub(Relay):
     The arguments are those of :class:`Relay`, with these differences: each of ``gives`` is a :class:`To`, and ``due``
     gets inputs with a ``name`` and a ``value``. If the last input is a call of a service, ``due`` returns a
     :class:`Reply`. If the node has a service, ``"service"`` must be one of ``roles``.
+
+    Example::
+
+        def due(given: Sequence[To]) -> object:
+            newest = dict(given)  # the last value of each topic
+            return sum(newest.values()) if len(newest) == 2 else SILENCE
+
+        puts = [To(name, WHOLE) for name in ("/left", "/left", "/right", "/left", "/right")]
+        task = Hub("lab_8_1.scales", "Lab 8.1 · The scales", "Publish the sum.", field="data", due=due, gives=puts)
+        task.answers("totals", 10, "Publishes each total", "publish the sum of the newest weights")
     """
 
     def answers(self, name: str, points: float, title: str, words: str = "") -> None:

@@ -116,6 +116,17 @@ class Asks:
     Args:
         singly: Draws the requests for the calls that are made one after the other.
         ordinary: Draws one request; it is called for each of the simultaneous calls and for the last one.
+
+    Example::
+
+        asks = Asks(lambda random: [{"a": 2, "b": random.randint(10, 99)}] * 3, lambda random: {"a": 5, "b": 7})
+        adder = Draft("lab_8_1.adder", "Lab 8.1 · The adder", "Answer each request with the sum.", asks)
+        adder.asks("service", 2, "Serves add_two_ints, with the right type", asks.serves)
+
+        @adder.criterion("sums", 8, "Answers with the sum")
+        def sums(seen: ServerSeen, expected: ServerSeen) -> Finding:
+            right = lambda asked, answer: "" if answer and answer["sum"] == asked["a"] + asked["b"] else "a wrong sum"
+            return seen.all_right(seen.singly, right, "the sum, for every request")
     """
 
     roles = ("service",)
@@ -172,7 +183,15 @@ class Asks:
         if seen.part.ending is not None and not raised:
             return Finding(False, expected, "the program ended by itself while the judge called its service")
         answered = bool(seen.answers)
-        return Finding(answered or raised, expected, "it answers" if answered else "no call was answered")
+        return Finding(
+            answered or raised,
+            expected,
+            "it answers"
+            if answered
+            else "its callback raised an exception"
+            if raised
+            else "no call was answered",
+        )
 
     @property
     def ladder(self) -> tuple[Mistake, ...]:
@@ -209,6 +228,22 @@ class SendsGoals(SeenAsItIs):
             ``bench.reference.only("action_server")``.
         good: Returns the goals that should succeed.
         canceled: Returns the goal that the judge cancels while the server works on it.
+
+    Example::
+
+        def scenario(bench: Bench) -> None:
+            bench.part("goals")
+            caller = bench.call_action(*bench.reference.only("action_server"))
+            bench.start()
+            bench.release()
+            if caller.await_server(15.0):
+                caller.send_goal(order=5)
+                bench.wait_until(lambda evidence: bool(evidence.main.first("result_heard")), 15.0)
+                caller.cancel(caller.send_goal(order=100))
+                bench.wait_until(lambda evidence: len(evidence.main.of("result_heard")) == 2, 15.0)
+            bench.stop()
+
+        recipe = SendsGoals(scenario, good=lambda e: [goal(e.main, 0)], canceled=lambda e: goal(e.main, 1))
     """
 
     roles = ("action_server",)

@@ -52,6 +52,17 @@ class Calls:
         kinds: Functions that each draw numbers of one kind. One of them is chosen for the run without a service.
         wanted: The right calls in words, for the card.
         right: Returns the numbers of each right call of a run, if the run has the right number of calls.
+
+    Example::
+
+        def two(random: Random) -> list[int]:
+            return random.sample(range(1001, 99_999), 2)
+
+        def runs(random: Random) -> tuple[Run, ...]:
+            late = Run(LATE, two(random), (-hidden(random),))
+            return late, Run(BIASED, two(random), (0,), held=1), Run(EXTREME, (2**62, 1 - 2**63))
+
+        recipe = Calls(1, runs, (two,), wanted="one call with the two numbers, in each run")
     """
 
     roles = ("client",)

@@ -81,7 +81,6 @@ def scenario(bench: Bench, runs: Sequence[Run], nobody: Sequence[int], *, calls:
     """Make all runs with a service, and one without.
 
     Args:
-        bench: The bench of the scenario.
         runs: The runs with a service; the one with the late service comes first.
         nobody: The numbers for the run without a service.
         calls: The number of calls of a subject that has finished its work.
@@ -134,7 +133,6 @@ def called(bench: Bench, run: Run, calls: int, earlier: Sequence[Part]) -> bool:
     """Make a run with a service that exists from the start.
 
     Args:
-        bench: The bench of the scenario.
         run: The requests and answers.
         calls: The number of calls of a subject that has finished its work.
         earlier: The runs of this look, the one with the late service first.
@@ -190,7 +188,6 @@ def meets_service(
     """Start the subject, and answer its calls. Return True if the subject finished its work.
 
     Args:
-        bench: The bench of the scenario.
         run: The requests and answers.
         calls: The number of calls of a subject that has finished its work.
         lateness: The number of seconds by which the service starts after its client.

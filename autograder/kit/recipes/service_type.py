@@ -50,6 +50,15 @@ class ServiceType(SeenAsItIs):
     Args:
         file: The name of the file in the task, such as ``"AddTwoInts.srv"``.
         package: The package's name in advice; the judge accepts any name.
+
+    Example::
+
+        recipe = ServiceType("AddTwoInts.srv", "my_robot_interfaces")
+        interface = Draft("lab_8_1.interface", "Lab 8.1 · The interface", "A package with a service type.", recipe)
+        interface.asks("fields", 4, "Has the right fields", recipe.has_the_fields)
+        interface.asks("builds", 3, "Builds and generates the type", recipe.builds)
+        interface.asks("wire", 3, "Has the right type on the wire", recipe.is_on_the_wire)
+        EXERCISE = interface.exercise(limit=400.0, runner=recipe.runner)
     """
 
     roles = ("service",)

@@ -59,6 +59,14 @@ class Speaks:
     Args:
         pace: The time in seconds between two successive texts.
         paced_by: The node that sends at this pace, in words for the student.
+
+    Example::
+
+        recipe = Speaks(pace=0.5, paced_by="the lab's talker")
+        listener = Draft("lab_8_1.listener", "Lab 8.1 · The listener", "Log every text that arrives.", recipe)
+        listener.asks("topic", 3, "Subscribes to the right topic and type", subscribes)
+        listener.asks("says", 5, "Logs every text that arrives", says_every_text)
+        listener.asks("honest", 2, "Logs only what arrived", says_nothing_else)
     """
 
     roles = ("subscription",)

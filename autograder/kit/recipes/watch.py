@@ -71,6 +71,17 @@ class Watch(Declared):
         waits: Seconds of wall time before the first message, in which the node must not report anything.
         field: The path of the message field that contains the state.
         words: The states, if the node logs or prints them instead of publishing.
+
+    Example::
+
+        def state(beats: Sequence[Given], limit: float = 1.0) -> object:
+            return "lost" if beats and beats[-1].age >= limit else "back"
+
+        beats = [({}, seconds) for seconds in (0.3, 0.75, 0.45, 1.65, 1.7, 0.57, 0.4, 2.95, 0.42, 0.25, 2.3)]
+        task = Watch("lab_8_1.watchdog", "Lab 8.1 · Watchdog", "Report.", state=state, gives=beats, within=0.3)
+        task.says("lost", "lost", 5, "Says lost after a second without a heartbeat")
+        task.once("once", 5, "Says each change once")
+        EXERCISE = task.exercise()
     """
 
     def __init__(
@@ -99,8 +110,6 @@ class Watch(Declared):
 
         Args:
             name: A stable key for the criterion.
-            state: The state to report.
-            points: The points that the criterion is worth.
             title: The criterion in one line, as the card shows it.
             words: The sentence of the task that the criterion judges.
         """
@@ -231,11 +240,15 @@ class Watch(Declared):
                     f"last at most {self._within} s."
                 )
         inputs = [event.t for event in sent]
+        # A node that reports from its subscription's callback is never late for a change that an input causes, so only
+        # changes by time alone show how often it checks the time.
         by_time = [
             s.begin for s in spans if s.end - s.begin > late and min(abs(s.begin - t) for t in inputs) > GRAIN
         ]
         parts = sorted(begin % 1.0 for begin in by_time)
         gap = max((b - a for a, b in pairwise([*parts, parts[0] + 1.0])), default=0.0) if parts else 0.0
+        # If all changes fall into a part of the second as short as the time limit, a check at the end of this part is
+        # in time for each of them.
         if gap > 0 and 1.0 - gap <= late < 1.0:
             shown = in_words([round(part, 2) for part in parts])
             raise ValueError(

@@ -83,6 +83,7 @@ def check(exercise: str, subject: Any) -> float:
         if verdict is None:
             return Score(0.0)
         card.show(verdict)
+    # Record the check first, because validation may end the cell with an error.
     record_check(verdict)
     if is_validating():
         raise_unless_full(verdict)

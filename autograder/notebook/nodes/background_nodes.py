@@ -82,7 +82,6 @@ def spin_in_background(node: Node, *more: Node, name: str | None = None, threads
     keep spinning instead, until ``spin_in_background`` is called again with the same name.
 
     Args:
-        node: A node.
         more: Further nodes for the same executor.
         name: A name for these nodes, so that a later call with the same name replaces them.
         threads: The number of callbacks that may run at the same time. With 2 or more, the executor is a
@@ -99,6 +98,7 @@ def spin_in_background(node: Node, *more: Node, name: str | None = None, threads
     if name is not None:
         if not isinstance(name, str) or not name:
             raise SettingError(f'name must be a string, such as name="talker", not {name!r}')
+        # End the old nodes before the new ones are checked: a node that is given again would still count as busy.
         replace_named(name, keep=nodes)
     check_nodes("spin_in_background", nodes)
     background = Background(nodes, threads=threads, name=name)

@@ -128,6 +128,7 @@ class SpinThreads:
         self._to_workers: queue.SimpleQueue[_Work | None] = queue.SimpleQueue()
         self._queued: set[Task] = set()
         self._running: dict[int, _BusyThread] = {}
+        # A single thread runs the callbacks itself, as a SingleThreadedExecutor does.
         self._workers = threads if threads > 1 else 0
         self._threads = [self._make_thread(self._take_work)]
         self._threads += [self._make_thread(self._run_queued_work) for _ in range(self._workers)]

@@ -94,6 +94,7 @@ def number_in(message: Any, field: str) -> float:
             value = value[int(index)]
     if isinstance(value, bool) or not isinstance(value, (int, float)):
         try:
+            # float() is for the number types of NumPy; it would also accept a text such as "3".
             if isinstance(value, (str, bytes)):
                 raise TypeError
             return float(value)
@@ -159,6 +160,7 @@ class PlotPicture:
     def _curve(self) -> str:
         points = self._drawn()
         low, high = min(value for _, value in points), max(value for _, value in points)
+        # A constant curve has no height, but its axis needs a step, too.
         step = round_step(max(high - low, abs(high) * 1e-6, 1e-9) / 4)
         low, high = math.floor(low / step) * step, math.ceil(high / step + 1e-9) * step
         start = -WINDOW

@@ -38,7 +38,7 @@ MAX_NAME = 240
 MAX_DEPTH = 24
 """The maximum number of names in a path."""
 MAX_LINKS = 8
-"""The maximum number of links in a chain of links that lead to each other."""
+"""The maximum number of symbolic links in a chain in which each link leads to the next."""
 _OF_THIS_MACHINE = (
     errno.ENOSPC,
     errno.EDQUOT,

@@ -131,7 +131,6 @@ def entry(key: str, base: Path, cancelled: Callable[[], bool] = lambda: False) -
     block, the entry is removed unless the caller has called :meth:`CachedBuild.finish`.
 
     Args:
-        key: The key of the build.
         base: The folder of the cache.
         cancelled: Called from time to time while another process holds the entry. If it returns True, waiting ends.
 
@@ -143,6 +142,7 @@ def entry(key: str, base: Path, cancelled: Callable[[], bool] = lambda: False) -
         marker = folder / _MARKER
         complete = _is_of(key, marker) and _is_ones_own(folder)
         if complete:
+            # make_room takes this time for the time of the last use.
             os.utime(marker)
         else:
             shutil.rmtree(folder, ignore_errors=True)
@@ -217,6 +217,7 @@ def make_room(base: Path, limit: int = LIMIT, in_use: float = IN_USE) -> list[st
     total = sum(sizes.values())
     removed = []
     for used, folder in entries:
+        # The entries are sorted by their last use: if this one is in use, so are all after it.
         if total <= limit or time.time() - used < in_use:
             break
         if _remove(base, folder, used):

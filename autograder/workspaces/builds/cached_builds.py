@@ -56,7 +56,6 @@ class BuildTookTooLong(RuntimeError):
 
     Args:
         seconds: The time limit in seconds.
-        found: The workspace.
         log: The output of the build so far.
 
     Attributes:
@@ -229,7 +228,6 @@ def build_key(tree: SourceTree, *words: str) -> str:
     """Return the key of a build: a hash of the sources, of the build tools, and of ``words``.
 
     Args:
-        tree: The sources.
         words: Other facts that influence the build, such as the command.
     """
     return hashlib.sha256("\0".join((FORMAT, tree.digest, *_toolchain(), *words)).encode()).hexdigest()

@@ -136,7 +136,6 @@ def moved_packages(packages: Iterable[Package], src: Path, there: Path) -> list[
     """Return copies of the packages, with the paths that they have when their sources are in another folder.
 
     Args:
-        packages: The packages.
         src: The folder that contains the packages now.
         there: The folder in which the sources will be.
     """
@@ -147,7 +146,6 @@ def colcon_command(packages: Iterable[Package], folder: Path, cmake: Sequence[st
     """Return the command with which colcon builds only these packages.
 
     Args:
-        packages: The packages.
         folder: The folder in which colcon makes ``build``, ``install`` and ``log``.
         cmake: More arguments for CMake.
 
@@ -190,6 +188,8 @@ def copy_to_workspace(made: Build) -> Path:
     try:
         target.mkdir(exist_ok=True)
         with scratch_folder(target, ".new-") as fresh:
+            # Copy first, so that an error while copying leaves the earlier builds as they are; into the same file
+            # system, so that a rename moves each package to its place.
             copied = fresh / "install"
             shutil.copytree(made.install, copied, symlinks=True, ignore=shutil.ignore_patterns("__pycache__"))
             rename_paths(copied, str(made.install), str(target))

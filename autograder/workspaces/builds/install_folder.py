@@ -84,7 +84,6 @@ def has_service(prefix: Path, interface: str) -> bool:
     """Return True if the package in a prefix has the Python module of a service type.
 
     Args:
-        prefix: The prefix.
         interface: The name of the type, such as ``"AddTwoInts"``.
     """
     words = (f"_{c.lower()}" if c.isupper() and i else c.lower() for i, c in enumerate(interface))
@@ -130,6 +129,7 @@ def with_prefixes(
     for name, folders in additions.items():
         there = [part for part in environment.get(name, "").split(os.pathsep) if part]
         ours = [str(folder) for folder in folders if str(folder) not in there or not last]
+        # Name each folder only once, because the first occurrence would decide which package takes precedence.
         there = [part for part in there if part not in ours]
         if joined := [*there, *ours] if last else [*ours, *there]:
             result[name] = os.pathsep.join(joined)

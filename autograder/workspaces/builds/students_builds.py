@@ -116,7 +116,6 @@ def _ask(socket: str, found: Build, chosen: Iterable[Package], install: Path) ->
     Args:
         socket: The path of the grader's socket.
         found: The workspace, as :func:`autograder.workspaces.builds.colcon_build.describe_workspace` returns it.
-        chosen: The packages.
         install: The folder to create for the build. It must not exist yet.
 
     Returns:
@@ -145,6 +144,7 @@ def _ask(socket: str, found: Build, chosen: Iterable[Package], install: Path) ->
         if isinstance(answer, messages.BuildDone):
             archive = b"".join(lines.hear(messages.Piece).data for _ in range(answer.pieces))
             build_artifacts.unpack(archive, install)
+            # The grader built in another folder, and the installed files contain its path.
             rename_paths(install, answer.install, str(install))
             return replace(found, ok=True, install=install, seconds=answer.seconds)
     return None

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from autograder.kit.draft import Draft
+from autograder.kit.in_words import counted
 from autograder.kit.model import Advice, Finding
 from autograder.kit.recipes.launch_file import Launched, LaunchFile
 from autograder.kit.runners import Launches
@@ -65,7 +66,7 @@ def by_the_launch(seen: Launched, _: Launched) -> Finding:
     if seen.moved_by_rules and seen.talkers > 1:
         return Finding(False, "one talker", f"{seen.talkers} talkers on {seen.topic}")
     count = seen.given_a_rule
-    some = f"{count} of the programs on {seen.topic} were given a rule"
+    some = f"{counted(count, 'program')} on {seen.topic} with a remapping rule"
     expected = f"each program is given a remapping of {OLD_NAME} by the launch file"
     if seen.not_moved:
         moved = f"each program is on {seen.topic} because of its rule"

@@ -258,6 +258,9 @@ def feedback_objection(evidence: Evidence, seen: FibonacciGoal) -> str:
 def feedback_slip(evidence: Evidence, seen: FibonacciGoal) -> str:
     """The fault in the feedback messages that came, in words, however many are missing before or after them."""
     wanted = expected_sequence(evidence, int(seen.order or 0))
+    last = seen.partials[-1] if seen.partials else []
+    if len(last) > len(wanted):
+        return f"order {seen.order}: the last feedback, {last}, has {len(last)} numbers; the sequence has {len(wanted)}"
     right = all(partial == wanted[: len(partial)] for partial in seen.partials)
     return "" if seen.grows and right else f"order {seen.order}: {_first_messages(seen)}"
 
