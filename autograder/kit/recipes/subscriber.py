@@ -29,6 +29,8 @@ if TYPE_CHECKING:
     from autograder.kit.counterparts import Speaker
     from autograder.kit.evidence import Event, Evidence, Part
 
+AT_ONCE = 2
+"""The maximum number of subscriptions at once of a program that replaces one: the new one may be made first."""
 STEPS = 2
 """The number of steps of simulated time from one text to the next. After each step, the judge waits until the listener
 has processed what was sent to it.
@@ -167,8 +169,8 @@ class Speaks:
             Mistake("wrong_text", _changed_text),
             Mistake("invented_text", _invented_text, certain=True),
             Mistake("callback_too_slow", self._too_slow),
-            Mistake("not_logged", _not_logged),
             Mistake("everything_twice", _said_again, certain=True),
+            Mistake("not_logged", _not_logged),
             *unfinished.NOTHING_THERE,
         )
 
@@ -345,7 +347,10 @@ def _changed_text(evidence: Evidence) -> Advice | None:
 
 def _subscribes_again(evidence: Evidence) -> Advice | None:
     """Return advice if the listener makes a new subscription for each text, so that texts in between are lost."""
-    if not successive(evidence.main, evidence.reference.only("subscription")[0]):
+    topic, _ = evidence.reference.only("subscription")
+    # A program that only adds subscriptions keeps the old ones: it loses nothing, and says everything again.
+    adds = any(event.data["now"] > AT_ONCE for event in evidence.main.of("matched", topic))
+    if adds or not successive(evidence.main, topic):
         return None
     return Advice(
         "After a string has arrived, your program destroys its subscription and makes a new one. Strings that are "
