@@ -200,12 +200,8 @@ class SameAsSolution:
         if isinstance(step, Sets):
             given = f"{step.parameter} = {step.value}"
             result = next(e.data["fields"]["results"][0] for e in events if e.kind == "answered")
-            bench.note(
-                step.parameter,
-                step=number,
-                given=given,
-                values=[[result["successful"], bool(result["reason"])]],
-            )
+            taken = [result["successful"], bool(result["reason"])]
+            bench.note(step.parameter, step=number, given=given, values=[taken])
         for name in self._paths.keys() - self._lists - set(self._parameters):
             values = self._values(name, events)
             bench.note(name, step=number, given=given, values=values if self._every else values[-1:])
