@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 __all__ = ["SameAsSolution", "Serves", "Sets", "To"]
 
-DRAWINGS = 8
+DRAWINGS = 4
 """The number of drawings of the inputs in a recording."""
 PAUSE = 0.75
 """Seconds of the subject's time after each input. Whatever the input changes must be published by then."""
