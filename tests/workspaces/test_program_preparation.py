@@ -23,6 +23,7 @@ from autograder.kit.runners import (
     report_of,
     workspace_report_line,
 )
+from autograder.workspaces import program_preparation
 from autograder.workspaces.builds.colcon_build import Build
 from autograder.workspaces.builds.install_folder import LIBRARY
 from autograder.workspaces.packages import Package
@@ -147,9 +148,10 @@ def package_with(folder: Path, name: str, **texts: str) -> Package:
     ("needed", "looked_into", "complete"), [("a", "ab", True), ("d", "da", True), ("abcd", "ab", False)]
 )
 def test_the_packages_that_are_needed_are_looked_into_first_and_only_so_far(
-    needed: str, looked_into: str, complete: bool, tmp_path: Path
+    needed: str, looked_into: str, complete: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    setup = '"p = a.b:c"  #' + "x" * 40_000
+    monkeypatch.setattr(program_preparation, "MAX_LOOK", 25_000)
+    setup = '"p = a.b:c"  #' + "x" * 9_000
     packages = tuple(package_with(tmp_path, name, setup_py=setup) for name in "abcd")
     found = Build(tmp_path, ok=True, packages=packages)
     seen = report_of(

@@ -98,7 +98,7 @@ def test_every_command_of_the_guide_runs(
         'Student,ID,SIS User ID,SIS Login ID,Section\n"Lovelace, Ada",1,,ada,Monday\n"Bär, Ben",2,,ben,Tuesday\n'
     )
     notebook = tiny.submit("x", 4, 7)
-    names = ("lovelaceada_1_2_lab_1_2.ipynb", "barben_2_3_lab_1_2.ipynb")
+    names = ("lovelaceada_1_902_lab_1_2.ipynb", "barben_2_903_lab_1_2.ipynb")
     write_zip(tmp_path / "Downloads" / "submissions.zip", dict.fromkeys(names, notebook.read_bytes()))
     for part in (notebook, notebook.parent, notebook.parent.parent):
         part.unlink() if part.is_file() else part.rmdir()

@@ -99,7 +99,7 @@ def test_whoever_grades_sees_the_screenshot_and_what_earns_points(quiz: TinyClas
         assert page.count(f'src="data:image/png;base64,{SHOT}"') == 1
         assert page.count(GIVEN) == 1
         assert page.count(SCHEME) == 1
-        assert "[picture left out: drawn]" in page
+        assert "drawn](attachment:drawn.svg)" in page  # as it was typed: only PNG and JPEG are shown
         assert DRAWN not in page
 
 
