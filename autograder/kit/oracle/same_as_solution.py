@@ -93,6 +93,7 @@ class SameAsSolution:
             ``"linear.x"``; a tuple of paths if there are several.
         lists: The same for topics of which all messages are compared, in order, however they are spread over the steps.
             The last ones may be missing, or be more.
+        serves: The services that the subject calls, by name, and how the judge answers: at once, late or never.
         parameters: The names of the parameters whose description (type and range) is compared, and which values of
             them are taken and which are refused with a reason, if a step :class:`Sets` them.
         late_after: Seconds of the subject's time after which the judge subscribes, and asks for the last message, too.
@@ -143,11 +144,11 @@ class SameAsSolution:
         for name, paths in self._paths.items():
             # Every message of std_msgs has a field named data, so this name says nothing on a card.
             what = " and ".join(path for path in paths if path != "data")
-            title = f"Says the right {what or 'value'} on {name}"
+            line = f"Says the right {what or 'value'} on {name}"
             if name in parameters:
-                title = f"Describes the parameter {name}, takes the right values and refuses the others"
+                line = f"Describes the parameter {name}, takes the right values and refuses the others"
             agrees = partial(self._same_list if name in lists else self._same_steps, name)
-            self._draft.criterion(name.strip("/"), points / len(self._paths), title)(agrees)
+            self._draft.criterion(name.strip("/"), points / len(self._paths), line)(agrees)
 
     def exercise(self, **more: Any) -> Exercise:
         """Return the finished exercise. For ``more`` see :meth:`autograder.kit.draft.Draft.exercise`."""

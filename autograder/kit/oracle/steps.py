@@ -51,7 +51,7 @@ class Sets:
 
 
 Step = To | Sets | float
-"""What the judge does in a step: it gives an input, sets a parameter, or lets time pass, in seconds."""
+"""A step of the judge: an input, a new value of a parameter, or a time to let pass, in seconds."""
 
 
 def parameter_in_words(noted: Sequence[Any]) -> str:
