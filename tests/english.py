@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 ROOT = Path(__file__).resolve().parents[1]
 CODE = ("autograder", "environment")
-CEILING = 80
+CEILING = 79
 """The number of places that there were when this was last lowered."""
 
 
@@ -96,12 +96,13 @@ def _places() -> Iterator[str]:
 
 
 def main() -> int:
-    """Print the places if there are more than before, or fewer. Return the exit code."""
+    """Print the places if there are more than before; say so if there are fewer. Return the exit code."""
     places = list(_places())
-    if len(places) == CEILING:
+    if len(places) < CEILING:
+        print(f"{len(places)} places; lower the CEILING of {CEILING} in tests/english.py.")
+    if len(places) <= CEILING:
         return 0
-    if len(places) > CEILING:
-        print(*places, sep="\n")
+    print(*places, sep="\n")
     print(f"{len(places)} places; tests/english.py allows {CEILING}.")
     return 1
 
