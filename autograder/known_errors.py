@@ -90,7 +90,7 @@ def packages(names: Iterable[str]) -> str:
 
 
 def pattern_of(row: KnownError) -> Any:
-    """Return the compiled pattern of a row."""
+    """Return the compiled pattern of a row of ``known_errors.toml``."""
     table = _table()
     parts = table.parts | {"each": "|".join(table.each.get(row.each, ()))}
     pattern = row.says if isinstance(row.says, str) else "|".join(row.says)

@@ -149,7 +149,7 @@ def short_lines(stream: Chunks, limit: int) -> Iterator[bytes]:
         if len(rest) >= limit:
             if begins:
                 yield rest[:limit]
-            # The last byte is kept, because only together with the next one does it show whether the line has ended.
+            # The last byte is kept for the next read: it may be \r, and only the next byte shows whether the line ends.
             rest, begins = rest[-1:], False
     if rest and begins:
         yield rest

@@ -133,5 +133,5 @@ def _member(file: ZipFile, name: str, limit: int) -> bytes:
     with file.open(name) as member:
         data = member.read(limit + 1)
     if len(data) > limit:
-        raise ValueError(f"{name} is larger than in any appeal file")
+        raise ValueError(f"{name} is too large for a file of an appeal")
     return data

@@ -138,11 +138,11 @@ def try_exercise(
 
 
 def _chosen(exercise_id: str, only: Sequence[str] = ()) -> list[Answer]:
-    """Return the answers to an exercise, in the order of their tables.
+    """Return the answers to an exercise, in the order in which answers.toml lists them.
 
     Args:
         exercise_id: The exercise's id, such as ``"lab_1_2.talker"``.
-        only: Parts of names. Only answers whose name contains one of these parts are returned; all answers if empty.
+        only: Texts. An answer is returned if its name contains one of them; every answer is, if there are no texts.
 
     Raises:
         NothingToTry: No answer has a name with one of these parts.

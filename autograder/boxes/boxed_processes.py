@@ -199,9 +199,10 @@ class Running:
     def interrupt(self) -> None:
         """Send Ctrl-C as a terminal does: to the whole process group at once.
 
-        If the processes got the signal one by one, a program could end, and `ros2 run` with it, before Ctrl-C reached
-        `ros2 run`. The box does not end, although its first process is in the group, too: a PID namespace's first
-        process ignores signals for which it has no handler (pid_namespaces(7)).
+        If the processes got the signal one by one, a program could end first, and `ros2 run` would end with it and
+        never get the Ctrl-C that it gets in a terminal. The signal does not end the box, although the box's first
+        process is in the group, too: a PID namespace's first process ignores signals for which it has no handler
+        (pid_namespaces(7)).
         """
         signal_group(self.pid, signal.SIGINT)
 

@@ -139,10 +139,11 @@ class BoxGuard:
         self._group.close()
 
     def _has_room(self) -> bool:
-        """Return False if this user has used up a counter that Linux keeps for all processes of a user.
+        """Return False if this user has used up a limit that Linux counts for all processes of a user together.
 
-        Programs can do without large pipes. So these matter only while other submissions run, since a submission that
-        runs alone would get no points although another program of the user has the pipes.
+        The limit on large pipes is asked about only while other submissions run, because then waiting helps. A
+        submission that runs alone is run even without large pipes: otherwise it would get no points only because
+        another program of the user has them.
         """
         return _can_watch() and (not self._limits.beside or _can_make_large_pipes())
 

@@ -43,7 +43,7 @@ _PRELOADED = (
 )
 _MAGIC = "autograder.notebook.program_magic"
 _PREPARED = (("autograder.cards.html_rendering", "prepare_templates"),)
-"""Functions that are called after the import, each with its module."""
+"""For a module, the function of it that is called as soon as the module is imported."""
 
 
 def prepare(*interfaces: str) -> None:

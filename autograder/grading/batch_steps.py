@@ -203,8 +203,8 @@ class Batch:
     def keep(self, results: Iterable[Done]) -> Iterator[Work]:
         """Store each result, and yield each submission whose results are complete.
 
-        Submissions for which nothing has to be executed come first, because nothing is executed before the first result
-        is asked for.
+        Submissions for which nothing has to be executed come first. They do not wait for the others, because the
+        execution starts only when the first result is asked for.
         """
         for work in self._works:
             if work.written:

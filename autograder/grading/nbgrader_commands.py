@@ -36,9 +36,9 @@ CANNOT = 2
 
 
 class _Ours(BaseConverter):
-    """A converter of nbgrader that lets this package's grader convert whole submissions.
+    """A converter of nbgrader for which this package's grader converts whole submissions.
 
-    nbgrader itself lists the folders to convert, in ``assignments``.
+    Which folders are to be converted is found by nbgrader itself, which puts them into ``assignments``.
     """
 
     def convert_notebooks(self) -> None:

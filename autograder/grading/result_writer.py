@@ -119,7 +119,7 @@ class Writer:
             course=course,
         )
         attempt = Attempt(datetime.now(tz=UTC), submission.assignment, fingerprint, course, rows)
-        # A result with trouble of the grader is an attempt, but not entered as done, so the next run checks it again.
+        # If the grader itself failed, the attempt is kept, but the submission is not entered as done: it runs again.
         is_final = not any(execution.trouble for _, execution in results)
         self._store.enter(submission, attempt, entered if is_final else None)
 

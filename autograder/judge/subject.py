@@ -1,4 +1,4 @@
-"""The interface of a subject, which is the code that the judge observes, and a command as a subject.
+"""The part of a subject that the judge sees (a subject is the code that it observes), and a command as a subject.
 
 A command may be any program, such as a script, ``ros2 run`` or ``ros2 launch``.
 """

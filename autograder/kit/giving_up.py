@@ -182,7 +182,7 @@ def _unsaid(part: Part, others: Sequence[Part]) -> str:
 
 
 def silent_end(part: Part, others: Sequence[Part], noun: str) -> Advice | None:
-    """Return the advice for a client that finds no server and ends without a report, or returns an answer.
+    """Return the advice for a client that finds no server and says nothing about it, or returns an answer all the same.
 
     Args:
         part: The run without a server.

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from autograder.kit.model import Bench, Mistake
 
 SOON = 0.3
-"""The server's delay in seconds when a run is repeated because the client has just missed its server."""
+"""Seconds after which the server starts in a repeated run, if the client ended shortly before its server was there."""
 ANSWERS_LATE, ANSWERS_SOON = 0.7, 0.12
 """Two delays of an answer in seconds. The first one is usual. The second one is used if a student is waiting, or if the
 client has just missed an answer.

@@ -1,6 +1,6 @@
-"""Serves ``./course lab``: the course page, and notebooks that are not marked as unsaved as soon as they are opened.
+"""Serves the course page of ``./course lab``, and serves notebooks so that opening one does not mark it as unsaved.
 
-``lab_config/`` switches the page on. The page does not need JupyterLab, so it works even without the side panel.
+The configuration in ``lab_config/`` turns this on. The page works even without JupyterLab's side panel.
 
 A released notebook contains no version of Python, because it is opened with any version. JupyterLab would insert the
 kernel's version and mark the notebook as unsaved, before the student has changed anything. So the server inserts the

@@ -28,7 +28,7 @@ def validate(folder: str, notebook: str) -> None:
         folder: The folder that JupyterLab shows.
         notebook: The path of the notebook in this folder.
     """
-    # The notebook's code may print, and must not write between the answers.
+    # The notebook's code may print. What it prints must not get into the stream of our answers.
     answers = private_stdout()
 
     def tell(**said: Any) -> None:

@@ -223,7 +223,7 @@ def _no_notebook(line: Line, arrival: Arrival) -> Line:
 
 
 def _merged(several: Iterable[Line]) -> Line:
-    """Return one line for a file that came several times, with the most certain facts and the latest time."""
+    """Return one line for a file that came several times: the one with the surest student, at the latest time."""
     lines = sorted(several, key=lambda one: (bool(one.reason), one.is_soft, one.rank, one.label))
     best = lines[0]
     timed = sorted((one for one in lines if one.when), key=lambda one: one.when or datetime.max)

@@ -87,7 +87,7 @@ def read_lms_name(parts: Sequence[str], place: int, system: str) -> NameFacts | 
 
 
 def _rivals(form: NameForm, text: str) -> tuple[Identity, ...]:
-    """Return the students of all numbers in a name, if the name of a user may contain numbers, too."""
+    """Return every student to whom a number in a file's name may belong, for a system with numbers in user names."""
     pieces = text.split("_")[1:-1] if form.divide == "number" else []
     pairs = itertools.pairwise(pieces)
     return tuple(

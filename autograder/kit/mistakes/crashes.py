@@ -141,7 +141,7 @@ def _exception_in_callback(evidence: Evidence) -> Advice | None:
 
 
 def _was_spun(evidence: Evidence) -> bool:
-    """Return True if a notebook's node was made before the exception. The traceback cannot show this."""
+    """Return True if a notebook's node existed when the exception was raised. Then it counts as spun."""
     return any(p.first("subject", "constructed") for p in evidence if p.ending and p.ending.name == "raised")
 
 

@@ -163,8 +163,8 @@ _HANGS: tuple[tuple[str, Recognize, str, str], ...] = (
     (
         "callback_never_returns",
         lambda found: any(map(_executes_a_goal, found)),
-        "Your execute callback {callback}() was given a goal and never returns. It loops or waits forever, or takes "
-        "longer for each number than for the one before, as a function does that calls itself for each number.",
+        "Your execute callback {callback}() got a goal and did not return. Either it loops or waits forever, or each "
+        "number takes longer than the one before, for example because it computes every number from the beginning.",
         "Keep the numbers found so far in a list, add one number in each turn of the loop, and leave the loop when "
         "there are enough. A pause in each turn, such as time.sleep(0.5), is right.",
     ),

@@ -214,7 +214,7 @@ class Launched:
     def _leads_there(self, old: str, new: str) -> bool:
         """Return True if the rule ``old:=new`` renames the topic of the program to the topic of the exercise."""
         begins = old.rpartition(":")[2].rpartition("/")[2] == self._old_name
-        # A relative name counts in any namespace.
+        # If the new name is relative, it is accepted in any namespace.
         leads_to_it = self.topic == new or self.topic.endswith(f"/{new.removeprefix('~').lstrip('/')}")
         return begins and leads_to_it
 

@@ -126,7 +126,7 @@ class Program:
         return _Ran(evidence)
 
     def scenario(self, bench: Bench) -> None:
-        """Build and run the program, and wait for its node and its line."""
+        """Build and run the program. Wait until its node is on the graph and it has printed its line."""
         bench.part(self._part)
         bench.start()
         package_mistakes.await_build(bench)

@@ -139,8 +139,8 @@ def _its_own_end(parts: Sequence[Part]) -> str:
     # A program that had fallen silent counts as hung even if it ended after the judge had requested its stacks.
     if any(part.ending is None or part.of("stack") for part in parts):
         return "did not end"
-    # One exception is allowed, because a program may report with it that it waited in vain. But if the program raised
-    # an exception in every run, it never did its work.
+    # An exception in one run is allowed: with it, a program may report that it waited in vain. But a program that
+    # raised an exception in every run never did its work.
     return "failed each time" if all(_before_ctrl_c(part).traceback for part in parts) else ""
 
 

@@ -289,11 +289,11 @@ def _gave_up_on_its_answer(part: Part, served: Sequence[Part]) -> bool:
 
 
 def _made_nothing_of_its_answer(part: Part) -> bool:
-    """Return True if the subject ended at its first answer and did nothing that shows that it used the answer.
+    """Return True if the subject ended when it got its first answer, and nothing shows that it used the answer.
 
     A client uses the answer if it makes another call, or prints a number that is derived from the answer. If a task
-    asks for only one call, use this function only after an exception: a client without an exception may have waited,
-    and only not have reported the sum.
+    asks for only one call, use this function only after an exception: a client that ended without one may have waited
+    for the answer and just not have printed the sum.
     """
     if part.ending is None or len(requests(part)) != 1 or len(part.of("response")) != 1:
         return False

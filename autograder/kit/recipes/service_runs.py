@@ -141,8 +141,8 @@ def called(bench: Bench, run: Run, calls: int, earlier: Sequence[Part]) -> bool:
         True if the subject finished its work.
     """
     first = earlier[0]
-    # A notebook's client that has reported an answer is known to wait for answers. So its calls also reach a service
-    # that exists before the client, which then finds the service at once.
+    # If a notebook's client has reported an answer, we know that it waits for answers. So from now on the service may
+    # be there before the client starts: the client finds it at once, and no time is lost.
     prepared = bench.in_a_cell and reports(first)
     # A client that did not report an answer has lost the points for the sum, so the judge need not wait for a sum any
     # more.

@@ -153,7 +153,7 @@ class Builds:
         src = found.workspace / "src"
         try:
             tree, packages = sources_of(src, chosen), moved_packages(chosen, src, Path("src"))
-            # If the packages are interfaces and Python packages, no package needs the interfaces in C++.
+            # If every package is an interface package or a Python package, no C++ of the interfaces is needed.
             only_python = all(
                 package.holds_only_interfaces or package.build_type == "ament_python" for package in chosen
             )
