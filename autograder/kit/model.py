@@ -375,6 +375,7 @@ class Exercise:
             be a path.
         wraps_commands: True if ``runner`` also runs commands.
         recorded: The kinds of events that a reference output keeps; None for the kinds that every exercise keeps.
+        tolerance: The tolerance for numbers when two recordings of the solution are compared, absolute or relative.
     """
 
     id: str
@@ -391,6 +392,7 @@ class Exercise:
     runner: Runner | None = None
     wraps_commands: bool = False
     recorded: tuple[str, ...] | None = None
+    tolerance: float = 1e-6
     remarks: Sequence[Callable[[Evidence], str]] = ()
     text: Mapping[str, str] = field(default_factory=dict)
     hides_causes: bool = False
