@@ -140,7 +140,7 @@ def test_messages_of_a_list_before_the_judge_stepped_the_clock_are_not_too_many(
     ("speed", "seen"),
     [
         (((3, []), (False, True)), "double without a range"),
-        (((0, []), (False, True)), "not declared without a range"),
+        (((0, []), (False, True)), "not declared at the start"),
         (((3, [[0.0, 2.0]]), (True, False)), "taken after step 2 (speed = 2.5)"),
         (((3, [[0.0, 2.0]]), (False, False)), "refused without a reason after step 2 (speed = 2.5)"),
     ],

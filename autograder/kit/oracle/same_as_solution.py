@@ -36,6 +36,7 @@ NOTHING: Mapping[str, Any] = MappingProxyType({})
 SET = ("set_parameters", "rcl_interfaces/srv/SetParameters")
 DESCRIBE = ("describe_parameters", "rcl_interfaces/srv/DescribeParameters")
 DESCRIBED = ("type", "ranges")
+NOT_DECLARED = {"type": 0, "floating_point_range": (), "integer_range": ()}
 POINTS = 10.0
 """The points of an exercise whose author does not say how many it is worth."""
 
@@ -154,6 +155,14 @@ class SameAsSolution:
             for name, paths in outputs.items()
         ]
         self._draft = Draft(exercise_id, title, task, _Drawn(self._scenario, self._outputs, roles))
+        for output in self._of(Kind.PARAMETER):
+            self._draft.knows(
+                "parameter_not_declared",
+                output.is_undeclared,
+                f"Your node has no parameter {output.name}.",
+                f'Declare it in __init__, with its default: self.declare_parameter("{output.name}", …).',
+                certain=True,
+            )
         for output in self._outputs:
             name, each = output.name.strip("/"), points / len(self._outputs)
             self._draft.criterion(name, each, output.title)(output.compared)
@@ -238,12 +247,14 @@ class SameAsSolution:
     def _describe(self, bench: Bench) -> bool:
         """Note the types and ranges of the parameters. Return False if the subject does not answer."""
         names = [output.name for output in self._of(Kind.PARAMETER)]
-        if not names:
-            return True
-        if not (bench.await_node() and self._ask(bench, "", DESCRIBE, {"names": names})):
+        if names and not bench.await_node():
             return False
-        described = bench.seen().of("answered")[-1].data["fields"]["descriptors"]
-        for name, one in zip(names, described, strict=False):
+        for name in names:
+            # A node answers with an empty list if one of the parameters is not declared.
+            if not self._ask(bench, "", DESCRIBE, {"names": [name]}):
+                return False
+            described = bench.seen().of("answered")[-1].data["fields"]["descriptors"]
+            (one,) = described or [NOT_DECLARED]
             ranges = [
                 [r["from_value"], r["to_value"]]
                 for r in (*one["floating_point_range"], *one["integer_range"])
