@@ -13,6 +13,7 @@ from random import Random
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
+from autograder.kit.counterparts import Qos
 from autograder.kit.draft import OWN, Draft
 from autograder.kit.model import Advice, Mistake, Pace
 from autograder.kit.oracle.outputs import Kind, Output
@@ -21,7 +22,7 @@ from autograder.kit.recipes.own_scenario import QUIET, Met, OwnScenario, meet
 from autograder.kit.recipes.relay import To
 
 if TYPE_CHECKING:
-    from autograder.kit.evidence import Evidence, Part
+    from autograder.kit.evidence import Evidence, Part, Reference
     from autograder.kit.model import Bench, Exercise
 
 __all__ = ["SameAsSolution", "Serves", "Sets", "To"]
@@ -106,6 +107,8 @@ class SameAsSolution:
         parameters: The names of the parameters whose description (type and range) is compared, and which values of
             them are taken and which are refused with a reason, if a step :class:`Sets` them.
         late_after: Seconds of the subject's time after which the judge subscribes, and asks for the last message, too.
+        qos: The topics on which the QoS counts: the judge's endpoint gets the QoS of the solution's, and an endpoint
+            that does not match gets or tells nothing.
         every: True to compare all messages of a step, not only the last: for a node that answers each input.
         pause: Seconds of the subject's time after each input.
         tolerance: The absolute or relative tolerance for numbers.
@@ -135,6 +138,7 @@ class SameAsSolution:
         serves: Mapping[str, Serves] = NOTHING,
         parameters: Sequence[str] = (),
         late_after: float = 0.0,
+        qos: Sequence[str] = (),
         every: bool = False,
         pause: float = PAUSE,
         tolerance: float = TOLERANCE,
@@ -143,7 +147,7 @@ class SameAsSolution:
     ) -> None:
         self._id, self._gives, self._serves = exercise_id, gives, serves
         self._every, self._pause, self._tolerance = every, pause, tolerance
-        self._late_after = late_after
+        self._late_after, self._qos = late_after, qos
         kinds = {
             Kind.STEPS: tells,
             Kind.LIST: lists,
@@ -179,7 +183,15 @@ class SameAsSolution:
             steps = self._gives(drawn)
             serve = partial(self._serve, bench, drawn)
             plays = partial(self._plays, steps)
-            meet(bench, f"drawing {drawing}", plays, serve, listens=not self._late_after)
+            part = f"drawing {drawing}"
+            meet(bench, part, plays, serve, listens=not self._late_after, qos=self._matching(bench.reference))
+
+    def _matching(self, reference: Reference) -> dict[str, Qos]:
+        """Return the QoS of the judge's endpoints on the topics on which it counts."""
+        recorded = {topic: Qos(qos) for ends in reference.qos.values() for topic, qos in ends.items()}
+        if usual := ", ".join(topic for topic in self._qos if topic not in recorded):
+            raise ValueError(f"qos: on {usual} the solution has the default QoS, which each answer has")
+        return {topic: recorded[topic] for topic in self._qos}
 
     def _serve(self, bench: Bench, drawn: Random, service: str, kind: str) -> None:
         how = self._serves[service]
@@ -191,7 +203,7 @@ class SameAsSolution:
         if self._late_after:
             bench.run_time(self._late_after)
             for topic, kind in bench.reference.interface["publisher"].items():
-                bench.listen(topic, kind, latched=True)
+                bench.listen(topic, kind, qos=Qos.LATCHED)
             bench.wait_until(lambda e: bool(e.main.of("mismatch") or e.main.of("message")), QUIET[bench.pace])
         went_through = self._describe(bench) and all(
             self._takes(met, number, step) for number, step in enumerate([self._pause, *steps])
