@@ -13,6 +13,7 @@ from random import Random
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
+from autograder.kit.counterparts import Qos
 from autograder.kit.draft import OWN, Draft
 from autograder.kit.model import Advice, Mistake, Pace
 from autograder.kit.oracle.outputs import Kind, Output
@@ -21,7 +22,7 @@ from autograder.kit.recipes.own_scenario import QUIET, Met, OwnScenario, meet
 from autograder.kit.recipes.relay import To
 
 if TYPE_CHECKING:
-    from autograder.kit.evidence import Evidence, Part
+    from autograder.kit.evidence import Evidence, Part, Reference
     from autograder.kit.model import Bench, Exercise
 
 __all__ = ["SameAsSolution", "Serves", "Sets", "To"]
@@ -36,6 +37,7 @@ NOTHING: Mapping[str, Any] = MappingProxyType({})
 SET = ("set_parameters", "rcl_interfaces/srv/SetParameters")
 DESCRIBE = ("describe_parameters", "rcl_interfaces/srv/DescribeParameters")
 DESCRIBED = ("type", "ranges")
+NOT_DECLARED = {"type": 0, "floating_point_range": (), "integer_range": ()}
 POINTS = 10.0
 """The points of an exercise whose author does not say how many it is worth."""
 
@@ -105,6 +107,8 @@ class SameAsSolution:
         parameters: The names of the parameters whose description (type and range) is compared, and which values of
             them are taken and which are refused with a reason, if a step :class:`Sets` them.
         late_after: Seconds of the subject's time after which the judge subscribes, and asks for the last message, too.
+        qos: The topics on which the QoS counts: the judge's endpoint gets the QoS of the solution's, and an endpoint
+            that does not match gets or tells nothing.
         every: True to compare all messages of a step, not only the last: for a node that answers each input.
         pause: Seconds of the subject's time after each input.
         tolerance: The absolute or relative tolerance for numbers.
@@ -134,6 +138,7 @@ class SameAsSolution:
         serves: Mapping[str, Serves] = NOTHING,
         parameters: Sequence[str] = (),
         late_after: float = 0.0,
+        qos: Sequence[str] = (),
         every: bool = False,
         pause: float = PAUSE,
         tolerance: float = TOLERANCE,
@@ -142,7 +147,7 @@ class SameAsSolution:
     ) -> None:
         self._id, self._gives, self._serves = exercise_id, gives, serves
         self._every, self._pause, self._tolerance = every, pause, tolerance
-        self._late_after = late_after
+        self._late_after, self._qos = late_after, qos
         kinds = {
             Kind.STEPS: tells,
             Kind.LIST: lists,
@@ -154,6 +159,14 @@ class SameAsSolution:
             for name, paths in outputs.items()
         ]
         self._draft = Draft(exercise_id, title, task, _Drawn(self._scenario, self._outputs, roles))
+        for output in self._of(Kind.PARAMETER):
+            self._draft.knows(
+                "parameter_not_declared",
+                output.is_undeclared,
+                f"Your node has no parameter {output.name}.",
+                f'Declare it in __init__, with its default: self.declare_parameter("{output.name}", …).',
+                certain=True,
+            )
         for output in self._outputs:
             name, each = output.name.strip("/"), points / len(self._outputs)
             self._draft.criterion(name, each, output.title)(output.compared)
@@ -170,7 +183,15 @@ class SameAsSolution:
             steps = self._gives(drawn)
             serve = partial(self._serve, bench, drawn)
             plays = partial(self._plays, steps)
-            meet(bench, f"drawing {drawing}", plays, serve, listens=not self._late_after)
+            part = f"drawing {drawing}"
+            meet(bench, part, plays, serve, listens=not self._late_after, qos=self._matching(bench.reference))
+
+    def _matching(self, reference: Reference) -> dict[str, Qos]:
+        """Return the QoS of the judge's endpoints on the topics on which it counts."""
+        recorded = {topic: Qos(qos) for ends in reference.qos.values() for topic, qos in ends.items()}
+        if usual := ", ".join(topic for topic in self._qos if topic not in recorded):
+            raise ValueError(f"qos: on {usual} the solution has the default QoS, which each answer has")
+        return {topic: recorded[topic] for topic in self._qos}
 
     def _serve(self, bench: Bench, drawn: Random, service: str, kind: str) -> None:
         how = self._serves[service]
@@ -182,7 +203,7 @@ class SameAsSolution:
         if self._late_after:
             bench.run_time(self._late_after)
             for topic, kind in bench.reference.interface["publisher"].items():
-                bench.listen(topic, kind, latched=True)
+                bench.listen(topic, kind, qos=Qos.LATCHED)
             bench.wait_until(lambda e: bool(e.main.of("mismatch") or e.main.of("message")), QUIET[bench.pace])
         went_through = self._describe(bench) and all(
             self._takes(met, number, step) for number, step in enumerate([self._pause, *steps])
@@ -238,12 +259,14 @@ class SameAsSolution:
     def _describe(self, bench: Bench) -> bool:
         """Note the types and ranges of the parameters. Return False if the subject does not answer."""
         names = [output.name for output in self._of(Kind.PARAMETER)]
-        if not names:
-            return True
-        if not (bench.await_node() and self._ask(bench, "", DESCRIBE, {"names": names})):
+        if names and not bench.await_node():
             return False
-        described = bench.seen().of("answered")[-1].data["fields"]["descriptors"]
-        for name, one in zip(names, described, strict=False):
+        for name in names:
+            # A node answers with an empty list if one of the parameters is not declared.
+            if not self._ask(bench, "", DESCRIBE, {"names": [name]}):
+                return False
+            described = bench.seen().of("answered")[-1].data["fields"]["descriptors"]
+            (one,) = described or [NOT_DECLARED]
             ranges = [
                 [r["from_value"], r["to_value"]]
                 for r in (*one["floating_point_range"], *one["integer_range"])
