@@ -16,7 +16,10 @@ from typing import TYPE_CHECKING, Any
 from autograder.kit.draft import OWN, Draft
 from autograder.kit.in_words import counted
 from autograder.kit.model import Advice, Finding, Mistake, Pace
-from autograder.kit.oracle.steps import Serves, Sets, Step, parameter_in_words, parameter_value
+from autograder.kit.oracle.action_server import IN_EXECUTE
+from autograder.kit.oracle.goal_sender import GoalSender
+from autograder.kit.oracle.steps import Goal, Serves, Sets, Step, parameter_in_words, parameter_value
+from autograder.kit.outcomes import all_goals
 from autograder.kit.recipes.own_scenario import QUIET, Met, OwnScenario, meet, pick
 from autograder.kit.recipes.relay import To
 from autograder.kit.rules import in_words, same
@@ -25,7 +28,7 @@ if TYPE_CHECKING:
     from autograder.kit.evidence import Event, Evidence, Part
     from autograder.kit.model import Bench, Exercise
 
-__all__ = ["SameAsSolution", "Serves", "Sets", "To"]
+__all__ = ["Goal", "SameAsSolution", "Serves", "Sets", "To"]
 
 DRAWINGS = 4
 """The number of drawings of the inputs in a recording."""
@@ -60,7 +63,8 @@ class _Drawn(OwnScenario):
         likely = Mistake("variant", self._same_as_a_variant)
         ladder = super().ladder
         at = ladder.index(OWN)
-        return (*ladder[:at], proven, likely, *ladder[at:])
+        in_execute = IN_EXECUTE if "action_server" in self.roles else ()
+        return (*in_execute, *ladder[:at], proven, likely, *ladder[at:])
 
     def _same_as_a_variant(self, evidence: Evidence, *, simulated: bool = False) -> Advice | None:
         mine, right = _noted(evidence.main), _noted(self.expected(evidence))
@@ -81,16 +85,17 @@ class SameAsSolution:
     """An exercise about a node that must do what the reference solution does with the same inputs.
 
     After each input the judge notes the outputs of this step: for a topic, the last message since the step before; for
-    a service that the input calls, its answer.
+    a service that the input calls, its answer; for an action, what came of each goal.
 
     Args:
         exercise_id: The lab's folder and the file's name, such as ``"lab_2_5.agent"``.
         title: The title of the card, naming the lab and the subject.
         task: One sentence that states the task.
-        gives: Draws the steps: each is an input, :class:`To` a topic or service, or a number of seconds of the
-            subject's time without an input. It must draw the same number of steps each time.
+        gives: Draws the steps: each is an input, :class:`To` a topic or service or a :class:`Goal` to an action, or a
+            number of seconds of the subject's time without an input. It must draw the same number of steps each time.
         tells: For each topic or service of the subject, the path of the field that is compared, such as ``"data"`` or
-            ``"linear.x"``; a tuple of paths if there are several.
+            ``"linear.x"``; a tuple of paths if there are several. For an action, ``("status", "feedback.left",
+            "result.arrived")``.
         lists: The same for topics of which all messages are compared, in order, however they are spread over the steps.
             The last ones may be missing, or be more.
         serves: The services that the subject calls, by name, and how the judge answers: at once, late or never.
@@ -188,8 +193,10 @@ class SameAsSolution:
         """Give the subject one step, and note its outputs. Return False if the subject does not answer."""
         bench = met.bench
         before = 0 if number == 0 else len(bench.seen().events)
+        went_through = True
         if not isinstance(step, (int, float)):
-            if not self._given(met, step):
+            went_through = self._given(met, step)
+            if not (went_through or isinstance(step, Goal)):
                 return False
             bench.settle()
         if not bench.run_time(step if isinstance(step, (int, float)) else self._pause):
@@ -203,25 +210,44 @@ class SameAsSolution:
             result = next(e.data["fields"]["results"][0] for e in events if e.kind == "answered")
             taken = [result["successful"], bool(result["reason"])]
             bench.note(step.parameter, step=number, given=given, values=[taken])
+        outcomes: dict[str, list[list[Any]]] = {}
+        if isinstance(step, Goal):
+            given = str(step)
+            sent = all_goals(bench.seen())[-len(step.goals) :]
+            for one, goal in zip(step.goals, sent, strict=True):
+                outcomes.setdefault(one.name, []).append(
+                    [one.outcome(goal, path) for path in self._paths[one.name]]
+                )
         for name in self._paths.keys() - self._lists - set(self._parameters):
             values = self._values(name, events)
-            bench.note(name, step=number, given=given, values=values if self._every else values[-1:])
-        return True
+            last = values if self._every else values[-1:]
+            bench.note(name, step=number, given=given, values=outcomes.get(name, last))
+        return went_through
 
-    def _given(self, met: Met, step: To | Sets) -> bool:
+    def _given(self, met: Met, step: To | Sets | Goal) -> bool:
         """Give the subject an input. Return False if it should answer and does not."""
         bench, ends = met.bench, met.bench.reference.interface
         if isinstance(step, Sets):
             value = {"name": step.parameter, "value": parameter_value(step.value)}
             return self._ask(bench, step.node, SET, {"parameters": [value]})
-        speakers = dict(zip(sorted(ends.get("subscription", {})), met.speakers, strict=True))
-        callers = dict(zip(sorted(ends.get("service", {})), met.callers, strict=True))
+        speakers, callers, clients = (
+            dict(zip(sorted(ends.get(role, {})), made, strict=True))
+            for role, made in (
+                ("subscription", met.speakers),
+                ("service", met.callers),
+                ("action_server", met.action_callers),
+            )
+        )
+        if step.name not in {**speakers, **callers, **clients}:
+            raise ValueError(
+                f"gives: {step.name!r} is not one of {', '.join([*speakers, *callers, *clients])}"
+            )
+        if isinstance(step, Goal):
+            return step.play(GoalSender(bench, clients[step.name], simulated=True))
         whole = step.value if isinstance(step.value, Mapping) else {"data": step.value}
         if step.name in callers:
             callers[step.name].ask(whole)
             return callers[step.name].await_answers(QUIET[bench.pace])
-        if step.name not in speakers:
-            raise ValueError(f"gives: {step.name!r} is not one of {', '.join([*speakers, *callers])}")
         speakers[step.name].send(**whole)
         return True
 
