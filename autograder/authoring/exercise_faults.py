@@ -204,7 +204,9 @@ def _beginning(cells: list[NamedCell]) -> Iterator[str]:
 def _solutions(cells: Iterable[NamedCell]) -> Iterator[str]:
     for one in cells:
         if one.cell.kind is CellRole.SOLUTION:
-            written = sum(bool(line.strip()) for line in find_region(one.cell.source).answer)
+            region = find_region(one.cell.source)
+            # A repair keeps most lines of the broken code, which students get.
+            written = sum(bool(line.strip()) for line in region.answer if line not in region.stub)
             if not 1 <= written <= _MAX_SOLUTION_LINES:
                 yield (
                     f"a task is small: the cell {one.name} (line {one.cell.line}) asks for {written} lines; at most "

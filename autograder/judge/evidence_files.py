@@ -157,7 +157,8 @@ def _recorded_events(part: Part) -> list[dict[str, Any]]:
 
 def _event_row(event: Event, start: float | None) -> dict[str, Any]:
     row: dict[str, Any] = {"kind": event.kind, "name": event.name}
-    if event.sim is not None and start is not None:
+    # What a scenario notes is the same in each run, but the time at which it can note it is not.
+    if event.sim is not None and start is not None and event.kind != "noted":
         row["sim"] = round(event.sim - start, 3)
     return row | {"data": {name: value for name, value in event.data.items() if name not in _VARYING_FIELDS}}
 

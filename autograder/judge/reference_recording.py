@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from dataclasses import replace
 from random import Random
 from typing import TYPE_CHECKING
 
@@ -13,11 +14,10 @@ from autograder.kit.model import Exercise, Pace
 from autograder.kit.runners import RunsPrograms, processes, report_of
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
     from autograder.judge.subject import Subject
     from autograder.kit.evidence import Part
-
 
 SEED = "reference"
 """The fixed seed of a recording, so that each recording has the same random inputs."""
@@ -28,7 +28,7 @@ look is needed. With at most three looks, 1 of 36 recordings failed when eightee
 
 
 class NotRecordable(RuntimeError):
-    """The reference solution did not show the behavior that the exercise is about."""
+    """A program did not show the behavior that the exercise is about, or no two records of it would be the same."""
 
 
 def record(exercise: Exercise, subject: Subject, *, domain_id: int) -> Reference:
@@ -51,19 +51,14 @@ def record(exercise: Exercise, subject: Subject, *, domain_id: int) -> Reference
         raise NotRecordable(f"{exercise.id}: the reference solution had no {' or '.join(exercise.roles)}")
     bare = Reference(exercise.id, interface)
     wrong: Reference | None = None
-    for number in range(LOOKS):
-        # At least one look is made, however long it took to find the endpoints.
-        if number and time.monotonic() > deadline:
-            break
-        seen = look(exercise, subject, bare, Pace.FAST, seed=SEED, domain_id=domain_id)
-        if seen.doubtful:
-            continue
-        recorded = Reference(exercise.id, interface, seen.evidence.parts)
+    for parts in _clear_looks(exercise, subject, bare, domain_id):
+        recorded = replace(bare, parts=parts)
         evidence = as_evidence(recorded)
         if judge(exercise, evidence, SEED).passed:
             return recorded
         wrong = recorded
-        if is_certain(exercise, evidence):
+        # At least one look is made, however long it took to find the endpoints.
+        if is_certain(exercise, evidence) or time.monotonic() > deadline:
             break
     if wrong is not None:
         return wrong
@@ -75,11 +70,30 @@ def record(exercise: Exercise, subject: Subject, *, domain_id: int) -> Reference
 
 def record_variant(
     exercise: Exercise, subject: Subject, reference: Reference, *, domain_id: int
-) -> Sequence[Part]:
-    """Return the record of a wrong answer in all parts, for cards of nodes that do the same."""
+) -> Reference:
+    """Record a wrong answer in all parts, for cards of nodes that do the same.
+
+    Raises:
+        NotRecordable: Every look was doubtful.
+    """
     subject.begin(domain_id)
-    bare = Reference(exercise.id, reference.interface)
-    return look(exercise, subject, bare, Pace.FAST, seed=SEED, domain_id=domain_id).evidence.parts
+    bare = replace(reference, parts=(), variants=())
+    for parts in _clear_looks(exercise, subject, bare, domain_id):
+        return replace(bare, parts=parts)
+    raise NotRecordable(
+        "this wrong answer does not follow the simulated clock, so what it does differs from run to run. Take its "
+        "`card` and `next_step` out of the table, or wait until the machine is less busy, and record again."
+    )
+
+
+def _clear_looks(
+    exercise: Exercise, subject: Subject, bare: Reference, domain_id: int
+) -> Iterator[Sequence[Part]]:
+    """Yield the parts of each look that is not doubtful, at most :data:`LOOKS` looks in all."""
+    for _ in range(LOOKS):
+        seen = look(exercise, subject, bare, Pace.FAST, seed=SEED, domain_id=domain_id)
+        if not seen.doubtful:
+            yield seen.evidence.parts
 
 
 def as_evidence(recorded: Reference) -> Evidence:

@@ -362,6 +362,8 @@ class Exercise:
         mistakes: The known mistakes, most specific first.
         text: Maps each sentence of the task's text to the names of the criteria that judge it, separated by spaces. A
             sentence that no criterion judges is listed below the task as not graded.
+        hides_causes: True if finding the cause is the task. Then no look uses the subject's own names, and until the
+            pass the card tells no cause (:mod:`autograder.kit.hunts.repairs`).
         remarks: Functions that return a sentence for the card that costs no points, or an empty text.
         roles: The roles of the subject's endpoints, such as ``("publisher",)``. `record` waits for one of them.
         limit: The time limit of a check in seconds of wall time, for both looks together. A command gets more time,
@@ -373,6 +375,7 @@ class Exercise:
             be a path.
         wraps_commands: True if ``runner`` also runs commands.
         recorded: The kinds of events that a reference output keeps; None for the kinds that every exercise keeps.
+        tolerance: The tolerance for numbers when two recordings of the solution are compared, absolute or relative.
     """
 
     id: str
@@ -389,8 +392,10 @@ class Exercise:
     runner: Runner | None = None
     wraps_commands: bool = False
     recorded: tuple[str, ...] | None = None
+    tolerance: float = 1e-6
     remarks: Sequence[Callable[[Evidence], str]] = ()
     text: Mapping[str, str] = field(default_factory=dict)
+    hides_causes: bool = False
 
     @property
     def points(self) -> float:

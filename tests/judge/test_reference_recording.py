@@ -36,6 +36,11 @@ EXERCISE = Exercise(
 )
 
 
+class _Subject:
+    def begin(self, _: int) -> None:
+        pass
+
+
 class _Looks:
     """Looks that show a first message of these numbers; None for one that is doubtful."""
 
@@ -81,6 +86,18 @@ def test_what_was_doubtful_each_time_is_not_recorded(monkeypatch: pytest.MonkeyP
         _record(monkeypatch, _Looks(*(None,) * reference_recording.LOOKS))
 
 
+def test_a_wrong_answer_is_recorded_in_a_look_that_is_not_doubtful(monkeypatch: pytest.MonkeyPatch) -> None:
+    def recorded(look: _Looks) -> Reference:
+        monkeypatch.setattr(reference_recording, "look", look)
+        beside = Reference("lab_9_1.talker", {}, [Part("of the solution")])
+        return reference_recording.record_variant(EXERCISE, cast("Any", _Subject()), beside, domain_id=1)
+
+    (part,) = recorded(_Looks(None, 7)).parts
+    assert part.events[0].data["number"] == 7
+    with pytest.raises(reference_recording.NotRecordable, match="does not follow the simulated clock"):
+        recorded(_Looks(*(None,) * reference_recording.LOOKS))
+
+
 def test_an_endpoint_that_is_announced_after_the_first_one_is_recorded_too(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
@@ -104,10 +121,6 @@ def test_an_endpoint_that_is_announced_after_the_first_one_is_recorded_too(
 
 
 def _record(monkeypatch: pytest.MonkeyPatch, look: _Looks, exercise: Exercise = EXERCISE) -> Reference:
-    class Subject:
-        def begin(self, _: int) -> None:
-            pass
-
     monkeypatch.setattr(reference_recording, "look", look)
     monkeypatch.setattr(reference_recording, "_endpoints_of_solution", lambda *_: {})
-    return reference_recording.record(exercise, cast("Any", Subject()), domain_id=1)
+    return reference_recording.record(exercise, cast("Any", _Subject()), domain_id=1)

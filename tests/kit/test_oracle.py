@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -38,8 +39,12 @@ def run(
     *,
     drawing: int = 1,
     simulated: bool = True,
+    early: int = 0,
 ) -> Part:
-    """Return a run with these commands, one in each step, these beats, and what the parameter's node answered."""
+    """Return a run with these commands, one in each step, these beats, and what the parameter's node answered.
+
+    ``early`` beats came before the judge stepped the clock.
+    """
     noted = [
         *(("/cmd_vel", step, [list(command)] if command else []) for step, command in enumerate(commands)),
         ("speed", 0, [list(speed[0])]),
@@ -54,7 +59,12 @@ def run(
                 1.0,
                 "noted",
                 name,
-                {"step": step, "given": GIVEN[step], "values": values},
+                {
+                    "step": step,
+                    "given": GIVEN[step],
+                    "values": values,
+                    "stepped": (len(values) - early) * simulated,
+                },
                 100.0 if simulated else None,
             )
             for name, step, values in noted
@@ -117,6 +127,16 @@ def test_a_list_may_end_a_little_earlier_or_later(beats: Sequence[int], passes: 
 
 
 @pytest.mark.parametrize(
+    ("early", "simulated", "passes"), [(9, True, True), (0, True, False), (9, False, False)]
+)
+def test_messages_of_a_list_before_the_judge_stepped_the_clock_are_not_too_many(
+    early: int, simulated: bool, passes: bool
+) -> None:
+    ten_more = range(1, 15)
+    assert ("beat" not in failed(run(RIGHT, ten_more, early=early, simulated=simulated))) == passes
+
+
+@pytest.mark.parametrize(
     ("speed", "seen"),
     [
         (((3, []), (False, True)), "double without a range"),
@@ -138,4 +158,6 @@ def test_a_run_like_a_recorded_wrong_answer_is_named_for_certain_in_simulated_ti
 
     assert told(run(ALWAYS_AHEAD)) == [("always_ahead", True), ("always_ahead", False)]
     assert told(run(ALWAYS_AHEAD, simulated=False)) == [("always_ahead", False)]
+    assert told(replace(run(ALWAYS_AHEAD), events=sorted(run(ALWAYS_AHEAD).events, key=lambda one: one.name)))
+    assert told(run([[0.0, 0.0], [0.2005, 0.0], [0.2, 0.0]], [1, 2, 3, 4]))
     assert told(run(RIGHT)) == told(run(ALWAYS_AHEAD, drawing=0)) == told(run([[0.1, 0.0]] * 3)) == []

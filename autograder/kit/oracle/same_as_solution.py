@@ -14,18 +14,16 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from autograder.kit.draft import OWN, Draft
-from autograder.kit.in_words import counted
-from autograder.kit.model import Advice, Finding, Mistake, Pace
+from autograder.kit.model import Advice, Mistake, Pace
 from autograder.kit.oracle.action_server import IN_EXECUTE
 from autograder.kit.oracle.goal_sender import GoalSender
-from autograder.kit.oracle.steps import Goal, Serves, Sets, Step, parameter_in_words, parameter_value
-from autograder.kit.outcomes import all_goals
-from autograder.kit.recipes.own_scenario import QUIET, Met, OwnScenario, meet, pick
+from autograder.kit.oracle.outputs import Kind, Output
+from autograder.kit.oracle.steps import Goal, Serves, Sets, Step, parameter_value
+from autograder.kit.recipes.own_scenario import QUIET, Met, OwnScenario, meet
 from autograder.kit.recipes.relay import To
-from autograder.kit.rules import in_words, same
 
 if TYPE_CHECKING:
-    from autograder.kit.evidence import Event, Evidence, Part
+    from autograder.kit.evidence import Evidence, Part
     from autograder.kit.model import Bench, Exercise
 
 __all__ = ["Goal", "SameAsSolution", "Serves", "Sets", "To"]
@@ -36,8 +34,6 @@ PAUSE = 0.75
 """Seconds of the subject's time after each input. Whatever the input changes must be published by then."""
 TOLERANCE = 1e-3
 """The tolerance for numbers, absolute or relative to the larger one."""
-ONE_MISSING_IN = 4
-"""One more or one fewer of this many messages may come, because each node asks and tells at its own moments."""
 NOTHING: Mapping[str, Any] = MappingProxyType({})
 SET = ("set_parameters", "rcl_interfaces/srv/SetParameters")
 DESCRIBE = ("describe_parameters", "rcl_interfaces/srv/DescribeParameters")
@@ -47,7 +43,17 @@ POINTS = 10.0
 
 
 class _Drawn(OwnScenario):
-    """A subject that was given one drawing of the inputs; it is compared with the solution in the same drawing."""
+    """A subject that was given one drawing of the inputs; it is compared with the solution in the same drawing.
+
+    Args:
+        outputs: What is compared.
+    """
+
+    def __init__(
+        self, scenario: Callable[[Bench], None], outputs: Sequence[Output], roles: Sequence[str]
+    ) -> None:
+        super().__init__(scenario, *roles)
+        self._outputs = outputs
 
     def expected(self, evidence: Evidence) -> Part:
         """Return the record of the solution in the drawing that the subject was given."""
@@ -67,18 +73,19 @@ class _Drawn(OwnScenario):
         return (*in_execute, *ladder[:at], proven, likely, *ladder[at:])
 
     def _same_as_a_variant(self, evidence: Evidence, *, simulated: bool = False) -> Advice | None:
-        mine, right = _noted(evidence.main), _noted(self.expected(evidence))
-        if simulated and any(event.sim is None for event in evidence.main.of("noted")):
+        mine = evidence.main
+        if simulated and any(event.sim is None for event in mine.of("noted")):
+            return None
+        if self._agree(mine, self.expected(evidence)):
             return None
         for variant in evidence.reference.variants:
-            part = next((part for part in variant.parts if part.name == evidence.main.name), None)
-            if part and mine and same(mine, _noted(part), TOLERANCE) and not same(mine, right, TOLERANCE):
+            part = next((part for part in variant.parts if part.name == mine.name), None)
+            if part and self._agree(mine, part) and self._agree(part, mine):
                 return Advice(variant.text, variant.next_step, key=variant.key)
         return None
 
-
-def _noted(part: Part) -> list[Any]:
-    return [[event.name, event.data["step"], event.data["values"]] for event in part.of("noted")]
+    def _agree(self, seen: Part, expected: Part) -> bool:
+        return all(output.compared(seen, expected).passed for output in self._outputs)
 
 
 class SameAsSolution:
@@ -139,25 +146,25 @@ class SameAsSolution:
     ) -> None:
         self._id, self._gives, self._serves = exercise_id, gives, serves
         self._every, self._pause, self._tolerance = every, pause, tolerance
-        self._parameters, self._late_after = parameters, late_after
-        described = dict.fromkeys(parameters, DESCRIBED)
-        self._paths = {
-            n: (p,) if isinstance(p, str) else p for n, p in {**tells, **lists, **described}.items()
+        self._late_after = late_after
+        kinds = {
+            Kind.STEPS: tells,
+            Kind.LIST: lists,
+            Kind.PARAMETER: dict.fromkeys(parameters, DESCRIBED),
         }
-        self._lists = lists.keys()
-        self._draft = Draft(exercise_id, title, task, _Drawn(self._scenario, *roles))
-        for name, paths in self._paths.items():
-            # Every message of std_msgs has a field named data, so this name says nothing on a card.
-            what = " and ".join(path for path in paths if path != "data")
-            line = f"Says the right {what or 'value'} on {name}"
-            if name in parameters:
-                line = f"Describes the parameter {name}, takes the right values and refuses the others"
-            agrees = partial(self._same_list if name in lists else self._same_steps, name)
-            self._draft.criterion(name.strip("/"), points / len(self._paths), line)(agrees)
+        self._outputs = [
+            Output(name, (paths,) if isinstance(paths, str) else paths, kind, tolerance)
+            for kind, outputs in kinds.items()
+            for name, paths in outputs.items()
+        ]
+        self._draft = Draft(exercise_id, title, task, _Drawn(self._scenario, self._outputs, roles))
+        for output in self._outputs:
+            name, each = output.name.strip("/"), points / len(self._outputs)
+            self._draft.criterion(name, each, output.title)(output.compared)
 
     def exercise(self, **more: Any) -> Exercise:
         """Return the finished exercise. For ``more`` see :meth:`autograder.kit.draft.Draft.exercise`."""
-        return self._draft.exercise(recorded=("noted",), **more)
+        return self._draft.exercise(recorded=("noted",), tolerance=self._tolerance, **more)
 
     def _scenario(self, bench: Bench) -> None:
         drawings = range(DRAWINGS if self._gives(Random(0)) != self._gives(Random(1)) or self._serves else 1)
@@ -184,8 +191,10 @@ class SameAsSolution:
         went_through = self._describe(bench) and all(
             self._takes(met, number, step) for number, step in enumerate([self._pause, *steps])
         )
-        for name in self._lists:
-            bench.note(name, step=0, given="", values=self._values(name, bench.seen().events))
+        for output in self._of(Kind.LIST):
+            seen = bench.seen().of("message", output.name)
+            stepped = sum(event.sim is not None for event in seen)
+            bench.note(output.name, step=0, given="", values=output.values(seen), stepped=stepped)
         # In real time nothing has proved so far that the subject's executor is alive.
         return went_through and bench.pace is Pace.FAST
 
@@ -196,6 +205,7 @@ class SameAsSolution:
         went_through = True
         if not isinstance(step, (int, float)):
             went_through = self._given(met, step)
+            # What is wrong with a goal that does not end is compared, too.
             if not (went_through or isinstance(step, Goal)):
                 return False
             bench.settle()
@@ -204,24 +214,21 @@ class SameAsSolution:
         bench.settle()
         events = bench.seen().events[before:]
         given = f"{step:g} s without an input" if isinstance(step, (int, float)) else step.name
+        if isinstance(step, Goal):
+            given = str(step)
         # The words of a refusal are the student's own, so only the presence of a reason is compared.
         if isinstance(step, Sets):
             given = f"{step.parameter} = {step.value}"
             result = next(e.data["fields"]["results"][0] for e in events if e.kind == "answered")
             taken = [result["successful"], bool(result["reason"])]
             bench.note(step.parameter, step=number, given=given, values=[taken])
-        outcomes: dict[str, list[list[Any]]] = {}
-        if isinstance(step, Goal):
-            given = str(step)
-            sent = all_goals(bench.seen())[-len(step.goals) :]
-            for one, goal in zip(step.goals, sent, strict=True):
-                outcomes.setdefault(one.name, []).append(
-                    [one.outcome(goal, path) for path in self._paths[one.name]]
-                )
-        for name in self._paths.keys() - self._lists - set(self._parameters):
-            values = self._values(name, events)
-            last = values if self._every else values[-1:]
-            bench.note(name, step=number, given=given, values=outcomes.get(name, last))
+        for output in self._of(Kind.STEPS):
+            values = output.values(events)
+            if isinstance(step, Goal) and output.name == step.name:
+                values = step.outcomes(bench.seen(), output.paths)
+            elif not self._every:
+                values = values[-1:]
+            bench.note(output.name, step=number, given=given, values=values)
         return went_through
 
     def _given(self, met: Met, step: To | Sets | Goal) -> bool:
@@ -239,9 +246,8 @@ class SameAsSolution:
             )
         )
         if step.name not in {**speakers, **callers, **clients}:
-            raise ValueError(
-                f"gives: {step.name!r} is not one of {', '.join([*speakers, *callers, *clients])}"
-            )
+            names = ", ".join([*speakers, *callers, *clients])
+            raise ValueError(f"gives: {step.name!r} is not one of {names}")
         if isinstance(step, Goal):
             return step.play(GoalSender(bench, clients[step.name], simulated=True))
         whole = step.value if isinstance(step.value, Mapping) else {"data": step.value}
@@ -253,12 +259,13 @@ class SameAsSolution:
 
     def _describe(self, bench: Bench) -> bool:
         """Note the types and ranges of the parameters. Return False if the subject does not answer."""
-        if not self._parameters:
+        names = [output.name for output in self._of(Kind.PARAMETER)]
+        if not names:
             return True
-        if not (bench.await_node() and self._ask(bench, "", DESCRIBE, {"names": [*self._parameters]})):
+        if not (bench.await_node() and self._ask(bench, "", DESCRIBE, {"names": names})):
             return False
         described = bench.seen().of("answered")[-1].data["fields"]["descriptors"]
-        for name, one in zip(self._parameters, described, strict=False):
+        for name, one in zip(names, described, strict=False):
             ranges = [
                 [r["from_value"], r["to_value"]]
                 for r in (*one["floating_point_range"], *one["integer_range"])
@@ -276,54 +283,5 @@ class SameAsSolution:
         caller.ask(request)
         return caller.await_answers(QUIET[bench.pace])
 
-    def _values(self, name: str, events: Sequence[Event]) -> list[list[Any]]:
-        told = [e.data["fields"] for e in events if e.kind in ("message", "answered") and e.name == name]
-        return [[pick(fields, path) for path in self._paths[name]] for fields in told]
-
-    def _same_steps(self, name: str, seen: Part, expected: Part) -> Finding:
-        """Decide whether the outputs on a topic, or of a service, are the solution's. Show the first that is not."""
-        mine, theirs = seen.of("noted", name), expected.of("noted", name)
-        for made, due in zip(mine, theirs, strict=False):
-            if not same(made.data["values"], due.data["values"], self._tolerance):
-                return Finding(False, self._at_step(name, due), self._at_step(name, made))
-        if len(mine) < len(theirs):
-            return Finding(
-                False, self._at_step(name, theirs[len(mine)]), "nothing: your node did not get that far"
-            )
-        return Finding(True, right := f"the same as the solution in all {len(theirs)} steps", right)
-
-    def _same_list(self, name: str, seen: Part, expected: Part) -> Finding:
-        """Decide whether the messages on a topic are the solution's, in order. Show those around a difference."""
-        mine, theirs = _listed(seen, name), _listed(expected, name)
-        both = min(len(mine), len(theirs))
-        differs = next((n for n in range(both) if not same(mine[n], theirs[n], self._tolerance)), both)
-        missing = abs(len(mine) - len(theirs))
-        around = slice(max(0, differs - 2), differs + 2)
-        due, came = (
-            f"{self._in_words(name, listed[around])} ({counted(len(listed), 'message')} in all)"
-            for listed in (theirs, mine)
-        )
-        return Finding(differs == both and missing <= 1 + len(theirs) // ONE_MISSING_IN, due, came)
-
-    def _at_step(self, name: str, noted: Event) -> str:
-        after = (
-            f"after step {noted.data['step']} ({noted.data['given']})"
-            if noted.data["step"]
-            else "at the start"
-        )
-        return f"{self._in_words(name, noted.data['values'])} {after}"
-
-    def _in_words(self, name: str, listed: Sequence[Sequence[Any]]) -> str:
-        if name in self._parameters:
-            return "; ".join(map(parameter_in_words, listed)) or "nothing"
-        paths = self._paths[name]
-        named = ("" if path == "data" else f"{path} = " for path in paths)
-        prefixes = list(named)
-        told = [
-            ", ".join(p + in_words([v]) for p, v in zip(prefixes, values, strict=True)) for values in listed
-        ]
-        return "; ".join(told) or "nothing"
-
-
-def _listed(part: Part, name: str) -> list[Any]:
-    return [values for event in part.of("noted", name) for values in event.data["values"]]
+    def _of(self, kind: Kind) -> list[Output]:
+        return [output for output in self._outputs if output.kind is kind]

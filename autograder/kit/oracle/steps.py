@@ -7,13 +7,14 @@ from random import Random  # noqa: TC003  (an alias of types needs it)
 from typing import TYPE_CHECKING, Any
 
 from autograder.kit.in_words import counted
-from autograder.kit.outcomes import STATUS
+from autograder.kit.outcomes import STATUS, all_goals
 from autograder.kit.recipes.own_scenario import pick
 from autograder.kit.recipes.relay import To
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Container, Mapping, Sequence
 
+    from autograder.kit.evidence import Part
     from autograder.kit.oracle.goal_sender import GoalSender
     from autograder.kit.outcomes import SentGoal
 
@@ -105,16 +106,23 @@ class Goal:
                 sender.cancel(number, after=goal.cancel_after)
         return sender.finish(*numbers)
 
-    def outcome(self, sent: SentGoal, path: str) -> Any:
-        """Return what came of the goal.
+    def outcomes(self, seen: Part, paths: Sequence[str]) -> list[list[Any]]:
+        """Return what came of the goal, and of the one beside it, if the judge has sent no other one since then.
 
         Args:
-            sent: The goal as the judge saw it.
-            path: ``"status"``, or ``"feedback"`` or ``"result"`` with the path of a field, as in ``"result.arrived"``.
+            seen: The record of the subject.
+            paths: Each is ``"status"``, or ``"feedback"`` or ``"result"`` with the path of a field, as in
+                ``"result.arrived"``.
         """
+        sent = all_goals(seen)[-len(self.goals) :]
+        return [
+            [goal._outcome(one, path) for path in paths] for goal, one in zip(self.goals, sent, strict=True)
+        ]
+
+    def _outcome(self, sent: SentGoal, path: str) -> Any:
         part, _, field_path = path.partition(".")
         if part == "status":
-            return STATUS.get(sent.status or 0, "?") if sent.accepted else "REJECTED"
+            return STATUS.get(sent.status or 0) if sent.accepted else "REJECTED"
         if part == "feedback":
             return [pick(fields, field_path) for fields in sent.feedback[: self.cancel_after]]
         return None if self.cancel_after is not None or not sent.result else pick(sent.result, field_path)
