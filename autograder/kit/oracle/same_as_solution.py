@@ -19,9 +19,8 @@ from autograder.kit.model import Advice, Mistake, Pace
 from autograder.kit.oracle.action_server import IN_EXECUTE
 from autograder.kit.oracle.goal_sender import GoalSender
 from autograder.kit.oracle.outputs import Kind, Output
-from autograder.kit.oracle.steps import Goal, Serves, Sets, Step, parameter_value
+from autograder.kit.oracle.steps import Goal, Serves, Sets, Step, To, parameter_value
 from autograder.kit.recipes.own_scenario import QUIET, Met, OwnScenario, meet
-from autograder.kit.recipes.relay import To
 
 if TYPE_CHECKING:
     from autograder.kit.evidence import Evidence, Part, Reference
