@@ -107,6 +107,12 @@ def test_a_single_name_is_the_last_that_stands_alone(said: list[str], given: str
     assert search.has() is (given == "/mia/open")
 
 
+def test_a_name_may_be_no_node_s_and_no_topic_s() -> None:
+    robot = Robot(answer={"robot": "mia"}, nodes=MIA.nodes)
+    assert Search(part(robot, "it has /mia/motors", "it is called mia")).has()
+    assert not Search(part(robot, "it has /mia/motors")).has()
+
+
 @pytest.mark.parametrize(
     ("said", "given"),
     [(["it is /z"], ["/z"]), (["not available, I see only /z"], []), (["I see /z", "nothing"], [])],
@@ -206,3 +212,12 @@ def test_a_notebook_s_function_has_to_return_what_it_names() -> None:
 
     assert told("'mia/open'")[0] == 7
     assert told("('/mia/open', 1)") == (0, "not_returned")
+
+
+def test_a_slow_subject_s_time_begins_with_its_own_node_not_with_the_robot_s() -> None:
+    nodes = ["/mia/arm", "/mia/motors"]
+    surveys = [Event(0.2, "interface", "graph", {"nodes": nodes})]
+    surveys += [Event(4.0, "interface", "graph", {"nodes": ["/finder", *nodes]})]
+    search = Search(Part("", vars(MIA), [*surveys, Event(5.0, "subject", "exited", {"code": 0})]))
+    assert search.since_it_appeared.events[0].t == 4.0
+    assert search.gave_up_at_once

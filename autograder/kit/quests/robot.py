@@ -98,7 +98,8 @@ class Search:
         if len(self.robot.answer) > 1:
             entries = _ENTRY.findall("\n".join(said))
             return {key: text or listed for key, text, listed in entries if key in self.robot.answer}
-        named = [[name for name in self.names if _mentions(line, name)] for line in reversed(said)]
+        possible = sorted({*self.names, *self.robot.answer.values()})
+        named = [[name for name in possible if _mentions(line, name)] for line in reversed(said)]
         alone = [names for names in named if len(names) == 1]
         names = next(iter(alone or filter(None, named)), [])
         if self.finds_nothing:
