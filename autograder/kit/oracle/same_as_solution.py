@@ -14,13 +14,14 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from autograder.kit.counterparts import Qos
-from autograder.kit.draft import OWN, Draft
+from autograder.kit.draft import Draft
+from autograder.kit.mistakes import unfinished
 from autograder.kit.model import Advice, Mistake, Pace
 from autograder.kit.oracle.action_server import IN_EXECUTE
 from autograder.kit.oracle.goal_sender import GoalSender
 from autograder.kit.oracle.outputs import Kind, Output
 from autograder.kit.oracle.steps import Goal, Serves, Sets, Step, To, parameter_value
-from autograder.kit.recipes.own_scenario import QUIET, Met, OwnScenario, meet
+from autograder.kit.recipes.own_scenario import ENDPOINTS, QUIET, Met, OwnScenario, meet
 
 if TYPE_CHECKING:
     from autograder.kit.evidence import Evidence, Part, Reference
@@ -69,13 +70,13 @@ class _Drawn(OwnScenario):
         )
         likely = Mistake("variant", self._same_as_a_variant)
         ladder = super().ladder
-        at = ladder.index(OWN)
         in_execute = IN_EXECUTE if "action_server" in self.roles else ()
+        at = ladder.index(unfinished.NEVER_CONSTRUCTED)
         return (*in_execute, *ladder[:at], proven, likely, *ladder[at:])
 
     def _same_as_a_variant(self, evidence: Evidence, *, simulated: bool = False) -> Advice | None:
         mine = evidence.main
-        if simulated and any(event.sim is None for event in mine.of("noted")):
+        if not mine.of("noted") or (simulated and any(event.sim is None for event in mine.of("noted"))):
             return None
         if self._agree(mine, self.expected(evidence)):
             return None
@@ -86,7 +87,8 @@ class _Drawn(OwnScenario):
         return None
 
     def _agree(self, seen: Part, expected: Part) -> bool:
-        return all(output.compared(seen, expected).passed for output in self._outputs)
+        made, due = ([e.data["made"] for e in part.of("noted", ENDPOINTS)] for part in (seen, expected))
+        return made == due and all(output.compared(seen, expected).passed for output in self._outputs)
 
 
 class SameAsSolution:
@@ -297,9 +299,10 @@ class SameAsSolution:
 
     @staticmethod
     def _ask(bench: Bench, node: str, service: tuple[str, str], request: Mapping[str, Any]) -> bool:
-        nodes = (name for survey in bench.seen().of("interface") for name in survey.data["nodes"])
+        if not bench.watch_graph(lambda evidence: bool(_nodes(evidence.main, node)), QUIET[bench.pace]):
+            return False
         name, kind = service
-        caller = bench.call(f"{node or next(nodes, '')}/{name}", kind)
+        caller = bench.call(f"{_nodes(bench.seen(), node)[0]}/{name}", kind)
         if not caller.await_server(QUIET[bench.pace]):
             return False
         caller.ask(request)
@@ -307,3 +310,9 @@ class SameAsSolution:
 
     def _of(self, kind: Kind) -> list[Output]:
         return [output for output in self._outputs if output.kind is kind]
+
+
+def _nodes(part: Part, begins: str) -> list[str]:
+    """Return the full names of the subject's nodes that begin with a text, in the order in which they were seen."""
+    surveys = part.of("interface", "graph")
+    return [node for survey in surveys for node in survey.data["nodes"] if node.startswith(begins)]

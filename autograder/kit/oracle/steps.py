@@ -55,7 +55,8 @@ class Sets:
     Attributes:
         parameter: The name of the parameter.
         value: The new value: a number, a text or a truth value.
-        node: The full name of the node; by default the subject's first node.
+        node: The beginning of the node's full name, such as the namespace ``"/left/"``; by default the subject's
+            first node.
     """
 
     parameter: str

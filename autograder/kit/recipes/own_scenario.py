@@ -22,6 +22,7 @@ from autograder.kit.mistakes.crashes import CRASHES, OTHER_CRASHES
 from autograder.kit.mistakes.hangs import HANGS
 from autograder.kit.model import Finding, Pace
 from autograder.kit.rules import got_through, in_words, same
+from autograder.kit.runners import processes
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -37,6 +38,8 @@ ECHO = 1.0
 """The maximum number of seconds between a logged and a printed line with the same word that count as one report."""
 THREADS = 4
 """The number of threads that spin a notebook's class with an action server."""
+ENDPOINTS = "endpoints"
+"""The name of the event that records the subject's endpoints if one of the reference solution's is missing."""
 SERVED = 3.0
 """Time limit in seconds of wall time until the judge can call a service that is on the ROS graph."""
 
@@ -118,7 +121,7 @@ def meet(
             serves(service, kind)
     # With a single thread, a notebook's class reads no cancel request while it works on a goal.
     bench.start(**({"threads": THREADS} if actions else {}))
-    met = all(bench.await_endpoint(role, name) for role, ends in roles.items() for name in ends)
+    met = _all_there(bench, [(role, name) for role, ends in roles.items() for name in ends])
     if met:
         bench.release()
         # A subscription loses what is sent before it has discovered the judge's publisher.
@@ -132,6 +135,21 @@ def meet(
                 bench.note_where_it_hangs()
     bench.stop()
     return met
+
+
+def _all_there(bench: Bench, ends: Sequence[tuple[str, str]]) -> bool:
+    """Wait for all endpoints of the reference solution, given as (role, name)."""
+    there = not ends or bench.await_endpoint(*ends[0])
+    # The programs of a launch start one after the other, so the endpoints of the first are not all.
+    if processes(bench.seen()):
+        there = bench.watch_graph(
+            lambda evidence: all(name in evidence.main.endpoints(role) for role, name in ends),
+            QUIET[bench.pace],
+        )
+    there = there and all(bench.await_endpoint(role, name) for role, name in ends)
+    if not there:
+        bench.note(ENDPOINTS, made={role: bench.seen().endpoints(role) for role, _ in ends})
+    return there
 
 
 class OwnScenario:
