@@ -108,7 +108,7 @@ def raise_if_stale(subject: Any) -> None:
                 f"{why} So setup.py lacks the entry points of that cell. Correct the cell and run it, then check again."
             )
         return
-    for name in (getattr(subject, "__name__", ""), *sorted(_names_read(subject))):
+    for name in (getattr(subject, "__name__", ""), *sorted(names_read(subject))):
         if why := _cells.why_missing(name):
             raise StaleCodeError(
                 f"{why} The notebook still has an older {name}. Correct that cell and run it, then check again."
@@ -243,10 +243,15 @@ def _advice(error: BaseException) -> str:
     return f"{row.means} {row.do}" if row else ""
 
 
-def _names_read(subject: Any) -> set[str]:
-    """Return the global names that a function, or the methods of a class, use."""
+def functions_of(subject: Any) -> list[FunctionType]:
+    """Return a function itself, or the methods of a class."""
     own = vars(subject).values() if isinstance(subject, type) else (subject,)
-    codes = [one.__code__ for one in own if isinstance(one, FunctionType)]
+    return [one for one in own if isinstance(one, FunctionType)]
+
+
+def names_read(subject: Any) -> set[str]:
+    """Return the global names that a function, or the methods of a class, use."""
+    codes = [function.__code__ for function in functions_of(subject)]
     found = set()
     while codes:
         code = codes.pop()

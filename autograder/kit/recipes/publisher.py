@@ -281,18 +281,19 @@ class Hears:
                 "Call create_publisher only once, in __init__, and keep the publisher in self. Let the timer's method "
                 "publish with it.",
                 certain=True,
+                uses=("create_publisher",),
             ),
             common.everything_twice("publisher"),
             Mistake("published_before_discovery", self._published_before_discovery),
             OWN,
             *(self._mistake(*one, certain=True) for one in early),
-            Mistake("never_published", self._never_published),
+            Mistake("never_published", self._never_published, uses=("create_timer", "publish")),
             *common.spinning("publisher"),
             OWN_LATE,
             *(self._mistake(*one) for one in late),
             Mistake("ended_too_early", unfinished.ended_too_early),
-            Mistake("wrong_rate", self._wrong_rate),
-            Mistake("stopped_publishing", self._stopped_publishing),
+            Mistake("wrong_rate", self._wrong_rate, uses=("create_timer",)),
+            Mistake("stopped_publishing", self._stopped_publishing, uses=("create_timer", "publish")),
             *unfinished.NOTHING_THERE,
         )
 

@@ -14,7 +14,7 @@ from autograder.kit.mistakes import common_mistakes as common
 from autograder.kit.mistakes import unfinished
 from autograder.kit.mistakes.crashes import CRASHES, OTHER_CRASHES, raised, traceback_of
 from autograder.kit.model import Advice, Bench, Finding, Mistake, Pace
-from autograder.kit.outcomes import ABORTED, CANCELED, all_goals, status_text
+from autograder.kit.outcomes import ABORTED, all_goals
 
 if TYPE_CHECKING:
     from random import Random
@@ -275,25 +275,12 @@ class SendsGoals(SeenAsItIs):
             common.message_type("action_server"),
             Mistake("exception_in_callback", _exception_in_execute, certain=True),
             *OTHER_CRASHES,
-            Mistake("goal_not_succeeded", self._goal_not_succeeded, certain=True),
             Mistake("cancel_not_accepted", self._cancel_refused_on_its_way, certain=True),
             Mistake("cancel_not_accepted", self._cancel_refused),
             Mistake("cancel_not_accepted", self._cancel_not_read),
-            Mistake("cancel_ignored", self._cancel_ignored),
             OWN_LATE,
             *common.spinning("action_server"),
             *unfinished.NOTHING_THERE,
-        )
-
-    def _goal_not_succeeded(self, evidence: Evidence) -> Advice | None:
-        """Return advice if the server aborted a good goal although its callback raised no exception."""
-        aborted = [seen for seen in self._good(evidence) if seen.status == ABORTED]
-        if not aborted or traceback_of(evidence):
-            return None
-        return Advice(
-            "The goal ended as ABORTED (6) although the work was done. Either the execute callback called abort(), "
-            "or it returned without calling succeed(); rclpy then aborts the goal.",
-            "Call succeed() of the goal handle before you return the result. Call abort() only if the work has failed.",
         )
 
     def _cancel_refused(self, evidence: Evidence) -> Advice | None:
@@ -332,18 +319,6 @@ class SendsGoals(SeenAsItIs):
             "node is busy with the execute callback.",
             "Spin the node with a MultiThreadedExecutor, as in rclpy.spin(your_node, "
             "executor=MultiThreadedExecutor()), so that another thread can read the cancel request.",
-        )
-
-    def _cancel_ignored(self, evidence: Evidence) -> Advice | None:
-        """Return advice if the server accepted the cancel request, but did not end the goal as canceled."""
-        long = self.canceled(evidence)
-        if not long.cancel_accepted or long.status == CANCELED:
-            return None
-        return Advice(
-            "Your server accepted the cancel request, but the goal was not canceled "
-            f"(status {status_text(long.status)}).",
-            "In each turn of the loop, check is_cancel_requested of the goal handle. If it is True, call canceled() "
-            "of the goal handle and return the result so far.",
         )
 
 

@@ -45,7 +45,7 @@ from lab_1_4._server_run import scenario
 from autograder.kit.draft import Draft
 from autograder.kit.mistakes.crashes import traceback_of
 from autograder.kit.model import Advice
-from autograder.kit.outcomes import CANCELED, SUCCEEDED, status_text
+from autograder.kit.outcomes import SUCCEEDED, status_text
 from autograder.kit.recipes.servers import SendsGoals, is_quick
 
 if TYPE_CHECKING:
@@ -63,7 +63,9 @@ server.asks("action", 1, "Serves fibonacci, with the right type", criteria.serve
 server.asks("sequence", 3, "Succeeds with the right numbers", criteria.counts)
 server.asks("feedback", 1, "Sends feedback that grows by one number", criteria.gives_feedback)
 server.asks("two", 1, "Serves two goals at once", criteria.serves_two_at_once)
-server.asks("cancel", 2, "Lets a goal be canceled", criteria.lets_cancel)
+server.asks(
+    "cancel", 2, "Lets a goal be canceled", criteria.lets_cancel, uses=("is_cancel_requested", "canceled")
+)
 server.asks("refuse", 2, "Rejects bad orders and lives on", criteria.refuses_bad_orders)
 
 
@@ -74,7 +76,7 @@ def only_bad_orders(seen: Evidence, _: Evidence) -> Advice | None:
     return bad_order_accepted(seen, seen) if all(judge(seen).passed for judge in rest) else None
 
 
-@server.mistake("goal_rejected", certain=True, before="goal_not_succeeded")
+@server.mistake("goal_rejected", certain=True, before="cancel_not_accepted")
 def goal_rejected(seen: Evidence, _: Evidence) -> Advice | None:
     """A good goal is refused."""
     last = [one for one in all_goals(seen.part(BAD_ORDERS)) if one.order == LAST_ORDER]
@@ -214,20 +216,6 @@ def done_at_once(seen: Evidence, _: Evidence) -> Advice | None:
     return Advice(
         f"A goal of order {long.order} was done at once: there was no time to cancel it.",
         "Take some time for each number, for example time.sleep(0.5): an action is for work that takes long.",
-    )
-
-
-@server.mistake("cancel_ignored", late=True)
-def worked_on(seen: Evidence, _: Evidence) -> Advice | None:
-    """Canceled, but only after more rounds."""
-    long = to_be_canceled(seen)
-    if long.status != CANCELED or not criteria.worked_on(seen, long):
-        return None
-    return Advice(
-        "Your server accepted the cancel request and went on counting: the canceled goal came back with "
-        f"{len(long.sequence)} numbers, and {long.told_before} had been found when the client asked to cancel it.",
-        "Look at is_cancel_requested of the goal handle in each turn of the loop, leave the loop as soon as it is "
-        "True, and append nothing after that.",
     )
 
 
