@@ -28,7 +28,8 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from autograder.judge.one_check import Checked
-    from autograder.kit.evidence import Part, Reference
+    from autograder.kit.evidence import Reference
+    from autograder.messages.judge_messages import Report
 
 
 _PROGRAMS = {name: str(installed_program(name)) for name in ("python3", "ros2")}
@@ -107,7 +108,7 @@ class Answer:
         with HeldFolder("autograder-answer-") as folder:
             return checked_here(exercise, self.unpack(folder.path), seed, None)
 
-    def recorded(self, reference: Reference) -> Sequence[Part]:
+    def recorded(self, reference: Reference) -> Report:
         """Record the answer in this process, in all parts that the recording of the solution has."""
         from autograder.judge.command_check import recorded_here
 

@@ -295,7 +295,7 @@ class SubjectTime:
         self._recorder.wait(lambda: self._subject.ended, seconds, wall=True)
 
     def settle(self) -> None:
-        """Wait until the subject has handled the messages that it received.
+        """Wait until the subject has handled the messages that it received, and the judge has recorded its own.
 
         Each node has to answer two requests, one after the other, so that its executor has made a whole round in
         between. A node that failed to answer before, in this part, is left out.
@@ -306,6 +306,7 @@ class SubjectTime:
                 continue
             if not all(answers(self._wire, self._recorder, node, limit) for _ in range(2)):
                 self._deaf.add(node.full)
+        self._recorder.take_in()
 
     def await_attention(self) -> None:
         """Wait until each node that the judge is matched with has discovered the judge's publishers.

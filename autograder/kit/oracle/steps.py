@@ -59,8 +59,10 @@ def parameter_in_words(noted: Sequence[Any]) -> str:
     first, second = noted
     if isinstance(first, bool):
         return "taken" if first else f"refused with{'' if second else 'out'} a reason"
+    if first not in TYPES:
+        return "not declared"
     ranges = " and ".join(f"from {low:g} to {high:g}" for low, high in second) or "without a range"
-    return f"{TYPES.get(first, 'not declared')} {ranges}"
+    return f"{TYPES[first]} {ranges}"
 
 
 def parameter_value(value: float | str | bool) -> dict[str, Any]:

@@ -11,8 +11,10 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial, reduce
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, TypeVar
 
+from autograder.kit.counterparts import Qos
 from autograder.kit.draft import OWN, OWN_LATE, Draft, SeenAsItIs
 from autograder.kit.evidence import Event, spoken_by, without_tracebacks
 from autograder.kit.mistakes import common_mistakes as common
@@ -88,6 +90,7 @@ def meet(
     serves: Callable[[str, str], object] | None = None,
     *,
     listens: bool = True,
+    qos: Mapping[str, Qos] = MappingProxyType({}),
 ) -> None:
     """Run one part of a scenario like :func:`once_met`.
 
@@ -95,13 +98,14 @@ def meet(
         happens: As for :func:`once_met`.
         serves: Called with the name and type of each service that the reference solution calls; it makes the server.
         listens: True if the judge subscribes before the subject starts.
+        qos: The QoS of the judge's endpoints, by topic.
     """
     roles = {role: dict(sorted(ends.items())) for role, ends in bench.reference.interface.items()}
     publishers, heard, services = (roles.get(r, {}) for r in ("publisher", "subscription", "service"))
     bench.part(part)
     for topic, kind in publishers.items() if listens else ():
-        bench.listen(topic, kind)
-    speakers = [bench.speak(topic, kind) for topic, kind in heard.items()]
+        bench.listen(topic, kind, qos=qos.get(topic, Qos.DEFAULT))
+    speakers = [bench.speak(topic, kind, qos=qos.get(topic, Qos.DEFAULT)) for topic, kind in heard.items()]
     callers = [bench.call(service, kind) for service, kind in services.items()]
     if serves is not None:
         for service, kind in roles.get("client", {}).items():

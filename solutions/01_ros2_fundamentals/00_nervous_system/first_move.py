@@ -92,7 +92,7 @@ def wrong_movement(seen: Publisher, expected: Publisher) -> Advice | None:
 
 EXERCISE = first_move.exercise(
     text={
-        "Twice a second a timer calls its method `drive`": "rate",
-        "the first one sets the speed straight ahead to `0.5`, and the second one publishes": "velocity",
+        "Twice a second this driver makes a command": "rate",
+        "set the speed straight ahead to `0.5`, and publish the command": "velocity",
     },
 )
