@@ -30,6 +30,7 @@ class KnownError(msgspec.Struct, frozen=True):
     do: str
     source: str | list[str]
     each: str = ""
+    uses: tuple[str, ...] = ()
 
 
 class _Table(msgspec.Struct, frozen=True):
@@ -79,8 +80,10 @@ def recognized(said: str, heard: str, here: str = "", owner: str = "") -> KnownE
             "each": word,
         } | groups
         names = {name: Name(text.strip()) for name, text in words.items()}
-        filled = {"means": row.means.format(**names).strip(), "do": row.do.format(**names)}
-        return msgspec.structs.replace(row, **filled)
+        # A group that did not take part in the match leaves a blank at an end: there is no name then.
+        uses = tuple(name for pattern in row.uses if (name := pattern.format(**names)) == name.strip())
+        means, do = row.means.format(**names).strip(), row.do.format(**names)
+        return msgspec.structs.replace(row, means=means, do=do, uses=uses)
     return None
 
 

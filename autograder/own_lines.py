@@ -18,10 +18,10 @@ import msgspec
 from autograder.messages.judge_messages import OwnLine, OwnLines
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 MOST_OF_A_NAME = 3
-"""The maximum number of lines for each name. A card shows at most two of them."""
+"""The maximum number of lines for each name in each source. A card shows at most two of them."""
 MOST_NAMES = 500
 """The maximum number of names. If the code uses more, no lines are reported: a part could be taken for the whole."""
 MOST_FILES = 30
@@ -34,6 +34,8 @@ LONGEST_LINE = 120
 
 def own_lines(sources: Mapping[str, str]) -> OwnLines:
     """Return the lines that use a name, for each name that stands after a dot or is called.
+
+    ``def tick`` and ``count =`` are names, too, of the lines that define the function and that set the variable.
 
     Args:
         sources: The student's code, by its place, such as ``your cell``. The first source defines what is checked.
@@ -52,29 +54,38 @@ def own_lines(sources: Mapping[str, str]) -> OwnLines:
                 for name in {name for name, _ in _uses(statement, text)} - set(tools):
                     lines[name] += [msgspec.structs.replace(one, name=name) for one in tools[statement.name]]
         for name, (number, quote) in _uses(tree, text):
-            lines[name].append(OwnLine(name, place, number, quote))
+            if sum(line.place == place for line in lines[name]) < MOST_OF_A_NAME:
+                lines[name].append(OwnLine(name, place, number, quote))
     if len(lines) > MOST_NAMES:
         return OwnLines([])
-    return OwnLines([line for found in lines.values() for line in found[:MOST_OF_A_NAME]])
+    return OwnLines([line for found in lines.values() for line in found])
 
 
 def _uses(tree: ast.AST, text: str) -> Iterator[tuple[str, tuple[int, str]]]:
-    """Yield each name that a statement uses, with the statement's number and text, in the order of the code."""
+    """Yield each name that a statement uses, with the number and text of the line, in the order of the code."""
     lines = text.splitlines()
     statements = [one for one in ast.walk(tree) if isinstance(one, ast.stmt)]
     for statement in sorted(statements, key=lambda one: one.lineno):
+        if isinstance(statement, ast.FunctionDef | ast.AsyncFunctionDef):
+            yield f"def {statement.name}", (statement.lineno, _quote(lines[statement.lineno - 1 :][:1]))
         # The statements inside of this one, as in the body of a loop, come by themselves.
         own = [one for one in ast.iter_child_nodes(statement) if isinstance(one, ast.expr | ast.withitem)]
         used = [node for one in own for node in ast.walk(one)]
         end = max((node.end_lineno or 0 for node in used if isinstance(node, ast.expr)), default=0)
-        quote = " ".join(" ".join(lines[statement.lineno - 1 : end]).split())[:LONGEST_LINE]
+        quote = _quote(lines[statement.lineno - 1 : end])
         for name in dict.fromkeys(filter(None, map(_name, used))):
             yield name, (statement.lineno, quote)
+
+
+def _quote(lines: Sequence[str]) -> str:
+    return " ".join(" ".join(lines).split())[:LONGEST_LINE]
 
 
 def _name(node: ast.AST) -> str:
     if isinstance(node, ast.Attribute):
         return node.attr
+    if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store):
+        return f"{node.id} ="
     return node.func.id if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) else ""
 
 

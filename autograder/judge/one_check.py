@@ -171,7 +171,9 @@ def _check(
             evidence = replace(seen.evidence, before=evidence)
             verdict = judge(exercise, evidence, seed)
         if not verdict.passed and (causes := _causes(exercise, evidence, verdict)):
-            evidence = _with_own_lines(evidence, causes, subject.own_lines())
+            lines = subject.own_lines()
+            raising = [line for line in lines if f'/{line.place}"' in verdict.detail]
+            evidence = _with_own_lines(evidence, causes, raising or lines)
             verdict = judge(exercise, evidence, seed)
         if not verdict.passed:
             certain = is_certain(exercise, evidence)
@@ -188,7 +190,7 @@ def _check(
 def _causes(exercise: Exercise, evidence: Evidence, verdict: Verdict) -> Sequence[Sequence[str]]:
     """Return the methods and classes whose lines the card quotes, each after others that do the same."""
     if known := _recognized(exercise, evidence):
-        return [[name] for name in known[0].uses]
+        return [[name] for name in known[1].uses]
     if point := parting_point(evidence):
         return point.causes
     lost = (one for one, result in zip(exercise.criteria, verdict.criteria, strict=True) if not result.passed)

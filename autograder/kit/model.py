@@ -77,12 +77,16 @@ class Advice:
             something else.
         key: The key of the mistake if only the recording of the exercise has it; empty for the key of the
             :class:`Mistake`.
+        uses: Names of methods or classes, such as ``create_timer``. The card quotes the student's lines that use these
+            names, and says if no line does. ``def tick`` and ``count =`` are names, too: of a definition, and of an
+            assignment.
     """
 
     text: str
     next_step: str
     traceback: str = ""
     key: str = ""
+    uses: Sequence[str] = ()
 
 
 @dataclass(frozen=True)
@@ -94,14 +98,11 @@ class Mistake:
         recognize: Returns the advice if the evidence shows this mistake, otherwise None.
         certain: True if the evidence proves the mistake however busy the machine was. Then no second look in real time
             is needed.
-        uses: Names of methods or classes, such as ``create_timer``. The card quotes the student's lines that use these
-            names, and says if no line does.
     """
 
     key: str
     recognize: Callable[[Evidence], Advice | None]
     certain: bool = False
-    uses: Sequence[str] = ()
 
 
 def mistake(
@@ -122,14 +123,14 @@ def mistake(
         text: What happened, and why. ``{}`` stands for the value that was found, ``{0[1]}`` for an element of it.
         next_step: What the student should do now, with the same placeholders.
         certain: True if the evidence proves the mistake however busy the machine was.
-        uses: As in :class:`Mistake`.
+        uses: As in :class:`Advice`.
     """
 
     def recognize(evidence: Evidence) -> Advice | None:
         shown = found(evidence)
-        return Advice(text.format(shown), next_step.format(shown)) if shown else None
+        return Advice(text.format(shown), next_step.format(shown), uses=uses) if shown else None
 
-    return Mistake(key, recognize, certain, uses)
+    return Mistake(key, recognize, certain)
 
 
 class Bench(Protocol):

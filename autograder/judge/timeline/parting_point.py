@@ -87,8 +87,13 @@ def claimed(causes: Sequence[Sequence[str]], lines: Sequence[OwnLine]) -> list[E
     return [
         Event(0.0, OWN_LINE, names[-1], _quoted(line))
         for names in causes
-        for line in _lines_of(names, lines) or [OwnLine(names[-1], where, 0, "")]
+        for line in _lines_of(names, lines) or _absent(names[-1], where)
     ]
+
+
+def _absent(name: str, where: str) -> list[OwnLine]:
+    # A definition or an assignment has a blank in its name. It may be elsewhere, and then there is nothing to say.
+    return [] if " " in name else [OwnLine(name, where, 0, "")]
 
 
 def _lines_of(names: Sequence[str], lines: Sequence[OwnLine]) -> list[OwnLine]:

@@ -287,13 +287,13 @@ class Hears:
             Mistake("published_before_discovery", self._published_before_discovery),
             OWN,
             *(self._mistake(*one, certain=True) for one in early),
-            Mistake("never_published", self._never_published, uses=("create_timer", "publish")),
+            Mistake("never_published", self._never_published),
             *common.spinning("publisher"),
             OWN_LATE,
             *(self._mistake(*one) for one in late),
             Mistake("ended_too_early", unfinished.ended_too_early),
-            Mistake("wrong_rate", self._wrong_rate, uses=("create_timer",)),
-            Mistake("stopped_publishing", self._stopped_publishing, uses=("create_timer", "publish")),
+            Mistake("wrong_rate", self._wrong_rate),
+            Mistake("stopped_publishing", self._stopped_publishing),
             *unfinished.NOTHING_THERE,
         )
 
@@ -336,6 +336,7 @@ class Hears:
             f"in seconds, {_reference_period(evidence.reference):g}: with a longer one, such as "
             f"{10 * _reference_period(evidence.reference):g} or {1000 * _reference_period(evidence.reference):g}, "
             "nothing comes in the time that the judge listens.",
+            uses=("create_timer", "publish"),
         )
 
     def _wrong_rate(self, evidence: Evidence) -> Advice | None:
@@ -351,6 +352,7 @@ class Hears:
             if "unevenly" in finding.seen
             else f"The first argument of create_timer is the time between two messages in seconds ({period:g}), not a "
             "frequency. In a loop, this is the argument of sleep. Do not sleep in callbacks.",
+            uses=("create_timer",),
         )
 
     def _stopped_publishing(self, evidence: Evidence) -> Advice | None:
@@ -364,6 +366,7 @@ class Hears:
             "The task has no end: a timer has to call the method that publishes again and again. If your node has no "
             "timer, make one with create_timer. If it has one, delete the code that stops it, or that returns from "
             "the callback before it publishes.",
+            uses=("create_timer", "publish"),
         )
 
 
