@@ -6,6 +6,7 @@ The judge shows what a row says on a card, and a notebook shows it below a cell 
 from __future__ import annotations
 
 import functools
+import sys
 import tomllib
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -111,3 +112,8 @@ def _table() -> _Table:
 @functools.cache
 def _patterns(heard: str) -> list[tuple[KnownError, Any]]:
     return [(row, pattern_of(row)) for row in rows() if heard in row.heard]
+
+
+if __name__ == "__main__":  # a shell that does not find a command of a cell asks what this means
+    for _row in filter(None, [recognized(f"{sys.argv[1]}: command not found", "bash")]):
+        print(_row.means, _row.do, file=sys.stderr)

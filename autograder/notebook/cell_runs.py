@@ -24,7 +24,7 @@ from types import CodeType, FunctionType
 from typing import TYPE_CHECKING, Any
 
 from autograder import course, known_errors
-from autograder.notebook.cell_output import last_student_line, notebook_shell, student_frames
+from autograder.notebook.cell_output import last_student_line, notebook_shell, say, student_frames
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -173,6 +173,9 @@ class _FailedCells:
         self._before = {}
         self._failures = {name: one for name, one in self._failures.items() if one.cell != cell}
         error = result.error_before_exec or result.error_in_exec
+        # IPython shows some errors by itself, such as `await` in a `def`, which only the compiler refuses.
+        if result.error_before_exec and not getattr(error, "__notes__", ()) and (advice := _advice(error)):
+            say(advice)
         known, variables = self._names_of.get(cell, set()), self._shell.user_ns
         names = self._names_of[cell] = set(before) if error else _defined(result.info.raw_cell or "")
         for name in names:
