@@ -347,11 +347,13 @@ def diagnose(
     failed = next((one for one in criteria if not one.passed), None)
     seen = f"“{failed.title}” is not met: {failed.seen}. Asked: {failed.expected}." if failed else ""
     point = parting_point(evidence)
-    words = f"{point.text if point else seen} {own_lines_in_words(evidence)}".rstrip()
+    lines = own_lines_in_words(evidence)
+    words = f"{point.text if point else seen} {lines}".rstrip()
+    next_step = "Find the line of your code that does this, and change it."
+    if lines.startswith("No line"):
+        next_step = "Write the line that is missing, as the task asks for it."
     text = of_its_kind(shortened(visible(words)), evidence.in_a_notebook)
-    return Diagnosis(
-        UNKNOWN, _cut(text, 2 * MAX_WORDS), "Find the line of your code that does this, and change it."
-    ), ""
+    return Diagnosis(UNKNOWN, _cut(text, 2 * MAX_WORDS), next_step), ""
 
 
 def _recognized(exercise: Exercise, evidence: Evidence) -> tuple[Mistake, Advice] | None:
