@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rclpy._rclpy_pybind11 import InvalidHandle
+from rclpy.action import ActionServer
 from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 from std_msgs.msg import Empty
@@ -132,10 +133,17 @@ class SubjectRun:
         threads.stop(grace=END_LIMIT / 3)
 
     def _callback_raised(self, failure: SpinFailure) -> None:
-        # Report an exception in a callback as the end of the subject, because it would also end rclpy.spin in a
-        # program.
-        if not self._stopping.is_set():
-            self._tell(Raised(self._number, student_traceback(failure.error)))
+        if self._stopping.is_set():
+            return
+        shown = student_traceback(failure.error)
+        if isinstance(failure.entity, ActionServer) and student_frames(failure.error.__traceback__):
+            # In a program, rclpy prints an exception of an execute callback, aborts the goal and goes on.
+            for line in shown.splitlines():
+                self._tell(Output(self._number, line))
+            return
+        # Report an exception in any other callback as the end of the subject, because it would also end rclpy.spin in
+        # a program.
+        self._tell(Raised(self._number, shown))
 
 
 def _is_alive(node: Node) -> bool:
