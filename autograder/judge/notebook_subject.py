@@ -251,6 +251,7 @@ class NotebookPath(InOwnProcesses, NotebookSubject):
         self.keeper = InOwnProcesses.keeper
 
     tell_so_far = NotebookSubject.tell_so_far
+    own_lines = NotebookSubject.own_lines
 
     def _take_of_run(self, message: judge_messages.OfRun, recorder: Recorder) -> None:
         super()._take_of_run(message, recorder)
