@@ -98,13 +98,22 @@ class Draft(Generic[View]):
         self._own: dict[int, list[Mistake]] = {id(OWN): [], id(OWN_LATE): []}
         self._before: dict[str, list[Mistake]] = {}
 
-    def asks(self, name: str, points: float, title: str, judge: Callable[[Evidence], Finding]) -> None:
+    def asks(
+        self,
+        name: str,
+        points: float,
+        title: str,
+        judge: Callable[[Evidence], Finding],
+        *,
+        uses: Sequence[str] = (),
+    ) -> None:
         """Add a criterion that the recipe provides. The card shows the criteria in the order in which they were added.
 
         Args:
             name: A stable key for the criterion.
             title: The criterion in one line, as the card shows it.
             judge: The recipe's function that decides the criterion.
+            uses: As in :class:`autograder.kit.model.Criterion`.
 
         Example::
 
@@ -112,7 +121,7 @@ class Draft(Generic[View]):
             talker = Draft("lab_8_1.talker", "Lab 8.1 · The talker", "Publish a greeting every 0.5 s.", heard)
             talker.asks("rate", 3, "Keeps the rate", heard.keeps_rate)
         """
-        self._criteria.append(Criterion(name, title, points, judge))
+        self._criteria.append(Criterion(name, title, points, judge, uses))
 
     def criterion(self, name: str, points: float, title: str) -> Callable[[Judge[View]], Judge[View]]:
         """Add a criterion of this exercise only. The card shows the criteria in the order in which they were added.
