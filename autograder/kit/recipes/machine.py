@@ -8,6 +8,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from autograder.kit.counterparts import Qos
+from autograder.kit.mistakes.common_mistakes import NOT_LATCHED, is_not_latched
 from autograder.kit.model import Finding
 from autograder.kit.recipes.own_scenario import QUIET, Declared, fields, pick, variant
 from autograder.kit.rules import SOME_TEXT, same, value
@@ -179,12 +180,7 @@ class Machine(Declared):
 
     def not_latched(self, key: str = "not_latched") -> None:
         """Add the mistake that the publisher does not store its last message for late subscribers."""
-        self._knows(
-            key,
-            lambda seen: any(event.data["policy"] == "durability" for event in seen.of("mismatch")),
-            "Your publisher does not store its last message, so a subscriber that joins later receives nothing.",
-            "Pass QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL) to create_publisher instead of 10.",
-        )
+        self._knows(key, is_not_latched, *NOT_LATCHED)
 
     def _scenario(self, bench: Bench) -> None:
         asks = self._asks(bench.random) if callable(self._asks) else self._asks
