@@ -13,7 +13,7 @@ from autograder.judge.one_check import is_certain, judge, look
 from autograder.judge.recording_differences import differences
 from autograder.kit.evidence import Evidence, Reference
 from autograder.kit.model import Exercise, Pace
-from autograder.kit.runners import RunsPrograms, processes, report_of
+from autograder.kit.runners import RunsPrograms, all_are_there, processes, report_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -28,6 +28,8 @@ LOOKS = 10
 """The maximum number of looks for a recording. On a busy machine the evidence of a look may be doubtful, so another
 look is needed. With at most three looks, 1 of 36 recordings failed when eighteen ran at once on two processors.
 """
+ALL_THERE = 20.0
+"""Time limit in seconds of wall time for the programs of a launch to make their endpoints."""
 
 
 class NotRecordable(RuntimeError):
@@ -130,8 +132,10 @@ def _endpoints_of_solution(exercise: Exercise, subject: Subject, domain_id: int)
                 )
             shown = bench.await_any_endpoint(exercise.roles)
             found |= {role: shown[role] for role in shown if shown[role] or role not in found}
-            if not exercise.runner and bench.seen().ending is None:
-                # The solution may make more endpoints after the first one, so wait until it has made all.
+            if bench.seen().ending is None:
+                # The solution may make more endpoints after the first one, and a launch may start more programs, so
+                # wait until all are there.
+                bench.watch_graph(lambda evidence: all_are_there(evidence.main), ALL_THERE)
                 shown = bench.await_any_endpoint(())
                 found |= {role: found.get(role, {}) | shown[role] for role in shown}
             for role, named in qos.items():

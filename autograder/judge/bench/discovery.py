@@ -152,7 +152,7 @@ def _process(gid: bytes) -> int:
 
 
 def counterparts(judge: Node, heard: list[str], spoken: list[str]) -> list[NodeName]:
-    """Return the subject's nodes that use these topics, except nodes whose names are not discovered yet.
+    """Return the subject's nodes that use these topics; none before the names of all of them are discovered.
 
     Args:
         heard: The topics to which the judge subscribes.
@@ -162,7 +162,9 @@ def counterparts(judge: Node, heard: list[str], spoken: list[str]) -> list[NodeN
     infos += [info for topic in spoken for info in judge.get_subscriptions_info_by_topic(topic)]
     names = [NodeName(info.node_name, info.node_namespace) for info in infos]
     own = judge.get_name()
-    return [n for n in dict.fromkeys(names) if n.name and n.name != own and not n.name.startswith(UNNAMED)]
+    if any(not one.name or one.name.startswith(UNNAMED) for one in names):
+        return []
+    return [one for one in dict.fromkeys(names) if one.name != own]
 
 
 def owners(judge: Node, role: str, name: str) -> list[NodeName]:

@@ -12,6 +12,7 @@ from autograder.judge.bench import discovery
 from autograder.judge.machine_fitness import Patience
 from autograder.kit.counterparts import Qos
 from autograder.kit.model import Pace
+from autograder.kit.runners import BUILDING, report_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -201,6 +202,9 @@ class Presence:
         def overdue() -> bool:
             nonlocal earlier
             left = patience.left
+            if left <= 0 and self._is_building():
+                patience.restart()
+                return False
             if left <= APPEAR / 2 and earlier is None:
                 earlier = self._subject.processes()
             if left > 0 or earlier is None:
@@ -212,7 +216,12 @@ class Presence:
             earlier = None
             return False
 
-        self._wait_on_graph(lambda: condition() or overdue(), (MAX_RESTARTS + 2) * APPEAR)
+        self._wait_on_graph(lambda: condition() or overdue(), BUILDING + (MAX_RESTARTS + 2) * APPEAR)
+
+    def _is_building(self) -> bool:
+        """Return True if a runner has reported the packages that it builds, and not yet the end of the build."""
+        part = self._recorder.part()
+        return report_of(part, "found") is not None and report_of(part) is None
 
     def _wait_on_graph(self, condition: Callable[[], bool], within: float) -> None:
         """Poll the graph: often once a process of the subject is known to have made a node, and rarely before that."""

@@ -14,19 +14,22 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from autograder.kit.counterparts import Qos
-from autograder.kit.draft import OWN, Draft
+from autograder.kit.draft import Draft
+from autograder.kit.mistakes import unfinished
 from autograder.kit.mistakes.common_mistakes import NOT_LATCHED, is_not_latched
 from autograder.kit.model import Advice, Mistake, Pace
+from autograder.kit.oracle.action_server import IN_EXECUTE
+from autograder.kit.oracle.goal_sender import GoalSender
 from autograder.kit.oracle.outputs import Kind, Output
-from autograder.kit.oracle.steps import Serves, Sets, Step, parameter_value
-from autograder.kit.recipes.own_scenario import QUIET, Met, OwnScenario, meet
+from autograder.kit.oracle.steps import Goal, Serves, Sets, Step, parameter_value
+from autograder.kit.recipes.own_scenario import ENDPOINTS, QUIET, Met, OwnScenario, meet
 from autograder.kit.recipes.relay import To
 
 if TYPE_CHECKING:
     from autograder.kit.evidence import Evidence, Part, Reference
     from autograder.kit.model import Bench, Exercise
 
-__all__ = ["SameAsSolution", "Serves", "Sets", "To"]
+__all__ = ["Goal", "SameAsSolution", "Serves", "Sets", "To"]
 
 DRAWINGS = 4
 """The number of drawings of the inputs in a recording."""
@@ -69,12 +72,13 @@ class _Drawn(OwnScenario):
         )
         likely = Mistake("variant", self._same_as_a_variant)
         ladder = super().ladder
-        at = ladder.index(OWN)
-        return (*ladder[:at], proven, likely, *ladder[at:])
+        in_execute = IN_EXECUTE if "action_server" in self.roles else ()
+        at = ladder.index(unfinished.NEVER_CONSTRUCTED)
+        return (*in_execute, *ladder[:at], proven, likely, *ladder[at:])
 
     def _same_as_a_variant(self, evidence: Evidence, *, simulated: bool = False) -> Advice | None:
         mine = evidence.main
-        if simulated and any(event.sim is None for event in mine.of("noted")):
+        if not mine.of("noted") or (simulated and any(event.sim is None for event in mine.of("noted"))):
             return None
         if self._agree(mine, self.expected(evidence)):
             return None
@@ -85,23 +89,25 @@ class _Drawn(OwnScenario):
         return None
 
     def _agree(self, seen: Part, expected: Part) -> bool:
-        return all(output.compared(seen, expected).passed for output in self._outputs)
+        made, due = ([e.data["made"] for e in part.of("noted", ENDPOINTS)] for part in (seen, expected))
+        return made == due and all(output.compared(seen, expected).passed for output in self._outputs)
 
 
 class SameAsSolution:
     """An exercise about a node that must do what the reference solution does with the same inputs.
 
     After each input the judge notes the outputs of this step: for a topic, the last message since the step before; for
-    a service that the input calls, its answer.
+    a service that the input calls, its answer; for an action, what came of each goal.
 
     Args:
         exercise_id: The lab's folder and the file's name, such as ``"lab_2_5.agent"``.
         title: The title of the card, naming the lab and the subject.
         task: One sentence that states the task.
-        gives: Draws the steps: each is an input, :class:`To` a topic or service, or a number of seconds of the
-            subject's time without an input. It must draw the same number of steps each time.
+        gives: Draws the steps: each is an input, :class:`To` a topic or service or a :class:`Goal` to an action, or a
+            number of seconds of the subject's time without an input. It must draw the same number of steps each time.
         tells: For each topic or service of the subject, the path of the field that is compared, such as ``"data"`` or
-            ``"linear.x"``; a tuple of paths if there are several.
+            ``"linear.x"``; a tuple of paths if there are several. For an action, ``("status", "feedback.left",
+            "result.arrived")``.
         lists: The same for topics of which all messages are compared, in order, however they are spread over the steps.
             The last ones may be missing, or be more.
         serves: The services that the subject calls, by name, and how the judge answers: at once, late or never.
@@ -222,8 +228,11 @@ class SameAsSolution:
         """Give the subject one step, and note its outputs. Return False if the subject does not answer."""
         bench = met.bench
         before = 0 if number == 0 else len(bench.seen().events)
+        went_through = True
         if not isinstance(step, (int, float)):
-            if not self._given(met, step):
+            went_through = self._given(met, step)
+            # What is wrong with a goal that does not end is compared, too.
+            if not (went_through or isinstance(step, Goal)):
                 return False
             bench.settle()
         if not bench.run_time(step if isinstance(step, (int, float)) else self._pause):
@@ -231,6 +240,8 @@ class SameAsSolution:
         bench.settle()
         events = bench.seen().events[before:]
         given = f"{step:g} s without an input" if isinstance(step, (int, float)) else step.name
+        if isinstance(step, Goal):
+            given = str(step)
         # The words of a refusal are the student's own, so only the presence of a reason is compared.
         if isinstance(step, Sets):
             given = f"{step.parameter} = {step.value}"
@@ -239,23 +250,36 @@ class SameAsSolution:
             bench.note(step.parameter, step=number, given=given, values=[taken])
         for output in self._of(Kind.STEPS):
             values = output.values(events)
-            bench.note(output.name, step=number, given=given, values=values if self._every else values[-1:])
-        return True
+            if isinstance(step, Goal) and output.name == step.name:
+                values = step.outcomes(bench.seen(), output.paths)
+            elif not self._every:
+                values = values[-1:]
+            bench.note(output.name, step=number, given=given, values=values)
+        return went_through
 
-    def _given(self, met: Met, step: To | Sets) -> bool:
+    def _given(self, met: Met, step: To | Sets | Goal) -> bool:
         """Give the subject an input. Return False if it should answer and does not."""
         bench, ends = met.bench, met.bench.reference.interface
         if isinstance(step, Sets):
             value = {"name": step.parameter, "value": parameter_value(step.value)}
             return self._ask(bench, step.node, SET, {"parameters": [value]})
-        speakers = dict(zip(sorted(ends.get("subscription", {})), met.speakers, strict=True))
-        callers = dict(zip(sorted(ends.get("service", {})), met.callers, strict=True))
+        speakers, callers, clients = (
+            dict(zip(sorted(ends.get(role, {})), made, strict=True))
+            for role, made in (
+                ("subscription", met.speakers),
+                ("service", met.callers),
+                ("action_server", met.action_callers),
+            )
+        )
+        if step.name not in {**speakers, **callers, **clients}:
+            names = ", ".join([*speakers, *callers, *clients])
+            raise ValueError(f"gives: {step.name!r} is not one of {names}")
+        if isinstance(step, Goal):
+            return step.play(GoalSender(bench, clients[step.name], simulated=True))
         whole = step.value if isinstance(step.value, Mapping) else {"data": step.value}
         if step.name in callers:
             callers[step.name].ask(whole)
             return callers[step.name].await_answers(QUIET[bench.pace])
-        if step.name not in speakers:
-            raise ValueError(f"gives: {step.name!r} is not one of {', '.join([*speakers, *callers])}")
         speakers[step.name].send(**whole)
         return True
 
@@ -279,9 +303,10 @@ class SameAsSolution:
 
     @staticmethod
     def _ask(bench: Bench, node: str, service: tuple[str, str], request: Mapping[str, Any]) -> bool:
-        nodes = (name for survey in bench.seen().of("interface") for name in survey.data["nodes"])
+        if not bench.watch_graph(lambda evidence: bool(_nodes(evidence.main, node)), QUIET[bench.pace]):
+            return False
         name, kind = service
-        caller = bench.call(f"{node or next(nodes, '')}/{name}", kind)
+        caller = bench.call(f"{_nodes(bench.seen(), node)[0]}/{name}", kind)
         if not caller.await_server(QUIET[bench.pace]):
             return False
         caller.ask(request)
@@ -289,3 +314,9 @@ class SameAsSolution:
 
     def _of(self, kind: Kind) -> list[Output]:
         return [output for output in self._outputs if output.kind is kind]
+
+
+def _nodes(part: Part, begins: str) -> list[str]:
+    """Return the full names of the subject's nodes that begin with a text, in the order in which they were seen."""
+    surveys = part.of("interface", "graph")
+    return [node for survey in surveys for node in survey.data["nodes"] if node.startswith(begins)]

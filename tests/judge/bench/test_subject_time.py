@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 import threading
 import time
-from contextlib import closing
+from contextlib import ExitStack, closing
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -169,3 +169,24 @@ def test_who_is_not_spun_does_not_go_along(subject_node: SubjectNode) -> None:
         closing(NodeClock(wire, Recorder(), NodeName("subject", "/"))) as borrowed,
     ):
         assert not borrowed.lend(5.0, lambda: False)
+
+
+def test_one_clock_steps_every_node_that_the_judge_meets(subject_node: SubjectNode, spun: Spun) -> None:
+    fired: dict[str, list[float]] = {"left": [], "right": []}
+    with ros_setup.lease_domain() as domain_id, Wire(domain_id) as wire, ExitStack() as opened:
+        for space, ticks in fired.items():
+            node = opened.enter_context(subject_node(domain_id, namespace=space))
+            node.create_timer(0.5, lambda ticks=ticks, node=node: ticks.append(seconds(node)))
+            opened.enter_context(spun(SingleThreadedExecutor(context=node.context), node))
+        names = [NodeName("subject", f"/{space}") for space in fired]
+        clock = opened.enter_context(closing(SimulatedClock(wire, Recorder(), *names)))
+        assert clock.take_over()
+        for ticks in fired.values():
+            ticks.clear()
+        assert clock.run(2.0, lambda: False)
+        assert [len(ticks) for ticks in fired.values()] == [4, 4]
+
+
+def seconds(node: Node) -> float:
+    """The time of a node."""
+    return node.get_clock().now().nanoseconds / 1e9
