@@ -12,6 +12,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, Generic, Protocol, TypeVar
 
+from autograder.kit.in_words import with_placeholders
 from autograder.kit.mistakes.runner_mistakes import with_those_of
 from autograder.kit.mistakes.unfinished import constructor_remark
 from autograder.kit.model import Advice, Bench, Criterion, Exercise, Finding, Mistake
@@ -174,6 +175,9 @@ class Draft(Generic[View]):
             before: The key of a mistake of the recipe, just before which the new mistake is checked; by default at one
                 of the two placeholders.
 
+        Raises:
+            ValueError: A text has a single brace, or a placeholder that cannot be filled in.
+
         Example::
 
             hello = Draft("lab_8_1.hello", "Lab 8.1", "Say hello.", Program("my_robot_pkg", "hello", "greeting"))
@@ -185,6 +189,8 @@ class Draft(Generic[View]):
                 late=True,
             )
         """
+        for text in (says, next_step):
+            with_placeholders(text, "seen", "expected")
 
         def told(seen: View, expected: View) -> Advice | None:
             if not (shown := found(seen, expected)):

@@ -12,6 +12,7 @@ from enum import StrEnum
 from typing import TYPE_CHECKING, Any, Protocol
 
 from autograder.kit.counterparts import Qos
+from autograder.kit.in_words import with_placeholders
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Container, Mapping, Sequence
@@ -124,7 +125,12 @@ def mistake(
         next_step: What the student should do now, with the same placeholders.
         certain: True if the evidence proves the mistake however busy the machine was.
         uses: As in :class:`Advice`.
+
+    Raises:
+        ValueError: A text has a single brace, or a placeholder that cannot be filled in.
     """
+    for words in (text, next_step):
+        with_placeholders(words)
 
     def recognize(evidence: Evidence) -> Advice | None:
         shown = found(evidence)

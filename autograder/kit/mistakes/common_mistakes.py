@@ -115,6 +115,18 @@ def qos_mismatch(role: str) -> Mistake:
     return Mistake("qos_mismatch", recognize, certain=True)
 
 
+NOT_LATCHED = (
+    "Your publisher does not store its last message, so a subscriber that joins later receives nothing.",
+    "Pass QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL) to create_publisher instead of 10.",
+)
+"""The two texts about a publisher for which :func:`is_not_latched` is true."""
+
+
+def is_not_latched(seen: Part, _: Part | None = None) -> bool:
+    """Return True if the judge asked for the last message of a publisher that does not store it."""
+    return any(event.data["policy"] == "durability" for event in seen.of("mismatch"))
+
+
 def servers(part: Part) -> int:
     """Return the largest number of servers of the subject that existed at the same time."""
     return max((int(event.data["count"]) for event in part.of("servers")), default=0)

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 from autograder.kit.counterparts import Qos
 from autograder.kit.draft import Draft
 from autograder.kit.mistakes import unfinished
+from autograder.kit.mistakes.common_mistakes import NOT_LATCHED, is_not_latched
 from autograder.kit.model import Advice, Mistake, Pace
 from autograder.kit.oracle.action_server import IN_EXECUTE
 from autograder.kit.oracle.goal_sender import GoalSender
@@ -164,6 +165,8 @@ class SameAsSolution:
             for name, paths in outputs.items()
         ]
         self._draft = Draft(exercise_id, title, task, _Drawn(self._scenario, self._outputs, roles))
+        if late_after:
+            self._draft.knows("not_latched", is_not_latched, *NOT_LATCHED, certain=True)
         for output in self._of(Kind.PARAMETER):
             self._draft.knows(
                 "parameter_not_declared",
