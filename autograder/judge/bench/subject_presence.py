@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from autograder.judge.bench import discovery
 from autograder.judge.machine_fitness import Patience
+from autograder.kit.counterparts import Qos
 from autograder.kit.model import Pace
 from autograder.kit.runners import BUILDING, report_of
 
@@ -245,8 +246,13 @@ class Presence:
             interface: The endpoints as seen a moment ago. If not given, they are queried now.
         """
         nodes = sorted(node.full for node in discovery.every_node(self._node, self._subject.keeper))
-        ends = [[e.role, e.topic, e.process] for e in discovery.topic_ends(self._node)]
-        seen = {"nodes": nodes, "ends": sorted(ends), **(interface or discovery.survey(self._node))}
+        topic_ends = discovery.topic_ends(self._node)
+        ends = sorted([end.role, end.topic, end.process] for end in topic_ends)
+        seen: dict[str, Any] = {"nodes": nodes, "ends": ends, **(interface or discovery.survey(self._node))}
+        if unusual := sorted(
+            [end.role, end.topic, str(end.qos)] for end in topic_ends if end.qos is not Qos.DEFAULT
+        ):
+            seen["qos"] = unusual
         surveys = self._recorder.part().of("interface", "graph")
         if not surveys or surveys[-1].data != seen:
             self._recorder.record("interface", "graph", **seen)

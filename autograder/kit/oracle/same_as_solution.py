@@ -13,19 +13,22 @@ from random import Random
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
+from autograder.kit.counterparts import Qos
 from autograder.kit.draft import Draft
 from autograder.kit.mistakes import unfinished
 from autograder.kit.model import Advice, Mistake, Pace
+from autograder.kit.oracle.action_server import IN_EXECUTE
+from autograder.kit.oracle.goal_sender import GoalSender
 from autograder.kit.oracle.outputs import Kind, Output
-from autograder.kit.oracle.steps import Serves, Sets, Step, parameter_value
+from autograder.kit.oracle.steps import Goal, Serves, Sets, Step, parameter_value
 from autograder.kit.recipes.own_scenario import ENDPOINTS, QUIET, Met, OwnScenario, meet
 from autograder.kit.recipes.relay import To
 
 if TYPE_CHECKING:
-    from autograder.kit.evidence import Evidence, Part
+    from autograder.kit.evidence import Evidence, Part, Reference
     from autograder.kit.model import Bench, Exercise
 
-__all__ = ["SameAsSolution", "Serves", "Sets", "To"]
+__all__ = ["Goal", "SameAsSolution", "Serves", "Sets", "To"]
 
 DRAWINGS = 4
 """The number of drawings of the inputs in a recording."""
@@ -37,6 +40,7 @@ NOTHING: Mapping[str, Any] = MappingProxyType({})
 SET = ("set_parameters", "rcl_interfaces/srv/SetParameters")
 DESCRIBE = ("describe_parameters", "rcl_interfaces/srv/DescribeParameters")
 DESCRIBED = ("type", "ranges")
+NOT_DECLARED = {"type": 0, "floating_point_range": (), "integer_range": ()}
 POINTS = 10.0
 """The points of an exercise whose author does not say how many it is worth."""
 
@@ -68,7 +72,8 @@ class _Drawn(OwnScenario):
         likely = Mistake("variant", self._same_as_a_variant)
         ladder = super().ladder
         at = ladder.index(unfinished.NEVER_CONSTRUCTED)
-        return (*ladder[:at], proven, likely, *ladder[at:])
+        in_execute = IN_EXECUTE if "action_server" in self.roles else ()
+        return (*in_execute, *ladder[:at], proven, likely, *ladder[at:])
 
     def _same_as_a_variant(self, evidence: Evidence, *, simulated: bool = False) -> Advice | None:
         mine = evidence.main
@@ -91,22 +96,25 @@ class SameAsSolution:
     """An exercise about a node that must do what the reference solution does with the same inputs.
 
     After each input the judge notes the outputs of this step: for a topic, the last message since the step before; for
-    a service that the input calls, its answer.
+    a service that the input calls, its answer; for an action, what came of each goal.
 
     Args:
         exercise_id: The lab's folder and the file's name, such as ``"lab_2_5.agent"``.
         title: The title of the card, naming the lab and the subject.
         task: One sentence that states the task.
-        gives: Draws the steps: each is an input, :class:`To` a topic or service, or a number of seconds of the
-            subject's time without an input. It must draw the same number of steps each time.
+        gives: Draws the steps: each is an input, :class:`To` a topic or service or a :class:`Goal` to an action, or a
+            number of seconds of the subject's time without an input. It must draw the same number of steps each time.
         tells: For each topic or service of the subject, the path of the field that is compared, such as ``"data"`` or
-            ``"linear.x"``; a tuple of paths if there are several.
+            ``"linear.x"``; a tuple of paths if there are several. For an action, ``("status", "feedback.left",
+            "result.arrived")``.
         lists: The same for topics of which all messages are compared, in order, however they are spread over the steps.
             The last ones may be missing, or be more.
         serves: The services that the subject calls, by name, and how the judge answers: at once, late or never.
         parameters: The names of the parameters whose description (type and range) is compared, and which values of
             them are taken and which are refused with a reason, if a step :class:`Sets` them.
         late_after: Seconds of the subject's time after which the judge subscribes, and asks for the last message, too.
+        qos: The topics on which the QoS counts: the judge's endpoint gets the QoS of the solution's, and an endpoint
+            that does not match gets or tells nothing.
         every: True to compare all messages of a step, not only the last: for a node that answers each input.
         pause: Seconds of the subject's time after each input.
         tolerance: The absolute or relative tolerance for numbers.
@@ -136,6 +144,7 @@ class SameAsSolution:
         serves: Mapping[str, Serves] = NOTHING,
         parameters: Sequence[str] = (),
         late_after: float = 0.0,
+        qos: Sequence[str] = (),
         every: bool = False,
         pause: float = PAUSE,
         tolerance: float = TOLERANCE,
@@ -144,7 +153,7 @@ class SameAsSolution:
     ) -> None:
         self._id, self._gives, self._serves = exercise_id, gives, serves
         self._every, self._pause, self._tolerance = every, pause, tolerance
-        self._late_after = late_after
+        self._late_after, self._qos = late_after, qos
         kinds = {
             Kind.STEPS: tells,
             Kind.LIST: lists,
@@ -156,6 +165,14 @@ class SameAsSolution:
             for name, paths in outputs.items()
         ]
         self._draft = Draft(exercise_id, title, task, _Drawn(self._scenario, self._outputs, roles))
+        for output in self._of(Kind.PARAMETER):
+            self._draft.knows(
+                "parameter_not_declared",
+                output.is_undeclared,
+                f"Your node has no parameter {output.name}.",
+                f'Declare it in __init__, with its default: self.declare_parameter("{output.name}", …).',
+                certain=True,
+            )
         for output in self._outputs:
             name, each = output.name.strip("/"), points / len(self._outputs)
             self._draft.criterion(name, each, output.title)(output.compared)
@@ -172,7 +189,15 @@ class SameAsSolution:
             steps = self._gives(drawn)
             serve = partial(self._serve, bench, drawn)
             plays = partial(self._plays, steps)
-            meet(bench, f"drawing {drawing}", plays, serve, listens=not self._late_after)
+            part = f"drawing {drawing}"
+            meet(bench, part, plays, serve, listens=not self._late_after, qos=self._matching(bench.reference))
+
+    def _matching(self, reference: Reference) -> dict[str, Qos]:
+        """Return the QoS of the judge's endpoints on the topics on which it counts."""
+        recorded = {topic: Qos(qos) for ends in reference.qos.values() for topic, qos in ends.items()}
+        if usual := ", ".join(topic for topic in self._qos if topic not in recorded):
+            raise ValueError(f"qos: on {usual} the solution has the default QoS, which each answer has")
+        return {topic: recorded[topic] for topic in self._qos}
 
     def _serve(self, bench: Bench, drawn: Random, service: str, kind: str) -> None:
         how = self._serves[service]
@@ -184,7 +209,7 @@ class SameAsSolution:
         if self._late_after:
             bench.run_time(self._late_after)
             for topic, kind in bench.reference.interface["publisher"].items():
-                bench.listen(topic, kind, latched=True)
+                bench.listen(topic, kind, qos=Qos.LATCHED)
             bench.wait_until(lambda e: bool(e.main.of("mismatch") or e.main.of("message")), QUIET[bench.pace])
         went_through = self._describe(bench) and all(
             self._takes(met, number, step) for number, step in enumerate([self._pause, *steps])
@@ -200,8 +225,11 @@ class SameAsSolution:
         """Give the subject one step, and note its outputs. Return False if the subject does not answer."""
         bench = met.bench
         before = 0 if number == 0 else len(bench.seen().events)
+        went_through = True
         if not isinstance(step, (int, float)):
-            if not self._given(met, step):
+            went_through = self._given(met, step)
+            # What is wrong with a goal that does not end is compared, too.
+            if not (went_through or isinstance(step, Goal)):
                 return False
             bench.settle()
         if not bench.run_time(step if isinstance(step, (int, float)) else self._pause):
@@ -209,6 +237,8 @@ class SameAsSolution:
         bench.settle()
         events = bench.seen().events[before:]
         given = f"{step:g} s without an input" if isinstance(step, (int, float)) else step.name
+        if isinstance(step, Goal):
+            given = str(step)
         # The words of a refusal are the student's own, so only the presence of a reason is compared.
         if isinstance(step, Sets):
             given = f"{step.parameter} = {step.value}"
@@ -217,35 +247,47 @@ class SameAsSolution:
             bench.note(step.parameter, step=number, given=given, values=[taken])
         for output in self._of(Kind.STEPS):
             values = output.values(events)
-            bench.note(output.name, step=number, given=given, values=values if self._every else values[-1:])
-        return True
+            if isinstance(step, Goal) and output.name == step.name:
+                values = step.outcomes(bench.seen(), output.paths)
+            elif not self._every:
+                values = values[-1:]
+            bench.note(output.name, step=number, given=given, values=values)
+        return went_through
 
-    def _given(self, met: Met, step: To | Sets) -> bool:
+    def _given(self, met: Met, step: To | Sets | Goal) -> bool:
         """Give the subject an input. Return False if it should answer and does not."""
         bench, ends = met.bench, met.bench.reference.interface
         if isinstance(step, Sets):
             value = {"name": step.parameter, "value": parameter_value(step.value)}
             return self._ask(bench, step.node, SET, {"parameters": [value]})
-        speakers = dict(zip(sorted(ends.get("subscription", {})), met.speakers, strict=True))
-        callers = dict(zip(sorted(ends.get("service", {})), met.callers, strict=True))
+        speakers, callers, clients = (
+            dict(zip(sorted(ends.get(role, {})), made, strict=True))
+            for role, made in (
+                ("subscription", met.speakers),
+                ("service", met.callers),
+                ("action_server", met.action_callers),
+            )
+        )
+        if step.name not in {**speakers, **callers, **clients}:
+            names = ", ".join([*speakers, *callers, *clients])
+            raise ValueError(f"gives: {step.name!r} is not one of {names}")
+        if isinstance(step, Goal):
+            return step.play(GoalSender(bench, clients[step.name], simulated=True))
         whole = step.value if isinstance(step.value, Mapping) else {"data": step.value}
         if step.name in callers:
             callers[step.name].ask(whole)
             return callers[step.name].await_answers(QUIET[bench.pace])
-        if step.name not in speakers:
-            raise ValueError(f"gives: {step.name!r} is not one of {', '.join([*speakers, *callers])}")
         speakers[step.name].send(**whole)
         return True
 
     def _describe(self, bench: Bench) -> bool:
         """Note the types and ranges of the parameters. Return False if the subject does not answer."""
-        names = [output.name for output in self._of(Kind.PARAMETER)]
-        if not names:
-            return True
-        if not self._ask(bench, "", DESCRIBE, {"names": names}):
-            return False
-        described = bench.seen().of("answered")[-1].data["fields"]["descriptors"]
-        for name, one in zip(names, described, strict=False):
+        for name in [output.name for output in self._of(Kind.PARAMETER)]:
+            # A node answers with an empty list if one of the parameters is not declared.
+            if not self._ask(bench, "", DESCRIBE, {"names": [name]}):
+                return False
+            described = bench.seen().of("answered")[-1].data["fields"]["descriptors"]
+            (one,) = described or [NOT_DECLARED]
             ranges = [
                 [r["from_value"], r["to_value"]]
                 for r in (*one["floating_point_range"], *one["integer_range"])

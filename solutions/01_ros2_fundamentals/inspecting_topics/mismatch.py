@@ -88,7 +88,7 @@ def _is_answered(evidence: Evidence) -> bool:
     return evidence.main.ending is not None or (given is not None and set(KEYS) <= set(given))
 
 
-def bystander(planted: Mapping[str, Any]) -> dict[str, dict[str, str]]:
+def bystander(planted: Mapping[str, Any]) -> dict[str, Any]:
     """The topics of a third node by role: topics of its own, and each side's beside the node in question.
 
     In one participant a topic has one type, so if the two sides share the name it is on the listener's only.

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import sys
 import threading
 import time
 from contextlib import ExitStack, closing
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pytest
+from rcl_interfaces.msg import SetParametersResult
 from rclpy.executors import SingleThreadedExecutor
+from rclpy.parameter import Parameter
 
 from autograder.judge import ros_setup
 from autograder.judge.bench import subject_time
@@ -108,6 +112,37 @@ def test_timers_fire_as_they_would_later_on_and_the_clock_is_given_back(
             assert all(moment - began >= 19.0 for moment in fired)
             assert not node.get_parameter("use_sim_time").value
             assert abs(node.get_clock().now().nanoseconds / 1e9 - time.time()) < 5.0
+
+
+def test_a_node_s_own_callbacks_of_parameters_do_not_hear_of_the_judge_s_clock(
+    subject_node: SubjectNode, spun: Spun
+) -> None:
+    if not (Path(sys.prefix) / "share/rclpy").is_dir():
+        pytest.skip("a ROS that was sourced is as it is")
+    heard: list[str] = []
+
+    def refuse(parameters: list[Parameter]) -> SetParametersResult:
+        heard.extend(one.name for one in parameters)
+        return SetParametersResult(successful=False, reason="not mine")
+
+    def keep(parameters: list[Parameter]) -> list[Parameter]:
+        heard.extend(one.name for one in parameters)
+        return parameters
+
+    with ros_setup.lease_domain() as domain_id, Wire(domain_id) as wire, subject_node(domain_id) as node:
+        node.declare_parameter("speed", 0.5)
+        node.add_pre_set_parameters_callback(keep)
+        node.add_on_set_parameters_callback(refuse)
+        node.add_post_set_parameters_callback(keep)
+        with (
+            spun(SingleThreadedExecutor(context=node.context), node),
+            closing(SimulatedClock(wire, Recorder(), NodeName("subject", "/"))) as clock,
+        ):
+            assert clock.take_over()
+            assert node.get_clock().now().nanoseconds / 1e9 == FIRST
+        assert heard == []
+        (result,) = node.set_parameters([Parameter("speed", value=0.7)])
+        assert (result.reason, heard) == ("not mine", ["speed", "speed"])
 
 
 def test_a_scenario_says_how_much_time_passes_at_once(subject_node: SubjectNode, spun: Spun) -> None:
