@@ -31,7 +31,7 @@ waits.
 """
 
 
-SLOW = 5.0
+SLOW = 10.0
 """Seconds from which on a check is slow, so that its author is told which step took longest."""
 _SLOW_STEP = "the slowest step: "
 
