@@ -207,7 +207,8 @@ class _Decoy:
         self, name: str, publishes: Mapping[str, str], subscribes: Mapping[str, str], qos: QoSProfile
     ) -> set[Endpoint]:
         with receivers_wait() if self._node is None else contextlib.nullcontext():
-            node = Node(name, context=self._context, use_global_arguments=False)
+            space, _, own = name.rpartition("/")
+            node = Node(own, namespace=space, context=self._context, use_global_arguments=False)
         self._destroy()
         self._node = node
         for topic, type_name in publishes.items():

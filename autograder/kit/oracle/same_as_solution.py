@@ -71,8 +71,8 @@ class _Drawn(OwnScenario):
         )
         likely = Mistake("variant", self._same_as_a_variant)
         ladder = super().ladder
-        at = ladder.index(unfinished.NEVER_CONSTRUCTED)
         in_execute = IN_EXECUTE if "action_server" in self.roles else ()
+        at = ladder.index(unfinished.NEVER_CONSTRUCTED)
         return (*in_execute, *ladder[:at], proven, likely, *ladder[at:])
 
     def _same_as_a_variant(self, evidence: Evidence, *, simulated: bool = False) -> Advice | None:

@@ -37,10 +37,10 @@ _NOUN = {"publisher": "a publisher on", "subscription": "a subscription to", "cl
 _NOUN |= {"service": "a service", "action_client": "a client of the action", "action_server": "an action"}
 ECHO = 1.0
 """The maximum number of seconds between a logged and a printed line with the same word that count as one report."""
-ENDPOINTS = "endpoints"
-"""The name of the event that records the subject's endpoints if one of the reference solution's is missing."""
 THREADS = 4
 """The number of threads that spin a notebook's class with an action server."""
+ENDPOINTS = "endpoints"
+"""The name of the event that records the subject's endpoints if one of the reference solution's is missing."""
 SERVED = 3.0
 """Time limit in seconds of wall time until the judge can call a service that is on the ROS graph."""
 
