@@ -67,6 +67,7 @@ class NotebookSubject:
         self._fresh = True
         self._marker: str | None = None
         self._may_make_more = False
+        self.is_held = False
         self._ended = False
         self._end: Callable[..., None] = lambda *_, **__: None
         self._ready = threading.Event()
@@ -113,6 +114,7 @@ class NotebookSubject:
         self._recorder = recorder
         self._end = recorder.end
         self._marker, self._may_make_more, self._ended = None, False, False
+        self.is_held = self._is_class
         self._stopped.clear()
         fresh, self._fresh = self._fresh, False
         self._tell(run_messages.Start(self._run, list(arguments), fresh, options))
@@ -135,6 +137,7 @@ class NotebookSubject:
         """
         if self._may_make_more:
             self._marker, self._may_make_more = None, False
+        self.is_held = False
         self._tell(judge_messages.Release(self._run))
 
     @property

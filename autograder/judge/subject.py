@@ -98,6 +98,10 @@ class Subject(Protocol):
     def may_make_more(self) -> bool:
         """True if the node is not spun yet, and its timer or thread may make more endpoints after :meth:`release`."""
 
+    @property
+    def is_held(self) -> bool:
+        """True for a class of a notebook until :meth:`release`: nothing spins it yet."""
+
     def processes(self) -> frozenset[int]:
         """Return the ids of the running processes that the subject has started; none if they are not known."""
 
@@ -123,6 +127,7 @@ class InOwnProcesses:
     keeper = ""
     marker = None
     may_make_more = False
+    is_held = False
 
     def processes(self) -> frozenset[int]:
         """Return an empty set: the subject's processes are not children of the judge, so their ids are unknown."""

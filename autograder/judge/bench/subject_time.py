@@ -260,6 +260,8 @@ class SubjectTime:
         self._doubt = doubt
         self._clock: SimulatedClock | None = None
         self._clock_refused = False
+        self.is_lost = False
+        """True if the subject's executor has stopped answering in simulated time. Then no more time passes for it."""
         self._deaf: set[str] = set()
 
     def run(
@@ -278,11 +280,14 @@ class SubjectTime:
             False if simulated time could not go on because the subject's executor no longer answers.
         """
         over = until or (lambda: False)
+        if self.is_lost:
+            return False
         if self._pace is Pace.FAST and self._follow_clock():
             assert self._clock is not None
             turns = self._clock.run(seconds, lambda: over() or self._subject.ended, step)
             if self._clock.doubtful:
                 self._doubt()
+            self.is_lost = not turns
             return turns
         self._recorder.wait(lambda: over() or self._subject.ended, seconds, quiet=quiet, wall=True)
         return True

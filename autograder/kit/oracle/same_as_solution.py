@@ -284,10 +284,7 @@ class SameAsSolution:
 
     def _describe(self, bench: Bench) -> bool:
         """Note the types and ranges of the parameters. Return False if the subject does not answer."""
-        names = [output.name for output in self._of(Kind.PARAMETER)]
-        if names and not bench.await_node():
-            return False
-        for name in names:
+        for name in [output.name for output in self._of(Kind.PARAMETER)]:
             # A node answers with an empty list if one of the parameters is not declared.
             if not self._ask(bench, "", DESCRIBE, {"names": [name]}):
                 return False
