@@ -69,9 +69,13 @@ class NodeClock:
     An answer from the node's parameter service proves that the node's executor has made a round since the request. An
     executor takes only one request of a service in each round (rclpy/executors.py, ``_take_service``). So the answers
     to three requests that are sent together prove three rounds.
+
+    Attributes:
+        node: The node of the subject.
     """
 
     def __init__(self, wire: Wire, recorder: Recorder, node: NodeName) -> None:
+        self.node = node
         self._wire = wire
         self._recorder = recorder
         self._publisher = wire.node.create_publisher(Clock, "/clock", QoSProfile(depth=10))
@@ -97,6 +101,10 @@ class NodeClock:
         message.clock.sec = int(now)
         message.clock.nanosec = round((now - int(now)) * 1e9)
         self._publisher.publish(message)
+        return self.keeps_up()
+
+    def keeps_up(self) -> bool:
+        """Return True if the node's executor makes as many rounds as it needs to handle what has arrived."""
         return _ask(self._recorder, self._get, _QUESTION, ANSWER_LIMIT, turns=TURNS) is not None
 
     def lend(self, seconds: float, until: Callable[[], bool]) -> bool:
@@ -167,6 +175,7 @@ class SimulatedClock(NodeClock):
     """A simulated clock that moves in steps, for one node of the subject.
 
     Attributes:
+        node: The node of the subject.
         doubtful: True if the result must be confirmed in real time, because a step took too long or another node
             moved the clock.
     """
@@ -304,7 +313,12 @@ class SubjectTime:
         for node in self._presence.counterparts():
             if node.full in self._deaf or self._subject.ended:
                 continue
-            if not all(answers(self._wire, self._recorder, node, limit) for _ in range(2)):
+            # The clock's own client is already connected, so its node is asked much faster.
+            if self._clock is not None and self._clock.node == node:
+                has_settled = self._clock.keeps_up()
+            else:
+                has_settled = all(answers(self._wire, self._recorder, node, limit) for _ in range(2))
+            if not has_settled:
                 self._deaf.add(node.full)
 
     def await_attention(self) -> None:
