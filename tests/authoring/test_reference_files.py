@@ -64,6 +64,7 @@ def test_inputs_that_were_changed_and_not_recorded_again_are_noticed(
     done = _autograder("record", "--check", "exercise_1_2.three_ints")
     assert done.returncode == 1, done.stdout + done.stderr
     assert "exercise_1_2.three_ints: differs from" in done.stdout
+    assert "the service comes late, request /add_two_ints, number 1: " in done.stdout
 
 
 @pytest.mark.ros
