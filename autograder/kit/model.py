@@ -304,6 +304,13 @@ class Bench(Protocol):
         Without this, a fast subject would look slow on a busy machine.
         """
 
+    def take_in(self) -> None:
+        """Wait until the judge has recorded everything that the subject has sent so far."""
+
+    @property
+    def moment(self) -> float:
+        """The subject's time now, in seconds: simulated time, or the time since the part began."""
+
     def await_attention(self) -> None:
         """Wait until the subscribing nodes are spun and have discovered the judge's publishers.
 

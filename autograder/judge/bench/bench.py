@@ -384,6 +384,13 @@ class TestBench:
     def settle(self) -> None:
         self._time.settle()
 
+    def take_in(self) -> None:
+        self._recorder.take_in()
+
+    @property
+    def moment(self) -> float:
+        return self._recorder.moment
+
     def await_attention(self) -> None:
         self._time.await_attention()
 
