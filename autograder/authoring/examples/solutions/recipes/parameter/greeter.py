@@ -9,6 +9,7 @@ EXERCISE = SameAsSolution(
     gives=lambda random: [Sets("text", f"Ahoy {random.randint(1000, 9999)}") for _ in range(2)],
     tells={"/greeting": "data"},
     parameters=("text",),
+    roles=("publisher",),
 ).exercise(
     text={
         "Publish a greeting on `greeting` every 0.5 s.": "greeting",
