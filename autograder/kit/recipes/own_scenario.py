@@ -82,7 +82,11 @@ def once_met(happens: Callable[[Met], bool]) -> Callable[[Bench], None]:
 
         recipe = OwnScenario(once_met(switching), "publisher", "service")
     """
-    return lambda bench: meet(bench, "met", happens)
+
+    def scenario(bench: Bench) -> None:
+        meet(bench, "met", happens)
+
+    return scenario
 
 
 def meet(
@@ -121,7 +125,8 @@ def meet(
         # A subscription loses what is sent before it has discovered the judge's publisher.
         if speakers:
             bench.await_attention()
-        met = all(caller.await_server(SERVED) for caller in (*callers, *action_callers))
+        met = all(caller.await_server(SERVED) for caller in callers)
+        met = met and all(caller.await_server(SERVED) for caller in action_callers)
         if not (met and happens(Met(bench, tuple(publishers), speakers, callers, action_callers))):
             bench.note_whether_it_spins()
             # The callback of a server may hang in a thread of its own while the node still answers.
