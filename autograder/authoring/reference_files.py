@@ -17,10 +17,10 @@ import msgspec
 
 from autograder import course, exercises
 from autograder.authoring import answer_bank
-from autograder.authoring.recording_differences import differences
 from autograder.judge import evidence_files
 from autograder.judge.check_process import Child
 from autograder.judge.controlled_judge import JudgeDied, JudgeProcess
+from autograder.judge.recording_differences import differences
 from autograder.kit.evidence import Variant
 from autograder.masters.master_files import MasterError
 from autograder.masters.reference_solutions import reference_source

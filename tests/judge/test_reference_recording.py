@@ -42,7 +42,10 @@ class _Subject:
 
 
 class _Looks:
-    """Looks that show a first message of these numbers; None for one that is doubtful."""
+    """Looks that show a first message of these numbers; None for one that is doubtful.
+
+    A negative number is shown without its sign, in simulated time and in a doubtful look.
+    """
 
     def __init__(self, *numbers: int | None) -> None:
         self.taken = 0
@@ -53,8 +56,11 @@ class _Looks:
     ) -> Seen:
         number = next(self._numbers)
         self.taken += 1
-        message = Event(0.5, "message", "/chatter", {"number": number})
-        return Seen(Evidence([Part("talking", {}, [message])], reference), number is None)
+        is_doubtful = number is None or number < 0
+        sim = 100.0 if number is not None and number < 0 else None
+        shown = None if number is None else abs(number)
+        message = Event(0.5, "message", "/chatter", {"number": shown, "fields": {"data": shown}}, sim)
+        return Seen(Evidence([Part("talking", {}, [message])], reference), is_doubtful)
 
 
 @pytest.mark.parametrize(
@@ -64,6 +70,7 @@ class _Looks:
         pytest.param(
             (2, None, 1), 1, 3, id="the first message was lost once, and once it did not follow the clock"
         ),
+        pytest.param((-2, -1, -1), 1, 3, id="two doubtful looks agree"),
         pytest.param((2,) * reference_recording.LOOKS, 2, reference_recording.LOOKS, id="never right"),
         pytest.param((0,), 0, 1, id="surely wrong"),
     ],
@@ -94,8 +101,10 @@ def test_a_wrong_answer_is_recorded_in_a_look_that_is_not_doubtful(monkeypatch: 
 
     (part,) = recorded(_Looks(None, 7)).parts
     assert part.events[0].data["number"] == 7
+    (part,) = recorded(_Looks(-7, -8, -7)).parts
+    assert part.events[0].data["number"] == 7
     with pytest.raises(reference_recording.NotRecordable, match="does not follow the simulated clock"):
-        recorded(_Looks(*(None,) * reference_recording.LOOKS))
+        recorded(_Looks(*range(-reference_recording.LOOKS, 0)))
 
 
 def test_an_endpoint_that_is_announced_after_the_first_one_is_recorded_too(
@@ -122,5 +131,6 @@ def test_an_endpoint_that_is_announced_after_the_first_one_is_recorded_too(
 
 def _record(monkeypatch: pytest.MonkeyPatch, look: _Looks, exercise: Exercise = EXERCISE) -> Reference:
     monkeypatch.setattr(reference_recording, "look", look)
-    monkeypatch.setattr(reference_recording, "_endpoints_of_solution", lambda *_: {})
+    bare = Reference(exercise.id, {})
+    monkeypatch.setattr(reference_recording, "_endpoints_of_solution", lambda *_: bare)
     return reference_recording.record(exercise, cast("Any", _Subject()), domain_id=1)

@@ -7,11 +7,12 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from autograder.kit.counterparts import Qos
 from autograder.kit.evidence import Event, Evidence, Part, Reference, Variant
 from autograder.kit.oracle.same_as_solution import SameAsSolution, Sets, To
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from autograder.kit.model import Exercise
 
@@ -140,7 +141,7 @@ def test_messages_of_a_list_before_the_judge_stepped_the_clock_are_not_too_many(
     ("speed", "seen"),
     [
         (((3, []), (False, True)), "double without a range"),
-        (((0, []), (False, True)), "not declared without a range"),
+        (((0, []), (False, True)), "not declared at the start"),
         (((3, [[0.0, 2.0]]), (True, False)), "taken after step 2 (speed = 2.5)"),
         (((3, [[0.0, 2.0]]), (False, False)), "refused without a reason after step 2 (speed = 2.5)"),
     ],
@@ -161,3 +162,31 @@ def test_a_run_like_a_recorded_wrong_answer_is_named_for_certain_in_simulated_ti
     assert told(replace(run(ALWAYS_AHEAD), events=sorted(run(ALWAYS_AHEAD).events, key=lambda one: one.name)))
     assert told(run([[0.0, 0.0], [0.2005, 0.0], [0.2, 0.0]], [1, 2, 3, 4]))
     assert told(run(RIGHT)) == told(run(ALWAYS_AHEAD, drawing=0)) == told(run([[0.1, 0.0]] * 3)) == []
+
+
+def test_the_judge_s_endpoint_has_the_qos_of_the_solution_s_if_the_author_says_that_it_counts() -> None:
+    def scenario(*topics: str, qos: dict[str, dict[str, str]]) -> list[tuple[str, Qos]]:
+        counts = SameAsSolution("a.b", "A", "B", gives=lambda _: [], qos=topics).exercise()
+        counts.scenario(bench := _Bench(Reference("a.b", INTERFACE, [], qos=qos)))  # type: ignore[arg-type]
+        return bench.made
+
+    sensor = {"subscription": {"/scan": "sensor"}}
+    assert ("/scan", Qos.SENSOR) in scenario("/scan", qos=sensor)
+    assert set(scenario(qos=sensor)) == {(name, Qos.DEFAULT) for name in ("/cmd_vel", "/beat", "/scan")}
+    with pytest.raises(ValueError, match="on /scan the solution has the default QoS"):
+        scenario("/scan", qos={})
+
+
+class _Bench:
+    """A bench on which no endpoint of a subject appears. It remembers the judge's endpoints."""
+
+    def __init__(self, reference: Reference) -> None:
+        self.reference, self.made = reference, list[tuple[str, Qos]]()
+
+    def listen(self, topic: str, _: str, *, qos: Qos) -> None:
+        self.made.append((topic, qos))
+
+    speak = listen
+
+    def __getattr__(self, _: str) -> Callable[..., bool]:
+        return lambda *_, **__: False

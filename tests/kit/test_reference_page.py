@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from autograder.kit.oracle.action_server import GoalsSeen, SendsGoals
+from autograder.kit.quests.quest import Quest
 from autograder.kit.recipes.action_client import ActionClient
 from autograder.kit.recipes.launch_file import LaunchFile
 from autograder.kit.recipes.own_scenario import OwnScenario
@@ -47,6 +48,7 @@ RECIPES: dict[str, Recipe[Any]] = {
     "Program": Program("my_robot_pkg", "simple_node", "a program"),
     "LaunchFile": LaunchFile("my_robot_pkg", "/chatter"),
     "ServiceType": ServiceType("srv/AddTwoInts.srv", "my_robot_interfaces"),
+    "Quest": Quest(lambda _: {}),
 }
 
 

@@ -91,6 +91,10 @@ class Output:
         )
         return Finding(False, due, came if differs < both else f"{came}: your node did not get that far")
 
+    def is_undeclared(self, seen: Part, _: Part) -> bool:
+        """Return True if the subject has no parameter of this name."""
+        return any(event.data["values"] == [[0, []]] for event in seen.of("noted", self.name))
+
     def _rows(self, part: Part) -> list[tuple[Any, str]]:
         """Return what is compared, in order: the values of each step with its words, or each message of a list."""
         noted = part.of("noted", self.name)

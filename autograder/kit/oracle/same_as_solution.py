@@ -13,17 +13,19 @@ from random import Random
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
-from autograder.kit.draft import OWN, Draft
+from autograder.kit.counterparts import Qos
+from autograder.kit.draft import Draft
+from autograder.kit.mistakes import unfinished
 from autograder.kit.model import Advice, Mistake, Pace
 from autograder.kit.oracle.action_server import IN_EXECUTE
 from autograder.kit.oracle.goal_sender import GoalSender
 from autograder.kit.oracle.outputs import Kind, Output
 from autograder.kit.oracle.steps import Goal, Serves, Sets, Step, parameter_value
-from autograder.kit.recipes.own_scenario import QUIET, Met, OwnScenario, meet
+from autograder.kit.recipes.own_scenario import ENDPOINTS, QUIET, Met, OwnScenario, meet
 from autograder.kit.recipes.relay import To
 
 if TYPE_CHECKING:
-    from autograder.kit.evidence import Evidence, Part
+    from autograder.kit.evidence import Evidence, Part, Reference
     from autograder.kit.model import Bench, Exercise
 
 __all__ = ["Goal", "SameAsSolution", "Serves", "Sets", "To"]
@@ -38,6 +40,7 @@ NOTHING: Mapping[str, Any] = MappingProxyType({})
 SET = ("set_parameters", "rcl_interfaces/srv/SetParameters")
 DESCRIBE = ("describe_parameters", "rcl_interfaces/srv/DescribeParameters")
 DESCRIBED = ("type", "ranges")
+NOT_DECLARED = {"type": 0, "floating_point_range": (), "integer_range": ()}
 POINTS = 10.0
 """The points of an exercise whose author does not say how many it is worth."""
 
@@ -68,13 +71,13 @@ class _Drawn(OwnScenario):
         )
         likely = Mistake("variant", self._same_as_a_variant)
         ladder = super().ladder
-        at = ladder.index(OWN)
         in_execute = IN_EXECUTE if "action_server" in self.roles else ()
+        at = ladder.index(unfinished.NEVER_CONSTRUCTED)
         return (*in_execute, *ladder[:at], proven, likely, *ladder[at:])
 
     def _same_as_a_variant(self, evidence: Evidence, *, simulated: bool = False) -> Advice | None:
         mine = evidence.main
-        if simulated and any(event.sim is None for event in mine.of("noted")):
+        if not mine.of("noted") or (simulated and any(event.sim is None for event in mine.of("noted"))):
             return None
         if self._agree(mine, self.expected(evidence)):
             return None
@@ -85,7 +88,8 @@ class _Drawn(OwnScenario):
         return None
 
     def _agree(self, seen: Part, expected: Part) -> bool:
-        return all(output.compared(seen, expected).passed for output in self._outputs)
+        made, due = ([e.data["made"] for e in part.of("noted", ENDPOINTS)] for part in (seen, expected))
+        return made == due and all(output.compared(seen, expected).passed for output in self._outputs)
 
 
 class SameAsSolution:
@@ -109,6 +113,8 @@ class SameAsSolution:
         parameters: The names of the parameters whose description (type and range) is compared, and which values of
             them are taken and which are refused with a reason, if a step :class:`Sets` them.
         late_after: Seconds of the subject's time after which the judge subscribes, and asks for the last message, too.
+        qos: The topics on which the QoS counts: the judge's endpoint gets the QoS of the solution's, and an endpoint
+            that does not match gets or tells nothing.
         every: True to compare all messages of a step, not only the last: for a node that answers each input.
         pause: Seconds of the subject's time after each input.
         tolerance: The absolute or relative tolerance for numbers.
@@ -138,6 +144,7 @@ class SameAsSolution:
         serves: Mapping[str, Serves] = NOTHING,
         parameters: Sequence[str] = (),
         late_after: float = 0.0,
+        qos: Sequence[str] = (),
         every: bool = False,
         pause: float = PAUSE,
         tolerance: float = TOLERANCE,
@@ -146,7 +153,7 @@ class SameAsSolution:
     ) -> None:
         self._id, self._gives, self._serves = exercise_id, gives, serves
         self._every, self._pause, self._tolerance = every, pause, tolerance
-        self._late_after = late_after
+        self._late_after, self._qos = late_after, qos
         kinds = {
             Kind.STEPS: tells,
             Kind.LIST: lists,
@@ -158,6 +165,14 @@ class SameAsSolution:
             for name, paths in outputs.items()
         ]
         self._draft = Draft(exercise_id, title, task, _Drawn(self._scenario, self._outputs, roles))
+        for output in self._of(Kind.PARAMETER):
+            self._draft.knows(
+                "parameter_not_declared",
+                output.is_undeclared,
+                f"Your node has no parameter {output.name}.",
+                f'Declare it in __init__, with its default: self.declare_parameter("{output.name}", …).',
+                certain=True,
+            )
         for output in self._outputs:
             name, each = output.name.strip("/"), points / len(self._outputs)
             self._draft.criterion(name, each, output.title)(output.compared)
@@ -174,7 +189,15 @@ class SameAsSolution:
             steps = self._gives(drawn)
             serve = partial(self._serve, bench, drawn)
             plays = partial(self._plays, steps)
-            meet(bench, f"drawing {drawing}", plays, serve, listens=not self._late_after)
+            part = f"drawing {drawing}"
+            meet(bench, part, plays, serve, listens=not self._late_after, qos=self._matching(bench.reference))
+
+    def _matching(self, reference: Reference) -> dict[str, Qos]:
+        """Return the QoS of the judge's endpoints on the topics on which it counts."""
+        recorded = {topic: Qos(qos) for ends in reference.qos.values() for topic, qos in ends.items()}
+        if usual := ", ".join(topic for topic in self._qos if topic not in recorded):
+            raise ValueError(f"qos: on {usual} the solution has the default QoS, which each answer has")
+        return {topic: recorded[topic] for topic in self._qos}
 
     def _serve(self, bench: Bench, drawn: Random, service: str, kind: str) -> None:
         how = self._serves[service]
@@ -186,7 +209,7 @@ class SameAsSolution:
         if self._late_after:
             bench.run_time(self._late_after)
             for topic, kind in bench.reference.interface["publisher"].items():
-                bench.listen(topic, kind, latched=True)
+                bench.listen(topic, kind, qos=Qos.LATCHED)
             bench.wait_until(lambda e: bool(e.main.of("mismatch") or e.main.of("message")), QUIET[bench.pace])
         went_through = self._describe(bench) and all(
             self._takes(met, number, step) for number, step in enumerate([self._pause, *steps])
@@ -261,12 +284,14 @@ class SameAsSolution:
     def _describe(self, bench: Bench) -> bool:
         """Note the types and ranges of the parameters. Return False if the subject does not answer."""
         names = [output.name for output in self._of(Kind.PARAMETER)]
-        if not names:
-            return True
-        if not (bench.await_node() and self._ask(bench, "", DESCRIBE, {"names": names})):
+        if names and not bench.await_node():
             return False
-        described = bench.seen().of("answered")[-1].data["fields"]["descriptors"]
-        for name, one in zip(names, described, strict=False):
+        for name in names:
+            # A node answers with an empty list if one of the parameters is not declared.
+            if not self._ask(bench, "", DESCRIBE, {"names": [name]}):
+                return False
+            described = bench.seen().of("answered")[-1].data["fields"]["descriptors"]
+            (one,) = described or [NOT_DECLARED]
             ranges = [
                 [r["from_value"], r["to_value"]]
                 for r in (*one["floating_point_range"], *one["integer_range"])
@@ -276,9 +301,10 @@ class SameAsSolution:
 
     @staticmethod
     def _ask(bench: Bench, node: str, service: tuple[str, str], request: Mapping[str, Any]) -> bool:
-        nodes = (name for survey in bench.seen().of("interface") for name in survey.data["nodes"])
+        if not bench.watch_graph(lambda evidence: bool(_nodes(evidence.main, node)), QUIET[bench.pace]):
+            return False
         name, kind = service
-        caller = bench.call(f"{node or next(nodes, '')}/{name}", kind)
+        caller = bench.call(f"{_nodes(bench.seen(), node)[0]}/{name}", kind)
         if not caller.await_server(QUIET[bench.pace]):
             return False
         caller.ask(request)
@@ -286,3 +312,9 @@ class SameAsSolution:
 
     def _of(self, kind: Kind) -> list[Output]:
         return [output for output in self._outputs if output.kind is kind]
+
+
+def _nodes(part: Part, begins: str) -> list[str]:
+    """Return the full names of the subject's nodes that begin with a text, in the order in which they were seen."""
+    surveys = part.of("interface", "graph")
+    return [node for survey in surveys for node in survey.data["nodes"] if node.startswith(begins)]

@@ -44,7 +44,8 @@ class Sets:
     Attributes:
         parameter: The name of the parameter.
         value: The new value: a number, a text or a truth value.
-        node: The full name of the node; by default the subject's first node.
+        node: The beginning of the node's full name, such as the namespace ``"/left/"``; by default the subject's
+            first node.
     """
 
     parameter: str
@@ -137,8 +138,10 @@ def parameter_in_words(noted: Sequence[Any]) -> str:
     first, second = noted
     if isinstance(first, bool):
         return "taken" if first else f"refused with{'' if second else 'out'} a reason"
+    if first not in TYPES:
+        return "not declared"
     ranges = " and ".join(f"from {low:g} to {high:g}" for low, high in second) or "without a range"
-    return f"{TYPES.get(first, 'not declared')} {ranges}"
+    return f"{TYPES[first]} {ranges}"
 
 
 def parameter_value(value: float | str | bool) -> dict[str, Any]:

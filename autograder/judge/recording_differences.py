@@ -30,6 +30,7 @@ def differences(before: Reference, now: Reference, tolerance: float) -> Iterator
         tolerance: The tolerance for numbers, absolute or relative to the larger one.
     """
     yield from _changed("the solution's endpoints", dict(before.interface), dict(now.interface))
+    yield from _changed("the QoS of the solution's endpoints", dict(before.qos), dict(now.qos))
     yield from _of_parts("", before.parts, now.parts, tolerance)
     old, new = ({variant.key: variant for variant in one.variants} for one in (before, now))
     yield from _changed("the recorded wrong answers", [*old], [*new])

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from autograder.authoring.recording_differences import differences
+from autograder.judge.recording_differences import differences
 from autograder.kit.evidence import Event, Part, Reference, Variant
 
 if TYPE_CHECKING:
