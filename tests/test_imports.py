@@ -27,7 +27,8 @@ MAY_IMPORT = {
     "verdict": frozenset[str](),
     "course": frozenset[str](),
     "known_errors": frozenset[str](),
-    "kit": frozenset({"known_errors", "verdict"}),
+    "robot": frozenset[str](),
+    "kit": frozenset({"known_errors", "robot", "verdict"}),
     "exercises": frozenset({"course", "kit"}),
     "messages": frozenset({"verdict"}),
     "cards": frozenset({"verdict"}),
@@ -55,10 +56,9 @@ NOTEBOOK_MAY_IMPORT = {
     "nodes": frozenset({"cell_output", "cell_runs"}),
     "checking": frozenset({"cell_output", "cell_runs", "nodes"}),
     "observing": frozenset({"cell_output", "cell_runs", "checking"}),
-    "robot_motion": frozenset[str](),
-    "robot_drivers": frozenset({"nodes", "robot_motion"}),
-    "robot_node": frozenset({"robot_drivers", "robot_motion"}),
-    "live_robot": frozenset({"nodes", "observing", "robot_drivers", "robot_motion", "robot_node"}),
+    "robot_drivers": frozenset({"nodes"}),
+    "robot_node": frozenset({"robot_drivers"}),
+    "live_robot": frozenset({"nodes", "observing", "robot_drivers", "robot_node"}),
 }
 # The folders and files of `grading`, from the bottom up: each imports, also for types, only what stands before it.
 GRADING_FROM_BELOW = (

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import select
 from collections import deque
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Generic, Protocol, TypeVar
 
 from autograder import exercises
@@ -51,6 +51,7 @@ class Answer:
         says: Words that the diagnosis has to contain.
         advice: What the card of a node that does the same says, and the next step; empty if the answer is not recorded
             next to the solution.
+        looks_twice: False to leave out the second look, in real time, which the judge takes if an answer fails.
     """
 
     exercise: str
@@ -61,6 +62,7 @@ class Answer:
     edit: ListedAnswer | None = None
     says: str = ""
     advice: tuple[str, ...] = ()
+    looks_twice: bool = True
 
     @property
     def name(self) -> str:
@@ -106,6 +108,7 @@ class Answer:
         from autograder.judge.command_check import checked_here
 
         exercise = exercises.get(self.exercise)
+        exercise = replace(exercise, second_look=exercise.second_look and self.looks_twice)
         with HeldFolder("autograder-answer-") as folder:
             return checked_here(exercise, self.unpack(folder.path), seed, None)
 

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+import itertools
 import textwrap
-from dataclasses import dataclass
-from pathlib import Path
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from autograder import exercises
@@ -19,6 +19,7 @@ from autograder.verdict import to_json
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
+    from pathlib import Path
 
     from autograder.kit.evidence import Evidence
     from autograder.verdict import Verdict
@@ -28,6 +29,11 @@ JOBS = 4
 """The default number of answers to judge at the same time. It may exceed the number of cores, because judging mostly
 waits.
 """
+
+
+SLOW = 10.0
+"""Seconds from which on a check is slow, so that its author is told which step took longest."""
+_SLOW_STEP = "the slowest step: "
 
 
 class NothingToTry(LookupError):
@@ -50,24 +56,49 @@ class _Surprise:
 
 
 @dataclass(frozen=True)
-class _Transcribed(Answer):
-    """An answer whose evidence is written into a file when it is judged.
+class _Tried(Answer):
+    """An answer that also tells its author what took long.
 
     Attributes:
-        folder: The folder for the files, one for each answer, such as ``wrong/topic_name.py.txt``. A file has one line
-            for each event.
+        folder: The folder for the evidence, a file for each answer, such as ``wrong/topic_name.py.txt``, with a line
+            for each event; None to write none.
     """
 
-    folder: Path = Path()
+    folder: Path | None = None
 
     def verdict(self, seed: str) -> bytes:
-        """Judge the answer in this process, and write its evidence into the file. Return the verdict as JSON."""
+        """Judge the answer in this process, and write its evidence into the file. Return the verdict as JSON.
+
+        If the check was slow, the last remark says which step was.
+        """
         verdict, found = self.checked(seed)
-        if found is not None:
+        if found is not None and self.folder is not None:
             file = self.folder / f"{self.short_name}.txt"
             file.parent.mkdir(parents=True, exist_ok=True)
             file.write_text("".join(_transcript(found.evidence)), encoding="utf-8")
+        if found is not None and verdict.seconds > SLOW:
+            step = slowest_step(found.evidence, verdict.seconds)
+            verdict = replace(verdict, remarks=(*verdict.remarks, f"{_SLOW_STEP}{step}"))
         return to_json(verdict)
+
+
+def slowest_step(evidence: Evidence, seconds: float) -> str:
+    """Return in words between which two events of a check most time passed.
+
+    Args:
+        seconds: The duration of the check. What no events explain passed after the last ones.
+    """
+    waits = [(0.0, "")]
+    looks = [evidence.before, evidence] if evidence.before is not None else [evidence]
+    for part, real_time in ((part, look.real_time) for look in looks for part in look):
+        where = f"in “{part.name}”{', in real time' * real_time}"
+        for one, other in itertools.pairwise(part.events):
+            between = f"between {one.kind} {one.name} and {other.kind} {other.name}"
+            waits.append((other.t - one.t, f"{where}, {between}"))
+        seconds -= part.events[-1].t if part.events else 0.0
+    waits.append((seconds, "after the last events, before the start of a run, or in the build"))
+    longest, when = max(waits)
+    return f"{longest:.1f} s {when}"
 
 
 def _transcript(evidence: Evidence) -> Iterator[str]:
@@ -88,6 +119,7 @@ def try_exercise(
     jobs: int = JOBS,
     repeat: int = 1,
     transcript: Path | None = None,
+    fast: bool = False,
     tell: Callable[[str], object],
 ) -> bool:
     """Try an exercise: check its recording, judge the answers, and print surprises and what is left to do.
@@ -102,6 +134,7 @@ def try_exercise(
         jobs: The number of answers to judge at the same time.
         repeat: The number of times to judge each answer, each time with different random inputs.
         transcript: The folder for the evidence of each answer from its last run; None to write none.
+        fast: True to leave out the second look at answers that are expected to be wrong.
         tell: Called with each line or card for the author.
 
     Returns:
@@ -121,8 +154,10 @@ def try_exercise(
         return False
     # `only` asks about single answers, so whatever concerns the whole exercise is left out.
     gifts = [] if only else list(_points_of_unsolved(exercise_id))
-    if transcript is not None:
-        wanted = [_Transcribed(**vars(answer), folder=transcript) for answer in wanted]
+    twice = {answer.name: not (fast and answer.diagnoses) for answer in wanted}
+    wanted = [
+        _Tried(**{**vars(answer), "looks_twice": twice[answer.name]}, folder=transcript) for answer in wanted
+    ]
     surprises = _judged(wanted, jobs=jobs, repeat=repeat, tell=tell)
     for surprise in surprises:
         tell(f"\n{surprise.name}: {surprise.objection}\n{textwrap.indent(surprise.card, '    ')}")
@@ -188,6 +223,9 @@ def _judged(
         sign, points = ("✗" if objection else "✓"), f"{verdict.score:g} of {verdict.max_score:g}"
         key = verdict.diagnosis.key if verdict.diagnosis else ""
         tell(f"{done:>3}/{len(turns)} {sign} {answer.short_name:<40} {points:>8}  {key}".rstrip())
+        for remark in verdict.remarks:
+            if remark.startswith(_SLOW_STEP):
+                tell(f"        {verdict.seconds:.0f} s; {remark}")
         if objection:
             surprises.setdefault(answer.name, _Surprise(answer.short_name, objection, card_text(verdict)))
 

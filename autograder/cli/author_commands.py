@@ -127,8 +127,11 @@ def new_exercise(
     type=click.Path(path_type=Path, file_okay=False),
     help="Write what the judge saw of each answer into this folder.",
 )
+@click.option(
+    "--fast", is_flag=True, help="Leave out the second look at answers that are expected to be wrong."
+)
 def try_exercise(
-    exercise: str, only: tuple[str, ...], jobs: int, repeat: int, transcript: Path | None
+    exercise: str, only: tuple[str, ...], jobs: int, repeat: int, transcript: Path | None, fast: bool
 ) -> None:
     """Record EXERCISE if it is new, judge its sample answers, right and wrong, and show unexpected results."""
     from autograder import exercises
@@ -144,6 +147,7 @@ def try_exercise(
             jobs=jobs,
             repeat=repeat,
             transcript=transcript and transcript.absolute(),
+            fast=fast,
             tell=click.echo,
         )
     except (

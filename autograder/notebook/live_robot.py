@@ -15,16 +15,16 @@ from autograder.notebook.nodes.background_nodes import replace_named, spin_in_ba
 from autograder.notebook.nodes.ros_session import start_ros
 from autograder.notebook.observing.live_picture import LivePicture, as_image, svg_page
 from autograder.notebook.robot_drivers import Spiral, Tour
-from autograder.notebook.robot_motion import RADIUS, ROOM
 from autograder.notebook.robot_node import RobotNode
+from autograder.robot.motion import RADIUS, ROOM
 
 if TYPE_CHECKING:
     from typing import Any
 
     from rclpy.node import Node
 
-    from autograder.notebook.robot_motion import Point, Pose
     from autograder.notebook.robot_node import RobotState
+    from autograder.robot.motion import Point, Pose
 
 
 ROBOT_NAME = "robot"

@@ -21,13 +21,13 @@ from small_robot_interfaces.action import WalkTo
 from std_msgs.msg import String
 
 from autograder.notebook.nodes.ros_session import is_destroyed
-from autograder.notebook.robot_motion import FASTEST, FASTEST_TURN, ROOM, STILL, TICK, Velocity, towards
+from autograder.robot.motion import FASTEST, FASTEST_TURN, ROOM, STILL, TICK, Velocity, towards
 
 if TYPE_CHECKING:
     from rclpy.node import Node
     from rclpy.publisher import Publisher
 
-    from autograder.notebook.robot_motion import Pose
+    from autograder.robot.motion import Pose
 
 
 NEAR_ENOUGH = 0.1

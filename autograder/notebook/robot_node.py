@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from geometry_msgs.msg import Twist
 from nav_msgs.msg import Odometry
@@ -13,22 +14,11 @@ from sensor_msgs.msg import LaserScan
 from std_srvs.srv import SetBool, Trigger
 
 from autograder.notebook.robot_drivers import WalkToServer
-from autograder.notebook.robot_motion import ROOM, START, STILL, TICK, Pose, Velocity, move
+from autograder.robot.motion import ROOM, START, STILL, TICK, Pose, Velocity, move
+from autograder.robot.sensors import OBEYS_FOR, SCAN_EVERY, laser_scan, look_around, odometry
 
 if TYPE_CHECKING:
-    from rclpy.time import Time
-
     from autograder.notebook.robot_drivers import Scene
-
-
-SCAN_EVERY = 5
-"""The number of steps between two messages on ``/scan``."""
-OBEYS_FOR = 1.0
-"""Seconds for which the robot obeys a command. If no other command arrives by then, it stops."""
-RAYS = 36
-"""The number of distances in a laser scan, all around the robot."""
-FARTHEST = 10.0
-"""The range of the laser, in meters."""
 
 
 @dataclass(frozen=True)
@@ -61,7 +51,7 @@ class RobotNode(Node):
 
     def __init__(self) -> None:
         super().__init__("robot")
-        self._state = RobotState(ranges=_look_around(START))
+        self._state = RobotState(ranges=look_around(START, ROOM))
         self._told, self._told_at = STILL, -math.inf
         self._ticks = 0
         self._odometry = self.create_publisher(Odometry, "/odom", 10)
@@ -97,22 +87,22 @@ class RobotNode(Node):
         scene = self._scene.next(before.pose, before.bumped) if self._scene is not None else None
         velocity = self._walking.next(before.pose, before.bumped) or (self._told if fresh else scene or STILL)
         moved = move(before.pose, velocity, TICK, ROOM)
-        ranges = before.ranges if moved.pose == before.pose else _look_around(moved.pose)
+        ranges = before.ranges if moved.pose == before.pose else look_around(moved.pose, ROOM)
         says = self._scene.says if self._scene is not None else ""
         self._state = RobotState(moved.pose, moved.velocity, moved.bumped, before.lamp, ranges, says)
         self._tell(self._state)
 
     def _tell(self, state: RobotState) -> None:
-        now = self.get_clock().now()
-        self._odometry.publish(_odometry_message(state, now))
+        now = self.get_clock().now().nanoseconds
+        self._odometry.publish(_filled(Odometry(), odometry(state.pose, state.velocity, now)))
         if self._ticks % SCAN_EVERY == 0:
-            self._scan.publish(_laser_scan_message(state, now))
+            self._scan.publish(_filled(LaserScan(), laser_scan(state.ranges, now)))
         self._ticks += 1
 
     def _reset(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
         self._walking.give_up()
         self._told_at = -math.inf
-        self._state = RobotState(lamp=self._state.lamp, ranges=_look_around(START))
+        self._state = RobotState(lamp=self._state.lamp, ranges=look_around(START, ROOM))
         response.success, response.message = True, "back at the start"
         return response
 
@@ -125,29 +115,11 @@ class RobotNode(Node):
         return float(self.get_clock().now().nanoseconds) / 1e9
 
 
-def _odometry_message(state: RobotState, now: Time) -> Odometry:
-    message = Odometry()
-    message.header.stamp, message.header.frame_id = now.to_msg(), "odom"
-    message.child_frame_id = "base_link"
-    message.pose.pose.position.x, message.pose.pose.position.y = state.pose.point
-    message.pose.pose.orientation.z = math.sin(state.pose.heading / 2)
-    message.pose.pose.orientation.w = math.cos(state.pose.heading / 2)
-    message.twist.twist.linear.x = state.velocity.forward
-    message.twist.twist.angular.z = state.velocity.turn
+def _filled(message: Any, fields: Mapping[str, Any]) -> Any:
+    """Set fields of a message, nested ones as mappings, and return the message."""
+    for name, value in fields.items():
+        if isinstance(value, Mapping):
+            _filled(getattr(message, name), value)
+        else:
+            setattr(message, name, value)
     return message
-
-
-def _laser_scan_message(state: RobotState, now: Time) -> LaserScan:
-    message = LaserScan()
-    message.header.stamp, message.header.frame_id = now.to_msg(), "base_link"
-    message.angle_min, message.angle_increment = 0.0, math.tau / RAYS
-    message.angle_max = math.tau * (RAYS - 1) / RAYS
-    message.scan_time = TICK * SCAN_EVERY
-    message.range_min, message.range_max = 0.05, FARTHEST
-    message.ranges = list(state.ranges)
-    return message
-
-
-def _look_around(pose: Pose) -> tuple[float, ...]:
-    angles = tuple(pose.heading + math.tau * ray / RAYS for ray in range(RAYS))
-    return tuple(ROOM.ranges(pose.point, angles))

@@ -19,8 +19,9 @@ from std_srvs.srv import SetBool, Trigger
 
 from autograder.notebook import robot_drivers
 from autograder.notebook.nodes.background_nodes import spin_in_background
-from autograder.notebook.robot_motion import START
-from autograder.notebook.robot_node import RAYS, RobotNode
+from autograder.notebook.robot_node import RobotNode
+from autograder.robot.motion import START
+from autograder.robot.sensors import RAYS
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator

@@ -11,8 +11,8 @@ from types import SimpleNamespace
 from typing import Any, cast
 
 from autograder.notebook.live_robot import RobotPicture, _RobotPictures
-from autograder.notebook.robot_motion import START, Pose, Velocity
 from autograder.notebook.robot_node import RobotState
+from autograder.robot.motion import START, Pose, Velocity
 
 
 def place(picture: RobotPicture) -> tuple[float, float, float]:

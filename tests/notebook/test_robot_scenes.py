@@ -10,7 +10,7 @@ from my_robot_interfaces.action import Fibonacci
 from small_robot_interfaces.action import WalkTo
 
 from autograder.notebook.robot_drivers import SAYS_EVERY, Scene, Spiral, Tour
-from autograder.notebook.robot_motion import ROOM, START, STILL, TICK, Moved, Pose, move
+from autograder.robot.motion import ROOM, START, STILL, TICK, Moved, Pose, move
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -7,6 +7,7 @@ confirm its result, a look in real time.
 from __future__ import annotations
 
 import contextlib
+import itertools
 from functools import partial
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -32,6 +33,15 @@ if TYPE_CHECKING:
 
     from autograder.judge.subject import Subject
 
+INPUTS = frozenset(
+    {"sent", "asked", "response", "goal_sent", "cancel_sent", "goal_answered", "feedback", "result"}
+)
+"""The kinds of events with which the judge gives the subject something to do."""
+WORKS = frozenset(
+    {"message", "answered", "request", "goal", "goal_answer", "feedback_heard", "cancel", "cancel_answer"}
+    | {"result_request", "result_heard", "log", "output"}
+)
+"""The kinds of events that show that the subject works."""
 GRAPH_LOOK = 0.02
 """Seconds between two queries of the graph whose results are recorded."""
 _T = TypeVar("_T")
@@ -137,6 +147,8 @@ class TestBench:
         if not self._in_part:
             return
         self._in_part = False
+        if self._is_silent():
+            self._ask(self._presence.nodes())
         self._presence.note_last_state()
         self._presence.note_short_life()
         # After Ctrl-C, the old endpoints of the subject may stay on the graph for a while. So the judge uses a new
@@ -372,6 +384,13 @@ class TestBench:
     def settle(self) -> None:
         self._time.settle()
 
+    def take_in(self) -> None:
+        self._recorder.take_in()
+
+    @property
+    def moment(self) -> float:
+        return self._recorder.moment
+
     def await_attention(self) -> None:
         self._time.await_attention()
 
@@ -384,10 +403,22 @@ class TestBench:
             # A program that has destroyed its nodes is about to end, so wait for its end: the exit code and the last
             # lines of output tell more than missing answers.
             self.await_end(MATCH)
+        self._ask(nodes)
+
+    def _ask(self, nodes: Iterable[discovery.NodeName]) -> None:
+        """Record which of the nodes do not answer, and where the subject hangs."""
         for node in nodes:
             if not self._subject.ended and not answers(self._wire, self._recorder, node):
                 self._recorder.record("unanswered", node.full)
                 self.note_where_it_hangs()
+
+    def _is_silent(self) -> bool:
+        """Return True if a subject that runs has done nothing since the judge's last input, and was not asked why."""
+        if self._subject.ended or self._subject.is_held:
+            return False
+        kinds = [event.kind for event in reversed(self._recorder.part().events)]
+        since = list(itertools.takewhile(lambda kind: kind not in INPUTS, kinds))
+        return not {*since} & WORKS and not {*kinds} & {"unanswered", "stack"}
 
     def note_where_it_hangs(self) -> None:
         if not self._subject.ended:
@@ -397,7 +428,9 @@ class TestBench:
     def wait_until(
         self, condition: Callable[[Evidence], bool], within: float, *, quiet: float | None = None
     ) -> bool:
-        return self._wait_for(condition, self._evidence, within, quiet=quiet)
+        # A subject whose executor stopped in simulated time does not go on; the second look is in real time.
+        is_lost = self._time_of_part is not None and self._time_of_part.is_lost
+        return self._wait_for(condition, self._evidence, 0.0 if is_lost else within, quiet=quiet)
 
     def _wait_for(
         self, condition: Callable[[Evidence], bool], look: Callable[[], Evidence], within: float, **how: Any

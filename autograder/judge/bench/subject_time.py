@@ -69,9 +69,13 @@ class NodeClock:
     An answer from the node's parameter service proves that the node's executor has made a round since the request. An
     executor takes only one request of a service in each round (rclpy/executors.py, ``_take_service``). So the answers
     to three requests that are sent together prove three rounds.
+
+    Attributes:
+        nodes: The nodes of the subject that follow the clock.
     """
 
     def __init__(self, wire: Wire, recorder: Recorder, *nodes: NodeName) -> None:
+        self.nodes = nodes
         self._wire = wire
         self._recorder = recorder
         self._publisher = wire.node.create_publisher(Clock, "/clock", QoSProfile(depth=10))
@@ -99,6 +103,10 @@ class NodeClock:
         message.clock.sec = int(now)
         message.clock.nanosec = round((now - int(now)) * 1e9)
         self._publisher.publish(message)
+        return self.keeps_up()
+
+    def keeps_up(self) -> bool:
+        """Return True if the nodes' executors make as many rounds as they need to handle what has arrived."""
         return all(
             _ask(self._recorder, client, _QUESTION, ANSWER_LIMIT, turns=TURNS) is not None
             for client in self._get
@@ -172,6 +180,7 @@ class SimulatedClock(NodeClock):
     """A simulated clock that moves in steps, for nodes of the subject.
 
     Attributes:
+        nodes: The nodes of the subject that follow the clock.
         doubtful: True if the result must be confirmed in real time, because a step took too long or another node
             moved the clock.
     """
@@ -260,6 +269,8 @@ class SubjectTime:
         self._doubt = doubt
         self._clock: SimulatedClock | None = None
         self._clock_refused = False
+        self.is_lost = False
+        """True if the subject's executor has stopped answering in simulated time. Then no more time passes for it."""
         self._deaf: set[str] = set()
 
     def run(
@@ -278,11 +289,14 @@ class SubjectTime:
             False if simulated time could not go on because the subject's executor no longer answers.
         """
         over = until or (lambda: False)
+        if self.is_lost:
+            return False
         if self._pace is Pace.FAST and self._follow_clock():
             assert self._clock is not None
             turns = self._clock.run(seconds, lambda: over() or self._subject.ended, step)
             if self._clock.doubtful:
                 self._doubt()
+            self.is_lost = not turns
             return turns
         self._recorder.wait(lambda: over() or self._subject.ended, seconds, quiet=quiet, wall=True)
         return True
@@ -309,7 +323,12 @@ class SubjectTime:
         for node in self._presence.counterparts():
             if node.full in self._deaf or self._subject.ended:
                 continue
-            if not all(answers(self._wire, self._recorder, node, limit) for _ in range(2)):
+            # The clock's own client is already connected, so its node is asked much faster.
+            if self._clock is not None and node in self._clock.nodes:
+                has_settled = self._clock.keeps_up()
+            else:
+                has_settled = all(answers(self._wire, self._recorder, node, limit) for _ in range(2))
+            if not has_settled:
                 self._deaf.add(node.full)
         self._recorder.take_in()
 

@@ -47,6 +47,18 @@ PERSISTS = 1.0
 passed within a moment, so this shows whether the program ends.
 """
 
+NO_MESSAGE = "Your node has a publisher, but no message arrives while the judge listens."
+PUBLISH = (
+    "If your code still has a TODO, write that step first. The timer's method must call publish(...) with the message "
+    "between the parentheses; a log line is not a message."
+)
+NO_MORE = "Your node published {} and then no more, although it still exists."
+GO_ON = (
+    "The task has no end: a timer has to call the method that publishes again and again. If your node has no timer, "
+    "make one with create_timer. If it has one, delete the code that stops it, or that returns from the callback "
+    "before it publishes."
+)
+
 
 class Hears:
     """The recipe for a publisher. Its criteria and mistakes get objects of the type :class:`Publisher`.
@@ -281,6 +293,7 @@ class Hears:
                 "Call create_publisher only once, in __init__, and keep the publisher in self. Let the timer's method "
                 "publish with it.",
                 certain=True,
+                uses=("create_publisher",),
             ),
             common.everything_twice("publisher"),
             Mistake("published_before_discovery", self._published_before_discovery),
@@ -323,18 +336,15 @@ class Hears:
             return None
         if len(seen.claims(self.expected(evidence))) < 4 and part.of("unanswered"):
             return None
-        twin = common.twin(part)
+        twin, period = common.twin(part), _reference_period(evidence.reference)
         return Advice(
-            "Your node has a publisher, but no message arrives while the judge listens."
-            + (f" Two nodes are called {twin}, and only one of them is spun." if twin else ""),
+            NO_MESSAGE + (f" Two nodes are called {twin}, and only one of them is spun." if twin else ""),
             "If your class makes another Node(...), delete that call: self is the node, so write "
             "self.create_publisher and self.create_timer."
             if twin
-            else "If your code still has a TODO, write that step first. The timer's method must call publish(...) "
-            "with the message between the parentheses; a log line is not a message. Give the timer its period "
-            f"in seconds, {_reference_period(evidence.reference):g}: with a longer one, such as "
-            f"{10 * _reference_period(evidence.reference):g} or {1000 * _reference_period(evidence.reference):g}, "
-            "nothing comes in the time that the judge listens.",
+            else f"{PUBLISH} Give the timer its period in seconds, {period:g}: with a longer one, such as "
+            f"{10 * period:g} or {1000 * period:g}, nothing comes in the time that the judge listens.",
+            uses=("create_timer", "publish"),
         )
 
     def _wrong_rate(self, evidence: Evidence) -> Advice | None:
@@ -350,6 +360,7 @@ class Hears:
             if "unevenly" in finding.seen
             else f"The first argument of create_timer is the time between two messages in seconds ({period:g}), not a "
             "frequency. In a loop, this is the argument of sleep. Do not sleep in callbacks.",
+            uses=("create_timer",),
         )
 
     def _stopped_publishing(self, evidence: Evidence) -> Advice | None:
@@ -358,12 +369,7 @@ class Hears:
         came, part = len(seen.messages), seen.part
         if not 0 < came < seen.enough or part.ending is not None or part.of("unanswered"):
             return None
-        return Advice(
-            f"Your node published {counted(came, 'message')} and then no more, although it still exists.",
-            "The task has no end: a timer has to call the method that publishes again and again. If your node has no "
-            "timer, make one with create_timer. If it has one, delete the code that stops it, or that returns from "
-            "the callback before it publishes.",
-        )
+        return Advice(NO_MORE.format(counted(came, "message")), GO_ON, uses=("create_timer", "publish"))
 
 
 def _reference_period(reference: Reference) -> float:

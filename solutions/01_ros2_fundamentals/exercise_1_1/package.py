@@ -89,10 +89,11 @@ def launch_file_name(found: Sequence[str], _: Sequence[str]) -> Advice | None:
     )
 
 
-def launch_not_installed(*_: Sequence[str]) -> Advice:
+def launch_not_installed(found: Sequence[str], _: Sequence[str]) -> Advice:
     """The build has not installed the launch file, or there is none in the package."""
+    there = f"The package has {found[0]}, but the build" if found else "The build"
     return Advice(
-        f"The build does not install {SHOWN}: `ros2 launch` finds only what the build has put into share/{PACKAGE}.",
+        f"{there} does not install {SHOWN}: `ros2 launch` finds only what the build has put into share/{PACKAGE}.",
         f"The file belongs in the folder ros2_ws/src/{PACKAGE}/launch. The list data_files in setup.py needs one more "
         f"pair: the folder {FOLDER}, and a list with the path of the file, seen from the folder of the package. A "
         "pattern in glob(...) looks from there, too, and has to begin with launch/ and to match the ending of the "

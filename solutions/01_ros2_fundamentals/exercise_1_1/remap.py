@@ -133,15 +133,6 @@ remap.knows(
 )
 
 
-remap.knows(
-    "someone_stayed",
-    lambda seen, _: seen.topic in seen.publishers & seen.subscriptions and ", ".join(seen.elsewhere),
-    "Both ends are on {seen.topic}, but something is still on {}.",
-    "Start each of the two programs once, each with its remapping.",
-    certain=True,
-)
-
-
 def _missing(seen: Launched) -> str:
     """Return the package's program that was replaced, for example by a command; empty if none was."""
     if seen.heard and not seen.has_a_talker:

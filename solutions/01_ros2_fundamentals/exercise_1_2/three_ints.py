@@ -13,7 +13,7 @@ from autograder.kit.draft import Draft
 from autograder.kit.model import Advice, Finding
 from autograder.kit.recipes.service_client import Calls
 from autograder.kit.recipes.service_runs import Run, hidden
-from autograder.kit.service_calls import BIASED, CALLED, EXTREME, LATE, ClientSeen, answers, pair, requests
+from autograder.kit.service_calls import BIASED, CALLED, EXTREME, LATE, ClientSeen, answers, requests
 
 if TYPE_CHECKING:
     from random import Random
@@ -86,27 +86,6 @@ adder.asks("chain", 3, "Builds the second call on the first answer", recipe.call
 adder.asks("sum", 3, "Reports the final sum", service_calls.reports_the_sum)
 adder.asks("late", 1, "Waits for a service that comes late", recipe.waits)
 adder.asks("limit", 1, "Ends clearly when there is no service", service_calls.gives_up_in_time)
-
-
-@adder.mistake("first_answer_ignored", certain=True)
-def first_answer_ignored(seen: ClientSeen, _: ClientSeen) -> Advice | None:
-    """The first call is right, and its answer is not in the second."""
-    part = seen.evidence.part(BIASED)
-    made, sums = requests(part), answers(part)
-    if len(made) < 2 or not sums:
-        return None
-    first = sums[0]
-    # With another sign it is used, but wrongly.
-    used = abs(first) in map(abs, pair(made[1]))
-    if used or pair(made[0]) != sorted(part.inputs["numbers"][:2]):
-        return None
-    one, other = (made[1].data["fields"][name] for name in "ab")
-    return Advice(
-        f"The service answered {first} to the first call, but your second call does not use that answer: it asks for "
-        f"{one} + {other}.",
-        "Put what the service answered first into the second call, and add nothing up yourself. In a notebook, that is "
-        "what the first `ask` returned.",
-    )
 
 
 @adder.mistake("one_call_only", late=True, certain=ClientSeen.called_each_time)

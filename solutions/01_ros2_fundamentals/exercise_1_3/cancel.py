@@ -130,7 +130,7 @@ cancel.asks("goal", 2, "Sends one goal of the right order", sends_the_goal)
 cancel.asks("cancel", 3, "Asks to cancel at the right moment", cancels_in_the_window)
 cancel.asks("once", 1, "Sends one request at that moment", cancels_once)
 cancel.asks("late_feedback", 1, "Sends no other request when later feedback arrives", ignores_late_feedback)
-cancel.asks("status", 2, "Reports how the goal really ended", reports_the_status)
+cancel.asks("status", 2, "Reports how the goal really ended", reports_the_status, uses=("get_result_async",))
 cancel.asks("refused", 1, "Says when the goal is rejected", tells_of_refusal)
 
 EXERCISE = cancel.exercise(

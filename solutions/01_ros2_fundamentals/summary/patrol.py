@@ -2,90 +2,75 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
-from summary._night import (
-    before_the_lamp,
-    commands,
-    goals,
-    in_words,
-    lamps,
-    near_messages,
-    night,
-    published,
-    too_soon,
-)
-from summary._night_mistakes import MISTAKES
-
-from autograder.kit.draft import Draft
 from autograder.kit.in_words import counted
-from autograder.kit.model import Finding
-from autograder.kit.recipes.own_scenario import OwnScenario
-from autograder.kit.rules import keeps_rate
+from autograder.kit.mission.mission import Mission, Moment, Pose, World
 
-if TYPE_CHECKING:
-    from autograder.kit.evidence import Part
+AWAY = 3.14
+"""The heading away from the door, so that a robot that drives straight ahead does not get there before its walk."""
 
-patrol = Draft(
+
+def near(now: Moment) -> int:
+    """Return how many feedback messages below one metre came before the first request to cancel."""
+    feedback = now.before("cancel").part.of("feedback")
+    return sum(event.data["fields"]["distance"] < 1.0 for event in feedback)
+
+
+def cancels(now: Moment) -> int:
+    """Return how often the subject asked to cancel its walk."""
+    return len(now.part.of("cancel"))
+
+
+def cancel(now: Moment) -> str:
+    """Return in words when the subject asked to cancel its walk."""
+    below = f"{counted(near(now), 'feedback message')} below 1 m"
+    return f"{counted(cancels(now), 'request')}, after {below}" if cancels(now) else "no request"
+
+
+EXERCISE = Mission(
     "summary.patrol",
     "The chapter in short · The patrol",
     "Drive one round, switch the lamp on, then walk towards the door and cancel the walk in front of it.",
-    OwnScenario(night, "publisher", "client", "action_client"),
-)
-
-
-@patrol.criterion("round", 2, "Drives one round")
-def drives_a_round(seen: Part, expected: Part) -> Finding:
-    """As many commands as the reference's, each with its movement."""
-    same = set(commands(seen)) == set(commands(expected))
-    enough = published(seen.of("message")) == published(expected.of("message"))
-    return Finding(same and enough, in_words(expected), in_words(seen))
-
-
-patrol.criterion("rate", 1, "Twice a second")(keeps_rate)
-
-
-@patrol.criterion("lamp", 2, "Switches the lamp on after the round")
-def switches_the_lamp(seen: Part, expected: Part) -> Finding:
-    """One call of the service with the reference's request, after the last command."""
-    wanted, asked, driven = lamps(expected), lamps(seen), before_the_lamp(seen)
-    a_round = before_the_lamp(expected)
-    which = ", ".join(dict.fromkeys(map(str, asked)))
-    told = f"{counted(len(asked), 'call')} ({which}) after {counted(driven, 'command')}"
-    expects = f"1 call (True) after {counted(a_round, 'command')}"
-    return Finding(asked == wanted and driven == a_round, expects, told if asked else "no call")
-
-
-@patrol.criterion("door", 2, "Walks to the door when the lamp has answered")
-def walks_to_the_door(seen: Part, expected: Part) -> Finding:
-    """One goal, the reference's, and not before the lamp's answer."""
-    sent = [f"x = {goal['x']:.6g}, y = {goal['y']:.6g}" for goal in goals(seen)]
-    count = f"{counted(len(sent), 'goal')}: " if len(sent) > 1 else ""
-    told = count + (" / ".join(dict.fromkeys(sent)) or "no goal")
-    early = ", before the lamp's answer" if too_soon(seen, expected) else ""
-    wanted = goals(expected)
-    return Finding(
-        goals(seen) == wanted and not early, "x = {x:.6g}, y = {y:.6g}".format(**wanted[0]), told + early
-    )
-
-
-@patrol.criterion("cancel", 3, "Cancels once, in front of the door")
-def cancels(seen: Part, _: Part) -> Finding:
-    """One request to cancel, between the first feedback below the limit and the next."""
-    asked, near = len(seen.of("cancel")), near_messages(seen)
-    told = (
-        f"{counted(asked, 'request')}, after {counted(near, 'feedback message')} below 1 m"
-        if asked
-        else "no request"
-    )
-    return Finding(asked == 1 and near == 1, "1 request, after 1 feedback message below 1 m", told)
-
-
-for key, recognize, says, next_step, how in MISTAKES:
-    patrol.knows(key, recognize, says, next_step, **how)
-
-
-EXERCISE = patrol.exercise(
+    roles=("publisher", "client", "action_client"),
+    draws=lambda random: [World(start=Pose(random.uniform(0.8, 1.4), 2.0, AWAY))],
+    late={"/lamp": 1.5},
+    until=lambda now: bool(now.part.of("result")),
+    drives=("Drives one round", "round", 2),
+    rate=("Twice a second", "rate", 1),
+    same=[
+        ("Switches the lamp on after the round", lambda now: now.asked("/lamp"), "lamp", 2),
+        ("Walks to the door when the lamp has answered", lambda now: now.sent("/walk_to"), "door", 2),
+        ("Cancels once, in front of the door", cancel, "cancel", 3),
+    ],
+    knows=[
+        (
+            "cancel_repeated",
+            lambda now: cancels(now) > 1 and cancels(now),
+            "Your node asked {} times to cancel its walk: feedback goes on for a moment after the first request.",
+            "Remember that you have asked: set the goal handle to None, and ask only if it is not None.",
+            {"certain": True},
+        ),
+        (
+            "cancel_too_early",
+            lambda now: cancels(now) and not near(now),
+            "Your node asked to cancel its walk when one metre or more was left.",
+            "Compare the distance that the feedback brings, and do not count messages: if distance < 1.0.",
+        ),
+        (
+            "cancel_too_late",
+            lambda now: cancels(now) and near(now) > 1,
+            "Your node let a feedback message below one metre pass before it asked to cancel its walk.",
+            "Ask at the first such message: if distance < 1.0.",
+        ),
+        (
+            "cancel_missing",
+            lambda now: bool(now.part.of("result")) and not cancels(now),
+            "Your node never asked to cancel its walk, although less than one metre was left.",
+            "Keep the goal handle, which is the answer to the goal, and call its cancel_goal_async(), with "
+            "parentheses, if distance < 1.0. If no feedback arrives, pass feedback_callback=... to send_goal_async.",
+            {"late": True},
+        ),
+    ],
+).exercise(
     text={
         "Publish a `Twist` with `linear.x = 0.4` and `angular.z = 1.0`": "round rate",
         "Twelve commands make one round.": "round",

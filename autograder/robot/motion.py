@@ -1,8 +1,9 @@
-"""Computes the motion of the robot in its two rooms: the robot turns, rolls forward, and stops at a wall."""
+"""Computes the motion of the robot between walls: the robot turns, rolls forward, and stops at a wall."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence  # noqa: TC003  (an author reads the types)
 from dataclasses import dataclass, replace
 
 Point = tuple[float, float]
@@ -20,8 +21,8 @@ _STEP = 0.05
 
 
 @dataclass(frozen=True)
-class _Wall:
-    """A straight wall from one point to another."""
+class Wall:
+    """A straight wall from one point to another; a post, which the laser does not see, if both are the same."""
 
     start: Point
     end: Point
@@ -29,9 +30,9 @@ class _Wall:
     def distance_to(self, point: Point) -> float:
         """Return the distance in meters from a point to the nearest point of this wall."""
         (x1, y1), (x2, y2) = self.start, self.end
-        along = ((point[0] - x1) * (x2 - x1) + (point[1] - y1) * (y2 - y1)) / math.dist(
-            self.start, self.end
-        ) ** 2
+        # A wall of length 0 is a post. Every part of it is its start.
+        squared = math.dist(self.start, self.end) ** 2 or 1.0
+        along = ((point[0] - x1) * (x2 - x1) + (point[1] - y1) * (y2 - y1)) / squared
         nearest = min(1.0, max(0.0, along))
         return math.dist(point, (x1 + nearest * (x2 - x1), y1 + nearest * (y2 - y1)))
 
@@ -52,32 +53,34 @@ class Walls:
     """The walls around the robot.
 
     Attributes:
+        walls: The outer and the inner walls, and posts; empty for an open plane.
         width: The width of both rooms together, in meters.
         height: The height of the rooms on the map, in meters.
-        walls: The outer and the inner walls.
         door: The center of the doorway between the rooms.
     """
 
-    width: float
-    height: float
-    walls: tuple[_Wall, ...]
-    door: Point
+    walls: Sequence[Wall] = ()
+    width: float = 6.0
+    height: float = 4.0
+    door: Point = (4.0, 2.0)
 
     def clearance(self, point: Point) -> float:
         """Return the distance in meters from a point to the nearest wall."""
-        return min(wall.distance_to(point) for wall in self.walls)
+        return min((wall.distance_to(point) for wall in self.walls), default=math.inf)
 
     def ranges(self, origin: Point, angles: tuple[float, ...]) -> list[float]:
         """Return the distance in meters from a point to the first wall at each angle (in radians from the x axis)."""
         rays = [(math.cos(angle), math.sin(angle)) for angle in angles]
-        return [min(wall.distance_along(origin, ray) for wall in self.walls) for ray in rays]
+        return [
+            min((wall.distance_along(origin, ray) for wall in self.walls), default=math.inf) for ray in rays
+        ]
 
 
 def _two_rooms() -> Walls:
     corners: tuple[Point, ...] = ((0, 0), (6, 0), (6, 4), (0, 4))
-    outer = tuple(_Wall(corner, corners[(i + 1) % 4]) for i, corner in enumerate(corners))
-    beside_the_door = (_Wall((4, 0), (4, 1.4)), _Wall((4, 2.6), (4, 4)))
-    return Walls(6.0, 4.0, (*outer, *beside_the_door), door=(4.0, 2.0))
+    outer = tuple(Wall(corner, corners[(i + 1) % 4]) for i, corner in enumerate(corners))
+    beside_the_door = (Wall((4, 0), (4, 1.4)), Wall((4, 2.6), (4, 4)))
+    return Walls((*outer, *beside_the_door))
 
 
 ROOM = _two_rooms()
@@ -104,10 +107,14 @@ START = Pose(1.0, 2.0, 0.0)
 
 @dataclass(frozen=True)
 class Velocity:
-    """A velocity: meters per second forward, and radians per second to the left."""
+    """A velocity: meters per second forward, radians per second to the left, and meters per second to the left.
+
+    Only a robot that can move in all directions (Twist's ``linear.y``) moves to the left.
+    """
 
     forward: float = 0.0
     turn: float = 0.0
+    left: float = 0.0
 
 
 STILL = Velocity()
@@ -131,16 +138,22 @@ class Moved:
 def move(pose: Pose, velocity: Velocity, seconds: float, room: Walls) -> Moved:
     """Return the pose and velocity of the robot after turning and rolling for some seconds. A wall stops it."""
     # The motors limit both speeds.
-    speed = Velocity(_limited(velocity.forward, FASTEST), _limited(velocity.turn, FASTEST_TURN))
-    pieces = max(1, math.ceil(abs(speed.forward) * seconds / _STEP))
+    speed = Velocity(
+        _limited(velocity.forward, FASTEST),
+        _limited(velocity.turn, FASTEST_TURN),
+        _limited(velocity.left, FASTEST),
+    )
+    pieces = max(1, math.ceil(math.hypot(speed.forward, speed.left) * seconds / _STEP))
     here = pose
     for _ in range(pieces):
         turned = here.heading + speed.turn * seconds / pieces
         # Roll in the direction halfway between the old and the new heading, so that a circle stays a circle.
-        way, heading = speed.forward * seconds / pieces, (here.heading + turned) / 2
-        there = Pose(here.x + way * math.cos(heading), here.y + way * math.sin(heading), _wrapped(turned))
+        heading, part = (here.heading + turned) / 2, seconds / pieces
+        x = part * (speed.forward * math.cos(heading) - speed.left * math.sin(heading))
+        y = part * (speed.forward * math.sin(heading) + speed.left * math.cos(heading))
+        there = Pose(here.x + x, here.y + y, _wrapped(turned))
         clearance = room.clearance(there.point)
-        if way and clearance < RADIUS and clearance < room.clearance(here.point):
+        if (x or y) and clearance < RADIUS and clearance < room.clearance(here.point):
             return Moved(replace(here, heading=there.heading), Velocity(0.0, speed.turn), bumped=True)
         here = there
     return Moved(here, speed)

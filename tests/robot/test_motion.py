@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from autograder.notebook.robot_motion import RADIUS, ROOM, START, Pose, Velocity, move, towards
+from autograder.robot.motion import RADIUS, ROOM, START, Pose, Velocity, move, towards
 
 
 def driven(pose: Pose, velocity: Velocity, seconds: float) -> Pose:

@@ -1,0 +1,130 @@
+"""The course of one mission: the world goes on step by step, and the judge notes what was reached and what happened."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from autograder.kit.mission.moment import Moment
+    from autograder.kit.mission.robot import Robot
+    from autograder.kit.mission.steps import Journey, Step
+    from autograder.kit.model import Bench
+
+AFTER = 1.0
+"""Seconds of the subject's time for which the world goes on after everything was reached."""
+MISTAKE = "mistake"
+"""The name of the noted events about the mistakes that an author knows."""
+_OF_THE_JUDGE = ("sent", "feedback", "noted", "response", "interface")
+"""The kinds of events with which the subject shows no sign of life."""
+
+
+@dataclass(frozen=True)
+class Line:
+    """A line of the card.
+
+    Attributes:
+        text: The line.
+        name: The key of the criterion.
+        points: The points; 0 for an equal part of the rest.
+        wants: What the card shows as expected, if it is not the solution's fact.
+        holds: The condition, or the function that returns the fact in words.
+    """
+
+    text: str
+    name: str
+    points: float = 0.0
+    wants: str = ""
+    holds: Callable[[Moment], Any] = str
+
+
+@dataclass(frozen=True)
+class Lines:
+    """The lines of a mission: what must be reached, what must never happen, and facts that are the solution's."""
+
+    reaches: Sequence[Line]
+    never: Sequence[Line]
+    same: Sequence[Line]
+
+
+class Course:
+    """Steps the world of one mission, and notes what became of its lines.
+
+    Args:
+        bench: The bench of the scenario.
+        robot: The robot in its world.
+        lines: The lines of the card.
+        within: Seconds of the subject's time for the whole mission.
+        quiet: Seconds of standstill and silence after which the mission is over.
+    """
+
+    def __init__(self, bench: Bench, robot: Robot, lines: Lines, within: float, quiet: float) -> None:
+        self._bench, self._robot, self._lines = bench, robot, lines
+        self._within, self._quiet = within, quiet
+        self._reached: dict[str, str] = {}
+        self._broken: dict[str, str] = {}
+        self._heard, self._heard_at = 0, 0.0
+
+    def run(self, journey: Journey, steps: Sequence[Step], until: Callable[[Moment], bool] | None) -> bool:
+        """Take all steps, and go on until the mission is over. Return False if the subject did not answer."""
+        over = until or (
+            lambda _: bool(self._lines.reaches) and len(self._reached) == len(self._lines.reaches)
+        )
+        if not (self._robot.begin() and all(journey.take(step) for step in steps)):
+            return False
+        return self.go(self._within, lambda now: over(now) or self._is_quiet(now)) and self.go(AFTER)
+
+    def go(self, seconds: float, until: Callable[[Moment], bool] = lambda _: False) -> bool:
+        """Let seconds pass, or fewer if a condition holds. Return False if the subject does not answer."""
+        robot = self._robot
+        end = robot.now.time + seconds
+        while robot.now.time < end - 1e-6 and not until(robot.now):
+            if robot.now.time >= self._within + AFTER or robot.now.part.ending is not None:
+                return True
+            if not robot.step():
+                return False
+            self._look()
+        return True
+
+    def _look(self) -> None:
+        """Note which lines the present moment reaches or breaks."""
+        now = self._robot.now
+        for line in self._lines.reaches:
+            if line.name not in self._reached and line.holds(now):
+                self._reached[line.name] = str(now)
+                now = self._robot.now = replace(now, reached=now.reached | {line.text})
+        for line in self._lines.never:
+            if line.name not in self._broken and line.holds(now):
+                self._broken[line.name] = str(now)
+
+    def _is_quiet(self, now: Moment) -> bool:
+        heard = sum(event.kind not in _OF_THE_JUDGE for event in now.part.events)
+        if heard != self._heard:
+            self._heard, self._heard_at = heard, now.time
+        return min(now.stood, now.time - self._heard_at) >= self._quiet
+
+    def note(self, knows: Sequence[Callable[[Moment], Any]]) -> bool:
+        """Note what became of each line, and which mistakes show. Return True if all lines hold."""
+        now, holds = self._robot.now, []
+        for line in self._lines.reaches:
+            reached = self._reached.get(line.name)
+            self._bench.note(line.name, holds=reached is not None, text=reached or f"no, {now}")
+            holds.append(reached is not None)
+        for line in self._lines.never:
+            # A robot that never leaves its place breaks no rule, and has done nothing for the points either.
+            did = bool(self._reached) or not self._lines.reaches
+            broken = self._broken.get(line.name, "" if did else "nothing was reached")
+            self._bench.note(line.name, holds=not broken, text=broken or "never")
+            holds.append(not broken)
+        for line in self._lines.same:
+            text, theirs = str(line.holds(now)), self._bench.reference.parts
+            self._bench.note(line.name, text=text)
+            due = theirs[0].first("noted", line.name) if theirs else None
+            holds.append(due is None or due.data["text"] == text)
+        self._bench.note("end", text=str(now))
+        for number, found in enumerate(knows):
+            if shown := found(now):
+                self._bench.note(MISTAKE, number=number, shown=shown)
+        return all(holds)

@@ -1,0 +1,52 @@
+"""Whether a subject hangs is asked at the end of each run in which it was silent, whatever the scenario asks."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+
+from autograder.kit.evidence import Reference
+
+if TYPE_CHECKING:
+    from conftest import BenchOf
+
+pytestmark = pytest.mark.ros
+
+NODE = """
+import time
+import rclpy
+from std_msgs.msg import String
+
+rclpy.init()
+node = rclpy.create_node("subject")
+node.create_subscription(String, "/chatter", lambda heard: {does}, 10)
+{spins}
+"""
+REFERENCE = Reference("lab.listener", {"subscription": {"/chatter": "std_msgs/msg/String"}})
+
+
+@pytest.mark.parametrize(
+    ("does", "spins", "unanswered"),
+    [
+        ("print(heard.data, flush=True)", "rclpy.spin(node)", False),
+        ("None", "rclpy.spin(node)", False),
+        ("None", "time.sleep(60)", True),
+        ("time.sleep(60)", "rclpy.spin(node)", True),
+    ],
+    ids=["works", "silent, and spun", "never spun", "hangs in its callback"],
+)
+def test_a_silent_subject_is_asked_at_the_end_of_its_run(
+    bench_of: BenchOf, does: str, spins: str, unanswered: bool
+) -> None:
+    with bench_of(NODE.format(does=does, spins=spins), REFERENCE) as bench:
+        bench.part("heard")
+        speaker = bench.speak("/chatter", "std_msgs/msg/String")
+        bench.start()
+        assert bench.await_endpoint("subscription", "/chatter")
+        speaker.send(data="hello")
+        bench.wait_until(lambda evidence: bool(evidence.main.said()), 2.0)
+        bench.stop()
+        (part,) = bench.parts
+    assert bool(part.of("unanswered")) is unanswered
+    assert bool(part.of("stack")) is unanswered
