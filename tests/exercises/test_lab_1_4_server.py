@@ -300,6 +300,15 @@ def test_a_server_without_a_pause_whose_last_number_was_out_when_it_agreed_to_ca
     assert next(m.key for m in lab_1_4_server.EXERCISE.mistakes if m.recognize(seen)) == "done_at_once"
 
 
+def test_a_server_without_a_pause_of_which_chance_canceled_one_goal_does_not_mix_goals_up() -> None:
+    quick = [*goal(ALONE, 5, pause=0.001), *goal(BESIDE, 4, pause=0.001), *goal(AGAIN, 3, pause=0.001)]
+    feedback = [FIBONACCI[:n] for n in (3, 4, 5)]
+    first = goal(LONG, 20, feedback=feedback, pause=0.001, cancel=True, status=4)
+    seen = evidence([*quick, *first, *later(LONG_ALONE)])
+    assert failed(seen) == {"cancel"}
+    assert next(m.key for m in lab_1_4_server.EXERCISE.mistakes if m.recognize(seen)) == "done_at_once"
+
+
 def test_feedback_that_was_sent_long_after_the_cancel_was_answered_shows_that_the_server_worked_on() -> None:
     def seen(rounds: int) -> Evidence:
         feedback = [FIBONACCI[:n] for n in (3, 4, 5, 6)]

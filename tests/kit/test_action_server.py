@@ -118,7 +118,8 @@ class Bench:
     """A bench without ROS, on which each wait brings the next event of a server."""
 
     def __init__(self, *events: Event) -> None:
-        self.pace, self.waiting, self.heard = "fast", list(events), []
+        self.pace, self.waiting = "fast", list(events)
+        self.heard: list[Event] = []
         self.canceled: list[tuple[int, int]] = []
 
     def seen(self) -> Part:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from autograder.kit.oracle.action_server import SendsGoals
+from autograder.kit.oracle.action_server import GoalsSeen, SendsGoals
 from autograder.kit.quests.quest import Quest
 from autograder.kit.recipes.action_client import ActionClient
 from autograder.kit.recipes.launch_file import LaunchFile
@@ -43,7 +43,7 @@ RECIPES: dict[str, Recipe[Any]] = {
     "Speaks": Speaks(pace=0.5, paced_by="a timer"),
     "Asks": Asks(lambda _: [], lambda _: {}),
     "Calls": Calls(1, lambda _: [], [], wanted=""),
-    "SendsGoals": SendsGoals(lambda _: None, lambda _: None),  # type: ignore[arg-type,return-value]
+    "SendsGoals": SendsGoals(lambda _: None, lambda seen: GoalsSeen(seen, [], [], [], [], [], [], [], None)),
     "ActionClient": ActionClient(lambda _: None),
     "Program": Program("my_robot_pkg", "simple_node", "a program"),
     "LaunchFile": LaunchFile("my_robot_pkg", "/chatter"),

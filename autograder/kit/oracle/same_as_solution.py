@@ -262,24 +262,25 @@ class SameAsSolution:
         if isinstance(step, Sets):
             value = {"name": step.parameter, "value": parameter_value(step.value)}
             return self._ask(bench, step.node, SET, {"parameters": [value]})
-        speakers, callers, clients = (
-            dict(zip(sorted(ends.get(role, {})), made, strict=True))
-            for role, made in (
-                ("subscription", met.speakers),
-                ("service", met.callers),
-                ("action_server", met.action_callers),
-            )
+        roles = (
+            ("subscription", met.speakers),
+            ("service", met.callers),
+            ("action_server", met.action_callers),
         )
-        if step.name not in {**speakers, **callers, **clients}:
-            names = ", ".join([*speakers, *callers, *clients])
-            raise ValueError(f"gives: {step.name!r} is not one of {names}")
+        clients: dict[str, Any] = {
+            name: client
+            for role, made in roles
+            for name, client in zip(sorted(ends.get(role, {})), made, strict=True)
+        }
+        if step.name not in clients:
+            raise ValueError(f"gives: {step.name!r} is not one of {', '.join(clients)}")
         if isinstance(step, Goal):
             return step.play(GoalSender(bench, clients[step.name], simulated=True))
         whole = step.value if isinstance(step.value, Mapping) else {"data": step.value}
-        if step.name in callers:
-            callers[step.name].ask(whole)
-            return callers[step.name].await_answers(QUIET[bench.pace])
-        speakers[step.name].send(**whole)
+        if step.name in ends.get("service", {}):
+            clients[step.name].ask(whole)
+            return bool(clients[step.name].await_answers(QUIET[bench.pace]))
+        clients[step.name].send(**whole)
         return True
 
     def _describe(self, bench: Bench) -> bool:

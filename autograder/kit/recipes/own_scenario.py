@@ -101,6 +101,7 @@ def meet(
     *,
     listens: bool = True,
     qos: Mapping[str, Qos] = MappingProxyType({}),
+    only: str = "",
 ) -> bool:
     """Run one part of a scenario like :func:`once_met`. Return True if the judge could begin.
 
@@ -109,8 +110,10 @@ def meet(
         serves: Called with the name and type of each service that the reference solution calls; it makes the server.
         listens: True if the judge subscribes before the subject starts.
         qos: The QoS of the judge's endpoints, by topic.
+        only: The role of the subject, if the reference also has the endpoints of other programs; by default all roles.
     """
-    roles = {role: dict(sorted(ends.items())) for role, ends in bench.reference.interface.items()}
+    interface = bench.reference.interface
+    roles = {role: dict(sorted(ends.items())) for role, ends in interface.items() if only in ("", role)}
     publishers, heard, services, actions = (
         roles.get(role, {}) for role in ("publisher", "subscription", "service", "action_server")
     )

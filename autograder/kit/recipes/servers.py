@@ -132,7 +132,7 @@ class Asks:
 
     def scenario(self, bench: Bench) -> None:
         """Make one run: single calls, several calls at once, and one more call."""
-        meet(bench, CALLS, lambda met: self._all_answered(bench, met.callers[0]))
+        meet(bench, CALLS, lambda met: self._all_answered(bench, met.callers[0]), only="service")
 
     def _all_answered(self, bench: Bench, caller: Caller) -> bool:
         """Make all calls. Return False at the first one that is not answered."""

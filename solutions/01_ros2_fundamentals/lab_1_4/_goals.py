@@ -76,7 +76,9 @@ def scenario(bench: Bench) -> None:
 def _run(bench: Bench, name: str, goals: Callable[[GoalSender], bool]) -> bool:
     # There is feedback for each number but the first two and the last.
     due = lambda sent: int(sent.request["order"]) - 2  # noqa: E731
-    return meet(bench, name, lambda met: goals(GoalSender(bench, met.action_callers[0], due)))
+    return meet(
+        bench, name, lambda met: goals(GoalSender(bench, met.action_callers[0], due)), only="action_server"
+    )
 
 
 def _send_good_goals(sender: GoalSender) -> bool:

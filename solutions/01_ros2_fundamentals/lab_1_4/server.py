@@ -66,9 +66,9 @@ def gives_feedback(seen: Goals, _: Goals) -> Finding:
 @server.criterion("two", 1, "Serves two goals at once")
 def serves_two_at_once(seen: Goals, _: Goals) -> Finding:
     """Two equal goals at once are right, and so are those beside a goal that is canceled, which ends as it should."""
+    older = seen.ended_for_another
     faults = (
-        seen.ended_for_another
-        and f"the older goal ended as {status_text(seen.ended_for_another.status)} when the younger one came",
+        f"the older goal ended as {status_text(older.status)} when the younger one came" if older else "",
         *(one.fault for one in seen.sent(*TWINS)),
         *(one.fault or one.slip for one in seen.sent(BESIDE, NEXT) if not one.is_wrong_when_large),
         *(one.fault for one in seen.sent(LONG_ALONE, YOUNGER) if one.accepted is False),
