@@ -52,11 +52,13 @@ class Diagnosis:
         key: The mistake's key, such as ``"topic_name"`` (``docs/mistakes.md`` lists all keys).
         text: What happened and why, in one to three sentences for a student.
         next_step: What to do now, in the imperative.
+        hidden: True if the card must not show the key, because finding the cause is the task.
     """
 
     key: str
     text: str
     next_step: str = ""
+    hidden: bool = False
 
 
 ASKS_FOR_INPUT = Diagnosis(

@@ -22,7 +22,7 @@ from environment.pip_settings import as_uv_has_them
 from environment.place import INTERFACES, Place, environment_paths, environment_values
 from environment.ros2_command.install import install as install_ros2_command
 from environment.steps import Step, files_below
-from environment.wheel_repairs import make_imports_lighter, repair_fast_dds
+from environment.wheel_repairs import repair_fast_dds, repair_sources
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Mapping, Sequence
@@ -79,7 +79,7 @@ class Setup:
             Step("environment", f"making .venv with {python}", kind, self._make_environment),
             Step("uv", "fetching uv, which installs the packages", (place.lock("uv"),), self._get_uv),
             Step("packages", self._what_is_installed(), tuple(locks), lambda: self._install_packages(locks)),
-            Step("imports", "making imports lighter", repairs, self._make_imports_lighter),
+            Step("sources", "repairing imports and parameters", repairs, self._repair_sources),
             Step("fast_dds", "repairing how a node ends", repairs, lambda: repair_fast_dds(place.prefix)),
             Step(
                 "interfaces", f"building {self._interfaces()} with colcon", interfaces, self._build_interfaces
@@ -213,8 +213,8 @@ class Setup:
         # If a user's setting makes pip install into the home folder, pip would refuse to do so inside an environment.
         self._run("installing packages", command, PIP_USER="0")
 
-    def _make_imports_lighter(self) -> None:
-        changed = make_imports_lighter(self.place.site_packages)
+    def _repair_sources(self) -> None:
+        changed = repair_sources(self.place.site_packages)
         if changed:
             # For a user who may read this environment but not write to it.
             self._run("compiling what was changed", [self.place.python, "-m", "compileall", "-q", *changed])

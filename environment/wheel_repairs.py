@@ -1,4 +1,4 @@
-"""Repairs files of the installed wheels: CMake files, imports, and Fast DDS.
+"""Repairs files of the installed wheels: CMake files, imports, the callbacks of parameters, and Fast DDS.
 
 * **CMake files.** The wheels were built in a container. What CMake exports for the Python part of a message package
   names that container's folders, ``/opt/python/cp311-cp311/include/python3.11`` and numpy's headers below it, and
@@ -11,6 +11,10 @@
   message. Each program that reads a notebook, JupyterLab and nbgrader among them, imports jsonschema, and through it
   ``rfc3987_syntax``, which compiles 32 grammars of internationalised addresses (1 to 3 s of processor time) for a
   check that no notebook asks for. All are imported when they are asked for.
+* **Callbacks of parameters.** rclpy asks a node's own callbacks about ``use_sim_time``, too, which the judge sets on a
+  running node. A node that refuses what it does not know would not follow the judge's clock, and a node that takes each
+  value for its speed would drive at ``True``. So only rclpy itself is asked about ``use_sim_time``, as if it had been
+  set before the node had a callback.
 * **Fast DDS** can hang for ever in a node that ends while another one appears. Who deletes a participant waits for the
   callback of discovery that is just running. It waits "for ever", with ``time_point::max()`` as its deadline. As the
   wheels are built, this deadline is converted into time of day, where it overflows into the past:
@@ -116,13 +120,13 @@ def repair_cmake(prefix: Path, headers: HeaderFolders) -> list[Path]:
 
 
 @dataclass(frozen=True)
-class LaterImport:
-    """A module that is to import something later.
+class SourceRepair:
+    """A change of a Python module.
 
     Attributes:
         file: The module, below site-packages.
-        now: How it imports that now.
-        later: What takes its place.
+        now: The text that is replaced.
+        later: The text that replaces it.
     """
 
     file: str
@@ -130,8 +134,8 @@ class LaterImport:
     later: str
 
 
-LATER_IMPORTS = (
-    LaterImport(
+SOURCE_REPAIRS = (
+    SourceRepair(
         "rosidl_generator_py/__init__.py",
         re.compile(r"^try:\n    from \.generate_py_impl import generate_py\n.*\Z", re.MULTILINE | re.DOTALL),
         _MARK
@@ -143,7 +147,7 @@ def __getattr__(name):
     raise AttributeError(f'module {__name__!r} has no attribute {name!r}')
 """,
     ),
-    LaterImport(
+    SourceRepair(
         "service_msgs/msg/_service_event_info.py",
         re.compile(r"^import numpy\b[^\n]*$", re.MULTILINE),
         _MARK
@@ -156,7 +160,7 @@ class _Numpy:
 
 numpy = _Numpy()""",
     ),
-    LaterImport(
+    SourceRepair(
         "rfc3987_syntax/__init__.py",
         re.compile(r"^from \.syntax_helpers import \*\s*\Z"),
         _MARK
@@ -173,13 +177,42 @@ def __getattr__(name):
     return getattr(syntax_helpers, name)
 """,
     ),
+    SourceRepair(
+        "rclpy/node.py",
+        re.compile(
+            r"^        modified_parameter_list = self\._call_pre_set_parameters_callback\(parameter_list\)$",
+            re.M,
+        ),
+        "        "
+        + _MARK
+        + """only rclpy is asked about use_sim_time.
+        if [parameter.name for parameter in parameter_list] == ['use_sim_time']:
+            own = (
+                self._pre_set_parameters_callbacks,
+                self._on_set_parameters_callbacks,
+                self._post_set_parameters_callbacks,
+            )
+            self._pre_set_parameters_callbacks = []
+            self._on_set_parameters_callbacks = [self._time_source._on_parameter_event]
+            self._post_set_parameters_callbacks = []
+            try:
+                return self._set_parameters_atomically_common(parameter_list)
+            finally:
+                (
+                    self._pre_set_parameters_callbacks,
+                    self._on_set_parameters_callbacks,
+                    self._post_set_parameters_callbacks,
+                ) = own
+
+        modified_parameter_list = self._call_pre_set_parameters_callback(parameter_list)""",
+    ),
 )
 
 
-def make_imports_lighter(site_packages: Path) -> list[Path]:
+def repair_sources(site_packages: Path) -> list[Path]:
     """Change the existing modules that are not changed yet, each in one step, and return them."""
     changed = []
-    for module in LATER_IMPORTS:
+    for module in SOURCE_REPAIRS:
         path = site_packages / module.file
         if not path.is_file():
             continue

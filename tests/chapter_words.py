@@ -68,7 +68,7 @@ def words_of(path: Path) -> Words:
         if cell.cell_type == "markdown":
             for piece in _pieces(cell.source):
                 if piece.startswith(PREDICTIONS):
-                    marks.append(visible + _count(piece))
+                    marks.append(visible + _count(piece.partition("<details")[0]))
                 shown = _FOLD.sub(lambda fold: " ".join(_SUMMARY.findall(fold.group())), piece)
                 folded += _count(piece) - _count(shown)
                 visible += _count(shown) + sum(map(_count, _labels(shown, path.parent)))

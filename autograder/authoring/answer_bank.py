@@ -28,7 +28,8 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from autograder.judge.one_check import Checked
-    from autograder.kit.evidence import Part, Reference
+    from autograder.kit.evidence import Reference
+    from autograder.messages.judge_messages import Report
 
 
 _PROGRAMS = {name: str(installed_program(name)) for name in ("python3", "ros2")}
@@ -44,7 +45,8 @@ class Answer:
         file: The program; if it is stored as an edit, the path that the program would have.
         command: The command that runs the program, with placeholders ``{file}`` and ``{workspace}``.
         diagnoses: The accepted diagnoses, as keys of mistakes; empty for a right answer.
-        base: The workspace that the answer edits; None for a program.
+        base: The workspace of the answer, which a ``*.workspace`` edits and any other answer uses as it is; None if
+            the answers to the exercise need no workspace.
         edit: The answer's entry in a table, if the answer is stored there as an edit.
         says: Words that the diagnosis has to contain.
         advice: What the card of a node that does the same says, and the next step; empty if the answer is not recorded
@@ -80,7 +82,7 @@ class Answer:
         return self.edit.text() if self.edit else self.file.read_text(encoding="utf-8")
 
     def unpack(self, folder: Path) -> list[str]:
-        """Write the program or workspace into a folder if the answer is stored as an edit.
+        """Write the program and its workspace into a folder, unless the program is a file and has no workspace.
 
         Args:
             folder: An empty folder.
@@ -93,8 +95,8 @@ class Answer:
         """
         file, workspace = self.file, folder / "ros2_ws"
         if self.base is not None:
-            unpack_workspace(self.text, self.base, workspace)
-        elif self.edit is not None:
+            unpack_workspace(self.text if file.suffix == WORKSPACE else "", self.base, workspace)
+        if file.suffix != WORKSPACE and (self.edit is not None or self.base is not None):
             file = folder / file.name
             file.write_text(self.text, encoding="utf-8")
         return [part.format(file=file, workspace=workspace) for part in self.command]
@@ -107,7 +109,7 @@ class Answer:
         with HeldFolder("autograder-answer-") as folder:
             return checked_here(exercise, self.unpack(folder.path), seed, None)
 
-    def recorded(self, reference: Reference) -> Sequence[Part]:
+    def recorded(self, reference: Reference) -> Report:
         """Record the answer in this process, in all parts that the recording of the solution has."""
         from autograder.judge.command_check import recorded_here
 
@@ -154,7 +156,7 @@ def answers(of: Sequence[str] = ()) -> Iterator[Answer]:
             first, *rest = one.entry.command or usual.command
             command = (_PROGRAMS.get(first, first), *rest)
             diagnoses = (one.entry.diagnosis, *one.entry.also) if one.entry.diagnosis else ()
-            base = folder / usual.base if one.file.suffix == WORKSPACE else None
+            base = folder / usual.base if usual.base else None
             edit = one if one.entry.change else None
             advice = (one.entry.card, one.entry.next_step) if one.entry.card else ()
             yield Answer(exercise_id, one.file, command, diagnoses, base, edit, one.entry.says, advice)

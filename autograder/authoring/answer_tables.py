@@ -108,7 +108,8 @@ class AnswerSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
     Attributes:
         command: The command that runs an answer, with placeholders ``{file}`` and ``{workspace}``.
-        base: The workspace that every answer named ``*.workspace`` edits, as a path relative to the folder.
+        base: The workspace of all answers, as a path relative to the folder: an answer named ``*.workspace`` edits it,
+            and next to any other one, such as a launch file, it is as it is.
     """
 
     command: tuple[str, ...] = ("python3", "{file}")

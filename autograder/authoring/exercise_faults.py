@@ -81,6 +81,8 @@ def _of_mistakes(exercise_id: str, listed: Sequence[Answer]) -> Iterator[str]:
         explained = set(re.findall(r"^### `(\w+)`$", page.read_text(encoding="utf-8"), re.MULTILINE))
         used = {mistake.key for mistake in exercises.get(exercise_id).mistakes}
         used |= {key for answer in listed for key in answer.diagnoses}
+        # A recorded wrong answer says on the card itself what it is.
+        used -= {"variant", *(key for answer in listed if answer.advice for key in answer.diagnoses)}
         yield from (f"{_MISTAKES_PAGE}: no paragraph about `{key}` yet" for key in sorted(used - explained))
 
 
@@ -204,7 +206,9 @@ def _beginning(cells: list[NamedCell]) -> Iterator[str]:
 def _solutions(cells: Iterable[NamedCell]) -> Iterator[str]:
     for one in cells:
         if one.cell.kind is CellRole.SOLUTION:
-            written = sum(bool(line.strip()) for line in find_region(one.cell.source).answer)
+            region = find_region(one.cell.source)
+            # A repair keeps most lines of the broken code, which students get.
+            written = sum(bool(line.strip()) for line in region.answer if line not in region.stub)
             if not 1 <= written <= _MAX_SOLUTION_LINES:
                 yield (
                     f"a task is small: the cell {one.name} (line {one.cell.line}) asks for {written} lines; at most "

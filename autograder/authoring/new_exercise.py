@@ -32,6 +32,8 @@ _TABLE = re.compile(r"(?m)^\[|\Z")
 _ID = re.compile(r"[a-z][a-z0-9_]*\.[a-z][a-z0-9_]*", re.ASCII)
 _NUMBER = re.compile(r"_(\d+(?:_\d+)*)$")
 _TITLE = re.compile(r"^# .*?: ", re.MULTILINE)
+_MINUTES = re.compile(r"^\*\d+ minutes · .*\n\n", re.MULTILINE)
+_CLOSING = "\n## Going further"
 
 
 class CannotMake(ValueError):
@@ -44,9 +46,15 @@ def recipes() -> dict[str, Path]:
 
 
 def new_exercise(
-    root: Path, exercise_id: str, recipe: str, *, chapter: str | None = None, interfaces: Sequence[str] = ()
+    root: Path,
+    exercise_id: str,
+    recipe: str,
+    *,
+    chapter: str | None = None,
+    interfaces: Sequence[str] = (),
+    to_lab: bool = False,
 ) -> Sequence[Path]:
-    """Make the folder of a lab with one exercise.
+    """Make the folder of a lab with one exercise, or add the exercise to a lab.
 
     Args:
         root: The top folder of the course.
@@ -55,13 +63,14 @@ def new_exercise(
         chapter: The folder of the chapter in ``solutions/``, which is created if it does not exist; None for the last
             chapter.
         interfaces: The chapter's own interface types that its nodes need, such as ``"power_interfaces/srv/SetLevel"``.
+        to_lab: True to add the exercise to a lab that exists, in whatever chapter: its cells come last.
 
     Returns:
-        The new files, in order.
+        The new files and, if the lab existed, its changed master, in order.
 
     Raises:
-        CannotMake: The id, the chapter or an interface is not valid; the lab already exists; or the recipe does not
-            exist.
+        CannotMake: The id, the chapter or an interface is not valid; the lab already exists, or does not; or the recipe
+            does not exist.
     """
     if not _ID.fullmatch(exercise_id):
         raise CannotMake(
@@ -73,8 +82,9 @@ def new_exercise(
     if recipe not in known:
         raise CannotMake(f"no recipe is named {recipe!r}. The recipes are: {', '.join(known)}")
     example = known[recipe]
-    folder = _chapter(root, chapter) / lab
-    _refuse_existing(root, folder)
+    folder = _existing_lab(root, exercise_id) if to_lab else _chapter(root, chapter) / lab
+    if not to_lab:
+        _refuse_existing(root, folder)
     types = [_interface_of(root, folder.parent, interface) for interface in interfaces]
     # Make the lab in a temporary folder first, so that an error leaves no half lab in the course.
     with HeldFolder("autograder-new-") as scratch:
@@ -86,8 +96,19 @@ def new_exercise(
             *_described(folder.parent),
             *(file for each in types for file in _defined(folder.parent, each)),
         ]
-        shutil.copytree(made, folder)
-    return [*written, *sorted(path for path in folder.rglob("*") if path.is_file())]
+        if to_lab:
+            _add_cells(folder / course.LAB, made / course.LAB)
+        new = sorted(folder / path.relative_to(made) for path in made.rglob("*") if path.is_file())
+        shutil.copytree(made, folder, dirs_exist_ok=True)
+    return [*written, *new]
+
+
+def _add_cells(lab: Path, example: Path) -> None:
+    """Put the cells of a lab before the end of the example's master, and its own cells after them."""
+    before, closing, after = lab.read_text(encoding="utf-8").partition(_CLOSING)
+    text = example.read_text(encoding="utf-8").partition(_CLOSING)[0]
+    task = _MINUTES.sub("", _TITLE.sub("## ", text[text.index("\n# ") + 1 :], count=1))
+    example.write_text(f"{before.rstrip()}\n\n+++\n\n{task.rstrip()}\n{closing}{after}", encoding="utf-8")
 
 
 def _described(chapter: Path) -> list[Path]:
@@ -180,13 +201,23 @@ def _refuse_existing(root: Path, folder: Path) -> None:
     for lab in (folder, *others):
         if lab.exists():
             raise CannotMake(
-                f"{lab.relative_to(root)} already exists: choose another name, or add the exercise to that lab by "
-                "hand (a new Python file next to lab.md, and a check cell in lab.md)"
+                f"{lab.relative_to(root)} already exists: choose another name, or add the exercise to that lab with "
+                "--lab"
             )
     if _is_a_module(folder.name):
         raise CannotMake(
             f"Python already has a module {folder.name}, which would hide the lab: choose another name for the lab"
         )
+
+
+def _existing_lab(root: Path, exercise_id: str) -> Path:
+    name, _, exercise = exercise_id.partition(".")
+    labs = [lab for chapter in course.chapters(root) for lab in chapter.labs if lab.name == name]
+    if not labs or not (labs[0] / course.LAB).is_file():
+        raise CannotMake(f"the course has no lab {name} with a {course.LAB}: leave out --lab to make it")
+    if there := sorted(labs[0].glob(f"{exercise}.*")):
+        raise CannotMake(f"{there[0].relative_to(root)} already exists: choose another name for the exercise")
+    return labs[0]
 
 
 def _is_a_module(name: str) -> bool:
@@ -196,14 +227,16 @@ def _is_a_module(name: str) -> bool:
 def _rename(made: Path, old: str, new: str) -> None:
     """Replace the example's id by the new id in the copied lab, in the contents and names of its files."""
     old_name, new_name = old.partition(".")[2], new.partition(".")[2]
+    # A part of the exercise, in a file of its own, is named after it with an underscore in front.
+    part = old.replace(".", "._"), new.replace(".", "._")
     for path in sorted(made.rglob("*")):
         if path.is_file():
-            text = path.read_text(encoding="utf-8").replace(old, new)
+            text = path.read_text(encoding="utf-8").replace(old, new).replace(*part)
             if path.name == course.LAB:
                 text = _TITLE.sub(f"# {_lab_title(new)}: ", text, count=1)
             path.write_text(text, encoding="utf-8")
-    for path in made.glob(f"{old_name}.*"):
-        path.rename(path.with_name(new_name + path.name.removeprefix(old_name)))
+    for path in made.glob(f"*{old_name}*"):
+        path.rename(path.with_name(path.name.replace(old_name, new_name, 1)))
 
 
 def _lab_title(exercise_id: str) -> str:

@@ -13,15 +13,18 @@ from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING
 
+import msgspec
+
 from autograder import course, exercises
 from autograder.authoring import answer_bank
 from autograder.judge import evidence_files
 from autograder.judge.check_process import Child
 from autograder.judge.controlled_judge import JudgeDied, JudgeProcess
-from autograder.kit.evidence import Reference, Variant
+from autograder.judge.recording_differences import differences
+from autograder.kit.evidence import Variant
 from autograder.masters.master_files import MasterError
 from autograder.masters.reference_solutions import reference_source
-from autograder.messages.judge_messages import SOCKET_VARIABLE
+from autograder.messages.judge_messages import SOCKET_VARIABLE, Report
 from autograder.safe_files import HeldFolder
 from environment.python_child import installed_program
 
@@ -29,8 +32,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
     from pathlib import Path
 
+    from autograder.kit.evidence import Reference
     from autograder.kit.model import Exercise
-    from autograder.messages.judge_messages import Report
     from autograder.verdict import Verdict
 
 
@@ -67,16 +70,29 @@ def record(wanted: Sequence[str], *, only_check: bool, tell: Callable[[str], obj
     for exercise_id in wanted or exercises.all_ids():
         text = recording(exercise_id)
         file = exercises.reference_path(exercise_id)
-        if file.exists() and file.read_text(encoding="utf-8") == text:
+        different = [] if not file.exists() else _different(file, text, exercises.get(exercise_id).tolerance)
+        if file.exists() and not different:
             tell(f"{exercise_id}: unchanged")
             continue
         changed.append(exercise_id)
-        if only_check:
-            tell(f"{exercise_id}: differs from {file.relative_to(course.root())}")
-        else:
+        if not only_check:
             file.write_text(text, encoding="utf-8")
-            tell(f"{exercise_id}: recorded in {file.relative_to(course.root())}")
+        what = "differs from" if only_check else "recorded in"
+        tell("\n  ".join([f"{exercise_id}: {what} {file.relative_to(course.root())}", *different]))
     return changed
+
+
+def _different(file: Path, text: str, tolerance: float) -> list[str]:
+    """Return in words how a new recording differs from the stored one."""
+    try:
+        stored = _parsed(file.read_text(encoding="utf-8"))
+    except (ValueError, KeyError, TypeError) as error:
+        return [f"the stored file is not a recording ({error})"]
+    return list(differences(stored, _parsed(text), tolerance))
+
+
+def _parsed(text: str) -> Reference:
+    return evidence_files.parse_reference(json.loads(text))
 
 
 def recording(exercise_id: str) -> str:
@@ -108,23 +124,24 @@ def recording(exercise_id: str) -> str:
 
 def _with_variants(text: str, exercise: Exercise) -> str:
     """Return a recording with the records of the wrong answers that have a card's text in their table."""
-    reference = evidence_files.parse_reference(json.loads(text))
+    reference = _parsed(text)
     variants = []
     for answer in answer_bank.answers([exercise.id]):
         if answer.advice:
-            parts = Child(partial(_variant, answer, reference), _RUN_LIMIT).result()
-            if parts.data is None:
-                raise CannotRecord(f"{answer.name}: {parts.trouble}")
-            recorded = evidence_files.parse_reference(json.loads(parts.data)).parts
+            child = Child(partial(_variant, answer, reference), _RUN_LIMIT).result()
+            report = (
+                msgspec.json.decode(child.data, type=Report) if child.data else Report(trouble=child.trouble)
+            )
+            if report.reference is None:
+                raise CannotRecord(f"{answer.name}: {report.trouble}")
             card, next_step = answer.advice
-            variants.append(Variant(answer.diagnoses[0], card, next_step, recorded))
+            variants.append(Variant(answer.diagnoses[0], card, next_step, _parsed(report.reference).parts))
     with_variants = replace(reference, variants=variants)
     return evidence_files.dump_reference(with_variants, exercise.recorded) if variants else text
 
 
 def _variant(answer: answer_bank.Answer, reference: Reference) -> bytes:
-    parts = answer.recorded(reference)
-    return evidence_files.dump_reference(replace(reference, parts=parts), None).encode()
+    return msgspec.json.encode(answer.recorded(reference))
 
 
 def unsolved(exercise_id: str) -> Verdict | None:

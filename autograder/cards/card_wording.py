@@ -131,7 +131,7 @@ def tally(verdict: Verdict) -> str:
 def fine_print(verdict: Verdict) -> list[str]:
     """Return the facts to quote in a question or an appeal: exercise id, diagnosis, seed and duration of the check."""
     parts = [verdict.exercise]
-    if verdict.diagnosis:
+    if verdict.diagnosis and not verdict.diagnosis.hidden:
         parts.append(verdict.diagnosis.key)  # docs/mistakes.md has a heading with this key
     if verdict.seed:
         parts.append(f"seed {verdict.seed}")

@@ -84,7 +84,10 @@ def record(exercises: tuple[str, ...], only_check: bool) -> None:
     metavar="PACKAGE/KIND/TYPE",
     help="A new message, service or action type that the chapter defines; may be given several times.",
 )
-def new_exercise(exercise: str, recipe: str, chapter: str | None, interfaces: tuple[str, ...]) -> None:
+@click.option("--lab", "to_lab", is_flag=True, help="Add the exercise to its lab, which already exists.")
+def new_exercise(
+    exercise: str, recipe: str, chapter: str | None, interfaces: tuple[str, ...], to_lab: bool
+) -> None:
     """Make the folder of a new lab with one working EXERCISE, which you then change.
 
     \b
@@ -95,7 +98,9 @@ def new_exercise(exercise: str, recipe: str, chapter: str | None, interfaces: tu
 
     root = course.root()
     try:
-        made = making.new_exercise(root, exercise, recipe, chapter=chapter, interfaces=interfaces)
+        made = making.new_exercise(
+            root, exercise, recipe, chapter=chapter, interfaces=interfaces, to_lab=to_lab
+        )
     except (making.CannotMake, course.BrokenChapter) as error:
         fail(str(error))
     for file in made:

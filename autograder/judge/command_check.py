@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
     from autograder.judge.one_check import Checked
     from autograder.judge.subject import CommandBox
-    from autograder.kit.evidence import Part, Reference
+    from autograder.kit.evidence import Reference
     from autograder.kit.model import Exercise
 
 
@@ -138,16 +138,16 @@ def checked_here(
         return not_checked(exercise.id, exercise.title, exercise.points, str(error)), None
 
 
-def recorded_here(exercise: Exercise, command: Sequence[str], reference: Reference) -> Sequence[Part]:
-    """Record what a command does in all parts of an exercise, in this process, which was forked for it.
-
-    Raises:
-        NoFreeDomainError: Every ROS domain of this machine is in use.
-    """
+def recorded_here(exercise: Exercise, command: Sequence[str], reference: Reference) -> Report:
+    """Record what a command does in all parts of an exercise, in this process, which was forked for it."""
     ros_setup.prepare_judge()
     from autograder.judge import reference_recording
     from autograder.judge.subject import CommandSubject
 
-    with ros_setup.lease_domain() as domain_id:
-        subject = CommandSubject(_as_run(exercise, command, None))
-        return reference_recording.record_variant(exercise, subject, reference, domain_id=domain_id)
+    try:
+        with ros_setup.lease_domain() as domain_id:
+            subject = CommandSubject(_as_run(exercise, command, None))
+            recorded = reference_recording.record_variant(exercise, subject, reference, domain_id=domain_id)
+    except (NoFreeDomainError, JudgeFailed, reference_recording.NotRecordable) as error:
+        return Report(trouble=str(error))
+    return Report(reference=evidence_files.dump_reference(recorded, exercise.recorded))

@@ -84,7 +84,9 @@ def parse_reference(data: Mapping[str, Any]) -> Reference:
         Variant(one["key"], one["text"], one["next_step"], _parts(one["parts"]))
         for one in data.get("variants", ())
     ]
-    return Reference(data["exercise"], data["interface"], _parts(data["parts"]), variants)
+    return Reference(
+        data["exercise"], data["interface"], _parts(data["parts"]), variants, data.get("qos", {})
+    )
 
 
 def _parts(listed: Sequence[Mapping[str, Any]]) -> list[Part]:
@@ -101,6 +103,11 @@ def _parts(listed: Sequence[Mapping[str, Any]]) -> list[Part]:
     ]
 
 
+def as_recorded(reference: Reference, kinds: Sequence[str] | None) -> Reference:
+    """Return a recording as it is read back: only with what is written. ``kinds`` is as for :func:`dump_reference`."""
+    return parse_reference(json.loads(dump_reference(reference, kinds)))
+
+
 def dump_reference(reference: Reference, kinds: Sequence[str] | None = None) -> str:
     """Return a recording as JSON, with one line for each event. Recordings of the same behavior give the same text.
 
@@ -109,6 +116,8 @@ def dump_reference(reference: Reference, kinds: Sequence[str] | None = None) -> 
         kinds: The kinds of events to write; None for the usual kinds.
     """
     head = {"exercise": reference.exercise, "interface": _sorted_interface(reference.interface)}
+    if qos := _sorted_interface(reference.qos):
+        head["qos"] = qos
     blocks = [
         json.dumps(head, indent=1, ensure_ascii=False).removesuffix("\n}"),
         f' "parts": [\n{_parts_text(reference.parts, kinds)}\n ]',
@@ -157,7 +166,8 @@ def _recorded_events(part: Part) -> list[dict[str, Any]]:
 
 def _event_row(event: Event, start: float | None) -> dict[str, Any]:
     row: dict[str, Any] = {"kind": event.kind, "name": event.name}
-    if event.sim is not None and start is not None:
+    # What a scenario notes is the same in each run, but the time at which it can note it is not.
+    if event.sim is not None and start is not None and event.kind != "noted":
         row["sim"] = round(event.sim - start, 3)
     return row | {"data": {name: value for name, value in event.data.items() if name not in _VARYING_FIELDS}}
 

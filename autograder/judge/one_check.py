@@ -27,6 +27,7 @@ from autograder.judge.machine_fitness import (
 from autograder.judge.timeline import verdict_timeline
 from autograder.judge.timeline.parting_point import parting_point
 from autograder.kit.evidence import Evidence, Reference
+from autograder.kit.hunts.repairs import without_causes
 from autograder.kit.in_words import of_its_kind, shortened, visible
 from autograder.kit.mistakes.package_mistakes import changed_since_build
 from autograder.kit.model import Advice, Exercise, Finding, Mistake, Pace
@@ -153,7 +154,8 @@ def _check(
         verdict = judge(exercise, evidence, seed)
         # A wrong name should fail only one criterion. So the judge looks again and uses the subject's names, with which
         # it can decide the other criteria.
-        names = {} if verdict.passed or exercise.runner else misnamed(evidence, verdict)
+        looks_once = verdict.passed or exercise.runner or exercise.hides_causes
+        names = {} if looks_once else misnamed(evidence, verdict)
         if names:
             seen = next_look(Pace.FAST)
             evidence = seen.evidence
@@ -270,6 +272,7 @@ def judge(exercise: Exercise, evidence: Evidence, seed: str) -> Verdict:
     diagnosis, traceback = (None, "") if passed else diagnose(exercise, evidence, criteria)
     told = (diagnosis.text if diagnosis else "", *(one.seen for one in criteria if not one.passed))
     remarks = (*exercise.remarks, *([changed_since_build] if exercise.runner else []))
+    shown = without_causes(evidence) if exercise.hides_causes and not passed else evidence
     return Verdict(
         exercise=exercise.id,
         title=exercise.title,
@@ -279,7 +282,7 @@ def judge(exercise: Exercise, evidence: Evidence, seed: str) -> Verdict:
         criteria=criteria,
         diagnosis=diagnosis,
         remarks=tuple(_cut(text) for remark in remarks if (text := remark(evidence))),
-        timeline=verdict_timeline.moments(evidence, " ".join(told), missed=not passed),
+        timeline=verdict_timeline.moments(shown, " ".join(told), missed=not passed),
         seed=seed,
         # The last lines of a traceback name the error and the student's line.
         detail=traceback[-MAX_DETAIL:],
@@ -313,7 +316,8 @@ def diagnose(
             for words in (advice.text, advice.next_step)
         )
         # One entry of a ladder may recognize several variants of a mistake; then its advice names the key.
-        return Diagnosis(advice.key or mistake.key, text, next_step), advice.traceback
+        key = advice.key or mistake.key
+        return Diagnosis(key, text, next_step, hidden=exercise.hides_causes), advice.traceback
     failed = next((one for one in criteria if not one.passed), None)
     seen = f"“{failed.title}” is not met: {failed.seen}. Asked: {failed.expected}." if failed else ""
     text = of_its_kind(shortened(visible(parting_point(evidence) or seen)), evidence.in_a_notebook)

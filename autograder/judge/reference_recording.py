@@ -3,32 +3,37 @@
 from __future__ import annotations
 
 import time
+from dataclasses import replace
 from random import Random
 from typing import TYPE_CHECKING
 
 from autograder.judge.bench.bench import TestBench
+from autograder.judge.evidence_files import as_recorded
 from autograder.judge.one_check import is_certain, judge, look
+from autograder.judge.recording_differences import differences
 from autograder.kit.evidence import Evidence, Reference
 from autograder.kit.model import Exercise, Pace
-from autograder.kit.runners import RunsPrograms, processes, report_of
+from autograder.kit.runners import RunsPrograms, all_are_there, processes, report_of
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
     from autograder.judge.subject import Subject
     from autograder.kit.evidence import Part
 
-
+TOPIC_ROLES = ("publisher", "subscription")
 SEED = "reference"
 """The fixed seed of a recording, so that each recording has the same random inputs."""
 LOOKS = 10
 """The maximum number of looks for a recording. On a busy machine the evidence of a look may be doubtful, so another
 look is needed. With at most three looks, 1 of 36 recordings failed when eighteen ran at once on two processors.
 """
+ALL_THERE = 20.0
+"""Time limit in seconds of wall time for the programs of a launch to make their endpoints."""
 
 
 class NotRecordable(RuntimeError):
-    """The reference solution did not show the behavior that the exercise is about."""
+    """A program did not show the behavior that the exercise is about, or no two records of it would be the same."""
 
 
 def record(exercise: Exercise, subject: Subject, *, domain_id: int) -> Reference:
@@ -46,24 +51,18 @@ def record(exercise: Exercise, subject: Subject, *, domain_id: int) -> Reference
     """
     deadline = time.monotonic() + exercise.limit
     subject.begin(domain_id)
-    interface = _endpoints_of_solution(exercise, subject, domain_id)
-    if exercise.roles and not any(interface.get(role) for role in exercise.roles):
+    bare = _endpoints_of_solution(exercise, subject, domain_id)
+    if exercise.roles and not any(bare.interface.get(role) for role in exercise.roles):
         raise NotRecordable(f"{exercise.id}: the reference solution had no {' or '.join(exercise.roles)}")
-    bare = Reference(exercise.id, interface)
     wrong: Reference | None = None
-    for number in range(LOOKS):
-        # At least one look is made, however long it took to find the endpoints.
-        if number and time.monotonic() > deadline:
-            break
-        seen = look(exercise, subject, bare, Pace.FAST, seed=SEED, domain_id=domain_id)
-        if seen.doubtful:
-            continue
-        recorded = Reference(exercise.id, interface, seen.evidence.parts)
+    for parts in _clear_looks(exercise, subject, bare, domain_id):
+        recorded = replace(bare, parts=parts)
         evidence = as_evidence(recorded)
         if judge(exercise, evidence, SEED).passed:
             return recorded
         wrong = recorded
-        if is_certain(exercise, evidence):
+        # At least one look is made, however long it took to find the endpoints.
+        if is_certain(exercise, evidence) or time.monotonic() > deadline:
             break
     if wrong is not None:
         return wrong
@@ -75,11 +74,40 @@ def record(exercise: Exercise, subject: Subject, *, domain_id: int) -> Reference
 
 def record_variant(
     exercise: Exercise, subject: Subject, reference: Reference, *, domain_id: int
-) -> Sequence[Part]:
-    """Return the record of a wrong answer in all parts, for cards of nodes that do the same."""
+) -> Reference:
+    """Record a wrong answer in all parts, for cards of nodes that do the same.
+
+    Raises:
+        NotRecordable: Every look was doubtful.
+    """
     subject.begin(domain_id)
-    bare = Reference(exercise.id, reference.interface)
-    return look(exercise, subject, bare, Pace.FAST, seed=SEED, domain_id=domain_id).evidence.parts
+    bare = replace(reference, parts=(), variants=())
+    for parts in _clear_looks(exercise, subject, bare, domain_id):
+        return replace(bare, parts=parts)
+    raise NotRecordable(
+        "this wrong answer does not follow the simulated clock, so what it does differs from run to run. Take its "
+        "`card` and `next_step` out of the table, or wait until the machine is less busy, and record again."
+    )
+
+
+def _clear_looks(
+    exercise: Exercise, subject: Subject, bare: Reference, domain_id: int
+) -> Iterator[Sequence[Part]]:
+    """Yield the parts of each look that is not doubtful, or that agrees with an earlier one; of :data:`LOOKS` looks.
+
+    On a busy machine, slow steps make each look doubtful. If two looks in simulated time agree, chance had no part.
+    """
+    doubtful: list[Reference] = []
+    for _ in range(LOOKS):
+        seen = look(exercise, subject, bare, Pace.FAST, seed=SEED, domain_id=domain_id)
+        parts = seen.evidence.parts
+        if not seen.doubtful:
+            yield parts
+        elif all(part.events and part.events[-1].sim is not None for part in parts):
+            recorded = as_recorded(replace(bare, parts=parts), exercise.recorded)
+            if any(not [*differences(earlier, recorded, exercise.tolerance)] for earlier in doubtful):
+                yield parts
+            doubtful.append(recorded)
 
 
 def as_evidence(recorded: Reference) -> Evidence:
@@ -87,10 +115,12 @@ def as_evidence(recorded: Reference) -> Evidence:
     return Evidence(recorded.parts, recorded)
 
 
-def _endpoints_of_solution(exercise: Exercise, subject: Subject, domain_id: int) -> dict[str, dict[str, str]]:
+def _endpoints_of_solution(exercise: Exercise, subject: Subject, domain_id: int) -> Reference:
+    """Return a reference output with the solution's endpoints, and without parts."""
     bench = TestBench(subject, domain_id, Reference(exercise.id, {}), Pace.FAST, Random(SEED))
     try:
         found: dict[str, dict[str, str]] = {}
+        qos: dict[str, dict[str, str]] = {role: {} for role in TOPIC_ROLES}
         for program in _programs(exercise):
             bench.part("interface")
             bench.start(*program, *exercise.sample_arguments)
@@ -102,13 +132,19 @@ def _endpoints_of_solution(exercise: Exercise, subject: Subject, domain_id: int)
                 )
             shown = bench.await_any_endpoint(exercise.roles)
             found |= {role: shown[role] for role in shown if shown[role] or role not in found}
-            if not exercise.runner and bench.seen().ending is None:
-                # The solution may make more endpoints after the first one, so wait until it has made all.
+            if bench.seen().ending is None:
+                # The solution may make more endpoints after the first one, and a launch may start more programs, so
+                # wait until all are there.
+                bench.watch_graph(lambda evidence: all_are_there(evidence.main), ALL_THERE)
                 shown = bench.await_any_endpoint(())
                 found |= {role: found.get(role, {}) | shown[role] for role in shown}
+            for role, named in qos.items():
+                named |= bench.seen().qos(role)
         # The programs of a workspace or launch file may run one after the other. In that case only the endpoints of the
         # exercise's roles are the same in each recording, so only they are recorded.
-        return {role: found[role] for role in exercise.roles} if exercise.runner else found
+        if exercise.runner:
+            found, qos = ({r: of[r] for r in exercise.roles if r in of} for of in (found, qos))
+        return Reference(exercise.id, found, qos=qos)
     finally:
         bench.close()
 

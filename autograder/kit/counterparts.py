@@ -2,10 +2,22 @@
 
 from __future__ import annotations
 
+from enum import StrEnum
 from typing import TYPE_CHECKING, Any, Protocol
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
+
+
+class Qos(StrEnum):
+    """The quality of service of a publisher or subscription, named after the profile that gives it."""
+
+    DEFAULT = "default"
+    """Reliable and volatile: the queue depth 10."""
+    SENSOR = "sensor"
+    """Best effort, like rclpy's ``qos_profile_sensor_data``: a reliable subscription does not match the publisher."""
+    LATCHED = "latched"
+    """Transient local: a late subscription gets the last message. A volatile publisher does not match it."""
 
 
 class Speaker(Protocol):

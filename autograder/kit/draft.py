@@ -12,6 +12,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, Generic, Protocol, TypeVar
 
+from autograder.kit.mistakes.runner_mistakes import with_those_of
 from autograder.kit.mistakes.unfinished import constructor_remark
 from autograder.kit.model import Advice, Bench, Criterion, Exercise, Finding, Mistake
 
@@ -235,7 +236,7 @@ class Draft(Generic[View]):
             ValueError: ``before`` names a mistake that the recipe does not have.
         """
         before, mistakes = dict(self._before), list[Mistake]()
-        for common in self._recipe.ladder:
+        for common in with_those_of(more.get("runner"), self._recipe.ladder):
             # Both placeholders have an empty key, so they are told apart by identity.
             mistakes += [*before.pop(common.key, ()), *self._own.get(id(common), [common])]
         if before:

@@ -77,6 +77,11 @@ class Part:
             found |= survey.data.get(role, {})
         return found
 
+    def qos(self, role: str) -> dict[str, str]:
+        """Return each QoS of the endpoints of a role that is not the default one, such as name -> ``"sensor"``."""
+        unusual = (end for survey in self.of("interface") for end in survey.data.get("qos", ()))
+        return {name: qos for of, name, qos in unusual if of == role}
+
     def real_name(self, name: str) -> str:
         """Return the name that the subject used instead of the task's ``name``; the same name if it used that."""
         event = self.first("misnamed", name)
@@ -363,12 +368,14 @@ class Reference:
         interface: For each role, the types of the reference solution's endpoints by name.
         parts: The record of the reference solution, with the same parts as a subject's.
         variants: The records of wrong answers that a card can name.
+        qos: For each role, the QoS of the reference solution's endpoints by name, if it is not the default one.
     """
 
     exercise: str
     interface: Mapping[str, Mapping[str, str]]
     parts: Sequence[Part] = ()
     variants: Sequence[Variant] = ()
+    qos: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
 
     def part(self, name: str) -> Part:
         """Return the part with this name.

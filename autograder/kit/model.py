@@ -11,6 +11,8 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import TYPE_CHECKING, Any, Protocol
 
+from autograder.kit.counterparts import Qos
+
 if TYPE_CHECKING:
     from collections.abc import Callable, Container, Mapping, Sequence
     from random import Random
@@ -202,18 +204,22 @@ class Bench(Protocol):
             within: The limit in seconds of wall time. The wait ends earlier if the subject ends.
         """
 
-    def listen(self, topic: str, type_name: str, *, latched: bool = False) -> None:
-        """Subscribe to a topic with reliable QoS, like the course's listener, so that a best-effort talker is noticed.
+    def listen(self, topic: str, type_name: str, *, qos: Qos = Qos.DEFAULT) -> None:
+        """Subscribe to a topic, by default with reliable QoS like the course's listener.
+
+        From a publisher whose QoS does not match, nothing is received, and the mismatch is recorded.
 
         Args:
             topic: The full name of the topic.
             type_name: The message type, such as ``"std_msgs/msg/String"``.
-            latched: True to request earlier messages, too (durability transient local). From a publisher that does not
-                store messages for late subscribers, nothing is then received, and the QoS mismatch is recorded.
+            qos: ``Qos.LATCHED`` requests earlier messages, too.
         """
 
-    def speak(self, topic: str, type_name: str) -> Speaker:
-        """Create a publisher with the default QoS of the course (reliable, depth 10)."""
+    def speak(self, topic: str, type_name: str, *, qos: Qos = Qos.DEFAULT) -> Speaker:
+        """Create a publisher. A subscription whose QoS does not match gets nothing, and the mismatch is recorded.
+
+        For the arguments see :meth:`listen`.
+        """
 
     def serve(
         self,
@@ -259,8 +265,22 @@ class Bench(Protocol):
         ``goal_answer_takes`` and ``cancel_answer_takes`` are the delays of the answers, in seconds of wall time.
         """
 
-    def plant(self, name: str, *, publishes: Mapping[str, str], subscribes: Mapping[str, str]) -> None:
-        """Put a decoy node on the ROS graph for the subject to find. Its endpoints are given as ``{topic: type}``."""
+    def plant(
+        self,
+        name: str,
+        *,
+        publishes: Mapping[str, str],
+        subscribes: Mapping[str, str],
+        qos: Qos = Qos.DEFAULT,
+    ) -> None:
+        """Put a decoy node on the ROS graph for the subject to find.
+
+        Args:
+            name: The name of the node.
+            publishes: The topics of its publishers, with their types.
+            subscribes: The topics of its subscriptions, with their types.
+            qos: The QoS of all its endpoints.
+        """
 
     def compare_type(self, service: str, like: str) -> None:
         """Record whether the type of the subject's service has the same fields as the type ``like``."""
@@ -387,6 +407,8 @@ class Exercise:
         mistakes: The known mistakes, most specific first.
         text: Maps each sentence of the task's text to the names of the criteria that judge it, separated by spaces. A
             sentence that no criterion judges is listed below the task as not graded.
+        hides_causes: True if finding the cause is the task. Then no look uses the subject's own names, and until the
+            pass the card tells no cause (:mod:`autograder.kit.hunts.repairs`).
         remarks: Functions that return a sentence for the card that costs no points, or an empty text.
         roles: The roles of the subject's endpoints, such as ``("publisher",)``. `record` waits for one of them.
         limit: The time limit of a check in seconds of wall time, for both looks together. A command gets more time,
@@ -398,6 +420,7 @@ class Exercise:
             be a path.
         wraps_commands: True if ``runner`` also runs commands.
         recorded: The kinds of events that a reference output keeps; None for the kinds that every exercise keeps.
+        tolerance: The tolerance for numbers when two recordings of the solution are compared, absolute or relative.
     """
 
     id: str
@@ -414,8 +437,10 @@ class Exercise:
     runner: Runner | None = None
     wraps_commands: bool = False
     recorded: tuple[str, ...] | None = None
+    tolerance: float = 1e-6
     remarks: Sequence[Callable[[Evidence], str]] = ()
     text: Mapping[str, str] = field(default_factory=dict)
+    hides_causes: bool = False
 
     @property
     def points(self) -> float:

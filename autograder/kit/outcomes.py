@@ -31,6 +31,10 @@ _ERROR_GOAL_TERMINATED = 3
 """The return code of action_msgs/srv/CancelGoal for a goal that has already ended."""
 SUCCEEDED, CANCELED, ABORTED = 4, 5, 6
 """The numbers of three statuses, as defined in action_msgs/msg/GoalStatus."""
+IMMEDIATELY = 0.3
+"""A limit in seconds. A server that computes many numbers in less time makes no pause for each number."""
+LONG_SILENCE, BURST = 1.0, 0.1
+"""Seconds of work without feedback, and the share of them in which all feedback comes if it is sent at the end."""
 STATUS = {
     0: "UNKNOWN",
     1: "ACCEPTED",
@@ -43,7 +47,7 @@ STATUS = {
 
 
 @dataclass(frozen=True)
-class Goal:
+class SentGoal:
     """A goal that the judge sent, with everything that the subject's server answered.
 
     Attributes:
@@ -76,10 +80,62 @@ class Goal:
     status: int | None
     result: Mapping[str, Any]
 
+    def __str__(self) -> str:
+        """Return the fields of the goal in words, such as "order 5"."""
+        return ", ".join(f"{name} {value}" for name, value in (self.request or {}).items())
+
+    def objection(self, is_right: bool, result: str) -> str:
+        """Return in words why a goal did not succeed as it should; empty if it did.
+
+        Args:
+            is_right: True if the result is right.
+            result: The result in words.
+        """
+        faults = (
+            (self.accepted is None, "the goal was not answered"),
+            (not self.accepted, "the goal was rejected"),
+            (self.status is None, "no result"),
+            (self.status != SUCCEEDED, f"status {status_text(self.status)}"),
+            (not is_right, result),
+        )
+        return next((f"{self}: {fault}" for holds, fault in faults if holds), "")
+
+    @property
+    def was_canceled_too_late(self) -> bool:
+        """True if the goal was over before the server could answer the cancel request."""
+        return self.cancelled_too_late or (self.cancel_accepted is None and self.over)
+
+    @property
+    def request_fault(self) -> str:
+        """What is wrong with the answer to the cancel request, in words; empty if it was accepted."""
+        if self.cancel_accepted:
+            return ""
+        if self.cancel_accepted is None and self.status is None:
+            return f"the cancel request was not answered; {self.unread} feedback messages came after it"
+        return f"the cancel request was not accepted; status {status_text(self.status)}"
+
     @property
     def over(self) -> bool:
         """True if the goal has a result, or was refused and therefore gets none."""
         return self.status is not None or self.accepted is False
+
+    @property
+    def is_quick(self) -> bool:
+        """True if the server needed hardly any time for the goal."""
+        return self.seconds is not None and self.seconds < IMMEDIATELY
+
+    @property
+    def cancel_is_over(self) -> bool:
+        """True if the server refused to cancel the goal, or answered the request and ended the goal."""
+        return self.cancel_accepted is False or (self.over and self.cancel_accepted is not None)
+
+    @property
+    def told_at_the_end(self) -> bool:
+        """True if all feedback was sent at once, after seconds of work in silence."""
+        if not self.pauses or self.answered_at is None:
+            return False
+        silent = self.sent[0] - self.answered_at
+        return silent >= LONG_SILENCE and sum(self.pauses) < BURST * silent
 
     @property
     def pauses(self) -> tuple[float, ...]:
@@ -91,7 +147,7 @@ class Goal:
         return 0 if moment is None else sum(sent > moment for sent in self.sent)
 
 
-def goal(part: Part, number: int) -> Goal:
+def goal(part: Part, number: int) -> SentGoal:
     """Return the goal with a given number; the judge numbers its goals from 0."""
     events = [event for event in part.events if event.data.get("goal") == number]
     first = {event.kind: place for place, event in reversed(list(enumerate(events)))}
@@ -105,7 +161,7 @@ def goal(part: Part, number: int) -> Goal:
     heard = [events[place] for place in places]
     split = first.get("cancel_sent", len(events))
     answered = first.get("cancel_answer", len(events))
-    return Goal(
+    return SentGoal(
         request=data.get("goal_sent", {}).get("fields"),
         accepted=data.get("goal_answer", {}).get("accepted"),
         feedback=[event.data["fields"] for event in heard],
@@ -122,7 +178,7 @@ def goal(part: Part, number: int) -> Goal:
     )
 
 
-def all_goals(part: Part) -> list[Goal]:
+def all_goals(part: Part) -> list[SentGoal]:
     """Return all goals that the judge sent in a part."""
     return [goal(part, int(event.data["goal"])) for event in part.of("goal_sent")]
 

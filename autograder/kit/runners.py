@@ -337,6 +337,14 @@ def processes(part: Part) -> list[Process]:
     return [process for process in found if process is not None]
 
 
+def all_are_there(part: Part) -> bool:
+    """Return True if each program that a launch started has a topic endpoint, or an endpoint's process is unknown."""
+    known = {process for survey in part.of("interface") for _, _, process in survey.data.get("ends", ())}
+    started = processes(part)
+    parents = {process.parent for process in started}
+    return {process.pid & 0xFFFF for process in started if process.pid not in parents} <= known or 0 in known
+
+
 def _parsed_process(text: str) -> Process | None:
     try:
         words = json.loads(text)

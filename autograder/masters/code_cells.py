@@ -11,7 +11,8 @@ A solution cell of a master looks like this::
 
 The comment at the top of the region is the stub: only the stub remains in the chapter notebook. The two markers are
 nbgrader's own, so that nbgrader also finds and clears the region. In XML, each of these lines is a comment:
-``<!-- ### BEGIN SOLUTION -->``.
+``<!-- ### BEGIN SOLUTION -->``. If students repair broken code, each line of that code follows the TODO as a comment
+that begins with ``#- ``. Students get it as code.
 
 In a cell that begins with ``%%writefile``, a student writes a file of a ROS workspace::
 
@@ -44,6 +45,8 @@ if TYPE_CHECKING:
 BEGIN = "### BEGIN SOLUTION"
 END = "### END SOLUTION"
 TODO = "# TODO: "
+BROKEN = re.compile(r"^(\s*)(?:<!-- )?#-(?: (.*?))?(?: -->)?$")
+"""Matches a line of broken code: its indentation, and the code; none for an empty line."""
 COPIED = "# copied from this notebook: "
 """The beginning of a stub line that is replaced with code from the notebook when the student runs the cell
 (:mod:`autograder.notebook.program_magic`).
@@ -99,7 +102,9 @@ def find_region(source: str) -> Region:
             raise CellError(offset, "A second TODO in one cell.", _ONE_THING)
     return Region(
         before=tuple(lines[:begin]),
-        stub=tuple(inside[:length]),
+        stub=tuple(
+            BROKEN.sub(lambda line: line[1] + line[2] if line[2] else "", one) for one in inside[:length]
+        ),
         answer=tuple(inside[length:]),
         after=tuple(lines[end + 1 :]),
     )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -12,6 +13,7 @@ import pytest
 
 from autograder import course
 from autograder.authoring.new_exercise import EXAMPLES, CannotMake, new_exercise, recipes
+from autograder.masters.source_notebooks import named_cells
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -107,9 +109,10 @@ def test_an_interface_that_cannot_be_leaves_nothing_behind(root: Path, name: str
 @pytest.mark.parametrize("recipe", recipes())
 def test_nothing_in_it_bears_the_name_of_the_example(root: Path, recipe: str) -> None:
     made = new_exercise(root, ID, recipe)
-    assert {path.name for path in made if path.parent.name == "lab_9_1"} == {"lab.md", "battery_of_mine.py"}
-    example = next(path.stem for path in (recipes()[recipe]).glob("[!_]*.py"))
-    assert not [path for path in made if f"{recipe}.{example}" in path.read_text()]
+    example = min(path.stem for path in (recipes()[recipe]).glob("[!_]*.py"))
+    files = {path.name.replace(example, "battery_of_mine") for path in recipes()[recipe].glob("*.py")}
+    assert {path.name for path in made if path.parent.name == "lab_9_1"} == {"lab.md", *files}
+    assert not [path for path in made if re.search(rf"{recipe}\._?{example}", path.read_text())]
     assert (root / "solutions/01_first/lab_9_1/lab.md").read_text().count(f'check("{ID}"') == 1
     assert "\n# Lab 9.1: " in (root / "solutions/01_first/lab_9_1/lab.md").read_text()
 
@@ -138,6 +141,43 @@ def test_a_bad_name_is_refused(
     with pytest.raises(CannotMake, match=said):
         new_exercise(root, exercise_id, recipe, chapter=chapter)
     assert sorted(root.rglob("*")) == before
+
+
+def test_a_second_exercise_of_a_lab_comes_after_the_first(root: Path) -> None:
+    new_exercise(root, ID, "publisher")
+    lab = root / "solutions/01_first/lab_9_1"
+    made = new_exercise(root, "lab_9_1.converter_of_mine", "relay", to_lab=True)
+    assert lab / "converter_of_mine.answers/right/usual.py" in made
+    assert lab / "battery_of_mine.py" not in made
+    text = (lab / "lab.md").read_text()
+    parts = [
+        "# Lab 9.1: ",
+        f'check("{ID}"',
+        "\n+++\n\n## ",
+        'check("lab_9_1.converter_of_mine"',
+        "## Going further",
+    ]
+    assert [text.count(part) for part in parts] == [1] * len(parts)
+    assert sorted(parts, key=text.index) == parts
+    assert text.count("· for ") == 1  # the minutes of the lab
+    assert [
+        one.check.exercise for one in named_cells(lab / "lab.md", points=lambda _: 10.0) if one.check
+    ] == [
+        ID,
+        "lab_9_1.converter_of_mine",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("exercise_id", "said"),
+    [("lab_9_2.other", "no lab lab_9_2 with a lab.md"), (ID, "battery_of_mine.answers already exists")],
+)
+def test_what_cannot_be_added_to_a_lab_leaves_it_as_it_is(root: Path, exercise_id: str, said: str) -> None:
+    new_exercise(root, ID, "publisher")
+    before = {path: path.read_bytes() for path in root.rglob("*") if path.is_file()}
+    with pytest.raises(CannotMake, match=said):
+        new_exercise(root, exercise_id, "relay", to_lab=True)
+    assert {path: path.read_bytes() for path in root.rglob("*") if path.is_file()} == before
 
 
 def test_a_lab_that_is_there_is_left_as_it_is(root: Path) -> None:
@@ -170,10 +210,10 @@ def test_the_command_says_what_to_do_next_and_refuses_with_exit_code_2(root: Pat
 @pytest.mark.slow
 @pytest.mark.parametrize("recipe", recipes())
 def test_an_example_is_in_step_and_judged_as_its_author_expects(recipe: str) -> None:
-    example = next(path.stem for path in recipes()[recipe].glob("[!_]*.py"))
-    tried = autograder(EXAMPLES, "try-exercise", f"{recipe}.{example}")
-    assert tried.returncode == 0, tried.stdout + tried.stderr
-    assert "unchanged" in tried.stdout
+    for example in sorted(path.stem for path in recipes()[recipe].glob("[!_]*.py")):
+        tried = autograder(EXAMPLES, "try-exercise", f"{recipe}.{example}")
+        assert tried.returncode == 0, tried.stdout + tried.stderr
+        assert "unchanged" in tried.stdout
 
 
 @pytest.mark.ros

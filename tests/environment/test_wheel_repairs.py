@@ -16,13 +16,13 @@ import pytest
 
 from environment.wheel_repairs import (
     FOR_EVER,
-    LATER_IMPORTS,
+    SOURCE_REPAIRS,
     YEARS_68,
     HeaderFolders,
     RepairError,
-    make_imports_lighter,
     repair_cmake,
     repair_fast_dds,
+    repair_sources,
     repaired_cmake,
     repaired_fast_dds,
 )
@@ -60,6 +60,12 @@ class ServiceEventInfo:
     client_gid = lambda self: numpy.zeros(16, dtype=numpy.uint8)
 """
 GRAMMARS = "from .syntax_helpers import *\n"
+PARAMETERS = """\
+class Node:
+    def _set_parameters_atomically(self, parameter_list):
+        modified_parameter_list = self._call_pre_set_parameters_callback(parameter_list)
+        return modified_parameter_list
+"""
 
 INSTALLED = Path(sys.prefix) / "lib/libfastrtps.so"
 SET_LISTENER = "_ZN8eprosima7fastdds3dds17DomainParticipant12set_listenerEPNS1_25DomainParticipantListenerE"
@@ -138,7 +144,7 @@ def test_this_environment_is_repaired_cmake() -> None:
 
 @pytest.fixture
 def wheels(tmp_path: Path) -> Path:
-    for module, text in zip(LATER_IMPORTS, (GENERATOR, MESSAGE, GRAMMARS), strict=True):
+    for module, text in zip(SOURCE_REPAIRS, (GENERATOR, MESSAGE, GRAMMARS, PARAMETERS), strict=True):
         file = tmp_path / module.file
         file.parent.mkdir(parents=True)
         file.write_text(text, encoding="utf-8")
@@ -169,8 +175,8 @@ def run(program: str, first: Path | None = None) -> Any:
 
 
 def test_what_is_not_needed_is_imported_where_it_is_used(wheels: Path) -> None:
-    changed = ["__init__.py", "_service_event_info.py", "__init__.py"]
-    assert [path.name for path in make_imports_lighter(wheels)] == changed
+    changed = ["__init__.py", "_service_event_info.py", "__init__.py", "node.py"]
+    assert [path.name for path in repair_sources(wheels)] == changed
     program = """
 import sys
 import rosidl_generator_py
@@ -184,25 +190,25 @@ print(said.dumps([before, generate_py([1]), len(made), missing]))
     assert run(program, wheels) == [[False, False], "[1]", 16, False]
 
 
-def test_imports_are_made_lighter_once(wheels: Path) -> None:
-    changed = make_imports_lighter(wheels)
+def test_sources_are_repaired_once(wheels: Path) -> None:
+    changed = repair_sources(wheels)
     texts = [path.read_bytes() for path in changed]
-    assert make_imports_lighter(wheels) == []
+    assert repair_sources(wheels) == []
     assert [path.read_bytes() for path in changed] == texts
     assert {path.stat().st_mode & 0o777 for path in changed} == {0o644}
     assert not list(wheels.rglob("*.new"))
 
 
 def test_a_file_that_looks_otherwise_and_one_that_is_not_there_are_left_alone(tmp_path: Path) -> None:
-    file = tmp_path / LATER_IMPORTS[0].file
+    file = tmp_path / SOURCE_REPAIRS[0].file
     file.parent.mkdir()
     file.write_text("from .import_type_support_impl import import_type_support\n", encoding="utf-8")
-    assert make_imports_lighter(tmp_path) == []
+    assert repair_sources(tmp_path) == []
     assert file.read_text(encoding="utf-8") == "from .import_type_support_impl import import_type_support\n"
 
 
 def test_grammars_of_addresses_are_compiled_for_who_asks_for_one(wheels: Path) -> None:
-    make_imports_lighter(wheels)
+    repair_sources(wheels)
     program = """
 import sys
 from rfc3987_syntax import is_valid_syntax

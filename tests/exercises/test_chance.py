@@ -6,7 +6,6 @@ import re
 from dataclasses import replace
 from random import Random
 from typing import TYPE_CHECKING
-from unittest.mock import MagicMock
 
 import pytest
 from inspecting_services import question
@@ -20,12 +19,15 @@ from autograder.kit.goal_reports import LATE, left_at_once
 from autograder.kit.mistakes import common_mistakes as common
 from autograder.kit.mistakes import unfinished
 from autograder.kit.mistakes.goal_mistakes import ENDED_TOO_EARLY, RESULT_NOT_REQUESTED
+from autograder.kit.quests.robot import Search
 from autograder.kit.recipes.service_client import ANSWER_NOT_AWAITED
 from autograder.kit.reported_texts import has_much_of
 from autograder.kit.service_calls import BIASED, EXTREME
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
+
+    from autograder.kit.quests.robot import Robot
 
 TOPIC, TYPE = "/chatter", "std_msgs/msg/String"
 EXITED = Event(9.0, "subject", "exited", {"code": 1})
@@ -71,9 +73,9 @@ def test_a_talker_that_dies_at_once_earns_the_same_whatever_was_seen_of_it(seen:
 
 def test_one_answer_is_right_in_one_case_at_most() -> None:
     for seed in range(300):
-        planted = [case for _, case in mismatch.mismatches(Random(seed))]
+        answers = [robot.answer for robot in mismatch.robots(Random(seed)).values()]
         for key in mismatch.KEYS:
-            assert len({case[key] for case in planted}) == len(planted)
+            assert len({answer[key] for answer in answers}) == len(answers)
 
 
 @pytest.mark.parametrize("takes", [min, max])
@@ -83,8 +85,8 @@ def test_who_takes_the_first_or_the_last_topic_of_a_node_is_wrong_in_each_run(
     """A node's topics are listed in the order of the alphabet; two of them are those that every node has."""
     for seed in range(300):
         right = [
-            takes({case[key], "/parameter_events", "/rosout"}) == case[key]
-            for _, case in mismatch.mismatches(Random(seed))
+            takes({robot.answer[key], "/parameter_events", "/rosout"}) == robot.answer[key]
+            for robot in mismatch.robots(Random(seed)).values()
             for key in ("topic_published", "topic_subscribed")
         ]
         assert not all(right)
@@ -92,32 +94,52 @@ def test_who_takes_the_first_or_the_last_topic_of_a_node_is_wrong_in_each_run(
 
 def test_the_names_that_are_told_give_no_topic_away() -> None:
     for seed in range(300):
-        for _, case in mismatch.mismatches(Random(seed)):
-            told = set(re.findall("[a-z]+", f"{case['talker']} {case['listener']}"))
-            asked = set(re.findall("[a-z]+", f"{case['topic_published']} {case['topic_subscribed']}"))
-            assert not told & asked
+        for robot in mismatch.robots(Random(seed)).values():
+            told = set(re.findall("[a-z]+", " ".join(robot.asked)))
+            topics = f"{robot.answer['topic_published']} {robot.answer['topic_subscribed']}"
+            assert not told & set(re.findall("[a-z]+", topics))
 
 
 def test_a_list_of_all_topics_does_not_tell_which_are_whose() -> None:
-    cases = [case for seed in range(300) for _, case in mismatch.mismatches(Random(seed))]
-    differ = [case for case in cases if case["topic_published"] != case["topic_subscribed"]]
-    plain = sum(re.fullmatch("/[a-z]+/[a-z]+", case["topic_published"]) is not None for case in differ)
+    robots = [robot for seed in range(300) for robot in mismatch.robots(Random(seed)).values()]
+    answers = [robot.answer for robot in robots]
+    differ = [answer for answer in answers if answer["topic_published"] != answer["topic_subscribed"]]
+    plain = sum(re.fullmatch("/[a-z]+/[a-z]+", answer["topic_published"]) is not None for answer in differ)
     assert 0.4 < plain / len(differ) < 0.8  # one of the wrong names is a plain one, too
-    typed = [case for case in cases if case["type_published"] != case["type_subscribed"]]
-    assert 0.4 < sum("std_msgs" in case["type_published"] for case in typed) / len(typed) < 0.6
-    for case in cases:
-        names = sorted({case["topic_published"], case["topic_subscribed"], *case["beside"]})
-        assert set(names[1:-1]) > {case["topic_published"], case["topic_subscribed"]}
+    typed = [answer for answer in answers if answer["type_published"] != answer["type_subscribed"]]
+    assert 0.4 < sum("std_msgs" in answer["type_published"] for answer in typed) / len(typed) < 0.6
+    for robot in robots:
+        ends = [ends.get(role, {}) for ends in robot.nodes.values() for role in ("publishes", "subscribes")]
+        names = sorted({topic for topics in ends for topic in topics})
+        assert set(names[1:-1]) >= {robot.answer["topic_published"], robot.answer["topic_subscribed"]}
 
 
-@pytest.mark.parametrize("hidden", [True, False])
-def test_only_its_type_tells_a_service_from_the_others(hidden: bool) -> None:
-    guesses = {"second": 0, "last but one": 0, "middle": 0}
+def test_the_third_node_has_each_side_s_topic_and_comes_first() -> None:
     for seed in range(300):
-        right, others = question.named_services(Random(seed), "std_srvs/srv/Empty", hidden=hidden)
-        names = sorted([right, *others])
+        for robot in mismatch.robots(Random(seed)).values():
+            third, talker, listener = robot.nodes.values()
+            assert list(robot.nodes)[1:] == list(robot.asked)
+            assert third["subscribes"].items() > listener["subscribes"].items()
+            is_shared = talker["publishes"].keys() == listener["subscribes"].keys()
+            assert (third["publishes"].items() > talker["publishes"].items()) is not is_shared
+
+
+def _questions() -> Iterator[tuple[str, Robot]]:
+    """Yield many robots that are drawn for the question, with the names of their runs."""
+    for seed in range(300):
+        yield from question.robots(Random(seed)).items()
+
+
+@pytest.mark.parametrize("run", [question.LATE, question.OTHER])
+def test_only_its_type_tells_a_service_from_the_others(run: str) -> None:
+    guesses = {"second": 0, "last but one": 0, "middle": 0}
+    for _, robot in filter(lambda drawn: drawn[0] == run, _questions()):
+        right = robot.answer["name"]
+        names = sorted(name for name in robot.services if not name.startswith(("/alcove", "/zenith")))
+        names.remove(question.TEMPTING[robot.asked[0]])
+        assert [name for name, kind in robot.services.items() if kind == robot.asked[0]] == [right]
         assert right not in (names[0], names[-1])
-        assert any(name.endswith(question.HIDDEN) for name in others)
+        assert any(name.endswith(question.HIDDEN) for name in names if name != right)
         guesses["second"] += names[1] == right
         guesses["last but one"] += names[-2] == right
         guesses["middle"] += names[len(names) // 2] == right
@@ -273,22 +295,19 @@ def test_who_does_not_wait_for_an_answer_is_told_so_however_slowly_the_program_e
     assert not ANSWER_NOT_AWAITED.recognize(replace(evidence, parts=[quick, right]))
 
 
-def test_the_type_that_another_package_has_too_is_always_asked_for_in_the_same_run(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_the_type_that_another_package_has_too_is_always_asked_for_in_the_same_run() -> None:
     """Otherwise a subject that takes the other package's type would lose other points from check to check."""
     asked: dict[str, set[str]] = {name: set() for name in (question.LATE, question.OTHER, question.ABSENT)}
-    monkeypatch.setattr(question, "served", lambda _, name, service, __: asked[name].update(service.values()))
-    monkeypatch.setattr(question, "unserved", lambda _, kind, __: asked[question.ABSENT].add(kind))
-    for seed in range(50):
-        question.scenario(MagicMock(random=Random(seed)))
+    for name, robot in _questions():
+        asked[name].add(robot.asked[0])
     twins = set(question.TWIN)
     assert asked[question.OTHER] == twins
     assert asked[question.LATE] == asked[question.ABSENT] == question.TEMPTING.keys() - twins
 
 
 def test_one_that_names_another_service_has_not_looked_only_once() -> None:
-    inputs = {"right": "/tower/s1", "type": "std_srvs/srv/Trigger", "others": {"/alcove/s2": "x/srv/Trigger"}}
-    named = [Event(0.2, "output", "stdout", {"text": "/alcove/s2"}), Event(0.4, "subject", "exited", {})]
-    assert not question.gave_up_at_once(Part(question.LATE, inputs, named))
-    assert question.gave_up_at_once(Part(question.LATE, inputs, named[1:]))
+    _, robot = next(drawn for drawn in _questions() if drawn[0] == question.LATE)
+    other = next(name for name in robot.services if name != robot.answer["name"])
+    named = [Event(0.2, "output", "stdout", {"text": other}), Event(0.4, "subject", "exited", {})]
+    assert not Search(Part(question.LATE, vars(robot), named)).gave_up_at_once
+    assert Search(Part(question.LATE, vars(robot), named[1:])).gave_up_at_once

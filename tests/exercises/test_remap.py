@@ -53,7 +53,7 @@ def _evidence(*started: int, talkers: dict[int, str], listener: int) -> Evidence
         ("NameError: name 'Nod' is not defined (l.launch.py, line 6)", "imports"),
         (
             "TypeError: Node.__init__() takes 1 positional argument but 3 were given",
-            'Node(package="my_robot_pkg", ',
+            'Node(package="...", ',
         ),
         ("TypeError: Node.__init__() missing 1 required keyword-only argument: 'executable'", "executable="),
     ],

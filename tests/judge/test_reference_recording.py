@@ -36,8 +36,16 @@ EXERCISE = Exercise(
 )
 
 
+class _Subject:
+    def begin(self, _: int) -> None:
+        pass
+
+
 class _Looks:
-    """Looks that show a first message of these numbers; None for one that is doubtful."""
+    """Looks that show a first message of these numbers; None for one that is doubtful.
+
+    A negative number is shown without its sign, in simulated time and in a doubtful look.
+    """
 
     def __init__(self, *numbers: int | None) -> None:
         self.taken = 0
@@ -48,8 +56,11 @@ class _Looks:
     ) -> Seen:
         number = next(self._numbers)
         self.taken += 1
-        message = Event(0.5, "message", "/chatter", {"number": number})
-        return Seen(Evidence([Part("talking", {}, [message])], reference), number is None)
+        is_doubtful = number is None or number < 0
+        sim = 100.0 if number is not None and number < 0 else None
+        shown = None if number is None else abs(number)
+        message = Event(0.5, "message", "/chatter", {"number": shown, "fields": {"data": shown}}, sim)
+        return Seen(Evidence([Part("talking", {}, [message])], reference), is_doubtful)
 
 
 @pytest.mark.parametrize(
@@ -59,6 +70,7 @@ class _Looks:
         pytest.param(
             (2, None, 1), 1, 3, id="the first message was lost once, and once it did not follow the clock"
         ),
+        pytest.param((-2, -1, -1), 1, 3, id="two doubtful looks agree"),
         pytest.param((2,) * reference_recording.LOOKS, 2, reference_recording.LOOKS, id="never right"),
         pytest.param((0,), 0, 1, id="surely wrong"),
     ],
@@ -79,6 +91,20 @@ def test_no_look_follows_when_the_time_of_a_check_is_over(monkeypatch: pytest.Mo
 def test_what_was_doubtful_each_time_is_not_recorded(monkeypatch: pytest.MonkeyPatch) -> None:
     with pytest.raises(reference_recording.NotRecordable, match="Wait until the machine is less busy"):
         _record(monkeypatch, _Looks(*(None,) * reference_recording.LOOKS))
+
+
+def test_a_wrong_answer_is_recorded_in_a_look_that_is_not_doubtful(monkeypatch: pytest.MonkeyPatch) -> None:
+    def recorded(look: _Looks) -> Reference:
+        monkeypatch.setattr(reference_recording, "look", look)
+        beside = Reference("lab_9_1.talker", {}, [Part("of the solution")])
+        return reference_recording.record_variant(EXERCISE, cast("Any", _Subject()), beside, domain_id=1)
+
+    (part,) = recorded(_Looks(None, 7)).parts
+    assert part.events[0].data["number"] == 7
+    (part,) = recorded(_Looks(-7, -8, -7)).parts
+    assert part.events[0].data["number"] == 7
+    with pytest.raises(reference_recording.NotRecordable, match="does not follow the simulated clock"):
+        recorded(_Looks(*range(-reference_recording.LOOKS, 0)))
 
 
 def test_an_endpoint_that_is_announced_after_the_first_one_is_recorded_too(
@@ -104,10 +130,7 @@ def test_an_endpoint_that_is_announced_after_the_first_one_is_recorded_too(
 
 
 def _record(monkeypatch: pytest.MonkeyPatch, look: _Looks, exercise: Exercise = EXERCISE) -> Reference:
-    class Subject:
-        def begin(self, _: int) -> None:
-            pass
-
     monkeypatch.setattr(reference_recording, "look", look)
-    monkeypatch.setattr(reference_recording, "_endpoints_of_solution", lambda *_: {})
-    return reference_recording.record(exercise, cast("Any", Subject()), domain_id=1)
+    bare = Reference(exercise.id, {})
+    monkeypatch.setattr(reference_recording, "_endpoints_of_solution", lambda *_: bare)
+    return reference_recording.record(exercise, cast("Any", _Subject()), domain_id=1)

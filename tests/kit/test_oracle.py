@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from autograder.kit.counterparts import Qos
 from autograder.kit.evidence import Event, Evidence, Part, Reference, Variant
 from autograder.kit.oracle.same_as_solution import SameAsSolution, Sets, To
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from autograder.kit.model import Exercise
 
@@ -38,8 +40,12 @@ def run(
     *,
     drawing: int = 1,
     simulated: bool = True,
+    early: int = 0,
 ) -> Part:
-    """Return a run with these commands, one in each step, these beats, and what the parameter's node answered."""
+    """Return a run with these commands, one in each step, these beats, and what the parameter's node answered.
+
+    ``early`` beats came before the judge stepped the clock.
+    """
     noted = [
         *(("/cmd_vel", step, [list(command)] if command else []) for step, command in enumerate(commands)),
         ("speed", 0, [list(speed[0])]),
@@ -54,7 +60,12 @@ def run(
                 1.0,
                 "noted",
                 name,
-                {"step": step, "given": GIVEN[step], "values": values},
+                {
+                    "step": step,
+                    "given": GIVEN[step],
+                    "values": values,
+                    "stepped": (len(values) - early) * simulated,
+                },
                 100.0 if simulated else None,
             )
             for name, step, values in noted
@@ -117,10 +128,20 @@ def test_a_list_may_end_a_little_earlier_or_later(beats: Sequence[int], passes: 
 
 
 @pytest.mark.parametrize(
+    ("early", "simulated", "passes"), [(9, True, True), (0, True, False), (9, False, False)]
+)
+def test_messages_of_a_list_before_the_judge_stepped_the_clock_are_not_too_many(
+    early: int, simulated: bool, passes: bool
+) -> None:
+    ten_more = range(1, 15)
+    assert ("beat" not in failed(run(RIGHT, ten_more, early=early, simulated=simulated))) == passes
+
+
+@pytest.mark.parametrize(
     ("speed", "seen"),
     [
         (((3, []), (False, True)), "double without a range"),
-        (((0, []), (False, True)), "not declared without a range"),
+        (((0, []), (False, True)), "not declared at the start"),
         (((3, [[0.0, 2.0]]), (True, False)), "taken after step 2 (speed = 2.5)"),
         (((3, [[0.0, 2.0]]), (False, False)), "refused without a reason after step 2 (speed = 2.5)"),
     ],
@@ -138,4 +159,34 @@ def test_a_run_like_a_recorded_wrong_answer_is_named_for_certain_in_simulated_ti
 
     assert told(run(ALWAYS_AHEAD)) == [("always_ahead", True), ("always_ahead", False)]
     assert told(run(ALWAYS_AHEAD, simulated=False)) == [("always_ahead", False)]
+    assert told(replace(run(ALWAYS_AHEAD), events=sorted(run(ALWAYS_AHEAD).events, key=lambda one: one.name)))
+    assert told(run([[0.0, 0.0], [0.2005, 0.0], [0.2, 0.0]], [1, 2, 3, 4]))
     assert told(run(RIGHT)) == told(run(ALWAYS_AHEAD, drawing=0)) == told(run([[0.1, 0.0]] * 3)) == []
+
+
+def test_the_judge_s_endpoint_has_the_qos_of_the_solution_s_if_the_author_says_that_it_counts() -> None:
+    def scenario(*topics: str, qos: dict[str, dict[str, str]]) -> list[tuple[str, Qos]]:
+        counts = SameAsSolution("a.b", "A", "B", gives=lambda _: [], qos=topics).exercise()
+        counts.scenario(bench := _Bench(Reference("a.b", INTERFACE, [], qos=qos)))  # type: ignore[arg-type]
+        return bench.made
+
+    sensor = {"subscription": {"/scan": "sensor"}}
+    assert ("/scan", Qos.SENSOR) in scenario("/scan", qos=sensor)
+    assert set(scenario(qos=sensor)) == {(name, Qos.DEFAULT) for name in ("/cmd_vel", "/beat", "/scan")}
+    with pytest.raises(ValueError, match="on /scan the solution has the default QoS"):
+        scenario("/scan", qos={})
+
+
+class _Bench:
+    """A bench on which no endpoint of a subject appears. It remembers the judge's endpoints."""
+
+    def __init__(self, reference: Reference) -> None:
+        self.reference, self.made = reference, list[tuple[str, Qos]]()
+
+    def listen(self, topic: str, _: str, *, qos: Qos) -> None:
+        self.made.append((topic, qos))
+
+    speak = listen
+
+    def __getattr__(self, _: str) -> Callable[..., bool]:
+        return lambda *_, **__: False

@@ -8,12 +8,14 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from autograder.kit.oracle.action_server import SendsGoals
+from autograder.kit.quests.quest import Quest
 from autograder.kit.recipes.action_client import ActionClient
 from autograder.kit.recipes.launch_file import LaunchFile
 from autograder.kit.recipes.own_scenario import OwnScenario
 from autograder.kit.recipes.program import Program
 from autograder.kit.recipes.publisher import Hears
-from autograder.kit.recipes.servers import Asks, SendsGoals
+from autograder.kit.recipes.servers import Asks
 from autograder.kit.recipes.service_client import Calls
 from autograder.kit.recipes.service_type import ServiceType
 from autograder.kit.recipes.subscriber import Speaks
@@ -41,11 +43,12 @@ RECIPES: dict[str, Recipe[Any]] = {
     "Speaks": Speaks(pace=0.5, paced_by="a timer"),
     "Asks": Asks(lambda _: [], lambda _: {}),
     "Calls": Calls(1, wanted=""),
-    "SendsGoals": SendsGoals(lambda _: None, good=lambda _: [], canceled=lambda _: None),  # type: ignore[arg-type,return-value]
+    "SendsGoals": SendsGoals(lambda _: None, lambda _: None),  # type: ignore[arg-type,return-value]
     "ActionClient": ActionClient(lambda _: None),
     "Program": Program("my_robot_pkg", "simple_node", "a program"),
     "LaunchFile": LaunchFile("my_robot_pkg", "/chatter"),
     "ServiceType": ServiceType("srv/AddTwoInts.srv", "my_robot_interfaces"),
+    "Quest": Quest(lambda _: {}),
 }
 
 

@@ -122,3 +122,29 @@ def test_errors_name_the_line_of_the_cell() -> None:
     assert python_of("%%writefile a.py\nx = 1") == "\nx = 1"
     assert python_of("%%writefile a.yaml\nx: [") == ""
     assert python_of("x = 1") == "x = 1"
+
+
+@pytest.mark.parametrize(
+    ("region", "unsolved"),
+    [
+        (
+            "# TODO: repair it.\n#- class A:\n#-     one = 2\n#-\n#- A()\nclass A:\n    one = 1\n\nA()",
+            "# TODO: repair it.\nclass A:\n    one = 2\n\nA()",
+        ),
+        ("    # TODO: repair it.\n    #- one = 2\n    one = 1", "    # TODO: repair it.\n    one = 2"),
+        (
+            '<!-- # TODO: repair it. -->\n<!-- #- <node exec="b"/> -->\n<node exec="a"/>',
+            '<!-- # TODO: repair it. -->\n<node exec="b"/>',
+        ),
+    ],
+    ids=["a whole program", "lines", "XML"],
+)
+def test_students_get_broken_code_that_stands_in_comments(region: str, unsolved: str) -> None:
+    xml = "<" in region
+    begin, end = (
+        f"<!-- ### {word} SOLUTION -->" if xml else f"### {word} SOLUTION" for word in ("BEGIN", "END")
+    )
+    found = find_region(f"{begin}\n{region}\n{end}")
+    assert found.unsolved == unsolved
+    assert "TODO" not in found.solved
+    assert "#-" not in found.solved

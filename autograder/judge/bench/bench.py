@@ -21,6 +21,7 @@ from autograder.judge.bench.ros_interfaces import expected_hashes, served_hashes
 from autograder.judge.bench.subject_presence import GRAPH_POLL, MATCH, Presence
 from autograder.judge.bench.subject_time import SubjectTime, answers
 from autograder.judge.machine_fitness import JudgeFailed
+from autograder.kit.counterparts import Qos
 from autograder.kit.evidence import INTERRUPTED, Evidence, Part, Reference
 from autograder.kit.giving_up import patience
 from autograder.kit.model import STEP, Pace
@@ -241,11 +242,9 @@ class TestBench:
     def _evidence(self) -> Evidence:
         return Evidence([self._recorder.part()], self.reference, self.pace is Pace.REAL_TIME)
 
-    def listen(self, topic: str, type_name: str, *, latched: bool = False) -> None:
+    def listen(self, topic: str, type_name: str, *, qos: Qos = Qos.DEFAULT) -> None:
         at = self._real(topic)
-        subscription = RecordedSubscription(
-            self._wire, self._recorder, topic, type_name, at=at, latched=latched
-        )
+        subscription = RecordedSubscription(self._wire, self._recorder, topic, type_name, at=at, qos=qos)
         self._presence.subscriptions[at] = subscription
         self._open.callback(self._wire.node.destroy_subscription, subscription.subscription)
 
@@ -258,16 +257,23 @@ class TestBench:
     def heard(self, topic: str) -> int:
         return len(self._recorder.part().of("message", topic))
 
-    def speak(self, topic: str, type_name: str) -> RecordedPublisher:
+    def speak(self, topic: str, type_name: str, *, qos: Qos = Qos.DEFAULT) -> RecordedPublisher:
         at = self._real(topic)
-        publisher = RecordedPublisher(self._wire, self._recorder, topic, type_name, at=at)
+        publisher = RecordedPublisher(self._wire, self._recorder, topic, type_name, at=at, qos=qos)
         self._presence.publishers[at] = publisher
         self._open.callback(self._wire.node.destroy_publisher, publisher.publisher)
         return publisher
 
-    def plant(self, name: str, *, publishes: Mapping[str, str], subscribes: Mapping[str, str]) -> None:
+    def plant(
+        self,
+        name: str,
+        *,
+        publishes: Mapping[str, str],
+        subscribes: Mapping[str, str],
+        qos: Qos = Qos.DEFAULT,
+    ) -> None:
         assert self._decoys is not None
-        self._there |= self._decoys.plant(name, publishes=publishes, subscribes=subscribes)
+        self._there |= self._decoys.plant(name, publishes=publishes, subscribes=subscribes, qos=qos)
 
     def serve(
         self,

@@ -27,9 +27,12 @@ from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.node import Node, NodeNameNonExistentError
 
 from autograder.dds_discovery import GROUP_OFFSET, PARTICIPANT_OFFSET, UNNAMED, port
+from autograder.judge.bench.qos_profiles import qos_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
+
+    from autograder.kit.counterparts import Qos
 
 
 RCLError = rclpy_implementation.RCLError
@@ -112,12 +115,14 @@ class _TopicEnd:
         topic: The full name of the topic.
         type_name: The message type, such as ``"std_msgs/msg/String"``.
         process: The lower 16 bits of the process id; 0 if unknown.
+        qos: The QoS.
     """
 
     role: str
     topic: str
     type_name: str
     process: int
+    qos: Qos
 
 
 def topic_ends(judge: Node) -> list[_TopicEnd]:
@@ -129,7 +134,7 @@ def topic_ends(judge: Node) -> list[_TopicEnd]:
     """
     own = judge.get_name()
     return [
-        _TopicEnd(role, topic, info.topic_type, _process(bytes(info.endpoint_gid)))
+        _TopicEnd(role, topic, info.topic_type, _process(bytes(info.endpoint_gid)), qos_of(info.qos_profile))
         for topic, _ in judge.get_topic_names_and_types()
         if _is_own_work("publisher", topic)
         for role, infos in (
@@ -147,7 +152,7 @@ def _process(gid: bytes) -> int:
 
 
 def counterparts(judge: Node, heard: list[str], spoken: list[str]) -> list[NodeName]:
-    """Return the subject's nodes that use these topics, except nodes whose names are not discovered yet.
+    """Return the subject's nodes that use these topics; none before the names of all of them are discovered.
 
     Args:
         heard: The topics to which the judge subscribes.
@@ -157,7 +162,9 @@ def counterparts(judge: Node, heard: list[str], spoken: list[str]) -> list[NodeN
     infos += [info for topic in spoken for info in judge.get_subscriptions_info_by_topic(topic)]
     names = [NodeName(info.node_name, info.node_namespace) for info in infos]
     own = judge.get_name()
-    return [n for n in dict.fromkeys(names) if n.name and n.name != own and not n.name.startswith(UNNAMED)]
+    if any(not one.name or one.name.startswith(UNNAMED) for one in names):
+        return []
+    return [one for one in dict.fromkeys(names) if one.name != own]
 
 
 def owners(judge: Node, role: str, name: str) -> list[NodeName]:

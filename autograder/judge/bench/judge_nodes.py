@@ -17,17 +17,20 @@ from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallba
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.node import Node
-from rclpy.qos import QoSProfile
 
 from autograder.dds_discovery import receivers_wait
 from autograder.judge.bench.discovery import topic_endpoints
+from autograder.judge.bench.qos_profiles import profile
 from autograder.judge.bench.ros_interfaces import interface
 from autograder.judge.machine_fitness import Patience
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
 
+    from rclpy.qos import QoSProfile
+
     from autograder.judge.bench.discovery import Endpoint
+    from autograder.kit.counterparts import Qos
 
 
 InvalidHandle = rclpy_implementation.InvalidHandle
@@ -166,7 +169,7 @@ class DecoyNodes:
         self._planted = 0
 
     def plant(
-        self, name: str, *, publishes: Mapping[str, str], subscribes: Mapping[str, str]
+        self, name: str, *, publishes: Mapping[str, str], subscribes: Mapping[str, str], qos: Qos
     ) -> set[Endpoint]:
         """Put a node on the graph, with publishers and subscriptions for these topics. The node is not spun.
 
@@ -177,7 +180,7 @@ class DecoyNodes:
             self._decoys.append(_Decoy(self._domain_id))
         decoy = self._decoys[self._planted]
         self._planted += 1
-        return decoy.plant(name, publishes, subscribes)
+        return decoy.plant(name, publishes, subscribes, profile(qos))
 
     def clear(self) -> None:
         """Remove the endpoints from the graph. The nodes stay until the next decoys replace them."""
@@ -200,12 +203,14 @@ class _Decoy:
         self._node: Node | None = None
         self._ends = contextlib.ExitStack()
 
-    def plant(self, name: str, publishes: Mapping[str, str], subscribes: Mapping[str, str]) -> set[Endpoint]:
+    def plant(
+        self, name: str, publishes: Mapping[str, str], subscribes: Mapping[str, str], qos: QoSProfile
+    ) -> set[Endpoint]:
         with receivers_wait() if self._node is None else contextlib.nullcontext():
-            node = Node(name, context=self._context, use_global_arguments=False)
+            space, _, own = name.rpartition("/")
+            node = Node(own, namespace=space, context=self._context, use_global_arguments=False)
         self._destroy()
         self._node = node
-        qos = QoSProfile(depth=10)
         for topic, type_name in publishes.items():
             publisher = node.create_publisher(interface(type_name), topic, qos)
             self._ends.callback(node.destroy_publisher, publisher)

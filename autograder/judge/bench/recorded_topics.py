@@ -14,7 +14,9 @@ from rclpy.qos import (
     qos_policy_name_from_kind,
 )
 
+from autograder.judge.bench.qos_profiles import profile
 from autograder.judge.bench.ros_interfaces import filled, interface, to_data
+from autograder.kit.counterparts import Qos
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -23,10 +25,8 @@ if TYPE_CHECKING:
     from autograder.judge.bench.recorder import Recorder
 
 
-# This QoS is reliable like that of the course's listener, so the judge hears a publisher only if the listener can hear
-# the publisher. But the queue is longer, so that nothing is lost while the judge is slow.
-_AS_THE_LISTENER = QoSProfile(depth=1000)
-_AS_A_LATE_LISTENER = QoSProfile(depth=1000, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+_LONG_QUEUE = 1000
+"""The queue depth of the judge's subscriptions, so that nothing is lost while the judge is slow."""
 _LOG_HISTORY = QoSProfile(
     depth=1000, history=HistoryPolicy.KEEP_LAST, reliability=ReliabilityPolicy.RELIABLE,
     durability=DurabilityPolicy.TRANSIENT_LOCAL,
@@ -42,8 +42,9 @@ class _RecordedEndpoint:
         type_name: The message type, such as ``"std_msgs/msg/String"``.
     """
 
-    def __init__(self, recorder: Recorder, topic: str, type_name: str) -> None:
+    def __init__(self, recorder: Recorder, topic: str, type_name: str, qos: Qos) -> None:
         self.matched = 0
+        self._qos = qos
         self.type_name = type_name
         self._recorder = recorder
         self.topic = topic
@@ -56,7 +57,8 @@ class _RecordedEndpoint:
 
     def _mismatch(self, info: Any) -> None:
         policy = str(qos_policy_name_from_kind(info.last_policy_kind)).lower()
-        self._recorder.record("mismatch", self.topic, policy=policy)
+        own = {} if self._qos is Qos.DEFAULT else {"qos": str(self._qos)}
+        self._recorder.record("mismatch", self.topic, policy=policy, **own)
 
 
 class RecordedSubscription(_RecordedEndpoint):
@@ -70,7 +72,7 @@ class RecordedSubscription(_RecordedEndpoint):
         type_name: str,
         *,
         at: str = "",
-        latched: bool = False,
+        qos: Qos = Qos.DEFAULT,
     ) -> None:
         """Create the subscription.
 
@@ -80,14 +82,15 @@ class RecordedSubscription(_RecordedEndpoint):
             topic: The topic's name as the evidence shows it.
             type_name: The message type, such as ``"std_msgs/msg/String"``.
             at: The name that the subject uses for the topic, if this name is different.
-            latched: True to receive messages that were sent before the subscription existed.
+            qos: The QoS of the subscription. By default it is like that of the course's listener, so the judge hears a
+                publisher only if the listener can hear the publisher.
         """
-        super().__init__(recorder, topic, type_name)
+        super().__init__(recorder, topic, type_name, qos)
         self.subscription = wire.node.create_subscription(
             interface(type_name),
             at or topic,
             self._hear,  # type: ignore[arg-type]  # a callback with two parameters also gets the message info
-            _AS_A_LATE_LISTENER if latched else _AS_THE_LISTENER,
+            profile(qos, _LONG_QUEUE),
             event_callbacks=SubscriptionEventCallbacks(
                 matched=self._match, incompatible_qos=self._mismatch, use_default_callbacks=False
             ),
@@ -108,16 +111,25 @@ class RecordedSubscription(_RecordedEndpoint):
 
 
 class RecordedPublisher(_RecordedEndpoint):
-    """A publisher with the course's QoS (reliable, depth 10) that records what it sends."""
+    """A publisher that records what it sends; by default with the course's QoS (reliable, depth 10)."""
 
-    def __init__(self, wire: Wire, recorder: Recorder, topic: str, type_name: str, *, at: str = "") -> None:
+    def __init__(
+        self,
+        wire: Wire,
+        recorder: Recorder,
+        topic: str,
+        type_name: str,
+        *,
+        at: str = "",
+        qos: Qos = Qos.DEFAULT,
+    ) -> None:
         """Create the publisher. For the arguments see :class:`RecordedSubscription`."""
-        super().__init__(recorder, topic, type_name)
+        super().__init__(recorder, topic, type_name, qos)
         self._type = interface(type_name)
         self.publisher = wire.node.create_publisher(
             self._type,
             at or topic,
-            QoSProfile(depth=10),
+            profile(qos),
             event_callbacks=PublisherEventCallbacks(
                 matched=self._match, incompatible_qos=self._mismatch, use_default_callbacks=False
             ),

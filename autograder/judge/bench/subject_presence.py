@@ -10,7 +10,9 @@ from typing import TYPE_CHECKING, Any
 
 from autograder.judge.bench import discovery
 from autograder.judge.machine_fitness import Patience
+from autograder.kit.counterparts import Qos
 from autograder.kit.model import Pace
+from autograder.kit.runners import BUILDING, report_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -200,6 +202,9 @@ class Presence:
         def overdue() -> bool:
             nonlocal earlier
             left = patience.left
+            if left <= 0 and self._is_building():
+                patience.restart()
+                return False
             if left <= APPEAR / 2 and earlier is None:
                 earlier = self._subject.processes()
             if left > 0 or earlier is None:
@@ -211,7 +216,12 @@ class Presence:
             earlier = None
             return False
 
-        self._wait_on_graph(lambda: condition() or overdue(), (MAX_RESTARTS + 2) * APPEAR)
+        self._wait_on_graph(lambda: condition() or overdue(), BUILDING + (MAX_RESTARTS + 2) * APPEAR)
+
+    def _is_building(self) -> bool:
+        """Return True if a runner has reported the packages that it builds, and not yet the end of the build."""
+        part = self._recorder.part()
+        return report_of(part, "found") is not None and report_of(part) is None
 
     def _wait_on_graph(self, condition: Callable[[], bool], within: float) -> None:
         """Poll the graph: often once a process of the subject is known to have made a node, and rarely before that."""
@@ -236,8 +246,13 @@ class Presence:
             interface: The endpoints as seen a moment ago. If not given, they are queried now.
         """
         nodes = sorted(node.full for node in discovery.every_node(self._node, self._subject.keeper))
-        ends = [[e.role, e.topic, e.process] for e in discovery.topic_ends(self._node)]
-        seen = {"nodes": nodes, "ends": sorted(ends), **(interface or discovery.survey(self._node))}
+        topic_ends = discovery.topic_ends(self._node)
+        ends = sorted([end.role, end.topic, end.process] for end in topic_ends)
+        seen: dict[str, Any] = {"nodes": nodes, "ends": ends, **(interface or discovery.survey(self._node))}
+        if unusual := sorted(
+            [end.role, end.topic, str(end.qos)] for end in topic_ends if end.qos is not Qos.DEFAULT
+        ):
+            seen["qos"] = unusual
         surveys = self._recorder.part().of("interface", "graph")
         if not surveys or surveys[-1].data != seen:
             self._recorder.record("interface", "graph", **seen)

@@ -64,40 +64,45 @@ _QUESTION = GetParameters.Request(names=[_SIM_TIME])
 
 
 class NodeClock:
-    """Publishes ``/clock`` for one node of the subject, and checks whether the node keeps up.
+    """Publishes ``/clock`` for nodes of the subject, and checks whether each of them keeps up.
 
     An answer from the node's parameter service proves that the node's executor has made a round since the request. An
     executor takes only one request of a service in each round (rclpy/executors.py, ``_take_service``). So the answers
     to three requests that are sent together prove three rounds.
     """
 
-    def __init__(self, wire: Wire, recorder: Recorder, node: NodeName) -> None:
+    def __init__(self, wire: Wire, recorder: Recorder, *nodes: NodeName) -> None:
         self._wire = wire
         self._recorder = recorder
         self._publisher = wire.node.create_publisher(Clock, "/clock", QoSProfile(depth=10))
-        self._set = wire.node.create_client(SetParameters, f"{node.full}/set_parameters")
-        self._get = wire.node.create_client(GetParameters, f"{node.full}/get_parameters")
+        self._set, self._get = (
+            [wire.node.create_client(kind, f"{node.full}/{name}") for node in nodes]
+            for kind, name in ((SetParameters, "set_parameters"), (GetParameters, "get_parameters"))
+        )
 
     def follow(self, simulated: bool) -> bool:
-        """Tell the node to follow simulated time, or real time again. Return True if the node has accepted this."""
+        """Tell the nodes to follow simulated time, or real time again. Return True if all have accepted this."""
         value = ParameterValue(type=ParameterType.PARAMETER_BOOL, bool_value=simulated)
         request = SetParameters.Request(parameters=[Parameter(name=_SIM_TIME, value=value)])
-        answer = _ask(self._recorder, self._set, request, ANSWER_LIMIT)
-        return answer is not None and bool(answer.results) and bool(answer.results[0].successful)
+        told = [_ask(self._recorder, client, request, ANSWER_LIMIT) for client in self._set]
+        return all(answer and answer.results and answer.results[0].successful for answer in told)
 
     def is_heard(self) -> bool:
-        """Wait until the clock has a subscriber. Return True if it has one."""
+        """Wait until the clock has a subscriber for each node. Return True if it has."""
         return self._recorder.wait(
-            lambda: self._publisher.get_subscription_count() > 0, ANSWER_LIMIT, poll=0.002
+            lambda: self._publisher.get_subscription_count() >= len(self._get), ANSWER_LIMIT, poll=0.002
         )
 
     def show(self, now: float) -> bool:
-        """Publish the time, in seconds. Return True if the node's executor has called the timers that are due."""
+        """Publish the time, in seconds. Return True if each node's executor has called the timers that are due."""
         message = Clock()
         message.clock.sec = int(now)
         message.clock.nanosec = round((now - int(now)) * 1e9)
         self._publisher.publish(message)
-        return _ask(self._recorder, self._get, _QUESTION, ANSWER_LIMIT, turns=TURNS) is not None
+        return all(
+            _ask(self._recorder, client, _QUESTION, ANSWER_LIMIT, turns=TURNS) is not None
+            for client in self._get
+        )
 
     def lend(self, seconds: float, until: Callable[[], bool]) -> bool:
         """Make a node that runs in real time follow a simulated clock for some seconds, so that its timers fire sooner.
@@ -124,8 +129,8 @@ class NodeClock:
 
     def close(self) -> None:
         self._wire.node.destroy_publisher(self._publisher)
-        self._wire.node.destroy_client(self._set)
-        self._wire.node.destroy_client(self._get)
+        for client in (*self._set, *self._get):
+            self._wire.node.destroy_client(client)
 
 
 def _ask(recorder: Recorder, client: Any, request: Any, limit: float, *, turns: int = 1) -> Any:
@@ -164,23 +169,23 @@ def answers(wire: Wire, recorder: Recorder, node: NodeName, limit: float = PATIE
 
 
 class SimulatedClock(NodeClock):
-    """A simulated clock that moves in steps, for one node of the subject.
+    """A simulated clock that moves in steps, for nodes of the subject.
 
     Attributes:
         doubtful: True if the result must be confirmed in real time, because a step took too long or another node
             moved the clock.
     """
 
-    def __init__(self, wire: Wire, recorder: Recorder, node: NodeName) -> None:
-        super().__init__(wire, recorder, node)
+    def __init__(self, wire: Wire, recorder: Recorder, *nodes: NodeName) -> None:
+        super().__init__(wire, recorder, *nodes)
         self.doubtful = False
         self._now = FIRST
 
     def take_over(self) -> bool:
-        """Make the node follow simulated time.
+        """Make the nodes follow simulated time.
 
         Returns:
-            True if the node accepted, receives the clock, and answers. This does not yet prove that the node's timers
+            True if each node accepted, receives the clock, and answers. This does not yet prove that the nodes' timers
             follow the clock; :meth:`stands_still` proves it.
         """
         if not (self.follow(True) and self.is_heard()):
@@ -295,7 +300,7 @@ class SubjectTime:
         self._recorder.wait(lambda: self._subject.ended, seconds, wall=True)
 
     def settle(self) -> None:
-        """Wait until the subject has handled the messages that it received.
+        """Wait until the subject has handled the messages that it received, and the judge has recorded its own.
 
         Each node has to answer two requests, one after the other, so that its executor has made a whole round in
         between. A node that failed to answer before, in this part, is left out.
@@ -306,6 +311,7 @@ class SubjectTime:
                 continue
             if not all(answers(self._wire, self._recorder, node, limit) for _ in range(2)):
                 self._deaf.add(node.full)
+        self._recorder.take_in()
 
     def await_attention(self) -> None:
         """Wait until each node that the judge is matched with has discovered the judge's publishers.
@@ -335,12 +341,12 @@ class SubjectTime:
             # parameter services have the same names, too. Then one of the nodes would stay in real time.
             self._doubt()
             return None
-        node = next(iter(self._presence.counterparts()), None)
-        if node is None:
+        nodes = self._presence.counterparts()
+        if not nodes:
             return None
-        stepped = SimulatedClock(self._wire, self._recorder, node)
+        stepped = SimulatedClock(self._wire, self._recorder, *nodes)
         self._open.callback(stepped.close)
-        if stepped.take_over() and stepped.stands_still(self._silence()):
+        if stepped.take_over() and stepped.stands_still(self._silence(len(nodes))):
             return stepped
         # The subject may still switch to simulated time later. Its timers would then stand still, because the judge
         # does not step the clock. So only a new run in real time can decide.
@@ -349,7 +355,7 @@ class SubjectTime:
             self._doubt()
         return None
 
-    def _silence(self) -> Callable[[], bool]:
+    def _silence(self, nodes: int) -> Callable[[], bool]:
         """Return a function that returns True as long as no further message is heard."""
 
         def heard() -> int:
@@ -357,5 +363,5 @@ class SubjectTime:
             return sum(len(seen.of("message", topic)) for topic in self._presence.subscriptions)
 
         before = heard()
-        # One message is allowed, because it may have been on its way when the clock stopped.
-        return lambda: heard() <= before + 1
+        # One message of each node is allowed, because it may have been on its way when the clock stopped.
+        return lambda: heard() <= before + nodes

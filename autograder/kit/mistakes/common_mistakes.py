@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import re2
 
+from autograder.kit.counterparts import Qos
 from autograder.kit.mistakes.crashes import CRASHES, OTHER_CRASHES
 from autograder.kit.mistakes.hangs import HANGS, something_spins
 from autograder.kit.model import Advice, Mistake, mistake
@@ -26,6 +27,20 @@ WORDS = {
     "service": ("serves", "service"),
     "action_client": ("asks for the action", "action"),
     "action_server": ("serves the action", "action"),
+}
+_MATCHING_QOS = {
+    Qos.DEFAULT: (
+        "Write the queue depth 10 instead of a QoS profile. The QoS is then reliable and volatile, like that of the "
+        "other node."
+    ),
+    Qos.SENSOR: (
+        "The other node is best effort, as sensors are. Write qos_profile_sensor_data, from rclpy.qos, instead of "
+        "the queue depth."
+    ),
+    Qos.LATCHED: (
+        "The other node is transient local, as for a message that late subscribers get, too. Write "
+        "QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL), from rclpy.qos, instead of the queue depth."
+    ),
 }
 _KEY = {"topic": "topic_name", "service": "service_name", "action": "action_name"}
 
@@ -85,15 +100,16 @@ def qos_mismatch(role: str) -> Mistake:
         misfits = (e for name in sorted(_wanted(evidence, role)) for e in evidence.main.of("mismatch", name))
         return next((event for event in misfits if not evidence.main.of("message", event.name)), None)
 
-    return mistake(
-        "qos_mismatch",
-        mismatch,
-        "Your node and the other node both use {0.name}, but their QoS settings for {0.data[policy]} are not "
-        "compatible, so no message arrives.",
-        "Write the queue depth 10 instead of a QoS profile. The QoS is then reliable and volatile, like that of the "
-        "other node.",
-        certain=True,
-    )
+    def recognize(evidence: Evidence) -> Advice | None:
+        if (event := mismatch(evidence)) is None:
+            return None
+        return Advice(
+            f"Your node and the other node both use {event.name}, but their QoS settings for {event.data['policy']} "
+            "are not compatible, so no message arrives.",
+            _MATCHING_QOS[event.data.get("qos", Qos.DEFAULT)],
+        )
+
+    return Mistake("qos_mismatch", recognize, certain=True)
 
 
 def servers(part: Part) -> int:

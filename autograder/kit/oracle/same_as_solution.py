@@ -13,19 +13,22 @@ from random import Random
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
-from autograder.kit.draft import OWN, Draft
-from autograder.kit.in_words import counted
-from autograder.kit.model import Advice, Finding, Mistake, Pace
-from autograder.kit.oracle.steps import Serves, Sets, Step, parameter_in_words, parameter_value
-from autograder.kit.recipes.own_scenario import QUIET, Met, OwnScenario, meet, pick
+from autograder.kit.counterparts import Qos
+from autograder.kit.draft import Draft
+from autograder.kit.mistakes import unfinished
+from autograder.kit.model import Advice, Mistake, Pace
+from autograder.kit.oracle.action_server import IN_EXECUTE
+from autograder.kit.oracle.goal_sender import GoalSender
+from autograder.kit.oracle.outputs import Kind, Output
+from autograder.kit.oracle.steps import Goal, Serves, Sets, Step, parameter_value
+from autograder.kit.recipes.own_scenario import ENDPOINTS, QUIET, Met, OwnScenario, meet
 from autograder.kit.recipes.relay import To
-from autograder.kit.rules import in_words, same
 
 if TYPE_CHECKING:
-    from autograder.kit.evidence import Event, Evidence, Part
+    from autograder.kit.evidence import Evidence, Part, Reference
     from autograder.kit.model import Bench, Exercise
 
-__all__ = ["SameAsSolution", "Serves", "Sets", "To"]
+__all__ = ["Goal", "SameAsSolution", "Serves", "Sets", "To"]
 
 DRAWINGS = 4
 """The number of drawings of the inputs in a recording."""
@@ -33,18 +36,27 @@ PAUSE = 0.75
 """Seconds of the subject's time after each input. Whatever the input changes must be published by then."""
 TOLERANCE = 1e-3
 """The tolerance for numbers, absolute or relative to the larger one."""
-ONE_MISSING_IN = 4
-"""One more or one fewer of this many messages may come, because each node asks and tells at its own moments."""
 NOTHING: Mapping[str, Any] = MappingProxyType({})
 SET = ("set_parameters", "rcl_interfaces/srv/SetParameters")
 DESCRIBE = ("describe_parameters", "rcl_interfaces/srv/DescribeParameters")
 DESCRIBED = ("type", "ranges")
+NOT_DECLARED = {"type": 0, "floating_point_range": (), "integer_range": ()}
 POINTS = 10.0
 """The points of an exercise whose author does not say how many it is worth."""
 
 
 class _Drawn(OwnScenario):
-    """A subject that was given one drawing of the inputs; it is compared with the solution in the same drawing."""
+    """A subject that was given one drawing of the inputs; it is compared with the solution in the same drawing.
+
+    Args:
+        outputs: What is compared.
+    """
+
+    def __init__(
+        self, scenario: Callable[[Bench], None], outputs: Sequence[Output], roles: Sequence[str]
+    ) -> None:
+        super().__init__(scenario, *roles)
+        self._outputs = outputs
 
     def expected(self, evidence: Evidence) -> Part:
         """Return the record of the solution in the drawing that the subject was given."""
@@ -59,44 +71,50 @@ class _Drawn(OwnScenario):
         )
         likely = Mistake("variant", self._same_as_a_variant)
         ladder = super().ladder
-        at = ladder.index(OWN)
-        return (*ladder[:at], proven, likely, *ladder[at:])
+        in_execute = IN_EXECUTE if "action_server" in self.roles else ()
+        at = ladder.index(unfinished.NEVER_CONSTRUCTED)
+        return (*in_execute, *ladder[:at], proven, likely, *ladder[at:])
 
     def _same_as_a_variant(self, evidence: Evidence, *, simulated: bool = False) -> Advice | None:
-        mine, right = _noted(evidence.main), _noted(self.expected(evidence))
-        if simulated and any(event.sim is None for event in evidence.main.of("noted")):
+        mine = evidence.main
+        if not mine.of("noted") or (simulated and any(event.sim is None for event in mine.of("noted"))):
+            return None
+        if self._agree(mine, self.expected(evidence)):
             return None
         for variant in evidence.reference.variants:
-            part = next((part for part in variant.parts if part.name == evidence.main.name), None)
-            if part and mine and same(mine, _noted(part), TOLERANCE) and not same(mine, right, TOLERANCE):
+            part = next((part for part in variant.parts if part.name == mine.name), None)
+            if part and self._agree(mine, part) and self._agree(part, mine):
                 return Advice(variant.text, variant.next_step, key=variant.key)
         return None
 
-
-def _noted(part: Part) -> list[Any]:
-    return [[event.name, event.data["step"], event.data["values"]] for event in part.of("noted")]
+    def _agree(self, seen: Part, expected: Part) -> bool:
+        made, due = ([e.data["made"] for e in part.of("noted", ENDPOINTS)] for part in (seen, expected))
+        return made == due and all(output.compared(seen, expected).passed for output in self._outputs)
 
 
 class SameAsSolution:
     """An exercise about a node that must do what the reference solution does with the same inputs.
 
     After each input the judge notes the outputs of this step: for a topic, the last message since the step before; for
-    a service that the input calls, its answer.
+    a service that the input calls, its answer; for an action, what came of each goal.
 
     Args:
         exercise_id: The lab's folder and the file's name, such as ``"lab_2_5.agent"``.
         title: The title of the card, naming the lab and the subject.
         task: One sentence that states the task.
-        gives: Draws the steps: each is an input, :class:`To` a topic or service, or a number of seconds of the
-            subject's time without an input. It must draw the same number of steps each time.
+        gives: Draws the steps: each is an input, :class:`To` a topic or service or a :class:`Goal` to an action, or a
+            number of seconds of the subject's time without an input. It must draw the same number of steps each time.
         tells: For each topic or service of the subject, the path of the field that is compared, such as ``"data"`` or
-            ``"linear.x"``; a tuple of paths if there are several.
+            ``"linear.x"``; a tuple of paths if there are several. For an action, ``("status", "feedback.left",
+            "result.arrived")``.
         lists: The same for topics of which all messages are compared, in order, however they are spread over the steps.
             The last ones may be missing, or be more.
         serves: The services that the subject calls, by name, and how the judge answers: at once, late or never.
         parameters: The names of the parameters whose description (type and range) is compared, and which values of
             them are taken and which are refused with a reason, if a step :class:`Sets` them.
         late_after: Seconds of the subject's time after which the judge subscribes, and asks for the last message, too.
+        qos: The topics on which the QoS counts: the judge's endpoint gets the QoS of the solution's, and an endpoint
+            that does not match gets or tells nothing.
         every: True to compare all messages of a step, not only the last: for a node that answers each input.
         pause: Seconds of the subject's time after each input.
         tolerance: The absolute or relative tolerance for numbers.
@@ -126,6 +144,7 @@ class SameAsSolution:
         serves: Mapping[str, Serves] = NOTHING,
         parameters: Sequence[str] = (),
         late_after: float = 0.0,
+        qos: Sequence[str] = (),
         every: bool = False,
         pause: float = PAUSE,
         tolerance: float = TOLERANCE,
@@ -134,25 +153,33 @@ class SameAsSolution:
     ) -> None:
         self._id, self._gives, self._serves = exercise_id, gives, serves
         self._every, self._pause, self._tolerance = every, pause, tolerance
-        self._parameters, self._late_after = parameters, late_after
-        described = dict.fromkeys(parameters, DESCRIBED)
-        self._paths = {
-            n: (p,) if isinstance(p, str) else p for n, p in {**tells, **lists, **described}.items()
+        self._late_after, self._qos = late_after, qos
+        kinds = {
+            Kind.STEPS: tells,
+            Kind.LIST: lists,
+            Kind.PARAMETER: dict.fromkeys(parameters, DESCRIBED),
         }
-        self._lists = lists.keys()
-        self._draft = Draft(exercise_id, title, task, _Drawn(self._scenario, *roles))
-        for name, paths in self._paths.items():
-            # Every message of std_msgs has a field named data, so this name says nothing on a card.
-            what = " and ".join(path for path in paths if path != "data")
-            line = f"Says the right {what or 'value'} on {name}"
-            if name in parameters:
-                line = f"Describes the parameter {name}, takes the right values and refuses the others"
-            agrees = partial(self._same_list if name in lists else self._same_steps, name)
-            self._draft.criterion(name.strip("/"), points / len(self._paths), line)(agrees)
+        self._outputs = [
+            Output(name, (paths,) if isinstance(paths, str) else paths, kind, tolerance)
+            for kind, outputs in kinds.items()
+            for name, paths in outputs.items()
+        ]
+        self._draft = Draft(exercise_id, title, task, _Drawn(self._scenario, self._outputs, roles))
+        for output in self._of(Kind.PARAMETER):
+            self._draft.knows(
+                "parameter_not_declared",
+                output.is_undeclared,
+                f"Your node has no parameter {output.name}.",
+                f'Declare it in __init__, with its default: self.declare_parameter("{output.name}", …).',
+                certain=True,
+            )
+        for output in self._outputs:
+            name, each = output.name.strip("/"), points / len(self._outputs)
+            self._draft.criterion(name, each, output.title)(output.compared)
 
     def exercise(self, **more: Any) -> Exercise:
         """Return the finished exercise. For ``more`` see :meth:`autograder.kit.draft.Draft.exercise`."""
-        return self._draft.exercise(recorded=("noted",), **more)
+        return self._draft.exercise(recorded=("noted",), tolerance=self._tolerance, **more)
 
     def _scenario(self, bench: Bench) -> None:
         drawings = range(DRAWINGS if self._gives(Random(0)) != self._gives(Random(1)) or self._serves else 1)
@@ -162,7 +189,15 @@ class SameAsSolution:
             steps = self._gives(drawn)
             serve = partial(self._serve, bench, drawn)
             plays = partial(self._plays, steps)
-            meet(bench, f"drawing {drawing}", plays, serve, listens=not self._late_after)
+            part = f"drawing {drawing}"
+            meet(bench, part, plays, serve, listens=not self._late_after, qos=self._matching(bench.reference))
+
+    def _matching(self, reference: Reference) -> dict[str, Qos]:
+        """Return the QoS of the judge's endpoints on the topics on which it counts."""
+        recorded = {topic: Qos(qos) for ends in reference.qos.values() for topic, qos in ends.items()}
+        if usual := ", ".join(topic for topic in self._qos if topic not in recorded):
+            raise ValueError(f"qos: on {usual} the solution has the default QoS, which each answer has")
+        return {topic: recorded[topic] for topic in self._qos}
 
     def _serve(self, bench: Bench, drawn: Random, service: str, kind: str) -> None:
         how = self._serves[service]
@@ -174,13 +209,15 @@ class SameAsSolution:
         if self._late_after:
             bench.run_time(self._late_after)
             for topic, kind in bench.reference.interface["publisher"].items():
-                bench.listen(topic, kind, latched=True)
+                bench.listen(topic, kind, qos=Qos.LATCHED)
             bench.wait_until(lambda e: bool(e.main.of("mismatch") or e.main.of("message")), QUIET[bench.pace])
         went_through = self._describe(bench) and all(
             self._takes(met, number, step) for number, step in enumerate([self._pause, *steps])
         )
-        for name in self._lists:
-            bench.note(name, step=0, given="", values=self._values(name, bench.seen().events))
+        for output in self._of(Kind.LIST):
+            seen = bench.seen().of("message", output.name)
+            stepped = sum(event.sim is not None for event in seen)
+            bench.note(output.name, step=0, given="", values=output.values(seen), stepped=stepped)
         # In real time nothing has proved so far that the subject's executor is alive.
         return went_through and bench.pace is Pace.FAST
 
@@ -188,8 +225,11 @@ class SameAsSolution:
         """Give the subject one step, and note its outputs. Return False if the subject does not answer."""
         bench = met.bench
         before = 0 if number == 0 else len(bench.seen().events)
+        went_through = True
         if not isinstance(step, (int, float)):
-            if not self._given(met, step):
+            went_through = self._given(met, step)
+            # What is wrong with a goal that does not end is compared, too.
+            if not (went_through or isinstance(step, Goal)):
                 return False
             bench.settle()
         if not bench.run_time(step if isinstance(step, (int, float)) else self._pause):
@@ -197,42 +237,60 @@ class SameAsSolution:
         bench.settle()
         events = bench.seen().events[before:]
         given = f"{step:g} s without an input" if isinstance(step, (int, float)) else step.name
+        if isinstance(step, Goal):
+            given = str(step)
         # The words of a refusal are the student's own, so only the presence of a reason is compared.
         if isinstance(step, Sets):
             given = f"{step.parameter} = {step.value}"
             result = next(e.data["fields"]["results"][0] for e in events if e.kind == "answered")
             taken = [result["successful"], bool(result["reason"])]
             bench.note(step.parameter, step=number, given=given, values=[taken])
-        for name in self._paths.keys() - self._lists - set(self._parameters):
-            values = self._values(name, events)
-            bench.note(name, step=number, given=given, values=values if self._every else values[-1:])
-        return True
+        for output in self._of(Kind.STEPS):
+            values = output.values(events)
+            if isinstance(step, Goal) and output.name == step.name:
+                values = step.outcomes(bench.seen(), output.paths)
+            elif not self._every:
+                values = values[-1:]
+            bench.note(output.name, step=number, given=given, values=values)
+        return went_through
 
-    def _given(self, met: Met, step: To | Sets) -> bool:
+    def _given(self, met: Met, step: To | Sets | Goal) -> bool:
         """Give the subject an input. Return False if it should answer and does not."""
         bench, ends = met.bench, met.bench.reference.interface
         if isinstance(step, Sets):
             value = {"name": step.parameter, "value": parameter_value(step.value)}
             return self._ask(bench, step.node, SET, {"parameters": [value]})
-        speakers = dict(zip(sorted(ends.get("subscription", {})), met.speakers, strict=True))
-        callers = dict(zip(sorted(ends.get("service", {})), met.callers, strict=True))
+        speakers, callers, clients = (
+            dict(zip(sorted(ends.get(role, {})), made, strict=True))
+            for role, made in (
+                ("subscription", met.speakers),
+                ("service", met.callers),
+                ("action_server", met.action_callers),
+            )
+        )
+        if step.name not in {**speakers, **callers, **clients}:
+            names = ", ".join([*speakers, *callers, *clients])
+            raise ValueError(f"gives: {step.name!r} is not one of {names}")
+        if isinstance(step, Goal):
+            return step.play(GoalSender(bench, clients[step.name], simulated=True))
         whole = step.value if isinstance(step.value, Mapping) else {"data": step.value}
         if step.name in callers:
             callers[step.name].ask(whole)
             return callers[step.name].await_answers(QUIET[bench.pace])
-        if step.name not in speakers:
-            raise ValueError(f"gives: {step.name!r} is not one of {', '.join([*speakers, *callers])}")
         speakers[step.name].send(**whole)
         return True
 
     def _describe(self, bench: Bench) -> bool:
         """Note the types and ranges of the parameters. Return False if the subject does not answer."""
-        if not self._parameters:
-            return True
-        if not (bench.await_node() and self._ask(bench, "", DESCRIBE, {"names": [*self._parameters]})):
+        names = [output.name for output in self._of(Kind.PARAMETER)]
+        if names and not bench.await_node():
             return False
-        described = bench.seen().of("answered")[-1].data["fields"]["descriptors"]
-        for name, one in zip(self._parameters, described, strict=False):
+        for name in names:
+            # A node answers with an empty list if one of the parameters is not declared.
+            if not self._ask(bench, "", DESCRIBE, {"names": [name]}):
+                return False
+            described = bench.seen().of("answered")[-1].data["fields"]["descriptors"]
+            (one,) = described or [NOT_DECLARED]
             ranges = [
                 [r["from_value"], r["to_value"]]
                 for r in (*one["floating_point_range"], *one["integer_range"])
@@ -242,62 +300,20 @@ class SameAsSolution:
 
     @staticmethod
     def _ask(bench: Bench, node: str, service: tuple[str, str], request: Mapping[str, Any]) -> bool:
-        nodes = (name for survey in bench.seen().of("interface") for name in survey.data["nodes"])
+        if not bench.watch_graph(lambda evidence: bool(_nodes(evidence.main, node)), QUIET[bench.pace]):
+            return False
         name, kind = service
-        caller = bench.call(f"{node or next(nodes, '')}/{name}", kind)
+        caller = bench.call(f"{_nodes(bench.seen(), node)[0]}/{name}", kind)
         if not caller.await_server(QUIET[bench.pace]):
             return False
         caller.ask(request)
         return caller.await_answers(QUIET[bench.pace])
 
-    def _values(self, name: str, events: Sequence[Event]) -> list[list[Any]]:
-        told = [e.data["fields"] for e in events if e.kind in ("message", "answered") and e.name == name]
-        return [[pick(fields, path) for path in self._paths[name]] for fields in told]
-
-    def _same_steps(self, name: str, seen: Part, expected: Part) -> Finding:
-        """Decide whether the outputs on a topic, or of a service, are the solution's. Show the first that is not."""
-        mine, theirs = seen.of("noted", name), expected.of("noted", name)
-        for made, due in zip(mine, theirs, strict=False):
-            if not same(made.data["values"], due.data["values"], self._tolerance):
-                return Finding(False, self._at_step(name, due), self._at_step(name, made))
-        if len(mine) < len(theirs):
-            return Finding(
-                False, self._at_step(name, theirs[len(mine)]), "nothing: your node did not get that far"
-            )
-        return Finding(True, right := f"the same as the solution in all {len(theirs)} steps", right)
-
-    def _same_list(self, name: str, seen: Part, expected: Part) -> Finding:
-        """Decide whether the messages on a topic are the solution's, in order. Show those around a difference."""
-        mine, theirs = _listed(seen, name), _listed(expected, name)
-        both = min(len(mine), len(theirs))
-        differs = next((n for n in range(both) if not same(mine[n], theirs[n], self._tolerance)), both)
-        missing = abs(len(mine) - len(theirs))
-        around = slice(max(0, differs - 2), differs + 2)
-        due, came = (
-            f"{self._in_words(name, listed[around])} ({counted(len(listed), 'message')} in all)"
-            for listed in (theirs, mine)
-        )
-        return Finding(differs == both and missing <= 1 + len(theirs) // ONE_MISSING_IN, due, came)
-
-    def _at_step(self, name: str, noted: Event) -> str:
-        after = (
-            f"after step {noted.data['step']} ({noted.data['given']})"
-            if noted.data["step"]
-            else "at the start"
-        )
-        return f"{self._in_words(name, noted.data['values'])} {after}"
-
-    def _in_words(self, name: str, listed: Sequence[Sequence[Any]]) -> str:
-        if name in self._parameters:
-            return "; ".join(map(parameter_in_words, listed)) or "nothing"
-        paths = self._paths[name]
-        named = ("" if path == "data" else f"{path} = " for path in paths)
-        prefixes = list(named)
-        told = [
-            ", ".join(p + in_words([v]) for p, v in zip(prefixes, values, strict=True)) for values in listed
-        ]
-        return "; ".join(told) or "nothing"
+    def _of(self, kind: Kind) -> list[Output]:
+        return [output for output in self._outputs if output.kind is kind]
 
 
-def _listed(part: Part, name: str) -> list[Any]:
-    return [values for event in part.of("noted", name) for values in event.data["values"]]
+def _nodes(part: Part, begins: str) -> list[str]:
+    """Return the full names of the subject's nodes that begin with a text, in the order in which they were seen."""
+    surveys = part.of("interface", "graph")
+    return [node for survey in surveys for node in survey.data["nodes"] if node.startswith(begins)]

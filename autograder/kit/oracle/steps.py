@@ -6,10 +6,17 @@ from dataclasses import dataclass, field
 from random import Random  # noqa: TC003  (an alias of types needs it)
 from typing import TYPE_CHECKING, Any
 
+from autograder.kit.in_words import counted
+from autograder.kit.outcomes import STATUS, all_goals
+from autograder.kit.recipes.own_scenario import pick
 from autograder.kit.recipes.relay import To
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Container, Mapping, Sequence
+
+    from autograder.kit.evidence import Part
+    from autograder.kit.oracle.goal_sender import GoalSender
+    from autograder.kit.outcomes import SentGoal
 
 TYPES = {1: "bool", 2: "integer", 3: "double", 4: "string"}
 """The types of parameters (rcl_interfaces/msg/ParameterType.msg)."""
@@ -37,7 +44,8 @@ class Sets:
     Attributes:
         parameter: The name of the parameter.
         value: The new value: a number, a text or a truth value.
-        node: The full name of the node; by default the subject's first node.
+        node: The beginning of the node's full name, such as the namespace ``"/left/"``; by default the subject's
+            first node.
     """
 
     parameter: str
@@ -50,8 +58,79 @@ class Sets:
         return f"{self.node}.{self.parameter}" if self.node else self.parameter
 
 
-Step = To | Sets | float
-"""A step of the judge: an input, a new value of a parameter, or a time to let pass, in seconds."""
+@dataclass(frozen=True)
+class Goal:
+    """A step in which the judge sends a goal to an action of the subject, and waits for its end.
+
+    Attributes:
+        name: The name of the action, such as ``"/dock"``.
+        fields: The fields of the goal.
+        cancel_after: The number of feedback messages after which the judge requests to cancel the goal; None if it does
+            not. Of such a goal, the result is not compared, and of its feedback only these messages.
+        beside: Another goal that is sent at the same moment; None for a goal alone.
+
+    Example::
+
+        gives=lambda random: [
+            Goal("/dock", {"distance": random.randint(2, 4)}),
+            Goal("/dock", {"distance": 9}, cancel_after=3),
+            Goal("/dock", {"distance": 2}, beside=Goal("/dock", {"distance": 3})),
+            Goal("/dock", {"distance": -1}),
+        ]
+    """
+
+    name: str
+    fields: Mapping[str, Any]
+    cancel_after: int | None = None
+    beside: Goal | None = None
+
+    @property
+    def goals(self) -> list[Goal]:
+        """This goal, and the one that is sent at the same moment."""
+        return [self, *(self.beside.goals if self.beside else [])]
+
+    def __str__(self) -> str:
+        """Return the goal in words, for the card."""
+        fields = ", ".join(f"{name} {value}" for name, value in self.fields.items())
+        canceled = (
+            ""
+            if self.cancel_after is None
+            else f", canceled after {counted(self.cancel_after, 'feedback message')}"
+        )
+        return f"{self.name} with {fields}{canceled}{f', beside {self.beside}' if self.beside else ''}"
+
+    def play(self, sender: GoalSender) -> bool:
+        """Send the goal, and wait for its end. Return False if it does not end."""
+        numbers = [sender.send(**goal.fields) for goal in self.goals]
+        for number, goal in zip(numbers, self.goals, strict=True):
+            if goal.cancel_after is not None:
+                sender.cancel(number, after=goal.cancel_after)
+        return sender.finish(*numbers)
+
+    def outcomes(self, seen: Part, paths: Sequence[str]) -> list[list[Any]]:
+        """Return what came of the goal, and of the one beside it, if the judge has sent no other one since then.
+
+        Args:
+            seen: The record of the subject.
+            paths: Each is ``"status"``, or ``"feedback"`` or ``"result"`` with the path of a field, as in
+                ``"result.arrived"``.
+        """
+        sent = all_goals(seen)[-len(self.goals) :]
+        return [
+            [goal._outcome(one, path) for path in paths] for goal, one in zip(self.goals, sent, strict=True)
+        ]
+
+    def _outcome(self, sent: SentGoal, path: str) -> Any:
+        part, _, field_path = path.partition(".")
+        if part == "status":
+            return STATUS.get(sent.status or 0) if sent.accepted else "REJECTED"
+        if part == "feedback":
+            return [pick(fields, field_path) for fields in sent.feedback[: self.cancel_after]]
+        return None if self.cancel_after is not None or not sent.result else pick(sent.result, field_path)
+
+
+Step = To | Sets | Goal | float
+"""A step of the judge: an input, a new value of a parameter, a goal, or a time to let pass, in seconds."""
 
 
 def parameter_in_words(noted: Sequence[Any]) -> str:
@@ -59,8 +138,10 @@ def parameter_in_words(noted: Sequence[Any]) -> str:
     first, second = noted
     if isinstance(first, bool):
         return "taken" if first else f"refused with{'' if second else 'out'} a reason"
+    if first not in TYPES:
+        return "not declared"
     ranges = " and ".join(f"from {low:g} to {high:g}" for low, high in second) or "without a range"
-    return f"{TYPES.get(first, 'not declared')} {ranges}"
+    return f"{TYPES[first]} {ranges}"
 
 
 def parameter_value(value: float | str | bool) -> dict[str, Any]:

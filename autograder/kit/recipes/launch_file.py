@@ -12,14 +12,21 @@ from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-import re2
-
 from autograder.kit.draft import OWN, OWN_LATE
 from autograder.kit.evidence import Evidence
-from autograder.kit.mistakes import package_mistakes
+from autograder.kit.mistakes import package_mistakes, runner_mistakes
 from autograder.kit.mistakes.crashes import CRASHES, OTHER_CRASHES
-from autograder.kit.model import Advice, Bench, Mistake, Pace
-from autograder.kit.runners import ALONE, BUILDING, Process, as_run, processes, remappings, report_of
+from autograder.kit.model import Bench, Mistake, Pace
+from autograder.kit.runners import (
+    ALONE,
+    BUILDING,
+    Process,
+    all_are_there,
+    as_run,
+    processes,
+    remappings,
+    report_of,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -192,10 +199,7 @@ class Launched:
     @property
     def all_are_there(self) -> bool:
         """True if each started program has a topic endpoint on the graph, or an endpoint's process is unknown."""
-        known = {process for _, _, process in self._ends}
-        parents = {process.parent for process in self._processes}
-        programs = {_lower(process.pid) for process in self._processes if process.pid not in parents}
-        return programs <= known or 0 in known
+        return all_are_there(self._part)
 
     @cached_property
     def _programs(self) -> list[tuple[str, str]]:
@@ -250,8 +254,7 @@ class LaunchFile:
             *package_mistakes.BUILD,
             OWN,
             *CRASHES,
-            Mistake("syntax_error", _syntax_error, certain=True),
-            Mistake("launch_error", self._launch_error, certain=True),
+            *runner_mistakes.LAUNCH,
             *OTHER_CRASHES,
             OWN_LATE,
         )
@@ -300,48 +303,6 @@ class LaunchFile:
         bench.watch_graph(lambda evidence: self.seen(evidence).is_there, BEGINNING[bench.pace])
         bench.stop()
 
-    def _launch_error(self, evidence: Evidence) -> Advice | None:
-        """Return advice if the launch failed and reported the reason."""
-        what = _complaint(evidence.main)
-        if not what:
-            return None
-        return Advice(
-            f"The launch failed: {what}",
-            next((todo for pattern, todo in _TODO if re2.search(pattern, what)), _COMPARE).format(
-                package=self._package
-            ),
-        )
-
-
-_TODO = (
-    (
-        r"remappings",
-        'remappings is a list of pairs. Each pair is two strings in parentheses, as in remappings=[("image", '
-        '"/left/image")].',
-    ),
-    (
-        r"must return|NoneType",
-        "Write `return` before the LaunchDescription, because generate_launch_description must return it.",
-    ),
-    (
-        r"LaunchDescription|is not iterable",
-        "Pass one list to LaunchDescription: square brackets around all the Nodes, and a comma between them.",
-    ),
-    (
-        r"(?i)\b(?:package|executable)\b.* not found|libexec",
-        "Compare the names of the package and of the programs with `ros2 pkg executables {package}`.",
-    ),
-    (
-        r"Node\.__init__\(\) (?:takes|missing)",
-        'Write the name of each argument, as in Node(package="{package}", executable="...", output="screen"). '
-        "Some names have changed since older tutorials, such as node_executable.",
-    ),
-    (r"keyword argument", "Compare the names of the arguments with those in the example, letter by letter."),
-    (r"^NameError", "Compare the name with the imports at the top of the file, letter by letter."),
-)
-"""The advice for messages of ``ros2 launch``, most specific pattern first."""
-_COMPARE = "Compare the file with the example. Begin with the line that the message names."
-
 
 def _has_begun(evidence: Evidence) -> bool:
     return bool(processes(evidence.main) or evidence.main.of("log"))
@@ -364,27 +325,3 @@ def _is_a_tool(argv: tuple[str, ...]) -> bool:
 def _of_nodes(part: Part) -> list[Process]:
     """Return the processes that a launch started with ``--ros-args`` in their command lines."""
     return [process for process in processes(part) if "--ros-args" in process.argv]
-
-
-def _complaint(part: Part) -> str:
-    """Return the launch's error message without the text around it; empty if there is none."""
-    lines = [str(event.data["text"]) for event in part.of("output")]
-    for number, line in enumerate(lines):
-        if "[ERROR] [launch]:" not in line and not line.startswith("ros2: "):
-            continue
-        causes = [later.removeprefix(" - ") for later in lines[number + 1 :] if later.startswith(" - ")]
-        what = (causes or [line.partition("[launch]:")[2].strip() or line])[-1]
-        what = what.removeprefix("Caught exception in launch (see debug for traceback):").strip()
-        return re2.sub(r" on the libexec directory '[^']*'|, searching: \[.*| in '/[^']*'", "", what)
-    return ""
-
-
-def _syntax_error(evidence: Evidence) -> Advice | None:
-    """Return advice if Python cannot parse the launch file."""
-    what = _complaint(evidence.main)
-    if not re2.match(r"(?:Syntax|Indentation|Tab)Error", what):
-        return None
-    return Advice(
-        f"Python could not read the launch file: {what}.",
-        "In this line or just before it, a bracket, a quotation mark, a comma or the indentation is wrong.",
-    )

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
+from autograder.kit.counterparts import Qos
 from autograder.kit.model import Finding
 from autograder.kit.recipes.own_scenario import QUIET, Declared, fields, pick, variant
 from autograder.kit.rules import SOME_TEXT, same, value
@@ -213,7 +214,7 @@ class Machine(Declared):
 
     @staticmethod
     def _join_late(bench: Bench, topic: str, type_name: str) -> None:
-        bench.listen(topic, type_name, latched=True)
+        bench.listen(topic, type_name, qos=Qos.LATCHED)
         bench.wait_until(lambda e: bool(e.main.of("mismatch") or e.main.of("message")), QUIET[bench.pace])
         bench.settle()
         if bench.seen().of("mismatch"):

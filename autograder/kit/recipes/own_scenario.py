@@ -11,8 +11,10 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial, reduce
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, TypeVar
 
+from autograder.kit.counterparts import Qos
 from autograder.kit.draft import OWN, OWN_LATE, Draft, SeenAsItIs
 from autograder.kit.evidence import Event, spoken_by, without_tracebacks
 from autograder.kit.mistakes import common_mistakes as common
@@ -21,11 +23,12 @@ from autograder.kit.mistakes.crashes import CRASHES, OTHER_CRASHES
 from autograder.kit.mistakes.hangs import HANGS
 from autograder.kit.model import Finding, Pace
 from autograder.kit.rules import got_through, in_words, same
+from autograder.kit.runners import processes
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from autograder.kit.counterparts import Caller, Speaker
+    from autograder.kit.counterparts import ActionCaller, Caller, Speaker
     from autograder.kit.evidence import Evidence, Part
     from autograder.kit.model import Bench, Exercise, Mistake
 
@@ -34,6 +37,10 @@ _NOUN = {"publisher": "a publisher on", "subscription": "a subscription to", "cl
 _NOUN |= {"service": "a service", "action_client": "a client of the action", "action_server": "an action"}
 ECHO = 1.0
 """The maximum number of seconds between a logged and a printed line with the same word that count as one report."""
+THREADS = 4
+"""The number of threads that spin a notebook's class with an action server."""
+ENDPOINTS = "endpoints"
+"""The name of the event that records the subject's endpoints if one of the reference solution's is missing."""
 SERVED = 3.0
 """Time limit in seconds of wall time until the judge can call a service that is on the ROS graph."""
 
@@ -48,12 +55,14 @@ class Met:
         speakers: A publisher of the judge for each topic to which the reference solution subscribes, sorted by the
             topic's name.
         callers: A client of the judge for each service of the reference solution, sorted by the service's name.
+        action_callers: A client of the judge for each action of the reference solution, sorted by the action's name.
     """
 
     bench: Bench
     topics: Sequence[str]
     speakers: Sequence[Speaker]
     callers: Sequence[Caller]
+    action_callers: Sequence[ActionCaller] = ()
 
     @property
     def heard(self) -> int:
@@ -88,34 +97,60 @@ def meet(
     serves: Callable[[str, str], object] | None = None,
     *,
     listens: bool = True,
-) -> None:
-    """Run one part of a scenario like :func:`once_met`.
+    qos: Mapping[str, Qos] = MappingProxyType({}),
+) -> bool:
+    """Run one part of a scenario like :func:`once_met`. Return True if the judge could begin.
 
     Args:
         happens: As for :func:`once_met`.
         serves: Called with the name and type of each service that the reference solution calls; it makes the server.
         listens: True if the judge subscribes before the subject starts.
+        qos: The QoS of the judge's endpoints, by topic.
     """
     roles = {role: dict(sorted(ends.items())) for role, ends in bench.reference.interface.items()}
-    publishers, heard, services = (roles.get(r, {}) for r in ("publisher", "subscription", "service"))
+    publishers, heard, services, actions = (
+        roles.get(role, {}) for role in ("publisher", "subscription", "service", "action_server")
+    )
     bench.part(part)
     for topic, kind in publishers.items() if listens else ():
-        bench.listen(topic, kind)
-    speakers = [bench.speak(topic, kind) for topic, kind in heard.items()]
+        bench.listen(topic, kind, qos=qos.get(topic, Qos.DEFAULT))
+    speakers = [bench.speak(topic, kind, qos=qos.get(topic, Qos.DEFAULT)) for topic, kind in heard.items()]
     callers = [bench.call(service, kind) for service, kind in services.items()]
+    action_callers = [bench.call_action(action, kind) for action, kind in actions.items()]
     if serves is not None:
         for service, kind in roles.get("client", {}).items():
             serves(service, kind)
-    bench.start()
-    if all(bench.await_endpoint(role, name) for role, ends in roles.items() for name in ends):
+    # With a single thread, a notebook's class reads no cancel request while it works on a goal.
+    bench.start(**({"threads": THREADS} if actions else {}))
+    met = _all_there(bench, [(role, name) for role, ends in roles.items() for name in ends])
+    if met:
         bench.release()
         # A subscription loses what is sent before it has discovered the judge's publisher.
         if speakers:
             bench.await_attention()
-        called = all(caller.await_server(SERVED) for caller in callers)
-        if not (called and happens(Met(bench, tuple(publishers), speakers, callers))):
+        met = all(caller.await_server(SERVED) for caller in (*callers, *action_callers))
+        if not (met and happens(Met(bench, tuple(publishers), speakers, callers, action_callers))):
             bench.note_whether_it_spins()
+            # The callback of a server may hang in a thread of its own while the node still answers.
+            if services or actions:
+                bench.note_where_it_hangs()
     bench.stop()
+    return met
+
+
+def _all_there(bench: Bench, ends: Sequence[tuple[str, str]]) -> bool:
+    """Wait for all endpoints of the reference solution, given as (role, name)."""
+    there = not ends or bench.await_endpoint(*ends[0])
+    # The programs of a launch start one after the other, so the endpoints of the first are not all.
+    if processes(bench.seen()):
+        there = bench.watch_graph(
+            lambda evidence: all(name in evidence.main.endpoints(role) for role, name in ends),
+            QUIET[bench.pace],
+        )
+    there = there and all(bench.await_endpoint(role, name) for role, name in ends)
+    if not there:
+        bench.note(ENDPOINTS, made={role: bench.seen().endpoints(role) for role, _ in ends})
+    return there
 
 
 class OwnScenario:

@@ -62,8 +62,8 @@ class Calls:
         """Make four runs: a late service, hidden numbers in the answers, large numbers, and no service."""
         runs = drawn_runs(bench.random, self._calls)
         # Not of the everyday kind: with zeros the sum is one of the numbers, and a client may say what it will ask.
-        nobody = bench.random.choice((negative, extreme))(bench.random, self._calls + 1)
-        scenario(bench, runs, nobody, calls=self._calls)
+        numbers = bench.random.choice((negative, extreme))(bench.random, self._calls + 1)
+        scenario(bench, runs, numbers, calls=self._calls)
 
     def seen(self, evidence: Evidence) -> ClientSeen:
         """Return the subject's client, as the judge saw it."""

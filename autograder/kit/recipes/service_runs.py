@@ -87,12 +87,12 @@ class Run:
     held: int = 0
 
 
-def scenario(bench: Bench, runs: Sequence[Run], nobody: Sequence[int], *, calls: int) -> None:
+def scenario(bench: Bench, runs: Sequence[Run], numbers: Sequence[int], *, calls: int) -> None:
     """Make all runs with a service, and one without.
 
     Args:
         runs: The runs with a service; the one with the late service comes first.
-        nobody: The numbers for the run without a service.
+        numbers: The numbers for the run without a service.
         calls: The number of calls of a subject that has finished its work.
     """
     late, *others = runs
@@ -108,7 +108,7 @@ def scenario(bench: Bench, runs: Sequence[Run], nobody: Sequence[int], *, calls:
     served, impatient = [first], False
     for run in order:
         if run is None:
-            unserved(bench, nobody)
+            unserved(bench, numbers)
             impatient = may_be_impatient(bench)
         elif not hangs:
             _begin(bench, run)

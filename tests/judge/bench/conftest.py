@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
     from autograder.kit.evidence import Reference
 
-    SubjectNode = Callable[[int], AbstractContextManager[Node]]
+    SubjectNode = Callable[..., AbstractContextManager[Node]]
     Spun = Callable[[Executor, Node], AbstractContextManager[None]]
     BenchOf = Callable[[str, Reference], AbstractContextManager[TestBench]]
 
@@ -52,13 +52,13 @@ def bench_of(tmp_path: Path) -> BenchOf:
 
 @pytest.fixture
 def subject_node() -> SubjectNode:
-    """Makes the node ``/subject`` on a domain, in a context of its own; leaving it takes it off the graph."""
+    """Makes the node ``/subject``, perhaps in a namespace, in its own context; leaving it takes it off the graph."""
 
     @contextlib.contextmanager
-    def made(domain_id: int) -> Iterator[Node]:
+    def made(domain_id: int, namespace: str = "") -> Iterator[Node]:
         context = Context()
         context.init(domain_id=domain_id)
-        node = Node("subject", context=context)
+        node = Node("subject", context=context, namespace=namespace)
         try:
             yield node
         finally:

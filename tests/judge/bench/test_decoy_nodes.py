@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import pytest
 import rclpy
@@ -22,7 +22,10 @@ if TYPE_CHECKING:
 
 pytestmark = pytest.mark.ros
 
-PLANTED = {"publishes": {"/a": "std_msgs/msg/String"}, "subscribes": {"/b": "std_msgs/msg/Bool"}}
+PLANTED: dict[str, Any] = {
+    "publishes": {"/a": "std_msgs/msg/String"},
+    "subscribes": {"/b": "std_msgs/msg/Bool"},
+}
 
 
 def test_a_run_waits_until_the_planted_nodes_are_known_and_the_earlier_ones_gone(

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import sys
 import threading
 import time
-from contextlib import closing
+from contextlib import ExitStack, closing
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pytest
+from rcl_interfaces.msg import SetParametersResult
 from rclpy.executors import SingleThreadedExecutor
+from rclpy.parameter import Parameter
 
 from autograder.judge import ros_setup
 from autograder.judge.bench import subject_time
@@ -110,6 +114,37 @@ def test_timers_fire_as_they_would_later_on_and_the_clock_is_given_back(
             assert abs(node.get_clock().now().nanoseconds / 1e9 - time.time()) < 5.0
 
 
+def test_a_node_s_own_callbacks_of_parameters_do_not_hear_of_the_judge_s_clock(
+    subject_node: SubjectNode, spun: Spun
+) -> None:
+    if not (Path(sys.prefix) / "share/rclpy").is_dir():
+        pytest.skip("a ROS that was sourced is as it is")
+    heard: list[str] = []
+
+    def refuse(parameters: list[Parameter]) -> SetParametersResult:
+        heard.extend(one.name for one in parameters)
+        return SetParametersResult(successful=False, reason="not mine")
+
+    def keep(parameters: list[Parameter]) -> list[Parameter]:
+        heard.extend(one.name for one in parameters)
+        return parameters
+
+    with ros_setup.lease_domain() as domain_id, Wire(domain_id) as wire, subject_node(domain_id) as node:
+        node.declare_parameter("speed", 0.5)
+        node.add_pre_set_parameters_callback(keep)
+        node.add_on_set_parameters_callback(refuse)
+        node.add_post_set_parameters_callback(keep)
+        with (
+            spun(SingleThreadedExecutor(context=node.context), node),
+            closing(SimulatedClock(wire, Recorder(), NodeName("subject", "/"))) as clock,
+        ):
+            assert clock.take_over()
+            assert node.get_clock().now().nanoseconds / 1e9 == FIRST
+        assert heard == []
+        (result,) = node.set_parameters([Parameter("speed", value=0.7)])
+        assert (result.reason, heard) == ("not mine", ["speed", "speed"])
+
+
 def test_a_scenario_says_how_much_time_passes_at_once(subject_node: SubjectNode, spun: Spun) -> None:
     fired: list[float] = []
     with (
@@ -134,3 +169,24 @@ def test_who_is_not_spun_does_not_go_along(subject_node: SubjectNode) -> None:
         closing(NodeClock(wire, Recorder(), NodeName("subject", "/"))) as borrowed,
     ):
         assert not borrowed.lend(5.0, lambda: False)
+
+
+def test_one_clock_steps_every_node_that_the_judge_meets(subject_node: SubjectNode, spun: Spun) -> None:
+    fired: dict[str, list[float]] = {"left": [], "right": []}
+    with ros_setup.lease_domain() as domain_id, Wire(domain_id) as wire, ExitStack() as opened:
+        for space, ticks in fired.items():
+            node = opened.enter_context(subject_node(domain_id, namespace=space))
+            node.create_timer(0.5, lambda ticks=ticks, node=node: ticks.append(seconds(node)))
+            opened.enter_context(spun(SingleThreadedExecutor(context=node.context), node))
+        names = [NodeName("subject", f"/{space}") for space in fired]
+        clock = opened.enter_context(closing(SimulatedClock(wire, Recorder(), *names)))
+        assert clock.take_over()
+        for ticks in fired.values():
+            ticks.clear()
+        assert clock.run(2.0, lambda: False)
+        assert [len(ticks) for ticks in fired.values()] == [4, 4]
+
+
+def seconds(node: Node) -> float:
+    """The time of a node."""
+    return node.get_clock().now().nanoseconds / 1e9

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from autograder.kit.counterparts import Qos
 from autograder.kit.draft import Draft
 from autograder.kit.model import Bench, Finding
 from autograder.kit.recipes.own_scenario import OwnScenario
@@ -25,7 +26,7 @@ def scenario(bench: Bench) -> None:
     if bench.await_endpoint("publisher", topic):
         bench.release()
         bench.run_time(LATE)
-        bench.listen(topic, type_name, latched=True)
+        bench.listen(topic, type_name, qos=Qos.LATCHED)
         bench.wait_until(
             lambda evidence: bool(evidence.main.of("mismatch") or messages(evidence.main)), PATIENCE
         )

@@ -1,0 +1,3 @@
+"""Right: as the card shows it."""
+
+print("the name of the topic")

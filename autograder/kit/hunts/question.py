@@ -1,0 +1,122 @@
+"""A question with choices: the student's function returns the text of one, and the card lists them in drawn order."""
+
+from __future__ import annotations
+
+import ast
+import contextlib
+import os
+import platform
+from dataclasses import dataclass
+from random import Random
+from typing import TYPE_CHECKING
+
+from autograder.kit.draft import OWN, Draft
+from autograder.kit.mistakes.crashes import CRASHES, OTHER_CRASHES
+from autograder.kit.model import Advice, Finding
+from autograder.kit.recipes.own_scenario import OwnLadder
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from autograder.kit.evidence import Evidence
+    from autograder.kit.model import Bench, Exercise
+
+POINTS = 2.0
+"""The points of a question whose author does not say how many it is worth."""
+ANSWERED = 5.0
+"""Time limit in seconds of wall time for the function to return."""
+
+_THINK = "Think of what you saw while you worked on this task, or try it once more, and then choose again."
+
+
+@dataclass(frozen=True)
+class Question:
+    """A question that is answered by a function which returns a choice, or by a program that prints one.
+
+    The text of the lab asks the question. The card lists the choices as long as the answer is not one of them, in an
+    order that is different for each student and the same in each session. Case and spaces do not matter.
+
+    Attributes:
+        exercise_id: The lab's folder and the file's name, such as ``"bugs_1.why_dark"``.
+        title: The title of the card.
+        task: One sentence that states the task.
+        right: The right choice.
+        choices: All choices, or only the wrong ones.
+        points: The points of the exercise.
+
+    Example::
+
+        EXERCISE = Question(
+            "bugs_1.why_dark",
+            "Bug hunt · Why it stayed dark",
+            "Say what kept the numbers from the display.",
+            right="the topic's name",
+            choices=("the topic's name", "the message type", "the QoS", "nothing spun the node"),
+        ).exercise()
+    """
+
+    exercise_id: str
+    title: str
+    task: str
+    right: str
+    choices: Sequence[str]
+    points: float = POINTS
+
+    def exercise(self) -> Exercise:
+        """Return the finished exercise.
+
+        Raises:
+            ValueError: There is no wrong choice, or two choices differ only in case or spaces.
+        """
+        choices = list(dict.fromkeys((*self.choices, self.right)))
+        if len(set(map(_plain, choices))) < max(len(choices), 2):
+            raise ValueError(f"{self.exercise_id}: write a wrong choice, and no choice twice: {choices}")
+
+        def scenario(bench: Bench) -> None:
+            order = Random(f"{_student()} {self.exercise_id}").sample(choices, len(choices))
+            bench.part("asked", choices="; ".join(f"“{choice}”" for choice in order))
+            bench.start()
+            bench.await_end(ANSWERED)
+            bench.stop()
+
+        subject = OwnLadder(scenario, *CRASHES, *OTHER_CRASHES, OWN)
+        draft = Draft(self.exercise_id, self.title, self.task, subject)
+
+        @draft.criterion("right", self.points, "Names the right choice")
+        def right(seen: Evidence, _: Evidence) -> Finding:
+            said = answer(seen)
+            return Finding(_plain(said) == _plain(self.right), "the right choice", f"“{said or 'nothing'}”")
+
+        @draft.mistake("wrong_choice", certain=True)
+        def wrong_choice(seen: Evidence, _: Evidence) -> Advice | None:
+            if (said := _plain(answer(seen))) == _plain(self.right) or said not in map(_plain, choices):
+                return None
+            return Advice(f"“{answer(seen)}” is not the right choice.", _THINK)
+
+        draft.knows(
+            "not_written",
+            lambda seen, _: not right(seen, seen).passed and f"“{answer(seen) or 'nothing'}”",
+            "Your answer is {}, which is not one of the choices.",
+            "Let your function return the text of one choice: {seen.main.inputs[choices]}.",
+            certain=True,
+        )
+        return draft.exercise(recorded=())
+
+
+def answer(seen: Evidence) -> str:
+    """Return the text that the function returned or, for a program, printed last; empty if there is none."""
+    returned = seen.main.returned
+    if returned is None:
+        return "".join(seen.main.said()[-1:]).strip()
+    with contextlib.suppress(ValueError, SyntaxError):
+        returned = str(ast.literal_eval(returned) or "")
+    return returned
+
+
+def _plain(text: str) -> str:
+    return " ".join(text.casefold().split()).rstrip(".")
+
+
+def _student() -> str:
+    """Return a text that differs between students: the name in a JupyterHub, else the user and the computer."""
+    return os.environ.get("JUPYTERHUB_USER") or f"{os.getuid()} {platform.node()}"

@@ -1,0 +1,131 @@
+"""A repair: students get a broken node, and the exercise that judges the right node judges theirs.
+
+Finding the cause is the task. So until the pass the card shows what a user of the node would notice and the events on
+the wire, but neither the names and QoS settings that do not fit nor a diagnosis. After the pass it states the cause.
+"""
+
+from __future__ import annotations
+
+import importlib
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, cast
+
+from autograder.kit.model import Advice, Criterion, Exercise, Finding, Mistake
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from autograder.kit.evidence import Event, Evidence, Part
+
+POINTS = 10.0
+"""The points of a repair whose author does not say how many it is worth."""
+_NOTHING_CAME = {
+    "publisher": ("message", "no message arrived on {}"),
+    "service": ("answered", "no answer came from {}"),
+    "client": ("request", "no call of {} arrived"),
+    "action_server": ("goal_answer", "no answer to a goal came from {}"),
+    "action_client": ("goal", "no goal arrived at {}"),
+}
+"""For each role, the kind of event that shows that the endpoint works, and the symptom if there is no such event."""
+_TELLS_THE_CAUSE = ("mismatch", "misnamed")
+_WARNING = "incompatible QoS"
+"""A part of the warning that rclpy logs if QoS settings do not fit. The student's own terminal shows it."""
+_LOOK = (
+    "Find out why, with the tools of the course: `ros2 node list`, `ros2 topic list`, `ros2 topic info -v`, `ros2 "
+    "topic echo`, and the output of the program. Change the code that causes it, and check again."
+)
+
+
+@dataclass(frozen=True)
+class Repairs:
+    """An exercise in which a broken node is repaired, judged by the exercise about the right node.
+
+    It is all or nothing, because a broken node often does half of the task. In the master, the broken code stands in
+    comments ``#- `` above the solution that replaces it.
+
+    Attributes:
+        exercise_id: The lab's folder and the file's name, such as ``"bugs_1.dark_display"``.
+        title: The title of the card, which must not tell the cause.
+        task: One sentence that states the task.
+        judged_by: The id of the exercise that judges the repaired node. The broken node must fail it.
+        cause: The cause in two sentences, which the card shows after the pass.
+        points: The points of the exercise.
+
+    Example::
+
+        EXERCISE = Repairs(
+            "bugs_1.dark_display",
+            "Bug hunt · The dark display",
+            "Repair the display, so that it shows the numbers of the sensor.",
+            "lab_1_2.listener",
+            cause="The display subscribed to a topic with a misspelt name. ROS 2 does not report that.",
+        ).exercise()
+    """
+
+    exercise_id: str
+    title: str
+    task: str
+    judged_by: str
+    cause: str
+    points: float = POINTS
+
+    def exercise(self) -> Exercise:
+        """Return the finished exercise."""
+        judged = cast("Exercise", importlib.import_module(self.judged_by).EXERCISE)
+
+        def works(evidence: Evidence) -> Finding:
+            finding = judged.judge_as_one(evidence, "all that was asked for")
+            return finding if finding.passed else _symptom(judged, evidence)
+
+        def cause(evidence: Evidence) -> str:
+            return self.cause if works(evidence).passed else ""
+
+        return replace(
+            judged,
+            id=self.exercise_id,
+            title=self.title,
+            task=self.task,
+            criteria=(Criterion("repaired", "Works again", self.points, works),),
+            mistakes=[_without_diagnosis(judged, known) for known in (*judged.mistakes, _ANY_OTHER)],
+            remarks=(cause,),
+            text={},
+            hides_causes=True,
+        )
+
+
+_ANY_OTHER = Mistake("unknown", lambda _: Advice("", ""))
+
+
+def _without_diagnosis(judged: Exercise, known: Mistake) -> Mistake:
+    """Return a mistake that is recognized as before, and whose advice tells only the symptom."""
+
+    def recognize(evidence: Evidence) -> Advice | None:
+        advice, seen = known.recognize(evidence), _symptom(judged, evidence).seen
+        return replace(advice, text=f"The judge saw this: {seen}.", next_step=_LOOK) if advice else None
+
+    return replace(known, recognize=recognize)
+
+
+def _symptom(judged: Exercise, evidence: Evidence) -> Finding:
+    """Return what a user notices of a node that does not work: what never came, or else the first failed criterion."""
+    for role, names in evidence.reference.interface.items():
+        kind, words = _NOTHING_CAME.get(role, ("", ""))
+        for name in names if kind else ():
+            if not any(part.of(kind, name) for part in evidence):
+                return Finding(False, "the node works as its task says", words.format(name))
+    return replace(judged.judge_as_one(without_causes(evidence), "not what was asked for"), passed=False)
+
+
+def without_causes(evidence: Evidence) -> Evidence:
+    """Return the evidence without what tells a cause: wrong names and types, and QoS settings that do not fit."""
+    asked = evidence.reference.interface
+
+    def events(part: Part) -> Iterator[Event]:
+        for event in part.events:
+            if event.kind == "interface":
+                ends = {role: dict(event.data.get(role, {}).items() & asked[role].items()) for role in asked}
+                yield replace(event, data={**event.data, **ends})
+            elif event.kind not in _TELLS_THE_CAUSE and _WARNING not in str(event.data.get("text")):
+                yield event
+
+    return replace(evidence, parts=[replace(part, events=[*events(part)]) for part in evidence])

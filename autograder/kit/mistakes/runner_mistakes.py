@@ -1,0 +1,130 @@
+"""The mistakes that a runner brings, whatever the recipe: of a build, and of a launch file."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import re2
+
+from autograder.kit.mistakes.crashes import OTHER_CRASHES
+from autograder.kit.mistakes.package_mistakes import BUILD
+from autograder.kit.model import Advice, Mistake, mistake
+from autograder.kit.runners import Launches, LaunchesFromPackage, processes
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from autograder.kit.evidence import Evidence, Part
+    from autograder.kit.runners import Runner
+
+
+def with_those_of(runner: Runner | None, ladder: Sequence[Mistake]) -> Sequence[Mistake]:
+    """Return a recipe's mistakes with those that the runner brings, unless the recipe already has these."""
+    keys = {known.key for known in ladder}
+    if runner is not None and "build_failed" not in keys:
+        ladder = (*BUILD, *ladder)
+    if not isinstance(runner, Launches | LaunchesFromPackage) or "launch_error" in keys:
+        return ladder
+    kept = [known for known in ladder if known.key not in _OF_A_PROGRAM]
+    at = kept.index(OTHER_CRASHES[0]) if OTHER_CRASHES[0] in kept else len(kept)
+    return (*kept[:at], *LAUNCH, *kept[at:], *NOTHING_LAUNCHED)
+
+
+_OF_A_PROGRAM = ("main_guard", "nothing_on_the_graph", "ended_too_early")
+"""The keys of mistakes whose advice is about main(), which a launch file does not have."""
+
+
+_TODO = (
+    (
+        r"remappings",
+        'remappings is a list of pairs. Each pair is two strings in parentheses, as in remappings=[("image", '
+        '"/left/image")].',
+    ),
+    (
+        r"must return|NoneType",
+        "Write `return` before the LaunchDescription, because generate_launch_description must return it.",
+    ),
+    (
+        r"LaunchDescription|is not iterable",
+        "Pass one list to LaunchDescription: square brackets around all the Nodes, and a comma between them.",
+    ),
+    (
+        r"(?i)\b(?:package|executable)\b.* not found|libexec",
+        "Compare the names of the package and of the programs with those that `ros2 pkg executables` lists.",
+    ),
+    (
+        r"Node\.__init__\(\) (?:takes|missing)",
+        'Write the name of each argument, as in Node(package="...", executable="...", output="screen"). '
+        "Some names have changed since older tutorials, such as node_executable.",
+    ),
+    (r"keyword argument", "Compare the names of the arguments with those in the example, letter by letter."),
+    (r"^NameError", "Compare the name with the imports at the top of the file, letter by letter."),
+)
+"""The advice for messages of ``ros2 launch``, most specific pattern first."""
+_COMPARE = "Compare the file with the example. Begin with the line that the message names."
+
+
+def _launch_error(evidence: Evidence) -> Advice | None:
+    """Return advice if the launch failed and reported the reason."""
+    what = _complaint(evidence.main)
+    todo = next((todo for pattern, todo in _TODO if re2.search(pattern, what)), _COMPARE)
+    return Advice(f"The launch failed: {what}", todo) if what else None
+
+
+def _complaint(part: Part) -> str:
+    """Return the launch's error message without the text around it; empty if there is none."""
+    lines = [str(event.data["text"]) for event in part.of("output")]
+    for number, line in enumerate(lines):
+        if "[ERROR] [launch]:" not in line and not line.startswith("ros2: "):
+            continue
+        causes = [later.removeprefix(" - ") for later in lines[number + 1 :] if later.startswith(" - ")]
+        what = (causes or [line.partition("[launch]:")[2].strip() or line])[-1]
+        what = what.removeprefix("Caught exception in launch (see debug for traceback):").strip()
+        return re2.sub(r" on the libexec directory '[^']*'|, searching: \[.*| in '/[^']*'", "", what)
+    return ""
+
+
+def _syntax_error(evidence: Evidence) -> Advice | None:
+    """Return advice if Python cannot parse the launch file."""
+    what = _complaint(evidence.main)
+    if not re2.match(r"(?:Syntax|Indentation|Tab)Error", what):
+        return None
+    return Advice(
+        f"Python could not read the launch file: {what}.",
+        "In this line or just before it, a bracket, a quotation mark, a comma or the indentation is wrong.",
+    )
+
+
+LAUNCH = (
+    Mistake("syntax_error", _syntax_error, certain=True),
+    Mistake("launch_error", _launch_error, certain=True),
+)
+"""The mistakes in a launch file that the launch reports."""
+
+
+def _nodeless(evidence: Evidence, *, started: bool) -> bool:
+    return not evidence.main.had_node and bool(processes(evidence.main)) is started
+
+
+NOTHING_LAUNCHED = (
+    mistake(
+        "nothing_on_the_graph",
+        lambda evidence: _nodeless(evidence, started=False),
+        "The launch file started no program.",
+        "Put a Node(package=..., executable=...) for each program into the list that LaunchDescription gets. In XML, "
+        "write <node pkg=... exec=.../> inside <launch>.",
+    ),
+    mistake(
+        "nothing_on_the_graph",
+        lambda evidence: _nodeless(evidence, started=True),
+        "The launch file started a program, but no node appeared on the graph.",
+        "Start each program alone, with `ros2 run` and its package, and read what it prints.",
+    ),
+    mistake(
+        "ended_too_early",
+        lambda evidence: evidence.main.ending is not None,
+        "The launch ended before its programs had done their work. A launch ends when the last of them has ended.",
+        "Start each program alone, with `ros2 run` and its package, and read what it prints.",
+    ),
+)
+"""The mistakes that are checked last under a launch."""

@@ -1,0 +1,481 @@
+"""The recipe for an action server: the judge sends goals, decides what came of them, and names common mistakes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
+
+import re2
+
+from autograder.kit.draft import OWN, OWN_LATE
+from autograder.kit.mistakes import common_mistakes as common
+from autograder.kit.mistakes import unfinished
+from autograder.kit.mistakes.crashes import CRASHES, OTHER_CRASHES, raised, traceback_of
+from autograder.kit.model import Advice, Bench, Finding, Mistake, mistake
+from autograder.kit.outcomes import ABORTED, CANCELED, SUCCEEDED, SentGoal, all_goals, goal, status_text
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Iterator, Sequence
+
+    from autograder.kit.evidence import Evidence
+
+UNREAD = 2
+"""If this many feedback messages arrive after the cancel request and before its answer, the server reads no requests
+while it works.
+"""
+NO_TIME = 0.009
+"""Seconds between two feedback messages that no pause makes: the shortest that a person would write is longer, and in a
+notebook none is made shorter than that. Two goals that never pause take turns of Python's 0.005 s.
+"""
+HURRIED, HURRIED_ALONE = 0.25, 0.5
+"""The share of such short intervals from which on a server is taken not to pause: of all, and of the few of those goals
+that do not compete with another one if none takes time.
+"""
+ENDED = "the program ended by itself"
+CANCELED_UNASKED = "with event CANCELED"
+"""In what rclpy raises if canceled() is called for a goal that no client has asked to cancel."""
+ROUNDS_LEFT = 2
+"""Feedback messages that a server may still send after it agreed to cancel: in its present round, and in the next one
+if it checked too early.
+"""
+
+
+@dataclass(frozen=True)
+class ComparedGoal(SentGoal):
+    """A goal of an exercise, and in words what is wrong about it; empty if nothing is.
+
+    Attributes:
+        due: What the reference solution returns.
+        fault: What is wrong with the end of a goal that should succeed.
+        slip: What is wrong with the feedback that came, however many messages are missing before or after it.
+        feedback_fault: What is wrong with all its feedback.
+        is_wrong_when_large: True if the goal is right as long as another one may run beside it, and wrong later.
+    """
+
+    due: Any
+    fault: str
+    slip: str
+    feedback_fault: str
+    is_wrong_when_large: bool = False
+
+
+@dataclass(frozen=True)
+class GoalsSeen:
+    """An action server, and the goals that the judge sent to it. An exercise says which goal is which.
+
+    Attributes:
+        evidence: What the judge saw.
+        alone: The goals that should succeed and have the server to themselves.
+        beside: The goals that should succeed while another one is at work.
+        later: The goals after the first one that should be like it; first the one beside another goal.
+        welcome: All goals that should be accepted.
+        bad: The goals that should be refused.
+        last: The goals after the bad ones.
+        canceled: The goals that the judge cancels while the server works on them. The first one has to be sent.
+        ended_for_another: A goal that the server ended, unasked, when a newer one came; None if it did not.
+    """
+
+    evidence: Evidence
+    alone: Sequence[ComparedGoal]
+    beside: Sequence[ComparedGoal]
+    later: Sequence[ComparedGoal]
+    welcome: Sequence[ComparedGoal]
+    bad: Sequence[ComparedGoal]
+    last: Sequence[ComparedGoal]
+    canceled: Sequence[ComparedGoal]
+    ended_for_another: SentGoal | None
+
+    @property
+    def good(self) -> list[ComparedGoal]:
+        """All goals that should succeed."""
+        return [*self.alone, *self.beside]
+
+    @property
+    def part_fault(self) -> str:
+        """What is wrong with the result of the first goal that was canceled, in words; empty if nothing is."""
+        return ""
+
+    @property
+    def astray(self) -> list[ComparedGoal]:
+        """The goals that the server agreed to cancel and went on with, although it can cancel a goal."""
+        can_cancel = any(one.status == CANCELED for one in self.canceled)
+        return [one for one in self.canceled if can_cancel and one.cancel_accepted and one.status != CANCELED]
+
+    @property
+    def takes_no_time(self) -> bool:
+        """True if the server works without any pause between two feedback messages.
+
+        Such a goal is over before it can be canceled, unless the machine happens to be so busy that the request gets in
+        between. A busy machine makes intervals longer and never shorter, and no server that pauses can send two
+        messages at once. So the short intervals tell, however few they are; a pause that makes up for an earlier one (a
+        rate's) is allowed for.
+        """
+        shares = ((HURRIED, (*self.good, self.canceled[0])), (HURRIED_ALONE, self.alone))
+        return any(_hurries(*share) for share in shares) and not self.tells_at_the_end
+
+    @property
+    def tells_at_the_end(self) -> bool:
+        """True if the server works in silence, and sends all feedback of a goal at once when it is done."""
+        told = [one.told_at_the_end for one in self.good if one.pauses]
+        return len(told) > 1 and all(told)
+
+    def find(self, faults: Iterable[str], expected: str, right: str, *, reached: bool = True) -> Finding:
+        """Decide a criterion about goals.
+
+        If two servers have the action's name, each goal reaches both, and chance decides whose answers the client
+        takes. If the program ended by itself, chance decides which goals came before its end. So neither meets any
+        criterion about goals.
+
+        Args:
+            faults: What is wrong, in words; empty texts do not count.
+            expected: The expected behavior, in words for the card.
+            right: What was seen if nothing is wrong.
+            reached: False if the judge did not send the goals that the criterion is about.
+        """
+        part, count = self.evidence.main, common.servers(self.evidence.main)
+        unfit = f"each goal reached {count} servers" if count > 1 else ""
+        if part.ending is not None and not part.traceback:
+            unfit = ENDED
+        wrong = unfit or next(filter(None, faults), "") or ("" if reached else "not reached")
+        return Finding(not wrong, expected, wrong or right)
+
+
+def _hurries(share: float, goals: Iterable[SentGoal]) -> bool:
+    pauses = sorted(pause for one in goals for pause in one.pauses)
+    return bool(pauses) and pauses[int(len(pauses) * share)] < NO_TIME
+
+
+Seen = TypeVar("Seen", bound=GoalsSeen)
+
+
+class SendsGoals(Generic[Seen]):
+    """The recipe for an action server. Its view is the author's :class:`GoalsSeen`.
+
+    Args:
+        scenario: The function that runs all parts of the exercise on a bench, usually with a
+            :class:`autograder.kit.oracle.goal_sender.GoalSender`.
+        view: Returns the view of what the judge saw.
+
+    Example::
+
+        def docking(met: Met) -> bool:
+            sender = GoalSender(met.bench, met.action_callers[0])
+            if not sender.finish(sender.send(distance=2.0)):
+                return False
+            sender.cancel(sender.send(distance=9.0), after=3)
+            return True
+
+        def docked(evidence: Evidence) -> GoalsSeen:
+            first, far = (compared(goal(evidence.main, number)) for number in range(2))
+            return GoalsSeen(evidence, [first], [], [], [first, far], [], [], [far], None)
+
+        recipe = SendsGoals(once_met(docking), docked)
+    """
+
+    roles = ("action_server",)
+
+    def __init__(self, scenario: Callable[[Bench], object], view: Callable[[Evidence], Seen]) -> None:
+        self.scenario, self.seen, self.expected = scenario, view, view
+
+    def serves(self, evidence: Evidence) -> Finding:
+        """Decide whether the subject has exactly one server with the right name and type, and it accepts a goal.
+
+        A server whose callback raised an exception was there, so the exception costs only the goals.
+        """
+        name, type_name = evidence.reference.only("action_server")
+        part, expected = evidence.main, f"one server of {name} ({type_name}) that accepts goals"
+        wrong, first = common.misfit(evidence, "action_server"), goal(part, 0)
+        raised = first.request is not None and bool(part.traceback)
+        if not (wrong or raised):
+            wrong = ENDED if part.ending is not None else "" if first.accepted else first.objection(True, "")
+        return Finding(not wrong, expected, wrong or "it accepts goals")
+
+    def cancels(self, evidence: Evidence) -> Finding:
+        """Decide whether a cancel request is accepted, ends the goal soon, and brings the part that was computed."""
+        seen = self.seen(evidence)
+        first, *later = seen.canceled
+        faults = (
+            "" if first.accepted else first.objection(True, ""),
+            first.request_fault,
+            f"the cancel was accepted, then: status {status_text(first.status)}"
+            if first.status != CANCELED
+            else "",
+            seen.part_fault,
+            "only as the machine is busy: it counts without a pause" if seen.takes_no_time else "",
+            # Of a quick server, a goal may be over when a busy judge asks to cancel it.
+            *(
+                one.request_fault and f"later, {one.request_fault}"
+                for one in later
+                if not one.was_canceled_too_late
+            ),
+        )
+        expected = "the cancel is accepted, the goal ends as CANCELED with what was found so far"
+        return seen.find(faults, expected, "it is canceled", reached=first.request is not None)
+
+    def refuses(self, evidence: Evidence) -> Finding:
+        """Decide whether bad goals are refused, and good ones after them come to an end, whichever that is."""
+        seen = self.seen(evidence)
+        taken = [one for one in seen.bad if one.accepted is not False]
+        lost = [one for one in seen.last if not (one.accepted and one.over)]
+        faults = (
+            *(f"{one} was {'accepted' if one.accepted else 'not answered'}" for one in taken),
+            *(f"after the rejected goals, {one.fault}" for one in lost),
+        )
+        return seen.find(faults, "rejects bad goals, and lives on", "it does", reached=bool(seen.last))
+
+    @staticmethod
+    def remark(evidence: Evidence) -> str:
+        """Return a remark for the card if the server sent feedback after it had said that the goal was over."""
+        ends = [(part, event.data) for part in evidence for event in part.of("goal_ended")]
+        late = any(goal(part, int(data["goal"])).sent_after(data["sent"]) for part, data in ends)
+        words = "Your server publishes feedback after it has ended the goal. Later releases of ROS drop such feedback."
+        return words if late else ""
+
+    @property
+    def ladder(self) -> tuple[Mistake, ...]:
+        """The common mistakes, most specific first."""
+        return (
+            common.two_servers(
+                "action_server",
+                "Each goal reaches both servers, and both execute it.",
+                "Make only one ActionServer and only one node.",
+            ),
+            IN_EXECUTE[0],
+            *self._about_goals(BESIDE_ANOTHER),
+            OWN,
+            *CRASHES,
+            common.endpoint_name("action_server"),
+            common.message_type("action_server"),
+            IN_EXECUTE[1],
+            *OTHER_CRASHES,
+            *self._about_goals(ALONE),
+            OWN_LATE,
+            *common.spinning("action_server"),
+            *unfinished.NOTHING_THERE,
+        )
+
+    def _about_goals(self, rows: Iterable[Row]) -> Iterator[Mistake]:
+        for key, found, text, next_step, certain in rows:
+            shows = lambda evidence, found=found: found(self.seen(evidence))  # noqa: E731
+            yield mistake(key, shows, text, next_step, certain=certain)
+
+
+def _result_missing(evidence: Evidence) -> Advice | None:
+    """Return advice if the execute callback returned no result."""
+    result, fields = _result_type(evidence)
+    # The first alternative is rclpy's error when it sends the result. The second is the clearer error that
+    # autograder/notebook raises.
+    absent = (
+        rf"'NoneType' object has no attribute '_?(?:{'|'.join(fields)})'"
+        if fields
+        else "in _send_result_response"
+    )
+    said = f"{absent}|must return a result of the action"
+    traceback = traceback_of(evidence)
+    if not re2.search(said, traceback):
+        return None
+    return Advice(
+        f"The execute callback did not return a {result} object. It returned nothing, a plain list, or the type "
+        "without parentheses.",
+        f"End the callback with `return result`, where `result` is a {result}() in which you have set "
+        f"{' and '.join(fields) or 'the fields'}. Do this wherever the callback returns, also after a cancel.",
+        traceback,
+    )
+
+
+def _result_type(evidence: Evidence) -> tuple[str, list[str]]:
+    """Return the name of the action's result type, and its fields."""
+    _, kind = evidence.reference.only("action_server")
+    recorded = (
+        list(one.result) for part in evidence.reference.parts for one in all_goals(part) if one.result
+    )
+    return f"{kind.rpartition('/')[2]}.Result", next(recorded, [])
+
+
+def _exception_in_execute(evidence: Evidence) -> Advice | None:
+    """Return advice if the execute callback raised an exception, so that rclpy aborted the goal."""
+    traceback = traceback_of(evidence)
+    if not traceback or not any(seen.status == ABORTED for part in evidence for seen in all_goals(part)):
+        return None
+    return raised("The execute callback raised an exception, so rclpy aborted the goal", traceback)
+
+
+def _canceled_unasked(seen: GoalsSeen) -> bool:
+    part = seen.evidence.main
+    kinds = [event.kind for event in part.events]
+    before = part.events[: kinds.index("cancel_sent")] if "cancel_sent" in kinds else part.events
+    return any(CANCELED_UNASKED in str(event.data) for event in before)
+
+
+def _ended_for_another(seen: GoalsSeen) -> str:
+    older = None if traceback_of(seen.evidence) else seen.ended_for_another
+    return status_text(older.status) if older else ""
+
+
+def _rejected(seen: GoalsSeen) -> object:
+    rejected = [one for one in seen.welcome if one.accepted is False]
+    return rejected[0] if rejected and not traceback_of(seen.evidence) else None
+
+
+def _mixed_up(seen: GoalsSeen) -> str:
+    crash = traceback_of(seen.evidence)
+    ended = [one for one in seen.later if one.status is not None]
+    slips = [one for one in ended if one.slip]
+    wrong = slips or [one for one in ended if one.fault]
+    others = [f"{one}: it goes on, although your server agreed to stop" for one in seen.astray]
+    if CANCELED_UNASKED in crash:
+        others.append("canceled() was called for a goal that nobody had asked to cancel")
+    # If the numbers of two goals get into one list, they grow too large, and that is an exception, too.
+    by_a_crash = bool(crash) and not (slips or others)
+    # If only large numbers are wrong, two at once are right.
+    is_large = len(ended) > 1 and wrong == ended[:1] and (wrong[0].is_wrong_when_large or not slips)
+    if (
+        by_a_crash
+        or (is_large and not others)
+        or any(one.fault or one.feedback_fault for one in seen.alone[:1])
+    ):
+        return ""
+    return next(iter([*((one.slip or one.fault) for one in wrong), *others]), "")
+
+
+def _not_succeeded(seen: GoalsSeen) -> bool:
+    return not traceback_of(seen.evidence) and any(one.status == ABORTED for one in seen.good)
+
+
+def _result_never_filled(seen: GoalsSeen) -> object:
+    results = [one.result for one in seen.good if one.status == SUCCEEDED]
+    is_empty = results and not any(value for result in results for value in result.values())
+    return _result_type(seen.evidence) if is_empty else None
+
+
+def _done_at_once(seen: GoalsSeen) -> object:
+    long = seen.canceled[0]
+    quick = long.status == SUCCEEDED and not long.cancel_accepted and long.is_quick
+    # Whether the cancel got in between, and whether the result was seen, is then up to the machine.
+    ended = long.cancelled_too_late or long.status is not None
+    return long if quick or (ended and seen.takes_no_time) else None
+
+
+def _ended_before_its_work(seen: GoalsSeen) -> bool:
+    long = seen.canceled[0]
+    return long.cancelled_too_late and long.sent_after(long.cancel_answered_at) > 0
+
+
+def _cancel_refused(seen: GoalsSeen) -> bool:
+    long = seen.canceled[0]
+    return long.cancel_accepted is False and not (long.cancelled_too_late or long.is_quick)
+
+
+def _cancel_not_read(seen: GoalsSeen) -> bool:
+    # A goal without a result may keep the only thread busy.
+    hangs = any(one.accepted and not one.over for one in seen.good)
+    long = seen.canceled[0]
+    return not (long.cancel_accepted or long.is_quick or hangs) and long.unread >= UNREAD
+
+
+def _cancel_ignored(seen: GoalsSeen) -> str:
+    long = seen.canceled[0]
+    return status_text(long.status) if long.cancel_accepted and long.status != CANCELED else ""
+
+
+IN_EXECUTE = (
+    Mistake("result_missing", _result_missing, certain=True),
+    Mistake("exception_in_callback", _exception_in_execute, certain=True),
+)
+Row = tuple[str, "Callable[[GoalsSeen], object]", str, str, bool]
+"""A mistake: its key, what shows it, the two texts with placeholders for that, and whether the evidence proves it."""
+BESIDE_ANOTHER: tuple[Row, ...] = (
+    (
+        "older_goal_ended",
+        _canceled_unasked,
+        "When a second goal came, your server called canceled() for the older one. No client had asked to cancel that "
+        "goal, so canceled() raised an error.",
+        "Serve both goals, each with its own result. (A server that gives up a goal by itself calls abort().)",
+        True,
+    ),
+    (
+        "older_goal_ended",
+        _ended_for_another,
+        "When a second goal came, your server ended the older one as {}. The task asks it to serve both, each with its "
+        "own result.",
+        "Leave out what aborts the goal that is at work when another one is accepted; or let the new one wait until "
+        "the older one has ended.",
+        True,
+    ),
+    (
+        "goals_mixed_up",
+        _mixed_up,
+        "One goal alone is right. When one goal was canceled, or two were at work, a goal went wrong ({}): they "
+        "disturb each other.",
+        "Keep what belongs to one goal in variables of the execute callback, and ask its own goal handle for "
+        "is_cancel_requested. A list, a flag or a goal handle in self belongs to all goals, and lives on after each.",
+        False,
+    ),
+)
+ALONE: tuple[Row, ...] = (
+    (
+        "goal_rejected",
+        _rejected,
+        "Your server rejected a goal of {}, which is a good one.",
+        "Return GoalResponse.ACCEPT in your goal_callback for each goal that the task asks for, also while another one "
+        "is at work, and GoalResponse.REJECT for the others. Anything but GoalResponse.ACCEPT, such as True, rejects.",
+        True,
+    ),
+    (
+        "goal_not_succeeded",
+        _not_succeeded,
+        "The goal ended as ABORTED (6) although the work was done. Either the execute callback called abort(), or it "
+        "returned without calling succeed(); rclpy then aborts the goal.",
+        "Call succeed() of the goal handle before you return the result. Call abort() only if the work has failed.",
+        True,
+    ),
+    (
+        "field_typo",
+        _result_never_filled,
+        "The goals succeed, but the result is empty: its field {0[1][0]} was never filled.",
+        "Set the field {0[1][0]} of your result before you return it. A misspelt keyword in {0[0]}(...) is ignored "
+        "silently.",
+        True,
+    ),
+    (
+        "done_at_once",
+        _done_at_once,
+        "A goal of {} was done at once: there was no time to cancel it.",
+        "Take some time for each step, for example time.sleep(0.5): an action is for work that takes long.",
+        False,
+    ),
+    (
+        "cancel_not_accepted",
+        _ended_before_its_work,
+        "Your server ended the goal before its work was done. So the cancel request was refused, because the goal had "
+        "already ended, but the server still sent feedback.",
+        "Call succeed(), canceled() or abort() of the goal handle exactly once, just before you return the result.",
+        False,
+    ),
+    (
+        "cancel_not_accepted",
+        _cancel_refused,
+        "Your server refuses the cancel request. rclpy does this if the ActionServer has no cancel_callback, or if the "
+        "cancel_callback does not return CancelResponse.ACCEPT.",
+        "Pass cancel_callback=... to the ActionServer: a method that returns CancelResponse.ACCEPT. In the loop of the "
+        "execute callback, check is_cancel_requested of the goal handle.",
+        True,
+    ),
+    (
+        "cancel_not_accepted",
+        _cancel_not_read,
+        "Your server keeps working and does not read the cancel request, because the only thread that spins the node "
+        "is busy with the execute callback.",
+        "Spin the node with a MultiThreadedExecutor, as in rclpy.spin(your_node, executor=MultiThreadedExecutor()), so "
+        "that another thread can read the cancel request.",
+        False,
+    ),
+    (
+        "cancel_ignored",
+        _cancel_ignored,
+        "Your server accepted the cancel request, but the goal was not canceled (status {}).",
+        "In each turn of the loop, check is_cancel_requested of the goal handle. If it is True, call canceled() of the "
+        "goal handle and return the result so far.",
+        False,
+    ),
+)

@@ -1,0 +1,140 @@
+"""The judge as an action's client in a scenario: it sends goals, alone or two at once, and cancels some of them."""
+
+from __future__ import annotations
+
+from statistics import median
+from typing import TYPE_CHECKING, Any
+
+from autograder.kit.model import Bench, Pace
+from autograder.kit.outcomes import SUCCEEDED, SentGoal, all_goals, goal
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from autograder.kit.counterparts import ActionCaller
+
+QUIET = {Pace.FAST: 3.0, Pace.REAL_TIME: 8.0}
+"""The judge no longer waits if no event comes for this many seconds of wall time."""
+GOAL_LIMIT = 100.0
+"""The seconds in which a goal must end, even if the server sends feedback all the time."""
+CANCEL_LIMIT = {Pace.FAST: 4.0, Pace.REAL_TIME: 8.0}
+"""The seconds in which a canceled goal must end. A server looks for a cancel request once in each round of its loop."""
+UNREAD = 6
+"""If this many feedback messages come without an answer to the cancel request, the server reads no request while it
+works. Messages are counted, not seconds, so that the load of the machine changes nothing.
+"""
+AFTERMATH = 0.5
+"""The seconds in which late feedback, or the end of a program that an exception has ended, must arrive."""
+SLICE = 0.1
+"""The seconds of wall time, and then of simulated time, that pass in turn while goals are at work."""
+
+
+class GoalSender:
+    """A client of the subject's action that waits for events, not for times.
+
+    Args:
+        bench: The bench of the scenario.
+        caller: The judge's client.
+        due: Returns how many feedback messages a goal must have sent when its result comes. A busy judge may receive
+            them after the result, so it waits for them.
+        simulated: True if the subject may follow simulated time, which then goes on while goals are at work.
+    """
+
+    def __init__(
+        self,
+        bench: Bench,
+        caller: ActionCaller,
+        due: Callable[[SentGoal], int] = lambda _: 0,
+        *,
+        simulated: bool = False,
+    ) -> None:
+        self.bench, self._caller, self._due, self._simulated = bench, caller, due, simulated
+
+    def __getitem__(self, number: int) -> SentGoal:
+        """Return a goal as far as the judge has seen it."""
+        return goal(self.bench.seen(), number)
+
+    def send(self, number: int | None = None, /, **fields: Any) -> int:
+        """Send a goal, and return its number. For the number see :meth:`ActionCaller.send_goal`."""
+        return self._caller.send_goal(number, **fields)
+
+    def finish(self, *numbers: int, quiet: float | None = None) -> bool:
+        """Wait until goals have ended. Return False if one does not.
+
+        Args:
+            numbers: The goals.
+            quiet: The judge gives up if no event comes for this many seconds of wall time.
+        """
+        ended = self._wait(lambda: all(self[number].over for number in numbers), GOAL_LIMIT, quiet)
+        if ended:
+            self.bench.wait_until(lambda _: all(map(self._is_complete, numbers)), AFTERMATH)
+        return ended
+
+    def _is_complete(self, number: int) -> bool:
+        return len(self[number].feedback) >= self._due(self[number])
+
+    def await_feedback(self, number: int, messages: int) -> None:
+        """Wait until a goal has sent so many feedback messages, or waiting is useless."""
+
+        def has_told() -> bool:
+            seen = self[number]
+            return len(seen.feedback) >= messages or seen.over or (bool(seen.accepted) and self._is_silent())
+
+        self._wait(has_told, GOAL_LIMIT)
+
+    def _is_silent(self) -> bool:
+        # A server that sends no feedback, or all of it at the end, may send none now: its goal would be over before.
+        done = [one for one in all_goals(self.bench.seen()) if one.status == SUCCEEDED]
+        return any(one.told_at_the_end or len(one.feedback) < min(1, self._due(one)) for one in done)
+
+    def wait_half_a_round(self, number: int) -> None:
+        """Wait for half the time between two feedback messages of a goal, so that two goals are served in turn."""
+        pauses = self[number].pauses
+        self.bench.wait_until(lambda _: False, median(pauses) / 2 if pauses else 0.0)
+
+    def await_answer(self, number: int) -> bool:
+        """Wait until the server has accepted or refused a goal. Return False if it does neither."""
+        return self._wait(lambda: self[number].accepted is not None, GOAL_LIMIT)
+
+    def cancel(self, number: int, *, after: int = 0, then: Callable[[], object] | None = None) -> None:
+        """Request to cancel a goal, unless it is over, and wait for its end.
+
+        Args:
+            number: The goal.
+            after: The number of feedback messages after which the request is sent.
+            then: Called as soon as the server has answered, perhaps before it has looked at the request.
+        """
+        self.await_feedback(number, after)
+        if self[number].over:
+            return
+        self._caller.cancel(number)
+        if then is not None:
+            self._wait(lambda: self[number].cancel_accepted is not None, GOAL_LIMIT)
+            then()
+        self.await_cancel(number)
+
+    def await_cancel(self, number: int) -> None:
+        """Wait until the server has refused to cancel a goal, or has ended it, or is seen to read no request."""
+
+        def is_settled() -> bool:
+            seen = self[number]
+            unread = seen.cancel_accepted is None and seen.unread >= UNREAD
+            return seen.cancel_is_over or unread
+
+        self._wait(is_settled, CANCEL_LIMIT[self.bench.pace], CANCEL_LIMIT[self.bench.pace])
+        if not self[number].cancel_is_over:
+            # A MultiThreadedExecutor raises the exception of a callback only when it has something else to do.
+            self.bench.settle()
+            self.bench.await_end(AFTERMATH)
+
+    def _wait(self, holds: Callable[[], bool], within: float, quiet: float | None = None) -> bool:
+        quiet = quiet or QUIET[self.bench.pace]
+        if not self._simulated:
+            return self.bench.wait_until(lambda _: holds(), within, quiet=quiet)
+        idle, events = 0.0, 0
+        while not self.bench.wait_until(lambda _: holds(), SLICE):
+            before, events = events, len(self.bench.seen().events)
+            idle = 0.0 if events > before else idle + SLICE
+            if idle > quiet or not self.bench.run_time(SLICE):
+                return holds()
+        return True

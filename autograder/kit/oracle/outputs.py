@@ -1,0 +1,115 @@
+"""The outputs of a subject that are compared with the solution's: on a topic, of a service, or about a parameter."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+from typing import TYPE_CHECKING, Any
+
+from autograder.kit.in_words import counted
+from autograder.kit.model import Finding
+from autograder.kit.oracle.steps import parameter_in_words
+from autograder.kit.recipes.own_scenario import pick
+from autograder.kit.rules import in_words, same
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from autograder.kit.evidence import Event, Part
+
+ONE_MISSING_IN = 4
+"""One more or one fewer of this many messages may come, because each node asks and tells at its own moments."""
+
+
+class Kind(Enum):
+    """What is compared of an output."""
+
+    STEPS = "the outputs of each step"
+    LIST = "all messages in order, however they are spread over the steps"
+    PARAMETER = "the description of a parameter, and how new values of it are received"
+
+
+@dataclass(frozen=True)
+class Output:
+    """An output of the subject, and how it is compared.
+
+    Attributes:
+        name: The topic, the service or the parameter.
+        paths: The paths of the fields that are compared.
+        kind: What is compared.
+        tolerance: The tolerance for numbers, absolute or relative to the larger one.
+    """
+
+    name: str
+    paths: tuple[str, ...]
+    kind: Kind
+    tolerance: float
+
+    @property
+    def title(self) -> str:
+        """The line of the criterion on the card."""
+        if self.kind is Kind.PARAMETER:
+            return f"Describes the parameter {self.name}, takes the right values and refuses the others"
+        # Every message of std_msgs has a field named data, so this name says nothing on a card.
+        what = " and ".join(path for path in self.paths if path != "data")
+        return f"Says the right {what or 'value'} on {self.name}"
+
+    def values(self, events: Sequence[Event]) -> list[list[Any]]:
+        """Return the fields that are compared, for each message or answer among the events."""
+        told = [e.data["fields"] for e in events if e.kind in ("message", "answered") and e.name == self.name]
+        return [[pick(fields, path) for path in self.paths] for fields in told]
+
+    def compared(self, seen: Part, expected: Part) -> Finding:
+        """Decide whether a subject's outputs are those of another run in the same drawing. Show the first that is not.
+
+        Args:
+            seen: The run of the subject.
+            expected: The run of the solution, or of a recorded wrong answer.
+        """
+        mine, theirs = self._rows(seen), self._rows(expected)
+        both = min(len(mine), len(theirs))
+        differs = next((n for n in range(both) if not same(mine[n][0], theirs[n][0], self.tolerance)), both)
+        if self.kind is Kind.LIST:
+            # The messages before the judge stepped the clock do not count: how many came depends on the machine.
+            stepped = [
+                sum(event.data["stepped"] for event in part.of("noted", self.name))
+                for part in (seen, expected)
+            ]
+            came_in_all, due_in_all = stepped if all(stepped) else (len(mine), len(theirs))
+            missing = abs(came_in_all - due_in_all)
+            around = slice(max(0, differs - 2), differs + 2)
+            due, came = (
+                f"{self._in_words([row for row, _ in rows[around]])} ({counted(len(rows), 'message')} in all)"
+                for rows in (theirs, mine)
+            )
+            return Finding(differs == both and missing <= 1 + len(theirs) // ONE_MISSING_IN, due, came)
+        if differs == len(theirs):
+            return Finding(True, right := f"the same as the solution in all {len(theirs)} steps", right)
+        due, came = (
+            f"{self._in_words(rows[differs][0])} {rows[differs][1]}" if differs < len(rows) else "nothing"
+            for rows in (theirs, mine)
+        )
+        return Finding(False, due, came if differs < both else f"{came}: your node did not get that far")
+
+    def is_undeclared(self, seen: Part, _: Part) -> bool:
+        """Return True if the subject has no parameter of this name."""
+        return any(event.data["values"] == [[0, []]] for event in seen.of("noted", self.name))
+
+    def _rows(self, part: Part) -> list[tuple[Any, str]]:
+        """Return what is compared, in order: the values of each step with its words, or each message of a list."""
+        noted = part.of("noted", self.name)
+        if self.kind is Kind.LIST:
+            return [(values, "") for event in noted for values in event.data["values"]]
+        return [(event.data["values"], _when(event)) for event in noted]
+
+    def _in_words(self, listed: Sequence[Sequence[Any]]) -> str:
+        if self.kind is Kind.PARAMETER:
+            return "; ".join(map(parameter_in_words, listed)) or "nothing"
+        named = ["" if path == "data" else f"{path} = " for path in self.paths]
+        told = [", ".join(n + in_words([v]) for n, v in zip(named, values, strict=True)) for values in listed]
+        return "; ".join(told) or "nothing"
+
+
+def _when(noted: Event) -> str:
+    step, given = noted.data["step"], noted.data["given"]
+    return f"after step {step} ({given})" if step else "at the start"

@@ -1,0 +1,1 @@
+"""Quests: a program has to find out something about a robot that the judge draws."""

@@ -1,0 +1,326 @@
+"""The recipe for a quest: a program finds something on the graph of a robot that the judge draws, and names it.
+
+The judge draws the robots, so no program can know the answer. What has to be found may come late, or not exist: a
+subject that looks once, without a limit, or that says nothing is noticed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict
+from random import Random
+from typing import TYPE_CHECKING
+
+import re2
+
+from autograder.kit import giving_up
+from autograder.kit.draft import OWN, OWN_LATE
+from autograder.kit.evidence import Part
+from autograder.kit.giving_up import LATENESS, PATIENCE, PATIENCES
+from autograder.kit.lateness import SOON, was_patient
+from autograder.kit.mistakes import unfinished
+from autograder.kit.mistakes.crashes import CRASHES, OTHER_CRASHES, OTHER_SLIPS
+from autograder.kit.model import Advice, Finding, Mistake, Pace, mistake
+from autograder.kit.quests.robot import Robot, Search
+
+if TYPE_CHECKING:
+    from autograder.kit.evidence import Evidence
+    from autograder.kit.model import Bench
+
+Searches = Mapping[str, Search]
+"""All runs of a subject, by the names of the robots."""
+
+ANSWERING = {Pace.FAST: 8.0, Pace.REAL_TIME: 15.0}
+"""Seconds of wall time for an answer; discovery takes up to three in a process that has just started."""
+APPEARS = 12.0
+"""Seconds of wall time for a subject to have a node, beside those of a robot."""
+LOOKS = 4
+"""Looks at the graph after which a subject will certainly look again: what comes late need not be later than that.
+
+A subject that looks this often and then gives up has not kept its patience if there is nothing to find.
+"""
+PATIENCE_IN_LATE = (4.0, 5.0)
+"""The range of the patience that a function is told if something comes late."""
+PATIENCE_ELSEWHERE = {Pace.FAST: (0.4, 0.48), Pace.REAL_TIME: PATIENCES}
+"""The range if everything exists from the start, and if there is nothing to find, so that the patience does not reveal
+which. No usual constant from 2 seconds on lies in one of these.
+"""
+LONGEST_QUOTE = 200
+"""The most characters of a line that a card quotes."""
+_GAVE_UP = re2.compile(r"(?m)^TimeoutError(?:: .*)?$")
+
+_TEXTS = {
+    "looked_too_early": (
+        "Your function asked the graph before it had discovered the robot: a new node knows no other node yet.",
+        "Wait, with a limit, until what you ask about is in node.get_node_names_and_namespaces(); then ask what it "
+        "has.",
+    ),
+    "not_written": (
+        "Your function ends, and it neither returns nor says anything: a step is not written yet.",
+        "If your function has the answer, write return before it. Otherwise find the TODO in your code and write that "
+        "step. In a notebook, the hints are below the cell; each opens separately.",
+    ),
+    "not_returned": (
+        "Your function found the name, but what it returns is {0.part.returned}: code that calls it cannot go on with "
+        "that.",
+        "End your function with `return` and the name itself, as the graph gives it.",
+    ),
+    "looked_once": (
+        "You looked only once. A new node knows almost nothing of the graph, and what you look for may start later "
+        "than your function.",
+        "Look again and again, with a short pause, until it is there or patience_sec seconds have passed.",
+    ),
+    "invented_answer": (
+        "Your answer is the same each time, but each time there is another robot.",
+        "Look the answer up on the graph. If your function has arguments, they say what to look up.",
+    ),
+    "waits_forever": (
+        "If what you look for does not exist, you look for it without end.",
+        "Note the time at the start (time.monotonic()), and raise TimeoutError when patience_sec seconds have passed.",
+    ),
+    "patience_not_kept": (
+        "If what you look for does not exist, your function {}.",
+        "Note the time at the start, give_up_at = time.monotonic() + patience_sec, and look until that moment.",
+    ),
+    "gave_up": (
+        "Your function gave up waiting in {0[0]} of the {0[1]} runs, although what it was to find was there: {0[2]}",
+        "Look at what you leave out: of a node's topics only /rosout and /parameter_events are to be passed over. And "
+        "do you ask for the publishers of a node that publishes, and for the subscriptions of one that subscribes?",
+    ),
+    "no_answer": (
+        "Your {0[0]}.",
+        "Return {0[1]} (a program prints it). If your code does that, it did not find all of it: go through everything "
+        "that the graph gives, such as all ends of a topic, and not only the first.",
+    ),
+    "never_ended": (
+        "Your function was still busy when the time was over.",
+        "Looking at the graph needs no spin. Wait with a limit for what you look for, and return.",
+    ),
+}
+"""The two texts of the card for each mistake: its cause and the next step."""
+
+
+class Quest:
+    """The recipe for a quest. Criteria and mistakes get all runs as :class:`Search`, by the names of the robots.
+
+    Args:
+        draws: Draws the robots by name, in the order in which the subject meets them. The names are the same each time.
+        noun: The word for what there may not be, such as ``"service"``.
+
+    Example::
+
+        def robots(random: Random) -> dict[str, Robot]:
+            called, obeys = random.choice(("mia", "noa", "ada")), random.choice(("go", "drive", "steer"))
+            nodes = {f"/{called}/motors": {"subscribes": {f"/{called}/{obeys}": "geometry_msgs/msg/Twist"}}}
+            return {"a robot": Robot(answer={"robot": called, "topic": f"/{called}/{obeys}"}, nodes=nodes)}
+
+        quest = Quest(robots)
+        obeys = Draft("lab_8_1.obeys", "Lab 8.1 · What it obeys", "Find what a robot obeys.", quest)
+        obeys.asks("robot", 4, "Finds what it is called", quest.finds("robot"))
+        obeys.asks("topic", 6, "Finds the topic that it obeys", quest.finds("topic"))
+        EXERCISE = obeys.exercise()
+    """
+
+    roles = ()
+
+    def __init__(self, draws: Callable[[Random], Mapping[str, Robot]], noun: str = "robot") -> None:
+        self._draws, self._noun, self._names = draws, noun, tuple(draws(Random(0)))
+
+    def seen(self, evidence: Evidence) -> Searches:
+        """Return all runs of the subject, also those that were not reached."""
+        return {name: Search(evidence.part(name)) for name in self._names}
+
+    expected = seen  # each robot says what is right
+
+    # --- the scenario --------------------------------------------------------------------------------------------
+
+    def scenario(self, bench: Bench) -> None:
+        """Let the subject meet each robot."""
+        robots = self._draws(bench.random)
+        takes_patience = any(robot.late or not robot.answer for robot in robots.values())
+        for name, robot in robots.items():
+            if not robot.answer and bench.keep(name):
+                continue
+            between = PATIENCE_IN_LATE if robot.late else PATIENCE_ELSEWHERE[bench.pace]
+            patience = {PATIENCE: giving_up.drawn_patience(bench, between)} if takes_patience else {}
+            bench.part(name, **asdict(robot), **patience)
+            self._meets(bench, robot, patience, LATENESS)
+            search = Search(bench.seen())
+            if robot.late and not search.has() and was_patient(search.since_it_appeared):
+                bench.again()
+                self._meets(bench, robot, patience, SOON)
+            has_answered = Search(bench.seen()).has_answered
+            bench.stop()
+            if not has_answered and not takes_patience:
+                return  # it hangs, and each criterion needs all robots
+
+    def _meets(self, bench: Bench, robot: Robot, patience: Mapping[str, float], lateness: float) -> None:
+        _put(bench, robot, late=False)
+        bench.start(*robot.asked, **patience)
+        if not robot.answer:
+            giving_up.await_it(bench)
+            return
+        if robot.late:
+            bench.await_node()
+            # The robot's own nodes are on the graph as well.
+            bench.watch_graph(lambda evidence: bool(Search(evidence.main).since_it_appeared.events), APPEARS)
+            bench.run_time(lateness, until=lambda: len(bench.seen().of("looked")) >= LOOKS)
+            if bench.await_end(0.0):
+                return
+            _put(bench, robot, late=True)
+        if bench.wait_until(lambda evidence: Search(evidence.main).has_answered, ANSWERING[bench.pace]):
+            bench.await_end(0.5)
+
+    # --- criteria ------------------------------------------------------------------------------------------------
+
+    def finds(self, *keys: str, robot: str = "") -> Callable[[Evidence], Finding]:
+        """Return the criterion that the subject finds, on all robots or on one, what the keys name.
+
+        Args:
+            keys: Keys of the answer; all by default.
+            robot: The name of the only robot that counts. If there is a robot that comes late, then a subject that
+                looks once finds the others only by chance.
+        """
+
+        def judge(evidence: Evidence) -> Finding:
+            seen = self.seen(evidence)
+            searches = [seen[robot]] if robot else [s for s in seen.values() if not s.finds_nothing]
+            findings = [_finding(search, keys) for search in searches]
+            finding = next((finding for finding in findings if not finding.passed), findings[0])
+            chance = "it looks once, and what a first look finds is chance"
+            looks_once = finding.passed and _looked_once(seen)
+            return Finding(False, finding.expected, chance) if looks_once else finding
+
+        return judge
+
+    def says_that_there_is_none(self, evidence: Evidence) -> Finding:
+        """Decide whether the subject says so and ends if there is nothing to find; it must find what exists."""
+        seen = self.seen(evidence)
+        absent = _absent(seen)
+        wrong = giving_up.objection(absent, _found(seen))
+        if absent.ending and (named := Search(absent).given):
+            wrong = f"named {', '.join(named.values())}"
+        if not any(s.has() and (s.robot.late or not _looked_once(seen)) for s in seen.values()):
+            # A subject that finds nothing in any run has not shown that it looked.
+            wrong = f"no other run shows that it finds a {self._noun}"
+        did = "says again and again that it looks" if giving_up.goes_on_waiting(absent) else "it did"
+        return Finding(not wrong, f"says {giving_up.NOT_AVAILABLE} and ends by itself", wrong or did)
+
+    # --- mistakes ------------------------------------------------------------------------------------------------
+
+    @property
+    def ladder(self) -> tuple[Mistake, ...]:
+        """The mistakes of a quest, most specific first, among the common ones."""
+        return (
+            self._mistake("looked_too_early", _asked_too_early),
+            self._mistake("not_written", _is_silent, certain=True),
+            *CRASHES,
+            OWN,
+            self._mistake("not_returned", _not_returned, certain=True),
+            self._mistake("invented_answer", _invented),
+            *OTHER_SLIPS,
+            unfinished.USAGE_MESSAGE,
+            self._mistake("looked_once", _looked_once, certain=True),
+            self._mistake("waits_forever", lambda seen: giving_up.waits_in_silence(_absent(seen))),
+            Mistake("silent_end", self._silent_end, certain=True),
+            self._mistake("patience_not_kept", lambda seen: giving_up.broken_patience(_absent(seen))),
+            OWN_LATE,
+            *OTHER_CRASHES,
+            self._mistake("gave_up", _gave_up),
+            self._mistake("no_answer", _no_answer),
+            self._mistake("never_ended", _never_ended),
+            # Without its last one, "ended too early": a subject that has found everything ends.
+            *unfinished.NOTHING_THERE[:-1],
+        )
+
+    def _mistake(self, key: str, found: Callable[[Searches], object], *, certain: bool = False) -> Mistake:
+        return mistake(key, lambda evidence: found(self.seen(evidence)), *_TEXTS[key], certain=certain)
+
+    def _silent_end(self, evidence: Evidence) -> Advice | None:
+        seen = self.seen(evidence)
+        return giving_up.silent_end(_absent(seen), _found(seen), self._noun)
+
+
+def _put(bench: Bench, robot: Robot, *, late: bool) -> None:
+    """Put the robot on the graph, or the part of it that comes late."""
+    for node, ends in robot.nodes.items():
+        if (node in robot.late) is late:
+            bench.plant(node, **{"publishes": {}, "subscribes": {}, **ends})
+    for service, kind in robot.services.items():
+        if (service in robot.late) is late:
+            bench.serve(service, kind, lambda _: {})
+
+
+def _finding(search: Search, keys: Sequence[str]) -> Finding:
+    answer, given = search.robot.answer, search.given
+    keys = keys or tuple(answer)
+    expected = ", ".join(answer[key] for key in keys if key in answer) or "an answer"
+    if search.has(*keys) and not search.returned:
+        return Finding(False, expected, "named it, and did not return it")
+    said = ", ".join(given.get(key, "nothing") for key in keys) if given else search.in_words
+    return Finding(search.has(*keys), expected, said)
+
+
+def _absent(seen: Searches) -> Part:
+    """Return the run in which there is nothing to find; an empty one if there is none."""
+    return next((search.part for search in seen.values() if search.finds_nothing), Part(""))
+
+
+def _found(seen: Searches) -> list[Part]:
+    """Return the runs with something from the start that the subject has found."""
+    return [search.part for search in seen.values() if search.has() and not search.robot.late]
+
+
+def _looked_once(seen: Searches) -> list[Search]:
+    return [search for search in seen.values() if search.robot.late and search.gave_up_at_once]
+
+
+# --- what shows a mistake ------------------------------------------------------------------------------------
+
+
+def _wrong(seen: Searches) -> list[Search]:
+    """Return the runs with something to find that the subject has not found."""
+    return [search for search in seen.values() if search.robot.answer and not search.has()]
+
+
+def _asked_too_early(seen: Searches) -> bool:
+    unmet = any("NodeNameNonExistentError" in search.part.traceback for search in seen.values())
+    return unmet or any(search.given and not any(search.given.values()) for search in _wrong(seen))
+
+
+def _is_silent(seen: Searches) -> bool:
+    parts = [search.part for search in seen.values()]
+    return all(part.ending and not part.said() and not part.traceback for part in parts)
+
+
+def _not_returned(seen: Searches) -> Search | None:
+    return next((search for search in seen.values() if search.has() and not search.returned), None)
+
+
+def _invented(seen: Searches) -> bool:
+    first, *others = [search.given for search in seen.values()]
+    return bool(first) and bool(others) and all(given == first for given in others)
+
+
+def _gave_up(seen: Searches) -> object:
+    waited = [_GAVE_UP.search(search.part.traceback) for search in _wrong(seen) if not search.given]
+    words = [line[0] for line in waited if line]
+    return words and (len(words), len(seen), words[0])
+
+
+def _no_answer(seen: Searches) -> object:
+    for search in _wrong(seen):
+        missing = [key for key in search.robot.answer if key not in search.given]
+        if search.part.ending and missing:
+            said = [line for line in search.part.said() if line != "None" and len(line) <= LONGEST_QUOTE]
+            last = f": the last that it said is “{said[-1]}”" if said else ""
+            keys = ", ".join(search.robot.answer)
+            wanted = f"a dictionary with the keys {keys}" if "," in keys else "the name"
+            if search.given:
+                return f"answer has no single value for {', '.join(missing)}", wanted
+            return f"function ended without an answer{last}", wanted
+    return None
+
+
+def _never_ended(seen: Searches) -> bool:
+    return any(search.part.events and not search.has_answered for search in _wrong(seen))

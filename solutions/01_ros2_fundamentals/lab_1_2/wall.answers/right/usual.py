@@ -1,0 +1,27 @@
+"""Right: the usual careful driver."""
+import rclpy
+from geometry_msgs.msg import Twist
+from rclpy.node import Node
+from sensor_msgs.msg import LaserScan
+
+
+class Careful(Node):
+    def __init__(self):
+        super().__init__("careful")
+        self.publisher = self.create_publisher(Twist, "/cmd_vel", 10)
+        self.create_subscription(LaserScan, "/scan", self.on_scan, 10)
+
+    def on_scan(self, scan):
+        command = Twist()
+        if scan.ranges[0] > 0.8:
+            command.linear.x = 0.5
+        self.publisher.publish(command)
+
+
+def main():
+    rclpy.init()
+    rclpy.spin(Careful())
+
+
+if __name__ == "__main__":
+    main()

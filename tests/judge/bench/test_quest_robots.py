@@ -1,0 +1,70 @@
+"""A subject finds the robot that a quest draws, with its namespace, also when half of it comes late."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+
+from autograder.kit.draft import Draft
+from autograder.kit.evidence import Evidence, Reference
+from autograder.kit.quests.quest import Quest
+from autograder.kit.quests.robot import Robot
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from contextlib import AbstractContextManager
+    from random import Random
+
+    from autograder.judge.bench.bench import TestBench
+
+    BenchOf = Callable[[str, Reference], AbstractContextManager[TestBench]]
+
+pytestmark = pytest.mark.ros
+
+FINDS = """
+import time
+import rclpy
+
+rclpy.init()
+node = rclpy.create_node("finder")
+obeyed = []
+while not obeyed:
+    time.sleep(0.05)
+    for name, space in node.get_node_names_and_namespaces():
+        if name == "motors":
+            topics = node.get_subscriber_names_and_types_by_node(name, space)
+            robot, obeyed = space, [topic for topic, types in topics if "geometry_msgs/msg/Twist" in types]
+print({"robot": robot, "topic": obeyed[0]})
+"""
+
+
+def robots(random: Random) -> dict[str, Robot]:
+    """A robot that is there, and one whose motors come late."""
+    drawn = {}
+    for name, called in zip(("there", "late"), random.sample(("mia", "noa", "ada"), 2), strict=True):
+        topic, motors = f"/{called}/{random.choice(('go', 'drive', 'steer'))}", f"/{called}/motors"
+        drawn[name] = Robot(
+            answer={"robot": called, "topic": topic},
+            nodes={
+                f"/{called}/camera": {"publishes": {f"/{called}/image": "std_msgs/msg/String"}},
+                motors: {"subscribes": {topic: "geometry_msgs/msg/Twist"}},
+            },
+            late=[motors] if name == "late" else [],
+        )
+    return drawn
+
+
+@pytest.mark.parametrize(("program", "points"), [(FINDS, 10), (FINDS.replace("obeyed[0]", "'/go'"), 4)])
+def test_a_program_finds_what_the_judge_drew(bench_of: BenchOf, program: str, points: float) -> None:
+    quest = Quest(robots)
+    draft = Draft("a.quest", "A", "B", quest)
+    draft.asks("robot", 4, "Finds what the robot is called", quest.finds("robot"))
+    draft.asks("topic", 6, "Finds the topic that it obeys", quest.finds("topic"))
+    reference = Reference("a.quest", {})
+    with bench_of(program, reference) as bench:
+        quest.scenario(bench)
+        evidence = Evidence(bench.parts, reference)
+    judged = draft.exercise().criteria
+    assert [part.name for part in evidence] == ["there", "late"]
+    assert sum(criterion.points for criterion in judged if criterion.judge(evidence).passed) == points

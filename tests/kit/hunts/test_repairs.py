@@ -1,0 +1,87 @@
+"""A repair is judged by the exercise about the right node, and its card tells no cause before the pass."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from autograder import exercises
+from autograder.cards.text_rendering import card_text
+from autograder.judge import evidence_files, one_check
+from autograder.kit.evidence import Event, Evidence, Part
+from autograder.kit.hunts.repairs import Repairs
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from autograder.kit.model import Exercise
+
+JUDGED = exercises.get("lab_1_2.talker")
+REFERENCE = evidence_files.load_reference(JUDGED.id)
+CAUSE = "The topic was misspelt. ROS 2 does not report that."
+STRING = "std_msgs/msg/String"
+
+
+def repair() -> Exercise:
+    """A talker to repair."""
+    return Repairs("lab_1_2.talker", "A silent talker", "Repair it.", JUDGED.id, cause=CAUSE).exercise()
+
+
+def solved(change: Callable[[Event], Event] = lambda event: event) -> Evidence:
+    """The run of the solution, with its endpoints, after a change of each event."""
+    graph = Event(0.0, "interface", "graph", REFERENCE.interface)
+    return Evidence(
+        [replace(part, events=[graph, *map(change, part.events)]) for part in REFERENCE.parts], REFERENCE
+    )
+
+
+def misspelt() -> Evidence:
+    """The run of a talker whose topic is called /chater, and whose QoS does not fit either."""
+    ends = {"nodes": ["/talker"], "publisher": {"/chater": STRING}}
+    warning = "New subscription discovered, requesting incompatible QoS. Last incompatible policy: DURABILITY"
+    events = [
+        Event(0.1, "interface", "graph", ends),
+        Event(0.2, "mismatch", "/chatter", {"policy": "durability"}),
+        Event(0.3, "log", "talker", {"text": warning}),
+    ]
+    return Evidence([replace(part, events=events) for part in REFERENCE.parts], REFERENCE)
+
+
+def test_the_card_of_a_broken_node_tells_the_symptom_and_no_cause() -> None:
+    ordinary = card_text(one_check.judge(JUDGED, misspelt(), "s"))
+    assert "/chater" in ordinary
+    assert "topic_name" in ordinary
+    verdict = one_check.judge(repair(), misspelt(), "s")
+    card = card_text(verdict)
+    assert "The judge saw this: no message arrived on /chatter." in card
+    assert not [
+        word for word in ("/chater", "topic_name", "DURABILITY", "durability", CAUSE[:9]) if word in card
+    ]
+    assert verdict.diagnosis is not None
+    assert (verdict.score, verdict.diagnosis.key) == (0, "topic_name")  # reports know which mistake it is
+
+
+def test_the_card_of_a_repaired_node_states_the_cause() -> None:
+    verdict = one_check.judge(repair(), solved(), "s")
+    assert verdict.passed
+    assert verdict.remarks == (CAUSE,)
+
+
+def test_what_came_and_is_wrong_stands_on_the_card() -> None:
+    verdict = one_check.judge(repair(), solved(_shouting), "s")
+    assert verdict.diagnosis is not None
+    assert "HELLO" in verdict.diagnosis.text
+    assert verdict.diagnosis.hidden
+    assert not verdict.remarks
+
+
+def _shouting(event: Event) -> Event:
+    if event.kind != "message":
+        return event
+    return replace(event, data={**event.data, "fields": {"data": event.data["fields"]["data"].upper()}})
+
+
+def test_a_repair_has_one_criterion_because_a_broken_node_does_half_of_the_task() -> None:
+    assert [criterion.points for criterion in repair().criteria] == [10]
+    half = Part(REFERENCE.parts[0].name, {}, [])
+    assert one_check.judge(repair(), Evidence([half], REFERENCE), "s").score == 0

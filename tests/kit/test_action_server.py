@@ -1,0 +1,157 @@
+"""Goals that the judge sends: as steps of the oracle, and what a view of them shows about a server."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import pytest
+
+from autograder.kit.evidence import Event, Evidence, Part, Reference
+from autograder.kit.oracle.action_server import ComparedGoal, GoalsSeen, SendsGoals
+from autograder.kit.oracle.goal_sender import GoalSender
+from autograder.kit.oracle.same_as_solution import Goal, SameAsSolution
+from autograder.kit.outcomes import ABORTED, CANCELED, SUCCEEDED, SentGoal, goal
+
+ACTION, TYPE = "/dock", "a_package/action/Dock"
+
+
+def events_of(number: int, *, status: int = SUCCEEDED, accepted: bool = True) -> list[Event]:
+    """Return what the judge saw of a goal with five feedback messages."""
+
+    def event(kind: str, **data: Any) -> Event:
+        return Event(9.0 * (kind == "result_heard"), kind, ACTION, {"goal": number, **data})
+
+    answered = [event("goal_sent", fields={"distance": 3}), event("goal_answer", accepted=accepted)]
+    feedback = [event("feedback_heard", fields={"left": left}, sent=9.0 - left) for left in range(5, 0, -1)]
+    ended = event("result_heard", status=status, fields={"place": {"arrived": True}})
+    return [*answered, *feedback, ended] if accepted else answered
+
+
+def part(**how: Any) -> Part:
+    return Part("main", {}, events_of(0, **how))
+
+
+def sent(**how: Any) -> SentGoal:
+    return goal(part(**how), 0)
+
+
+PATHS = ("status", "feedback.left", "result.place.arrived")
+
+
+@pytest.mark.parametrize(
+    ("step", "seen", "came"),
+    [
+        (Goal(ACTION, {}), part(), ["SUCCEEDED", [5, 4, 3, 2, 1], True]),
+        (Goal(ACTION, {}), part(status=ABORTED), ["ABORTED", [5, 4, 3, 2, 1], True]),
+        (Goal(ACTION, {}), part(accepted=False), ["REJECTED", [], None]),
+        (Goal(ACTION, {}, cancel_after=2), part(status=CANCELED), ["CANCELED", [5, 4], None]),
+    ],
+)
+def test_what_comes_of_a_goal_is_its_status_its_feedback_and_its_result(
+    step: Goal, seen: Part, came: list[Any]
+) -> None:
+    assert step.outcomes(seen, PATHS) == [came]
+
+
+def test_a_card_says_which_goal_differs() -> None:
+    def run(status: str) -> Part:
+        data = {"step": 1, "given": str(step), "values": [[status, [5, 4]]]}
+        return Part("drawing 0", {}, [Event(1.0, "noted", ACTION, data)])
+
+    step = Goal(ACTION, {"distance": 9}, cancel_after=2, beside=Goal(ACTION, {"distance": 1}))
+    exercise = SameAsSolution(
+        "a.b",
+        "A",
+        "B",
+        gives=lambda _: [step],
+        tells={ACTION: ("status", "feedback.left")},
+        roles=("action_server",),
+    ).exercise()
+    reference = Reference("a.b", {"action_server": {ACTION: TYPE}}, [run("CANCELED")])
+    (criterion,) = exercise.criteria
+    assert criterion.judge(Evidence([run("CANCELED")], reference)).passed
+    finding = criterion.judge(Evidence([run("SUCCEEDED")], reference))
+    words = "/dock with distance 9, canceled after 2 feedback messages, beside /dock with distance 1"
+    assert not finding.passed
+    assert finding.seen == f"status = SUCCEEDED, feedback.left = [5, 4] after step 1 ({words})"
+    assert "result_missing" in [one.key for one in exercise.mistakes]
+
+
+def compared(seen: SentGoal, fault: str = "", slip: str = "") -> ComparedGoal:
+    return ComparedGoal(**vars(seen), due=None, fault=fault, slip=slip, feedback_fault=slip)
+
+
+def view(*later: ComparedGoal, canceled: SentGoal, evidence: Evidence) -> GoalsSeen:
+    alone, long = [compared(sent())], compared(canceled)
+    return GoalsSeen(evidence, alone, later[:1], later, [*alone, *later, long], [], [], [long], None)
+
+
+def told(*later: ComparedGoal, canceled: SentGoal, parts: list[Part] | None = None) -> str:
+    """Return the key of the first mistake that the recipe names."""
+    recorded = [Part("main", {}, events_of(0))]
+    evidence = Evidence(parts or recorded, Reference("", {"action_server": {ACTION: TYPE}}, recorded))
+    recipe = SendsGoals(lambda _: None, lambda seen: view(*later, canceled=canceled, evidence=seen))
+    return next((one.key for one in recipe.ladder if one.recognize(evidence)), "")
+
+
+HONORED = replace(sent(status=CANCELED), cancel_accepted=True, unread=0)
+
+
+@pytest.mark.parametrize(
+    ("later", "canceled", "key"),
+    [
+        ([compared(sent(accepted=False))], HONORED, "goal_rejected"),
+        ([compared(sent(), "a fault")], HONORED, "goals_mixed_up"),
+        ([compared(sent(), slip="a slip")], HONORED, "goals_mixed_up"),
+        ([compared(sent(status=ABORTED))], HONORED, "goal_not_succeeded"),
+        ([compared(sent())], replace(sent(), cancel_accepted=True), "cancel_ignored"),
+        ([compared(sent())], replace(sent(), cancel_accepted=False), "cancel_not_accepted"),
+        ([compared(sent())], replace(sent(), cancel_accepted=None, unread=6), "cancel_not_accepted"),
+    ],
+)
+def test_common_mistakes_follow_from_what_came_of_the_goals(
+    later: list[ComparedGoal], canceled: SentGoal, key: str
+) -> None:
+    assert told(*later, canceled=canceled) == key
+
+
+class Bench:
+    """A bench without ROS, on which each wait brings the next event of a server."""
+
+    def __init__(self, *events: Event) -> None:
+        self.pace, self.waiting, self.heard = "fast", list(events), []
+        self.canceled: list[tuple[int, int]] = []
+
+    def seen(self) -> Part:
+        return Part("main", {}, self.heard)
+
+    def wait_until(self, condition: Any, _: float, **__: Any) -> bool:
+        while not condition(Evidence([self.seen()], Reference("", {}))):
+            if not self.waiting:
+                return False
+            self.heard.append(self.waiting.pop(0))
+        return True
+
+    def settle(self) -> None:
+        """Nothing more comes."""
+
+    def await_end(self, _: float) -> bool:
+        return False
+
+    def cancel(self, number: int) -> None:
+        self.canceled.append((number, len(goal(self.seen(), number).feedback)))
+
+
+@pytest.mark.parametrize(("after", "canceled"), [(3, [(0, 3)]), (9, [])])
+def test_a_goal_is_canceled_after_so_many_messages_unless_it_is_over(
+    monkeypatch: pytest.MonkeyPatch, after: int, canceled: list[tuple[int, int]]
+) -> None:
+    for limits in ("QUIET", "CANCEL_LIMIT"):
+        monkeypatch.setattr(f"autograder.kit.oracle.goal_sender.{limits}", {"fast": 1.0})
+    bench: Any = Bench(*events_of(0))
+    sender = GoalSender(bench, bench)
+    sender.cancel(0, after=after)
+    assert bench.canceled == canceled
+    assert sender.finish(0)
+    assert not sender.finish(0, 1)

@@ -1,0 +1,223 @@
+"""A quest reads what a subject says of the robot that the judge drew, and knows who looked once or only guessed."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from autograder.judge import one_check
+from autograder.kit.draft import Draft
+from autograder.kit.evidence import Event, Evidence, Part, Reference
+from autograder.kit.quests.quest import Quest
+from autograder.kit.quests.robot import Robot, Search
+
+if TYPE_CHECKING:
+    from random import Random
+
+    from autograder.kit.model import Exercise
+
+TWIST, POINT, TRIGGER = "geometry_msgs/msg/Twist", "geometry_msgs/msg/Point", "std_srvs/srv/Trigger"
+MIA = Robot(
+    answer={"robot": "/mia", "topic": "/mia/go"},
+    nodes={
+        "/mia/motors": {"subscribes": {"/mia/go": TWIST}},
+        "/mia/arm": {"subscribes": {"/mia/reach": POINT}},
+    },
+)
+SAID = "{'robot': '/mia', 'topic': '/mia/go'}"
+
+
+def obeys() -> Exercise:
+    """A quest about two robots, in the fewest words."""
+
+    def robots(random: Random) -> dict[str, Robot]:
+        drawn = {}
+        for number, called in enumerate(random.sample(("mia", "noa", "ada"), 2)):
+            topic = f"/{called}/{random.choice(('go', 'drive', 'steer'))}"
+            nodes = {f"/{called}/motors": {"subscribes": {topic: TWIST}}}
+            drawn[f"robot {number}"] = Robot(answer={"robot": called, "topic": topic}, nodes=nodes)
+        return drawn
+
+    quest = Quest(robots)
+    draft = Draft("a.b", "A", "B", quest)
+    draft.asks("robot", 4, "Finds what it is called", quest.finds("robot"))
+    draft.asks("topic", 6, "Finds the topic that it obeys", quest.finds("topic"))
+    return draft.exercise()
+
+
+def part(robot: Robot, *said: str, name: str = "", at: float = 5.0, ending: str = "exited") -> Part:
+    """Return a run in which a program met a robot, printed these lines, and ended."""
+    lines = [Event(1.0, "output", "stdout", {"text": line}) for line in said]
+    ends = [Event(at, "subject", ending, {"code": 0})] if ending else []
+    return Part(name, vars(robot), [Event(0.2, "interface", "graph", {"nodes": ["/me"]}), *lines, *ends])
+
+
+@pytest.mark.parametrize(
+    "said",
+    [
+        (SAID,),
+        ("looking", "{this} is it:", SAID),
+        ('{"robot": "/mia", "topic": "/mia/go"}',),
+        ("{", '  "robot": "/mia",', '  "topic": "/mia/go"', "}"),
+        ("OrderedDict([('robot', 'mia'), ('topic', ['/mia/go'])])",),
+        ("{'robot': None, 'topic': '/mia/go'}", SAID),
+    ],
+)
+def test_a_dictionary_counts_however_it_is_printed(said: tuple[str, ...]) -> None:
+    search = Search(part(MIA, *said))
+    assert search.has()
+    assert search.has_answered
+
+
+@pytest.mark.parametrize(
+    "topic", ["['/mia/go', '/mia/reach']", "{'/mia/reach', '/mia/go'}", "'\\ud83d'", "0x" + "f" * 3800, "go"]
+)
+def test_several_names_or_none_are_no_answer(topic: str) -> None:
+    search = Search(part(MIA, f"{{'robot': '/mia', 'topic': {topic}}}"))
+    assert search.has("robot")
+    assert "topic" not in search.given
+
+
+def test_a_type_may_be_written_as_python_imports_it() -> None:
+    robot = Robot(answer={"topic": "/go", "type": TWIST})
+    assert Search(part(robot, "{'topic': 'go', 'type': 'geometry_msgs.msg.Twist'}")).has()
+    assert not Search(part(robot, "{'topic': 'go', 'type': 'std_msgs/msg/Twist'}")).has("type")
+
+
+OPEN = Robot(
+    answer={"name": "/mia/open"}, services={"/mia/open": TRIGGER, "/mia/open_all": TRIGGER, "/z": TRIGGER}
+)
+
+
+@pytest.mark.parametrize(
+    ("said", "given"),
+    [
+        (["mia/open"], "/mia/open"),
+        (["I see /z", "I see /mia/open"], "/mia/open"),
+        (["it is /mia/open", "others: /z, /mia/open_all"], "/mia/open"),
+        (["/mia/open_all"], "/mia/open_all"),
+        (["/z and /mia/open"], "/mia/open, /z"),
+        (["open"], ""),
+    ],
+)
+def test_a_single_name_is_the_last_that_stands_alone(said: list[str], given: str) -> None:
+    search = Search(part(OPEN, *said))
+    assert search.given.get("name", "") == given
+    assert search.has() is (given == "/mia/open")
+
+
+def test_a_name_may_be_no_node_s_and_no_topic_s() -> None:
+    robot = Robot(answer={"robot": "mia"}, nodes=MIA.nodes)
+    assert Search(part(robot, "it has /mia/motors", "it is called mia")).has()
+    assert not Search(part(robot, "it has /mia/motors")).has()
+
+
+@pytest.mark.parametrize(
+    ("said", "given"),
+    [(["it is /z"], ["/z"]), (["not available, I see only /z"], []), (["I see /z", "nothing"], [])],
+)
+def test_who_reports_that_there_is_none_may_name_what_there_is(said: list[str], given: list[str]) -> None:
+    search = Search(part(Robot(services={"/z": TRIGGER}), *said))
+    assert list(search.given.values()) == given
+
+
+def _judged(exercise: Exercise, *parts: Part) -> tuple[float, str]:
+    """Return the points and the diagnosis."""
+    evidence = Evidence(parts, Reference("a.b", {}))
+    points = sum(criterion.points for criterion in exercise.criteria if criterion.judge(evidence).passed)
+    diagnosis, _ = one_check.diagnose(exercise, evidence)
+    return points, diagnosis.key
+
+
+NOA = Robot(
+    answer={"robot": "noa", "topic": "/noa/drive"},
+    nodes={"/noa/motors": {"subscribes": {"/noa/drive": TWIST}}},
+)
+NOA_SAID = "{'robot': 'noa', 'topic': '/noa/drive'}"
+
+
+@pytest.mark.parametrize(
+    ("first", "second", "points", "key"),
+    [
+        ([SAID], [NOA_SAID], 10, ""),
+        ([SAID], None, 0, ""),
+        ([SAID], [SAID], 0, "invented_answer"),
+        ([SAID], [NOA_SAID.replace("'noa'", "'/rosout'")], 6, ""),
+        ([SAID], [NOA_SAID.replace("'topic'", "'name'")], 4, "no_answer"),
+        ([], [], 0, "not_written"),
+        ([SAID], ["no idea"], 0, "no_answer"),
+    ],
+)
+def test_an_answer_has_to_be_right_for_each_robot(
+    first: list[str], second: list[str] | None, points: float, key: str
+) -> None:
+    seen = [part(MIA, *first, name="robot 0")]
+    seen += [part(NOA, *second, name="robot 1")] if second is not None else []
+    judged = _judged(obeys(), *seen)
+    assert judged[0] == points
+    assert key in ("", judged[1])
+
+
+def test_a_subject_that_stays_without_an_answer_never_ended() -> None:
+    stays = part(MIA, "still looking", name="robot 0", ending="")
+    assert _judged(obeys(), stays) == (0, "never_ended")
+
+
+def doors() -> Exercise:
+    """A quest with a service that comes late, one that is there, and none."""
+    quest = Quest(
+        lambda _: {"late": late(), "there": OPEN, "none": Robot(services={"/z": TRIGGER})}, "service"
+    )
+    draft = Draft("a.b", "A", "B", quest)
+    draft.asks("late", 4, "Finds a late one", quest.finds(robot="late"))
+    draft.asks("there", 3, "Finds one", quest.finds(robot="there"))
+    draft.asks("none", 3, "Says so", quest.says_that_there_is_none)
+    return draft.exercise()
+
+
+def late() -> Robot:
+    return Robot(answer=OPEN.answer, services=OPEN.services, late=["/mia/open"])
+
+
+@pytest.mark.parametrize(
+    ("said", "at", "points", "key"),
+    [
+        (("/mia/open", "/mia/open", "not available"), 5.0, 10, ""),
+        (("/mia/open", "/mia/open", "/z"), 5.0, 7, ""),
+        (("/mia/open", "/mia/open", "so it ends"), 5.0, 7, "silent_end"),
+        (("nothing", "/mia/open", "not available"), 0.4, 0, "looked_once"),
+        (("nothing", "/mia/open", "not available"), 5.0, 6, ""),
+    ],
+)
+def test_who_looks_once_finds_only_by_chance(
+    said: tuple[str, ...], at: float, points: float, key: str
+) -> None:
+    robots = (late(), OPEN, Robot(services={"/z": TRIGGER}))
+    names = ("late", "there", "none")
+    parts = [part(r, line, name=name, at=at) for r, line, name in zip(robots, said, names, strict=True)]
+    judged = _judged(doors(), *parts)
+    assert judged[0] == points
+    assert key in ("", judged[1])
+
+
+def test_a_notebook_s_function_has_to_return_what_it_names() -> None:
+    def told(value: Any) -> tuple[float, str]:
+        ended = Event(5.0, "subject", "returned", {"value": value})
+        parts = [
+            Part(name, vars(robot), [*part(robot, "/mia/open", ending="").events, ended])
+            for name, robot in (("late", late()), ("there", OPEN))
+        ]
+        return _judged(doors(), *parts)
+
+    assert told("'mia/open'")[0] == 7
+    assert told("('/mia/open', 1)") == (0, "not_returned")
+
+
+def test_a_slow_subject_s_time_begins_with_its_own_node_not_with_the_robot_s() -> None:
+    nodes = ["/mia/arm", "/mia/motors"]
+    surveys = [Event(0.2, "interface", "graph", {"nodes": nodes})]
+    surveys += [Event(4.0, "interface", "graph", {"nodes": ["/finder", *nodes]})]
+    search = Search(Part("", vars(MIA), [*surveys, Event(5.0, "subject", "exited", {"code": 0})]))
+    assert search.since_it_appeared.events[0].t == 4.0
+    assert search.gave_up_at_once
