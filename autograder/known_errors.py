@@ -6,6 +6,7 @@ The judge shows what a row says on a card, and a notebook shows it below a cell 
 from __future__ import annotations
 
 import functools
+import sys
 import tomllib
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -30,6 +31,7 @@ class KnownError(msgspec.Struct, frozen=True):
     do: str
     source: str | list[str]
     each: str = ""
+    uses: tuple[str, ...] = ()
 
 
 class _Table(msgspec.Struct, frozen=True):
@@ -79,8 +81,10 @@ def recognized(said: str, heard: str, here: str = "", owner: str = "") -> KnownE
             "each": word,
         } | groups
         names = {name: Name(text.strip()) for name, text in words.items()}
-        filled = {"means": row.means.format(**names).strip(), "do": row.do.format(**names)}
-        return msgspec.structs.replace(row, **filled)
+        # A group that did not take part in the match leaves a blank at an end: there is no name then.
+        uses = tuple(name for pattern in row.uses if (name := pattern.format(**names)) == name.strip())
+        means, do = row.means.format(**names).strip(), row.do.format(**names)
+        return msgspec.structs.replace(row, means=means, do=do, uses=uses)
     return None
 
 
@@ -108,3 +112,8 @@ def _table() -> _Table:
 @functools.cache
 def _patterns(heard: str) -> list[tuple[KnownError, Any]]:
     return [(row, pattern_of(row)) for row in rows() if heard in row.heard]
+
+
+if __name__ == "__main__":  # a shell that does not find a command of a cell asks what this means
+    for _row in filter(None, [recognized(f"{sys.argv[1]}: command not found", "bash")]):
+        print(_row.means, _row.do, file=sys.stderr)

@@ -15,6 +15,7 @@ from autograder.authoring.answer_bank import Answer, answers
 from autograder.judge import evidence_files
 from autograder.kit.mistakes.crashes import traceback_of
 from autograder.kit.mistakes.package_mistakes import build_report
+from autograder.notebook.nodes import ros_session
 from tests.measure import evidence as kept_evidence
 
 if TYPE_CHECKING:
@@ -255,3 +256,23 @@ def test_the_texts_of_a_row_can_be_filled_in(row: KnownError) -> None:
     assert "{" not in row.means.format(**words) + row.do.format(**words).replace("{number}", "").replace(
         "{message.data}", ""
     ).replace("{response.sum}", "").replace("with a }", "").replace("each {", "")
+
+
+@pytest.mark.parametrize(
+    ("command", "says"),
+    [
+        ("rqt_graph", "`rqt_graph` is a program with a window of its own"),
+        ("roscore", "`roscore` is a command of ROS 1"),
+        ("rosrun a b", "The commands of ROS 2 are `ros2 run`"),
+        ("no_such_command", ""),
+    ],
+)
+def test_a_command_that_a_cell_of_bash_does_not_find_is_explained(command: str, says: str) -> None:
+    shell = subprocess.run(
+        ["bash", "-c", command], env=ros_session._DEFAULTS, capture_output=True, text=True, check=False
+    )
+    assert shell.returncode == 127
+    first, *more = shell.stderr.splitlines()
+    assert first == f"bash: {command.split()[0]}: command not found"
+    assert says in "".join(more)
+    assert bool(more) == bool(says)

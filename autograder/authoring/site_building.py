@@ -11,6 +11,7 @@ import shutil
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import msgspec
 import nbformat
 import re2
 import sphinx.addnodes
@@ -43,33 +44,9 @@ _GUIDES = "docs/README.md"
 MAX_PAGE_BYTES = 1_000_000
 """The maximum size of a page in bytes."""
 _STYLE_SHEET = "book.css"
-_SPHINX_SETTINGS: dict[str, Any] = {
-    "author": "The maintainers of this course",
-    "extensions": ["myst_nb", "sphinx_copybutton", "autograder.authoring.site_building"],
-    "html_theme": "sphinx_book_theme",
-    "html_static_path": [_STATIC],
-    "html_css_files": [_STYLE_SHEET],
-    "html_theme_options": {
-        "navbar_persistent": [],
-        "show_navbar_depth": 1,
-        "use_download_button": False,
-        "use_fullscreen_button": False,
-        "pygments_light_style": "a11y-high-contrast-light",
-        "pygments_dark_style": "a11y-high-contrast-dark",
-    },
-    "html_context": {"default_mode": "auto"},
-    "html_copy_source": False,
-    "html_show_sphinx": False,
-    "language": "en",
-    "root_doc": _START,
-    "nb_execution_mode": "off",
-    # Without this line, pages would load scripts for Jupyter widgets from another host. No page has such widgets.
-    "nb_ipywidgets_js": {},
-    "myst_enable_extensions": ["colon_fence", "html_image"],
-    "myst_heading_anchors": 6,
-    "copybutton_prompt_text": "$ ",
-    "suppress_warnings": ["myst.header", "misc.highlighting_failure"],
-}
+_SPHINX_SETTINGS: dict[str, Any] = msgspec.toml.decode(
+    Path(__file__).with_name("site_settings.toml").read_bytes()
+)
 
 
 def build_site(root: Path, folder: Path, edition: str, *, outputs: bool, tell: Callable[[str], None]) -> int:

@@ -12,7 +12,10 @@ from __future__ import annotations
 import contextlib
 import hashlib
 import math
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+import msgspec
 
 from autograder import course
 from autograder.boxes.run_limits import Limits
@@ -24,7 +27,6 @@ from autograder.masters.master_files import MasterError
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
-    from pathlib import Path
 
     from nbformat import NotebookNode
     from traitlets.config import Config
@@ -33,65 +35,17 @@ if TYPE_CHECKING:
     from autograder.grading.classes.class_directory import ClassDirectory
 
 
-_EXPORTER = "autograder.grading.nbgrader_commands.SubmissionExporter"
-_STEP = "autograder.grading.nbgrader_commands.WireExecute"
-_ANY_VALUE = object()
-_LIMITS: Mapping[str, type[float | int]] = {
-    "cell_seconds": float,
-    "notebook_seconds": float,
-    "cpu_seconds": float,
-    "memory_bytes": int,
-    "processes": int,
-    "scratch_bytes": int,
-}
-_SUPPORTED: Mapping[str, Mapping[str, tuple[Any, ...]]] = {
-    "Autograde": {
-        "exporter_class": (_EXPORTER,),
-        "autograde_preprocessors": ([_STEP],),
-    },
-    "GenerateFeedback": {"exporter_class": ("autograder.grading.nbgrader_commands.FeedbackExporter",)},
-    "HTMLExporter": {
-        "filters": ({"markdown2html": "autograder.grading.returning.page_exporter.markdown_to_html"},)
-    },
-    # nbgrader's exchange uses include, max_file_size and max_dir_size.
-    "CourseDirectory": dict.fromkeys(
-        ("root", "db_url", "course_id", "include", "max_file_size", "max_dir_size"), (_ANY_VALUE,)
-    ),
-    "WireExecute": dict.fromkeys((*_LIMITS, "unsafe_no_sandbox", "demonstrations"), (_ANY_VALUE,)),
-    # The options of these sections belong to nbgrader's own grading, and would have no effect.
-    **{
-        section: {}
-        for section in (
-            "BaseConverter",
-            "NbConvertBase",
-            "NbGraderPreprocessor",
-            "Exporter",
-            "NotebookExporter",
-            "TemplateExporter",
-            "SubmissionExporter",
-            "FeedbackExporter",
-            "SaveAutoGrades",
-            "GetGrades",
-            "CSSHTMLHeaderPreprocessor",
-            "FilesWriter",
-            "WriterBase",
-            "Execute",
-            "ExecutePreprocessor",
-            "NotebookClient",
-            "IgnorePattern",
-        )
-    },
-}
-"""The supported options by section, with their supported values. In sections that are not listed, any option is
-allowed.
-"""
+class _Options(msgspec.Struct):
+    """The options of nbgrader that this grader supports; ``supported_options.toml`` describes the attributes."""
+
+    limits: tuple[str, ...]
+    any_value: dict[str, tuple[str, ...]]
+    one_value: dict[str, dict[str, Any]]
+    no_effect: tuple[str, ...]
+    use_instead: dict[str, str]
 
 
-_USE_INSTEAD = {
-    f"{section}.timeout": "c.WireExecute.cell_seconds limits the time of a cell"
-    for section in ("Execute", "ExecutePreprocessor", "NotebookClient")
-}
-"""For an unsupported option, a sentence about the option to use instead."""
+_OPTIONS = msgspec.toml.decode(Path(__file__).with_name("supported_options.toml").read_bytes(), type=_Options)
 
 
 def check_configuration(directory: ClassDirectory) -> None:
@@ -102,7 +56,7 @@ def check_configuration(directory: ClassDirectory) -> None:
     """
     path = directory.path / CONFIG_NAME
     for option in _unsupported_options(directory.config):
-        instead = f" {_USE_INSTEAD[option]}." if option in _USE_INSTEAD else ""
+        instead = f" {_OPTIONS.use_instead[option]}." if option in _OPTIONS.use_instead else ""
         raise GradingError(
             f"{path} sets c.{option}, but this grader does not support that value: delete the line, or "
             f"write it as in a class that `{COMMAND} new-class` makes.{instead}"
@@ -124,9 +78,9 @@ def limits_of(directory: ClassDirectory) -> Limits:
     """
     configured = directory.config.WireExecute
     limits: dict[str, Any] = {}
-    for name in _LIMITS.keys() & configured.keys():
+    for name in configured.keys() & set(_OPTIONS.limits):
         with contextlib.suppress(TypeError, ValueError, OverflowError):
-            limits[name] = _LIMITS[name](configured[name])
+            limits[name] = type(getattr(Limits(), name))(configured[name])
         if not 0 < limits.get(name, 0) < math.inf:
             raise GradingError(
                 f"{directory.path / CONFIG_NAME} sets c.WireExecute.{name} to {configured[name]!r}: write a "
@@ -136,10 +90,10 @@ def limits_of(directory: ClassDirectory) -> Limits:
 
 
 def _unsupported_options(config: Config) -> Iterator[str]:
-    for section, options in _SUPPORTED.items():
+    for section in sorted({*_OPTIONS.any_value, *_OPTIONS.one_value, *_OPTIONS.no_effect}):
+        allowed, only = _OPTIONS.any_value.get(section, ()), _OPTIONS.one_value.get(section, {})
         for option, value in config[section].items():
-            allowed = options.get(option, ())
-            if _ANY_VALUE not in allowed and value not in allowed:
+            if option not in allowed and (option not in only or value != only[option]):
                 yield f"{section}.{option}"
 
 

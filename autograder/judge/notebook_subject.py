@@ -38,6 +38,8 @@ NEWS_LIMIT = 20.0
 """Time limit in seconds, for all runs of a check together, for a notebook's participant to discover the judge's
 endpoints. It usually takes milliseconds.
 """
+MAX_OWN_LINES = 2_000
+"""The maximum number of lines of the student's code that a notebook may claim."""
 STOP_LIMIT = 3.0
 """Time limit in seconds of wall time for the notebook to stop a run."""
 
@@ -75,6 +77,7 @@ class NotebookSubject:
         self._gone = threading.Event()
         self._stack = ""
         self._told_stack = threading.Event()
+        self._own_lines: list[judge_messages.OwnLine] = []
         self._thread = threading.Thread(target=self._listen, daemon=True)
 
     def begin(self, domain_id: int) -> None:
@@ -161,6 +164,10 @@ class NotebookSubject:
         self._told_stack.wait(STOP_LIMIT)
         return self._stack
 
+    def own_lines(self) -> list[judge_messages.OwnLine]:
+        """Return the lines of the student's code that the notebook sent when the check began."""
+        return self._own_lines
+
     def stop(self) -> None:
         """Have the notebook end the run and destroy its nodes."""
         self._tell(run_messages.Stop(self._run))
@@ -192,6 +199,8 @@ class NotebookSubject:
             case judge_messages.EndpointsMet(seen=seen):
                 self._seen_as_told = seen
                 self._answered.set()
+            case judge_messages.OwnLines(lines=lines):
+                self._own_lines = lines[:MAX_OWN_LINES]
             case judge_messages.Check() | Source() | judge_messages.Sources():
                 pass  # the notebook may send these messages only at the beginning, so ignore them now
             case _ if message.run == self._run and self._recorder is not None:
@@ -242,6 +251,7 @@ class NotebookPath(InOwnProcesses, NotebookSubject):
         self.keeper = InOwnProcesses.keeper
 
     tell_so_far = NotebookSubject.tell_so_far
+    own_lines = NotebookSubject.own_lines
 
     def _take_of_run(self, message: judge_messages.OfRun, recorder: Recorder) -> None:
         super()._take_of_run(message, recorder)

@@ -25,7 +25,7 @@ from autograder.judge.machine_fitness import (
     delivers,
 )
 from autograder.judge.timeline import verdict_timeline
-from autograder.judge.timeline.parting_point import parting_point
+from autograder.judge.timeline.parting_point import claimed, own_lines_in_words, parting_point
 from autograder.kit.evidence import Evidence, Reference
 from autograder.kit.hunts.repairs import without_causes
 from autograder.kit.in_words import of_its_kind, shortened, visible
@@ -39,6 +39,7 @@ if TYPE_CHECKING:
 
     from autograder.judge.subject import Subject
     from autograder.kit.evidence import Event
+    from autograder.messages.judge_messages import OwnLine
 
 
 UNKNOWN = "unknown"
@@ -169,6 +170,11 @@ def _check(
                 seen = next_look(Pace.REAL_TIME, evidence)
             evidence = replace(seen.evidence, before=evidence)
             verdict = judge(exercise, evidence, seed)
+        if not verdict.passed and (causes := _causes(exercise, evidence, verdict)):
+            lines = subject.own_lines()
+            raising = [line for line in lines if f'/{line.place}"' in verdict.detail]
+            evidence = _with_own_lines(evidence, causes, raising or lines)
+            verdict = judge(exercise, evidence, seed)
         if not verdict.passed:
             certain = is_certain(exercise, evidence)
             crowded = not certain and (seen.unmet or (again and crowding.too_busy))
@@ -179,6 +185,26 @@ def _check(
     if crowded and not marks_crowded:
         raise _too_busy(verdict)
     return Checked(replace(verdict, seconds=round(time.monotonic() - began, 3)), evidence, crowded)
+
+
+def _causes(exercise: Exercise, evidence: Evidence, verdict: Verdict) -> Sequence[Sequence[str]]:
+    """Return the methods and classes whose lines the card quotes, each after others that do the same."""
+    if known := _recognized(exercise, evidence):
+        return [[name] for name in known[1].uses]
+    if point := parting_point(evidence):
+        return point.causes
+    lost = (one for one, result in zip(exercise.criteria, verdict.criteria, strict=True) if not result.passed)
+    return [[name] for name in next(lost).uses]
+
+
+def _with_own_lines(
+    evidence: Evidence, causes: Sequence[Sequence[str]], lines: Sequence[OwnLine]
+) -> Evidence:
+    """Return the evidence with those lines of the student's code that the card quotes. They decide no point."""
+    if not lines or not evidence.parts:
+        return evidence
+    first, *others = evidence.parts
+    return replace(evidence, parts=[replace(first, events=[*first.events, *claimed(causes, lines)]), *others])
 
 
 def _too_busy(verdict: Verdict | None) -> TooBusy:
@@ -313,17 +339,21 @@ def diagnose(
         in_a_notebook = evidence.in_a_notebook
         text, next_step = (
             _cut(of_its_kind(shortened(visible(words)), in_a_notebook), 2 * MAX_WORDS)
-            for words in (advice.text, advice.next_step)
+            for words in (f"{advice.text} {own_lines_in_words(evidence)}".rstrip(), advice.next_step)
         )
         # One entry of a ladder may recognize several variants of a mistake; then its advice names the key.
         key = advice.key or mistake.key
         return Diagnosis(key, text, next_step, hidden=exercise.hides_causes), advice.traceback
     failed = next((one for one in criteria if not one.passed), None)
     seen = f"“{failed.title}” is not met: {failed.seen}. Asked: {failed.expected}." if failed else ""
-    text = of_its_kind(shortened(visible(parting_point(evidence) or seen)), evidence.in_a_notebook)
-    return Diagnosis(
-        UNKNOWN, _cut(text, 2 * MAX_WORDS), "Find the line of your code that does this, and change it."
-    ), ""
+    point = parting_point(evidence)
+    lines = own_lines_in_words(evidence)
+    words = f"{point.text if point else seen} {lines}".rstrip()
+    next_step = "Find the line of your code that does this, and change it."
+    if lines.startswith("No line"):
+        next_step = "Write the line that is missing, as the task asks for it."
+    text = of_its_kind(shortened(visible(words)), evidence.in_a_notebook)
+    return Diagnosis(UNKNOWN, _cut(text, 2 * MAX_WORDS), next_step), ""
 
 
 def _recognized(exercise: Exercise, evidence: Evidence) -> tuple[Mistake, Advice] | None:

@@ -9,9 +9,13 @@ import os
 import signal
 import subprocess
 import threading
+from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any, Protocol, cast
 
+import msgspec
+
 from autograder.judge.ros_setup import subject_environment
+from autograder.messages.judge_messages import OwnLine, OwnLines
 from autograder.process_trees import (
     adopt_orphans,
     descendants,
@@ -21,11 +25,11 @@ from autograder.process_trees import (
     signal_group,
 )
 from autograder.standard_output import short_lines
+from environment.python_child import python_child
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
     from io import BufferedReader
-    from pathlib import Path
 
     from autograder.judge.bench.discovery import Endpoint
     from autograder.judge.bench.recorder import Recorder
@@ -106,6 +110,9 @@ class Subject(Protocol):
     def stop(self) -> None:
         """End the run by any means. Afterwards no process, thread or node of the run is left."""
 
+    def own_lines(self) -> list[OwnLine]:
+        """Return the lines of the student's code that a card may quote, as the subject's side claims."""
+
 
 class InOwnProcesses:
     """Base class of subjects whose runs are separate processes, each with its own DDS participant."""
@@ -131,6 +138,10 @@ class InOwnProcesses:
         """Return True: a new participant has discovered nothing yet, so it cannot see removed endpoints."""
         del there, gone
         return True
+
+    def own_lines(self) -> list[OwnLine]:
+        """Return no lines: the sources are not read by a process that a grader trusts."""
+        return []
 
 
 class CannotStart(RuntimeError):
@@ -279,6 +290,21 @@ class CommandSubject(InOwnProcesses):
         end_descendants(LEFTOVERS)
         self._process.wait()
         self._process = None
+
+    def own_lines(self) -> list[OwnLine]:
+        """Return the lines of the Python files and workspaces in the command, as another process reads them."""
+        paths = [
+            part for part in self._command if part.endswith(".py") or Path(self._cwd or ".", part).is_dir()
+        ]
+        reader = [*python_child("-m", "autograder.own_lines").command, *paths]
+        process = self._spawn(reader, subject_environment(self._domain_id, boxed=self._box is not None))
+        try:
+            output, _ = process.communicate(timeout=READ_LIMIT)
+            return msgspec.json.decode(output[:MAX_OUTPUT], type=OwnLines).lines
+        except (subprocess.TimeoutExpired, msgspec.DecodeError):
+            return []
+        finally:
+            signal_group(process.pid, signal.SIGKILL)
 
     def _follow(
         self, record: Record, end: Record, process: subprocess.Popen[bytes], done: threading.Event

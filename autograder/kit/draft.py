@@ -12,6 +12,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, Generic, Protocol, TypeVar
 
+from autograder.kit.in_words import with_placeholders
 from autograder.kit.mistakes.runner_mistakes import with_those_of
 from autograder.kit.mistakes.unfinished import constructor_remark
 from autograder.kit.model import Advice, Bench, Criterion, Exercise, Finding, Mistake
@@ -98,13 +99,22 @@ class Draft(Generic[View]):
         self._own: dict[int, list[Mistake]] = {id(OWN): [], id(OWN_LATE): []}
         self._before: dict[str, list[Mistake]] = {}
 
-    def asks(self, name: str, points: float, title: str, judge: Callable[[Evidence], Finding]) -> None:
+    def asks(
+        self,
+        name: str,
+        points: float,
+        title: str,
+        judge: Callable[[Evidence], Finding],
+        *,
+        uses: Sequence[str] = (),
+    ) -> None:
         """Add a criterion that the recipe provides. The card shows the criteria in the order in which they were added.
 
         Args:
             name: A stable key for the criterion.
             title: The criterion in one line, as the card shows it.
             judge: The recipe's function that decides the criterion.
+            uses: As in :class:`autograder.kit.model.Criterion`.
 
         Example::
 
@@ -112,7 +122,7 @@ class Draft(Generic[View]):
             talker = Draft("lab_8_1.talker", "Lab 8.1 · The talker", "Publish a greeting every 0.5 s.", heard)
             talker.asks("rate", 3, "Keeps the rate", heard.keeps_rate)
         """
-        self._criteria.append(Criterion(name, title, points, judge))
+        self._criteria.append(Criterion(name, title, points, judge, uses))
 
     def criterion(self, name: str, points: float, title: str) -> Callable[[Judge[View]], Judge[View]]:
         """Add a criterion of this exercise only. The card shows the criteria in the order in which they were added.
@@ -165,6 +175,9 @@ class Draft(Generic[View]):
             before: The key of a mistake of the recipe, just before which the new mistake is checked; by default at one
                 of the two placeholders.
 
+        Raises:
+            ValueError: A text has a single brace, or a placeholder that cannot be filled in.
+
         Example::
 
             hello = Draft("lab_8_1.hello", "Lab 8.1", "Say hello.", Program("my_robot_pkg", "hello", "greeting"))
@@ -176,6 +189,8 @@ class Draft(Generic[View]):
                 late=True,
             )
         """
+        for text in (says, next_step):
+            with_placeholders(text, "seen", "expected")
 
         def told(seen: View, expected: View) -> Advice | None:
             if not (shown := found(seen, expected)):

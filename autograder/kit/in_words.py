@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from string import Formatter
+
 import re2
 
 SHOWN = 16
@@ -37,6 +39,27 @@ def _next(text: str, same: str) -> str:
 def shortened(text: str) -> str:
     """Return the text with ``…`` instead of the middle of each long list of numbers."""
     return str(_LONG_LIST.sub(lambda found: f"[{found[1]}, …, {found[2]}]", text))
+
+
+def with_placeholders(text: str, *views: str) -> str:
+    """Return a text with placeholders unchanged, if it can be filled in with one value and the named views.
+
+    Raises:
+        ValueError: The text has a single brace, or a placeholder with another name. The message says what to write.
+    """
+    known = ("", "0", *views)
+    try:
+        names = [name for _, name, _, _ in Formatter().parse(text) if name is not None]
+        unknown = [f"{{{name}}}" for name in names if re2.split(r"[.\[]", name)[0] not in known]
+    except ValueError as error:
+        unknown = [f"a brace: {error}"]
+    if unknown:
+        placeholders = " or ".join(f"{{{name}}}" for name in ("", *views))
+        raise ValueError(
+            f"the text “{text}” has {' and '.join(unknown)}: write {placeholders} for a value, and {{{{ and }}}} for "
+            "braces"
+        )
+    return text
 
 
 def visible(text: str) -> str:

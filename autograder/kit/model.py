@@ -12,6 +12,7 @@ from enum import StrEnum
 from typing import TYPE_CHECKING, Any, Protocol
 
 from autograder.kit.counterparts import Qos
+from autograder.kit.in_words import with_placeholders
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Container, Mapping, Sequence
@@ -55,12 +56,15 @@ class Criterion:
         title: The criterion in one line, as students read it.
         points: The points that the criterion is worth.
         judge: Decides from the evidence. It is called once, after the scenario has ended.
+        uses: Names of methods or classes, such as ``is_cancel_requested``. If the criterion is not met and nothing says
+            more about the mistake, the card quotes the student's lines that use these names.
     """
 
     name: str
     title: str
     points: float
     judge: Callable[[Evidence], Finding]
+    uses: Sequence[str] = ()
 
 
 @dataclass(frozen=True)
@@ -74,12 +78,16 @@ class Advice:
             something else.
         key: The key of the mistake if only the recording of the exercise has it; empty for the key of the
             :class:`Mistake`.
+        uses: Names of methods or classes, such as ``create_timer``. The card quotes the student's lines that use these
+            names, and says if no line does. ``def tick`` and ``count =`` are names, too: of a definition, and of an
+            assignment.
     """
 
     text: str
     next_step: str
     traceback: str = ""
     key: str = ""
+    uses: Sequence[str] = ()
 
 
 @dataclass(frozen=True)
@@ -99,7 +107,13 @@ class Mistake:
 
 
 def mistake(
-    key: str, found: Callable[[Evidence], object], text: str, next_step: str, *, certain: bool = False
+    key: str,
+    found: Callable[[Evidence], object],
+    text: str,
+    next_step: str,
+    *,
+    certain: bool = False,
+    uses: Sequence[str] = (),
 ) -> Mistake:
     """Return a known mistake whose advice consists of two texts with placeholders.
 
@@ -110,11 +124,17 @@ def mistake(
         text: What happened, and why. ``{}`` stands for the value that was found, ``{0[1]}`` for an element of it.
         next_step: What the student should do now, with the same placeholders.
         certain: True if the evidence proves the mistake however busy the machine was.
+        uses: As in :class:`Advice`.
+
+    Raises:
+        ValueError: A text has a single brace, or a placeholder that cannot be filled in.
     """
+    for words in (text, next_step):
+        with_placeholders(words)
 
     def recognize(evidence: Evidence) -> Advice | None:
         shown = found(evidence)
-        return Advice(text.format(shown), next_step.format(shown)) if shown else None
+        return Advice(text.format(shown), next_step.format(shown), uses=uses) if shown else None
 
     return Mistake(key, recognize, certain)
 

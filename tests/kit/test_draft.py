@@ -6,7 +6,7 @@ import pytest
 
 from autograder.kit.draft import OWN, OWN_LATE, Draft
 from autograder.kit.evidence import Evidence, Part, Reference
-from autograder.kit.model import Advice, Bench, Mistake
+from autograder.kit.model import Advice, Bench, Mistake, mistake
 
 
 class Recipe:
@@ -68,3 +68,15 @@ def test_a_mistake_may_have_words_of_its_own() -> None:
     draft.mistake("usual")(lambda seen, _: Advice(f"It has {{braces}} in {seen.name}.", "") if seen else None)
     advice = draft.exercise().mistakes[0].recognize(Evidence([Part("rolling")], Reference("lab.it", {})))
     assert advice == Advice("It has {braces} in rolling.", "")
+
+
+@pytest.mark.parametrize("text", ["write {x}", "{", "}", "{1} of {}", "{other.name}"])
+@pytest.mark.parametrize("place", [0, 1], ids=["what happened", "what to do"])
+def test_a_text_that_cannot_be_filled_in_is_refused_when_the_exercise_is_made(text: str, place: int) -> None:
+    texts = ["It is {} in {seen.name}.", "{expected.name} {0[1]} {{}}"]
+    Draft("lab.it", "", "", Recipe()).knows("usual", lambda *_: True, *texts)
+    texts[place] = text
+    with pytest.raises(ValueError, match=r"write {} or {seen} or {expected} for a value"):
+        Draft("lab.it", "", "", Recipe()).knows("usual", lambda *_: True, *texts)
+    with pytest.raises(ValueError, match=r"write {} for a value, and {{ and }} for braces"):
+        mistake("usual", lambda _: True, *(["", text] if place else [text, ""]))

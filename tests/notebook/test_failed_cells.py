@@ -160,12 +160,14 @@ def test_other_name_errors_keep_their_traceback(said: Callable[..., list[str]]) 
 def test_a_known_error_of_a_cell_is_told_below_it_without_lines_of_ipython(
     said: Callable[..., list[str]],
 ) -> None:
-    command, magic, quoted = said(
+    command, awaits, magic, quoted = said(
         ["ros2 topic list"],
+        ["def f():\n    await g()"],
         ["# my file\n%%writefile talker.py\nimport rclpy"],
         [RIGHT, "check('lab', 'Talker')"],
     )
     assert "Write %%bash --no-raise-error as the first line of the cell" in command
     assert "interactiveshell" not in command
+    assert "in place of `await your_future`" in awaits
     assert "Move %%writefile to the first line of the cell" in magic
     assert "takes your class or function itself, without quotation marks" in quoted

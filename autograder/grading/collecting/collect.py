@@ -125,27 +125,17 @@ def _lines(report: CollectReport) -> Iterator[str]:
         late = ", late according to the LMS" if one.late else ""
         again = f", {one.reason}" if one.reason else ""
         yield f"placed       {one.student}/{one.assignment}: {one.label}{when}{late}{again}"
-    for state in (
-        LineState.UNCHANGED,
-        LineState.EARLIER,
-        LineState.BESIDE,
-        LineState.LEFT_OUT,
-        LineState.NOT_PLACED,
-    ):
+    settled = (LineState.UNCHANGED, LineState.EARLIER, LineState.BESIDE, LineState.LEFT_OUT)
+    for state in (*settled, LineState.NOT_PLACED):
         for one in (one for one in report.having(state) if one.reason):
             owner = f"{one.student}: " if one.student else ""
-            also = (
-                "; the student's notebook was collected, too"
-                if state == LineState.BESIDE and one.student
-                else ""
-            )
+            is_beside = owner and state == LineState.BESIDE
+            also = "; the student's notebook was collected, too" if is_beside else ""
             yield f"{state:<12} {one.label}: {owner}{one.reason}{also}"
-    for assignment, students in report.missing.items():
-        yield f"nothing of   {assignment}: {', '.join(students)}"
-    untimed = {student for students in report.untimed.values() for student in students}
-    for assignment, students in report.untimed.items():
-        yield f"no time      {assignment}: {', '.join(students)}"
-    if untimed:
+    for title, absent in (("nothing of", report.missing), ("no time", report.untimed)):
+        for assignment, students in absent.items():
+            yield f"{title:<12} {assignment}: {', '.join(students)}"
+    if untimed := {student for students in report.untimed.values() for student in students}:
         marked = any(one.late and one.student in untimed for one in report.outcomes)
         yield (
             "note         for these students, the time of handing in is unknown"
@@ -188,10 +178,9 @@ class _Collecting:
         folders = ClassFolders(self._directory, self._inbox, self._submitted)
         lines = decide(lines_of(self._directory, self._inbox, self._roster, edits), folders)
         results = self._submitted.bring(lines)
-        not_placed = {place: why for place, (state, why) in results.items() if state == LineState.NOT_PLACED}
         lines = [
-            replace(one, state=LineState.NOT_PLACED, reason=not_placed[one.place])
-            if one.state == LineState.PLACED and one.place in not_placed
+            replace(one, state=LineState.NOT_PLACED, reason=results[one.place][1])
+            if one.state == LineState.PLACED and results[one.place][0] == LineState.NOT_PLACED
             else one
             for one in lines
         ]
@@ -284,17 +273,19 @@ class _Collecting:
             )
             if one.key in keys or one.state == LineState.PLACED or waits or also:
                 outcomes.append(replace(one, when=one.when and one.when.astimezone(zone)))
-        here = {one.assignment for one in counting if one.key in keys or not keys}
-        work = {(one.student, one.assignment) for one in self._directory.submissions()[0]}
-        not_missing = work | self._roster.excused
+        new = [one for one in counting if one.key in keys]
+        here = {one.assignment for one in (new if keys else counting)}
+        settled = {(one.student, one.assignment) for one in self._directory.submissions()[0]}
+        settled |= self._roster.excused
         missing = {
-            name: tuple(sorted(id_ for id_ in self._roster.students if (id_, name) not in not_missing))
+            name: tuple(ids)
             for name in sorted(here)
+            if (ids := sorted(id_ for id_ in self._roster.students if (id_, name) not in settled))
         }
-        untimed: dict[str, list[str]] = defaultdict(list)
-        for one in sorted(counting, key=lambda one: one.student):
-            if one.when is None and one.key in keys and one.student not in untimed[one.assignment]:
-                untimed[one.assignment].append(one.student)
+        untimed = {
+            name: tuple(sorted({one.student for one in new if not one.when and one.assignment == name}))
+            for name in sorted({one.assignment for one in new if not one.when})
+        }
         notes = [*self._notes, *self._directory.named_cells.notes]
         notes += self._roster.notices(self._directory.assignments(), {}, self._roster.students)
         if not self._roster.students:
@@ -304,8 +295,8 @@ class _Collecting:
         return CollectReport(
             self._directory.path,
             tuple(sorted(outcomes, key=lambda one: one.label)),
-            {name: tuple(students) for name, students in untimed.items() if students},
-            {name: students for name, students in missing.items() if students},
+            untimed,
+            missing,
             sum(one.state == LineState.NOT_PLACED for one in lines),
             tuple(notes),
         )

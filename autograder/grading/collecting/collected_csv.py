@@ -229,22 +229,12 @@ class Table:
         """Return the row for a file. For the work of a group, ``several`` has a line for each student."""
         first = (LineState.NOT_PLACED, LineState.PLACED)
         line = min(several, key=lambda one: first.index(one.state) if one.state in first else len(first))
+        students = "; ".join(dict.fromkeys(id_ for one in several for id_ in one.students)) or edit.student
+        assignments = "; ".join(sorted({one.assignment for one in several} - {""})) or edit.assignment
+        where = (line.use, _WORDS[line.state], students, assignments, line.notebook or edit.notebook)
         when = f"{line.when.astimezone(self._zone):%Y-%m-%d %H:%M:%S %z}" if line.when else ""
-        cells = {
-            "use": line.use,
-            "counts": _WORDS[line.state],
-            "student": "; ".join(dict.fromkeys(id_ for one in several for id_ in one.students))
-            or edit.student,
-            "assignment": "; ".join(sorted({one.assignment for one in several} - {""})) or edit.assignment,
-            "notebook": line.notebook or edit.notebook,
-            "handed_in": "",
-            "system": line.lms,
-            "number": line.number,
-            "name": line.name,
-            "file": f"{line.label} {line.key}",
-            "reason": line.reason,
-        }
-        return [_guarded(cells[name]) if name != "handed_in" else when for name in COLUMNS]
+        whence = (line.lms, line.number, line.name, f"{line.label} {line.key}", line.reason)
+        return [*map(_guarded, where), when, *map(_guarded, whence)]
 
     def rename(self, ids: Mapping[str, str]) -> None:
         """Write other ids of students into the column ``student``, as a person would.
@@ -268,7 +258,7 @@ class Table:
     @property
     def _newest(self) -> int:
         return max(
-            (int(path.stem) for path in self._copies.glob("*.csv") if path.stem.isdecimal()), default=0
+            map(int, filter(str.isdecimal, (path.stem for path in self._copies.glob("*.csv")))), default=0
         )
 
     def _copy(self, number: int) -> Any:
@@ -313,15 +303,11 @@ def _rows(data: bytes, *, whole: bool = False) -> tuple[list[dict[str, str]] | N
     columns = [name.partition(" (")[0].strip().lower() for name in header]
     if not {"use", "file"} <= set(columns):
         return None, 0
-    rows = []
-    for line in lines:
-        cells = [_unguarded(cell) for cell in line]
-        row = dict(zip(columns, cells, strict=False))
-        if not any(cells):
-            continue
-        key = _KEY.search(row.get("file", "").strip())
-        row = {**dict.fromkeys(COLUMNS, ""), **row}
-        rows.append(row if whole else {**row, "file": key[0] if key else row["file"]})
+    cells = (dict(zip(columns, map(_unguarded, line), strict=False)) for line in lines)
+    rows = [{**dict.fromkeys(COLUMNS, ""), **row} for row in cells if any(row.values())]
+    for row in () if whole else rows:
+        key = _KEY.search(row["file"].strip())
+        row["file"] = key[0] if key else row["file"]
     return rows, int(stamp[1]) if stamp else 0
 
 

@@ -364,10 +364,8 @@ class CollectedRecords:
         Raises:
             OSError: A record could not be written.
         """
-        for student, assignment in self.all():
-            if (new := ids.get(student)) is None:
-                continue
-            history = self.get(assignment, student)
+        for student, assignment in ((old, name) for old, name in self.all() if old in ids):
+            new, history = ids[student], self.get(assignment, student)
             if history and self.get(assignment, new) is None:
                 now = {name: replace(line, students=(new,)) for name, line in history.now.items()}
                 self.put(assignment, new, replace(history, now=now))

@@ -112,8 +112,7 @@ class StudentOf:
             # A student has chosen the end of a name, so two forms that fit have to mean the same student and time.
             said = [(one.students, one.students and one.facts and one.facts.when) for one in read]
             if any(one != said[0] for one in said):
-                meant = (student for one in read for student in (*one.students, *one.candidates))
-                return Owners(candidates=tuple({one.id: one for one in meant}.values()))
+                return Owners(candidates=_all_meant(read))
             if ways or read[0].students or read[0].candidates:
                 return read[0]
         return Owners()
@@ -131,8 +130,7 @@ class StudentOf:
         read = [*(hit for hit, _ in hits), *rivals]
         if first.students and all(hit.students == first.students for hit in read):
             return replace(first, facts=facts)
-        meant = {one.id: one for hit in read for one in (*hit.students, *hit.candidates)}
-        return Owners(facts, candidates=tuple(meant.values()))
+        return Owners(facts, candidates=_all_meant(read))
 
     def _identify(self, identity: Identity) -> Owners:
         """Return the students whom an identity means, without facts."""
@@ -140,10 +138,9 @@ class StudentOf:
         if known is not None:
             hits = [hit for names in known.members if (hit := self._first_known(names))]
             hits = [hit for hit in hits if hit[1] or not self._is_another(hit[0], identity)]
+            students, are_sure = tuple(one for one, _ in hits), all(is_sure for _, is_sure in hits)
             if hits and len(hits) == len(known.members):
-                return Owners(
-                    students=tuple(one for one, _ in hits), is_sure=all(is_sure for _, is_sure in hits)
-                )
+                return Owners(students=students, is_sure=are_sure)
         # Moodle's number in a file name belongs to one submission, so it is not a student's number in students.csv.
         asked = replace(identity, number="") if identity.lms == "moodle" else identity
         found, number = self._roster.find(asked), asked.number.casefold()
@@ -179,10 +176,10 @@ class StudentOf:
                     numbers[entry.lms, hit[0].id].add(entry.number.casefold())
         return numbers
 
-    def _first_known(self, names: Iterable[Identity]) -> tuple[Student, bool] | None:
+    def _first_known(self, names: Sequence[Identity]) -> tuple[Student, bool] | None:
         """Return the student whom the first unambiguous identity means, and whether it has a user name or address."""
-        hits = ((self._roster.find(name), bool(name.login)) for name in names)
-        return next(((found[0], is_sure) for found, is_sure in hits if len(found) == 1), None)
+        hit = self._roster.first(names)
+        return hit and (hit[0], bool(names[hit[1]].login))
 
     def doubt(self, owners: Owners, name: str) -> str:
         """Return why it is not certain whose a file is, and what to do; empty if it is certain.
@@ -280,6 +277,12 @@ class StudentOf:
         """Return the students of a file or folder that the instructor named, by its own name alone."""
         name = name_as_text(path.absolute().name)
         return self.owners((name, "") if path.is_dir() else (name,), 1, is_alone=True)
+
+
+def _all_meant(read: Iterable[Owners]) -> tuple[Student, ...]:
+    """Return each student whom one of these ways to read a name means, or may mean, once."""
+    meant = {student.id: student for one in read for student in (*one.students, *one.candidates)}
+    return tuple(meant.values())
 
 
 def _same_number(one: str, other: str) -> bool:

@@ -97,39 +97,25 @@ def _of_notebook(place: Place, files: list[Line], folders: ClassFolders) -> Iter
     by_hand = [one for one in files if one.is_by_hand]
     present = [one for one in by_hand if folders.submitted.content(place) == one.content]
     chosen = present or [one for one in files if one.use == "yes"]
-    if chosen:
-        best, others = _best(place, chosen, folders)
-        yield from others
-        if best:
-            # If a person corrected the file in ``submitted``, the student's own time of handing in still applies.
-            times = [one.when for one in files if one.when and present]
-            yield _timed(replace(best, when=best.when or max(times, default=None)), files, folders)
-        why = (
-            "was put into the folder submitted by hand, and is graded"
-            if present
-            else "is graded, because yes is written under use"
-        )
-        for one in (one for one in files if one not in chosen):
-            is_same = best and one.content == best.content
-            yield (
-                (one, LineState.UNCHANGED, "")
-                if is_same
-                else (one, LineState.EARLIER, f"{chosen[0].label} {why}")
-            )
-        return
-    before = "the file was in submitted before: write yes under use to put it there again"
-    yield from ((one, LineState.EARLIER, before) for one in by_hand)
-    pool = [one for one in files if not one.is_by_hand]
-    for sift in (_ambiguous_names, _unreadable):
-        doubts = sift(place, pool, folders)
+    pool = chosen or [one for one in files if not one.is_by_hand]
+    for sift in () if chosen else (_ambiguous_names, _unreadable):
+        doubts = sift(place, pool)
         yield from ((one, LineState.NOT_PLACED, reason) for one, reason in doubts)
         doubtful = {one.key for one, _ in doubts}
         pool = [one for one in pool if one.key not in doubtful]
-    if pool:
-        best, others = _best(place, pool, folders)
-        yield from others
-        if best:
-            yield _timed(best, files, folders)
+    best, others = _best(place, pool, folders) if pool else (None, [])
+    yield from others
+    if best:
+        # If a person corrected the file in ``submitted``, the student's own time of handing in still applies.
+        times = [one.when for one in files if one.when and present]
+        yield _timed(replace(best, when=best.when or max(times, default=None)), files, folders)
+    why = "the file was in submitted before: write yes under use to put it there again"
+    if chosen:
+        put_there = "was put into the folder submitted by hand, and is graded"
+        why = f"{chosen[0].label} {put_there if present else 'is graded, because yes is written under use'}"
+    for one in (one for one in files if one not in chosen and (chosen or one.is_by_hand)):
+        is_same = chosen and best and one.content == best.content
+        yield (one, LineState.UNCHANGED, "") if is_same else (one, LineState.EARLIER, why)
 
 
 def _timed(best: Line, files: Sequence[Line], folders: ClassFolders) -> _Why:
@@ -146,7 +132,7 @@ _ONE_NUMBER = ("canvas", "moodle", "brightspace")
 """The LMSs in which users may change their names, but have the same number in all files of a download."""
 
 
-def _ambiguous_names(place: Place, pool: Sequence[Line], _: ClassFolders) -> list[tuple[Line, str]]:
+def _ambiguous_names(place: Place, pool: Sequence[Line]) -> list[tuple[Line, str]]:
     """Return the files that are linked to a student only by a name, if several people have this name.
 
     Several people have the name if the LMS gives it several numbers. In Canvas, a person has the same number in every
@@ -166,7 +152,7 @@ def _ambiguous_names(place: Place, pool: Sequence[Line], _: ClassFolders) -> lis
     return [(one, reason) for one in of_systems if several and not one.is_sure]
 
 
-def _unreadable(place: Place, pool: Sequence[Line], _: ClassFolders) -> list[tuple[Line, str]]:
+def _unreadable(place: Place, pool: Sequence[Line]) -> list[tuple[Line, str]]:
     """Return the unreadable files, which neither replace readable work nor become zero points without a word."""
     what_to_do = (
         "Ask the student for the file again; to have it graded as it is, without points, write yes under use"
@@ -184,46 +170,44 @@ def _best(place: Place, files: Sequence[Line], folders: ClassFolders) -> tuple[L
     last, the file with the highest number from the system. If several different files are left, the file that is
     already in ``submitted`` is graded again.
     """
-    is_several = len({one.content for one in files}) > 1
+    there = folders.submitted.content(place)
+    contents = {one.content for one in files}
     work = {
-        one.key: not is_several
+        one.content: len(contents) == 1
         or _has_work(folders.directory, one.assignment, one.notebook, folders.inbox.read(one.content))
         for one in files
     }
-    best = _top(
-        [one for one in files if one.when] or files, lambda one: one.when.timestamp() if one.when else 0
-    )
-    best = _top(best, lambda one: work[one.key])
+    timed = [one for one in files if one.when]
+    best = _top(timed or files, lambda one: one.when.timestamp() if one.when else 0)
+    best = _top(best, lambda one: work[one.content])
     named = [one for one in best if one.is_named]
     if named and all(any(one.came_in & other.came_in for one in named) for other in best):
         best = named
     if len({one.lms for one in best}) == 1:  # attempt numbers of different LMSs cannot be compared
         best = _top(best, lambda one: one.order)
-    best = _top(best, lambda one: bool(one.lms)) if len({one.content for one in best}) == 1 else best
-    there = folders.submitted.content(place)
+    is_one = len({one.content for one in best}) == 1
+    best = _top(best, lambda one: bool(one.lms)) if is_one else best
     first = next((one for one in best if one.content == there), best[0])
-    if any(one.content != first.content for one in best) and first.content != there:
+    if not is_one and first.content != there:
         reason = (
             f"{place[0]} has several different files for {place[1]}, and it is unknown which file is the newest: "
             "write yes under use for the file to grade, or the times under handed_in"
         )
         return None, [(one, LineState.NOT_PLACED, reason) for one in files]
     others: list[_Why] = []
-    for one in files:
-        is_older = work[one.key] < work[first.key] or (one.lms == first.lms and 0 < one.order < first.order)
+    at = f", handed in {in_zone(first.when, folders.directory.time_zone)}" if first.when else ""
+    for one in (one for one in files if one is not first):
+        is_older = work[one.content] < work[first.content] or (
+            one.lms == first.lms and 0 < one.order < first.order
+        )
+        unknown = f"it is unknown whether this file is newer than {first.label}"
         if one.content == first.content:
-            others += [(one, LineState.UNCHANGED, "")] if one is not first else []
+            others.append((one, LineState.UNCHANGED, ""))
         elif one in best:
-            what_to_do = "write yes under use to have this file graded, or no"
-            reason = (
-                f"it is unknown whether this file is newer than {first.label}, which is graded: {what_to_do}"
-            )
+            reason = f"{unknown}, which is graded: write yes under use to have this file graded, or no"
             others.append((one, LineState.NOT_PLACED, reason))
         elif first.when and not one.when and not is_older:
-            at = f"{first.label}, handed in {in_zone(first.when, folders.directory.time_zone)}"
-            reason = (
-                f"it is unknown whether this file is newer than {at}: write the file's time under handed_in"
-            )
+            reason = f"{unknown}{at}: write the file's time under handed_in"
             others.append((one, LineState.NOT_PLACED, reason))
         else:
             others.append((one, LineState.EARLIER, f"{first.label} {_why_it_counts(first, one, work)}"))
@@ -264,7 +248,7 @@ def _top(files: Sequence[Line], rank: Callable[[Line], float]) -> list[Line]:
 
 
 def _why_it_counts(best: Line, other: Line, work: dict[str, bool]) -> str:
-    if work[best.key] > work[other.key]:
+    if work[best.content] > work[other.content]:
         return "has answers and is graded; this file has no answers, and is kept as an earlier attempt"
     if best.is_named > other.is_named:
         return (

@@ -62,7 +62,7 @@ def lines_of(
         roster: The students of the class.
         edits: What people have written into the table, by the key of the line.
     """
-    assignments = AssignmentOf(directory)
+    assignments = _AssignmentOf(directory)
     entries = entries_of(inbox)
     read: list[tuple[Delivery, Line]] = []
     for id_, delivery in inbox.deliveries.items():
@@ -71,17 +71,15 @@ def lines_of(
         zone = ZoneInfo(delivery.zone) if delivery.zone else directory.time_zone
         lines_there = _Reading(inbox, assignments, student_of, delivery, id_, zone).lines(edits)
         read += [(delivery, line) for line in lines_there]
-    found: dict[str, list[Line]] = defaultdict(list)
-    for line in ListTimes(inbox, directory.time_zone).applied(read):
-        found[line.key].append(line)
-    lines = []
-    for several in found.values():
-        targets: dict[tuple[str, str], list[Line]] = defaultdict(list)
-        for one in several:
-            if not one.reason:
-                targets[one.assignment, one.notebook].append(one)
-        lines += [_merged(ones) for ones in targets.values()] or [_merged(several)]
-    return lines
+    timed = list(ListTimes(inbox, directory.time_zone).applied(read))
+    clear = {line.key for line in timed if not line.reason}
+    by_target: dict[tuple[str, str, str], list[Line]] = defaultdict(list)
+    for line in timed:
+        if line.key not in clear:
+            by_target[line.key, "", ""].append(line)
+        elif not line.reason:
+            by_target[line.key, line.assignment, line.notebook].append(line)
+    return [_merged(lines) for lines in by_target.values()]
 
 
 @dataclass(frozen=True)
@@ -89,7 +87,7 @@ class _Reading:
     """Interprets the files of one delivery."""
 
     inbox: Inbox
-    assignments: AssignmentOf
+    assignments: _AssignmentOf
     student_of: StudentOf
     delivery: Delivery
     id: str
@@ -189,15 +187,12 @@ class _Reading:
     def _as_written(self, line: Line, name: str, edit: Edit, asked: str) -> Line:
         """Return the line completed with the notebook that a person wrote."""
         several = self.assignments.notebooks(asked)
-        only = several[0] if len(several) == 1 else _stem_of(name)
-        notebook = edit.notebook or only
+        notebook = edit.notebook or (several[0] if len(several) == 1 else _stem_of(name))
         if notebook in several:
             return replace(line, assignment=asked, notebook=notebook)
-        reason = (
-            f"write the name of the notebook under notebook ({', '.join(several)})"
-            if several
-            else f"the class has no assignment {asked or 'here'}: correct the name under assignment"
-        )
+        reason = f"write the name of the notebook under notebook ({', '.join(several)})"
+        if not several:
+            reason = f"the class has no assignment {asked or 'here'}: correct the name under assignment"
         return replace(line, assignment=asked if several else "", reason=reason)
 
 
@@ -226,15 +221,13 @@ def _merged(several: Iterable[Line]) -> Line:
     """Return one line for a file that came several times: the one with the surest student, at the latest time."""
     lines = sorted(several, key=lambda one: (bool(one.reason), one.is_soft, one.rank, one.label))
     best = lines[0]
-    timed = sorted((one for one in lines if one.when), key=lambda one: one.when or datetime.max)
     came_in = frozenset().union(*(one.came_in for one in lines))
-    best = replace(best, came_in=came_in)
-    if not timed:
-        return best
-    return replace(best, when=timed[-1].when, time_from=timed[-1].time_from, first=timed[0].when)
+    timed = sorted((one for one in lines if one.when), key=lambda one: one.when or datetime.max) or [best]
+    first, last = timed[0], timed[-1]
+    return replace(best, came_in=came_in, when=last.when, time_from=last.time_from, first=first.when)
 
 
-class AssignmentOf:
+class _AssignmentOf:
     """Finds out which notebook of a class a collected file is, by the name and the cells of the file.
 
     Args:
@@ -284,16 +277,13 @@ class AssignmentOf:
         is_foreign = not meant and bool(cell_names)
         possible = {asked} if asked else {target[0] for target in meant}
         if len(possible) == 1 and not disagree:
-            reason = self._of_several(*possible)
+            (asked,) = possible
+            which = f"which notebook of {asked} the file is ({', '.join(self.notebooks(asked))})"
+            reason = f"it is not clear {which}: write the notebook under notebook in collected.csv"
         else:
-            reason = self._unclear(
-                {target[0] for target in named}, {*mixed} or {target[0] for target in held}
-            )
+            by_cells = {*mixed} or {target[0] for target in held}
+            reason = self._unclear({target[0] for target in named}, by_cells)
         return replace(line, reason=line.unreadable or reason, is_soft=is_foreign)
-
-    def _of_several(self, assignment: str) -> str:
-        which = f"which notebook of {assignment} the file is ({', '.join(self.notebooks(assignment))})"
-        return f"it is not clear {which}: write the notebook under notebook in collected.csv"
 
     def _unclear(self, by_name: Collection[str], by_cells: Collection[str]) -> str:
         sources = {"name": by_name, "cells": by_cells}

@@ -102,17 +102,14 @@ class ListTimes:
             own = [] if line.when else self._certain(delivery, line)
             open_ = [one for one in self._of(line) if one.is_alone and one.key not in self._about]
             if not own and not line.when and line.assignment and open_:
-                is_certain = len(several[line.lms, line.number]) == 1
-                own = open_ if is_certain else []
-                for one in () if is_certain else open_:
-                    doubtful[one.key][line.assignment].add(line.number)
-            if len({one.when for one in own}) == 1:
-                line = replace(line, when=own[0].when, time_from=own[0].key)
+                own = open_
+            is_certain = own is not open_ or len(several[line.lms, line.number]) == 1
+            if len({one.when for one in own}) == 1 or not is_certain:
                 for one in own:
-                    taken[one.key][line.assignment].add(line.number)
-            timed.append(
-                replace(line, when=line.when or (None if line.lms == "list" else delivery.handed_in))
-            )
+                    (taken if is_certain else doubtful)[one.key][line.assignment].add(line.number)
+                line = replace(line, when=own[0].when, time_from=own[0].key) if is_certain else line
+            handed_in = None if line.lms == "list" else delivery.handed_in
+            timed.append(replace(line, when=line.when or handed_in))
         for line in timed:
             is_list = line.lms == "list" and line.key in self._with_times
             yield replace(line, reason=_told(taken[line.key], doubtful[line.key])) if is_list else line
@@ -122,16 +119,9 @@ class ListTimes:
 
     def _certain(self, delivery: Delivery, line: Line) -> list[_Time]:
         """Return the times of lists that came with the file; or else of lists that are about its assignment."""
-        own = [
-            one
-            for one in self._of(line)
-            if one.delivery == delivery and delivery.assignment in ("", line.assignment)
-        ]
-        return own or [
-            one
-            for one in self._of(line)
-            if one.is_alone and line.assignment and one.delivery.assignment == line.assignment
-        ]
+        times, named = self._of(line), line.assignment
+        own = [one for one in times if one.delivery == delivery and delivery.assignment in ("", named)]
+        return own or [one for one in times if one.is_alone and named and one.delivery.assignment == named]
 
 
 def _told(taken: dict[str, set[str]], doubtful: dict[str, set[str]]) -> str:

@@ -61,10 +61,9 @@ class Submitted:
     def content(self, place: Place) -> str:
         """Return the hash of a notebook in ``submitted``; empty if it does not exist or cannot be read."""
         try:
-            data = _existing_file(self._path(place))
+            return _existing_content(self._path(place))
         except UnreadableSubmission:
             return ""
-        return hashlib.sha256(data).hexdigest() if data is not None else ""
 
     def take_in(self) -> None:
         """Copy into the inbox the files that a person has put directly into ``submitted``.
@@ -120,25 +119,20 @@ class Submitted:
         names = {place[2] for place, _ in refused if place[:2] == (student, assignment)}
         for notebook in sorted({*wanted, *old.now, *names}):
             place, line = (student, assignment, notebook), wanted.get(notebook)
+            known = old.now.get(notebook)
             try:
-                there = _existing_file(self._path(place))
+                content = _existing_content(self._path(place))
             except UnreadableSubmission as error:
-                now |= {notebook: old.now[notebook]} if notebook in old.now else {}
+                now |= {notebook: known} if known else {}
                 if line:
                     yield place, LineState.NOT_PLACED, str(error)
                 continue
-            content = hashlib.sha256(there).hexdigest() if there is not None else ""
-            if line is None:
-                is_ours = content in old.written(notebook) or (place, content) in refused
-                if content and content in self._inbox and is_ours:
-                    changes.append((place, None, content))
-                continue
-            known = old.now.get(notebook)
-            if not line.is_by_hand or line.when or line.use or known:
+            if line and (known or not line.is_by_hand or line.when or line.use):
                 now[notebook] = line
-            if content == line.content:
+            is_ours = content in old.written(notebook) or (place, content) in refused
+            if line and content == line.content:
                 yield place, LineState.UNCHANGED, ""
-            else:
+            elif line or (content and content in self._inbox and is_ours):
                 changes.append((place, line, content))
         history = History(now)
         # Write the record before the files, so that the next `collect` knows that these files are its own even if this
@@ -164,13 +158,11 @@ class Submitted:
         If the time is unknown, remove the file, and the folders that are then empty.
         """
         stamp = self._directory.path / "submitted" / student / assignment / TIMESTAMP
-        text = f"{timestamp_text(history.when)}\n".encode() if history.when else b""
-        if text:
-            try:
+        if history.when:
+            text = f"{timestamp_text(history.when)}\n".encode()
+            with contextlib.suppress(UnreadableSubmission):
                 if read_bytes(stamp) == text:
                     return
-            except UnreadableSubmission:
-                pass
             write_whole(stamp, text)
         elif stamp.parent.is_dir():
             stamp.unlink(missing_ok=True)
@@ -179,8 +171,8 @@ class Submitted:
                 stamp.parent.parent.rmdir()
 
 
-def _existing_file(path: Path) -> bytes | None:
-    """Return the bytes of the file at a path; None if the file does not exist.
+def _existing_content(path: Path) -> str:
+    """Return the hash of the file at a path; empty if the file does not exist.
 
     Raises:
         UnreadableSubmission: The path is not an ordinary file, or a folder in it is a link.
@@ -189,7 +181,7 @@ def _existing_file(path: Path) -> bytes | None:
         if place.is_symlink():
             raise UnreadableSubmission(f"{place} is a link: remove it")
     try:
-        return read_bytes(path) if path.exists() else None
+        return hashlib.sha256(read_bytes(path)).hexdigest() if path.exists() else ""
     except UnreadableSubmission as error:
         raise UnreadableSubmission(f"something else is at {path}: {error}") from error
 

@@ -8,11 +8,13 @@ import os
 import shutil
 from dataclasses import dataclass
 from datetime import UTC, datetime
+from pathlib import Path
 from typing import TYPE_CHECKING
 from zoneinfo import available_timezones
 
 from alembic.config import Config
 from alembic.script import ScriptDirectory
+from jinja2 import Template
 from nbgrader import api, dbutil
 from nbgrader.converters import GenerateAssignment
 from nbgrader.coursedir import CourseDirectory
@@ -38,51 +40,13 @@ from autograder.masters.source_notebooks import source_notebook
 
 if TYPE_CHECKING:
     from collections.abc import Container, Iterator, Sequence
-    from pathlib import Path
 
     from nbformat import NotebookNode
 
 DEMO_NAME = "demo-class"
 
-CONFIG = '''\
-"""nbgrader's configuration of this class. The autograder's lines come first; yours go to the end."""
-
-import os
-
-from autograder.masters.release_steps import ReleaseSteps
-
-c = get_config()  # noqa: F821  (nbgrader defines it)
-c.CourseDirectory.root = os.path.dirname(os.path.abspath(__file__))
-
-# How notebooks for students are made: each solution is replaced by a TODO comment, and given cells are locked.
-c.GenerateAssignment.preprocessors = ReleaseSteps()
-
-# How submissions are graded: by the judge, with `{command} grade`, `nbgrader autograde` and formgrader's button alike.
-# Both lines are needed: if the first is missing, nbgrader's own commands refuse to grade.
-c.Autograde.exporter_class = "autograder.grading.nbgrader_commands.SubmissionExporter"
-c.Autograde.autograde_preprocessors = ["autograder.grading.nbgrader_commands.WireExecute"]
-
-# How feedback pages are made: without scripts, frames and addresses of other hosts from a submission.
-c.GenerateFeedback.exporter_class = "autograder.grading.nbgrader_commands.FeedbackExporter"
-c.HTMLExporter.filters = {{"markdown2html": "autograder.grading.returning.page_exporter.markdown_to_html"}}
-
-# The time zone of due dates in formgrader, and of the times that `{command} grade` shows.
-c.NbGraderAPI.timezone = "{timezone}"
-
-# `nbgrader export` writes CSV that a spreadsheet does not execute. The file must not have the name grades.csv, because
-# `{command} grade` writes a file with that name.
-c.ExportApp.plugin_class = "autograder.grading.export.SafeCsvExport"
-c.ExportPlugin.to = "nbgrader_export.csv"
-
-# The time limits of a cell and of a whole notebook, in seconds. On a busy machine, the limit of a cell is extended.
-# A check cell has the time limit of its exercise instead.
-c.WireExecute.cell_seconds = {cell_seconds:g}
-c.WireExecute.notebook_seconds = {notebook_seconds:g}
-
-# For `nbgrader validate`: nbgrader gives 0 points if a cell writes to stderr. By default, ROS writes its log there.
-os.environ.setdefault("RCUTILS_LOGGING_USE_STDOUT", "1")
-os.environ.setdefault("RCUTILS_COLORIZED_OUTPUT", "0")
-'''
+CONFIG = Path(__file__).with_name("nbgrader_config.py.j2").read_text(encoding="utf-8")
+"""The template of a class's nbgrader configuration."""
 
 
 @dataclass(frozen=True)
@@ -138,7 +102,7 @@ def new_class(
     _check_place(path, course_root)
     sources = _sources_of(course_root, assignments)
     timezone = timezone or machine_timezone()
-    config = CONFIG.format(
+    config = Template(CONFIG, keep_trailing_newline=True).render(
         command=COMMAND, timezone=timezone, cell_seconds=cell_seconds, notebook_seconds=notebook_seconds
     )
     made_folder = not path.exists()

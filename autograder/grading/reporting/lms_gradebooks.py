@@ -30,7 +30,6 @@ if TYPE_CHECKING:
 
     from autograder.grading.collecting.collected_files import CollectedRecords, Line
     from autograder.grading.reporting.class_table import ClassTable
-    from autograder.grading.table.roster import Student
 
 
 _LOCKED = "(read only)"
@@ -108,9 +107,7 @@ def fill_list(
         (weakness, _, row), *others = sorted(of_student)
         is_certain = all(other > weakness for other, _, _ in others)
         doubtful += [called for _, called, _ in (others if is_certain else of_student)]
-        if not is_certain:
-            continue
-        for name, place in places.items():
+        for name, place in places.items() if is_certain else ():
             if table.is_excused(student_id, name):
                 row[place] = LAYOUTS[lms].excused
             elif (score := table.score(student_id, name)) is not None:
@@ -145,10 +142,9 @@ def _form_of(header: Sequence[str], lms: str) -> ListForm:
         GradingError: The list has no place for points, or it comes from a system other than ``lms``.
     """
     lower = {name.lower() for name in header}
-    forms = [one for one in LIST_FORMS if one.points]
-    form = next((one for one in forms if set(one.has) <= lower), None)
+    form = next((one for one in LIST_FORMS if one.points and set(one.has) <= lower), None)
     if form is None:
-        gradebooks = ", ".join(one.lms.capitalize() for one in forms if one.points == EACH)
+        gradebooks = ", ".join(one.lms.capitalize() for one in LIST_FORMS if one.points == EACH)
         raise GradingError(
             f"The list is neither Moodle's grading worksheet nor a gradebook that {gradebooks} has exported. Download "
             "it from the LMS again."
@@ -189,13 +185,11 @@ def _point_columns(
         one: _columns_called(columns.get(one, one), names, is_exact=one in columns) for one in assignments
     }
     if missing := [one for one in assignments if len(found[one]) != 1]:
-        likeliest = {
-            one: process.extractOne(one, names, scorer=fuzz.partial_ratio, processor=_letters)
-            for one in missing
-        }
-        options = " ".join(
-            f'--column "{one}={best[0] if best else "COLUMN"}"' for one, best in likeliest.items()
+        likeliest = (
+            process.extractOne(one, names, scorer=fuzz.partial_ratio, processor=_letters) for one in missing
         )
+        advised = [match[0] if match else "COLUMN" for match in likeliest]
+        options = " ".join(f'--column "{one}={name}"' for one, name in zip(missing, advised, strict=True))
         asked = ", ".join(columns.get(one, one) for one in missing)
         why = f" {_LOCKED} columns take no points: {', '.join(sorted(locked))}." if locked else ""
         raise GradingError(
@@ -216,11 +210,9 @@ def _columns_called(called: str, names: Sequence[str], *, is_exact: bool) -> lis
         names: The names of all columns for points. Canvas adds a number to them: ``lab_1_2 (815)``.
         is_exact: True if a person wrote the name, so that it is compared as it is.
     """
-    for way in (str, _without_number):
-        if found := [name for name in names if way(name) == called]:
-            return found
-    for head in () if is_exact else (_letters, lambda name: _letters(name.partition(":")[0])):
-        if found := [name for name in names if head(name) == _letters(called)]:
+    alike = (_letters, lambda name: _letters(name.partition(":")[0]))
+    for way in (str, _without_number) if is_exact else (str, _without_number, *alike):
+        if found := [name for name in names if way(name) == (_letters(called) if way in alike else called)]:
             return found
     return []
 
@@ -245,8 +237,8 @@ def _lines_by_student(
         row += [""] * (len(header) - len(row))
         values = [original(row[place].strip()).removeprefix("#") for place in places]
         called = values[-1] if values else row[0]
-        if match := _who(table, form, values):
-            student, weakness = match
+        student, weakness = table.roster.first(_identities(form, values)) or (None, 0)
+        if student:
             found.setdefault(student.id, []).append((weakness, called, row))
         else:
             strangers.append(called)
@@ -263,12 +255,11 @@ def _letters(name: str) -> str:
     return re2.sub(r"[\W_]+", "", _without_number(name)).casefold()
 
 
-def _who(table: ClassTable, form: ListForm, values: Sequence[str]) -> tuple[Student, int] | None:
-    """Return the student of a line, and the rank of the matching value; a lower rank is a more certain match."""
+def _identities(form: ListForm, values: Sequence[str]) -> list[Identity]:
+    """Return what the values in a line may be of the student, the most certain first."""
     identities = [Identity(form.lms, value, value, value) for value in values]
-    if form.is_numbered:
-        # A number of the LMS may be another student's id in the class, so the number is compared with ids last.
-        number = values[0]
-        identities = [Identity(form.lms, number), *identities[1:], Identity(form.lms, "", number, number)]
-    matches = ((table.roster.find(identity), rank) for rank, identity in enumerate(identities))
-    return next(((found[0], rank) for found, rank in matches if len(found) == 1), None)
+    if not form.is_numbered:
+        return identities
+    # A number of the LMS may be another student's id in the class, so the number is compared with ids last.
+    number = values[0]
+    return [Identity(form.lms, number), *identities[1:], Identity(form.lms, "", number, number)]

@@ -185,11 +185,13 @@ class Roster:
         First the number in the LMS decides. If no student has this number, user names and email addresses decide. If
         these match no student either, names decide.
         """
-        for known in (self._by_number, self._by_login, self._by_name):
-            found = known(identity)
-            if found:
-                return found
-        return ()
+        ways = (self._by_number, self._by_login, self._by_name)
+        return next(filter(None, (way(identity) for way in ways)), ())
+
+    def first(self, identities: Iterable[Identity]) -> tuple[Student, int] | None:
+        """Return the student whom the first unambiguous identity means, and the index of that identity."""
+        found = ((self.find(identity), place) for place, identity in enumerate(identities))
+        return next(((students[0], place) for students, place in found if len(students) == 1), None)
 
     def _by_number(self, identity: Identity) -> tuple[Student, ...]:
         if not identity.number:

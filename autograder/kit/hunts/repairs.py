@@ -101,7 +101,9 @@ def _without_diagnosis(judged: Exercise, known: Mistake) -> Mistake:
 
     def recognize(evidence: Evidence) -> Advice | None:
         advice, seen = known.recognize(evidence), _symptom(judged, evidence).seen
-        return replace(advice, text=f"The judge saw this: {seen}.", next_step=_LOOK) if advice else None
+        return (
+            replace(advice, text=f"The judge saw this: {seen}.", next_step=_LOOK, uses=()) if advice else None
+        )
 
     return replace(known, recognize=recognize)
 

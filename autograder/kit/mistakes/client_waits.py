@@ -103,6 +103,7 @@ class Wait:
             f"{self.noun} is not available, and end. If you wait in a loop, count the turns and leave the loop after "
             "a few.",
             certain=True,
+            uses=(f"wait_for_{self.noun}",),
         )
 
     def for_ever(self) -> Mistake:
@@ -155,6 +156,7 @@ class Wait:
             f"Wait a few seconds for the {self.noun} before you send the first {self.asks}: "
             f"wait_for_{self.noun}(timeout_sec=5.0). Do not forget the parentheses: without them the method is not "
             "called, and nothing waits.",
+            uses=(f"wait_for_{self.noun}",),
         )
 
     def patience_not_kept(self) -> Mistake:

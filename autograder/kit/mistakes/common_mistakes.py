@@ -21,13 +21,14 @@ if TYPE_CHECKING:
     from autograder.kit.evidence import Event, Evidence, Part
 
 WORDS = {
-    "publisher": ("publishes on", "topic"),
-    "subscription": ("subscribes to", "topic"),
-    "client": ("asks for the service", "service"),
-    "service": ("serves", "service"),
-    "action_client": ("asks for the action", "action"),
-    "action_server": ("serves the action", "action"),
+    "publisher": ("publishes on", "topic", "create_publisher"),
+    "subscription": ("subscribes to", "topic", "create_subscription"),
+    "client": ("asks for the service", "service", "create_client"),
+    "service": ("serves", "service", "create_service"),
+    "action_client": ("asks for the action", "action", "ActionClient"),
+    "action_server": ("serves the action", "action", "ActionServer"),
 }
+"""For each role of an endpoint: a verb, a noun, and what makes such an endpoint."""
 _MATCHING_QOS = {
     Qos.DEFAULT: (
         "Write the queue depth 10 instead of a QoS profile. The QoS is then reliable and volatile, like that of the "
@@ -53,7 +54,7 @@ def _wanted(evidence: Evidence, role: str) -> Mapping[str, str]:
 
 def endpoint_name(role: str) -> Mistake:
     """Return the mistake of an endpoint with a wrong name: the expected name is missing, and another one exists."""
-    verb, noun = WORDS[role]
+    verb, noun, maker = WORDS[role]
 
     def strange_and_missing(evidence: Evidence) -> tuple[str, str] | None:
         wanted = _wanted(evidence, role)
@@ -72,6 +73,7 @@ def endpoint_name(role: str) -> Mistake:
         "equal. If `~/` or a namespace stands before the name, your code or your launch file adds it: remove it "
         "there.",
         certain=True,
+        uses=(maker,),
     )
 
 
@@ -90,6 +92,7 @@ def message_type(role: str) -> Mistake:
         "connected.",
         "Import and use {0[5]} from {0[3]}.{0[4]}.",
         certain=True,
+        uses=WORDS[role][2:],
     )
 
 
@@ -110,6 +113,18 @@ def qos_mismatch(role: str) -> Mistake:
         )
 
     return Mistake("qos_mismatch", recognize, certain=True)
+
+
+NOT_LATCHED = (
+    "Your publisher does not store its last message, so a subscriber that joins later receives nothing.",
+    "Pass QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL) to create_publisher instead of 10.",
+)
+"""The two texts about a publisher for which :func:`is_not_latched` is true."""
+
+
+def is_not_latched(seen: Part, _: Part | None = None) -> bool:
+    """Return True if the judge asked for the last message of a publisher that does not store it."""
+    return any(event.data["policy"] == "durability" for event in seen.of("mismatch"))
 
 
 def servers(part: Part) -> int:

@@ -53,7 +53,7 @@ def _known(key: str, evidence: Evidence) -> Advice | None:
     if row is None or row.key == UNNAMED:
         said = [line for part in evidence for line in part.said() if "await_or_execute" not in line]
         traceback, row = "", known_errors.recognized("\n".join(said), "terminal")
-    return Advice(row.means, row.do, traceback) if row is not None and row.key == key else None
+    return Advice(row.means, row.do, traceback, uses=row.uses) if row is not None and row.key == key else None
 
 
 def _row(traceback: str, evidence: Evidence) -> KnownError | None:
@@ -62,17 +62,14 @@ def _row(traceback: str, evidence: Evidence) -> KnownError | None:
     return known_errors.recognized(traceback, "program", here, owner(traceback))
 
 
-def _meaning(traceback: str) -> tuple[str, str]:
-    """Return what an exception means and the next step; the meaning is empty if the message itself says it."""
-    row = known_errors.recognized(traceback, "program", owner=owner(traceback))
-    if row is not None:
-        return row.means, row.do
+def _usual_step(traceback: str) -> str:
+    """Return the next step after an exception that the table of known errors does not contain."""
     if _FRAME.search(traceback):
-        return "", (
+        return (
             "Read the traceback from the bottom. The last line says what went wrong; the lines above it say where. "
             "Correct the line that is in your code."
         )
-    return "", (
+    return (
         "This error was raised inside ROS. Look at what your code passes to ROS: at each create_... and each spin, "
         "compare the types, names and methods, and their order, with the lab's text."
     )
@@ -95,8 +92,10 @@ def raised(how: str, traceback: str, next_step: str = "") -> Advice:
         how: The beginning of the sentence for the student: what the exception ended or prevented.
         next_step: What to do now; by default the advice that fits such an exception.
     """
-    why, usual = _meaning(traceback)
-    return Advice(f"{how}: {what_and_where(traceback)}{why and f'. {why}'}", next_step or usual, traceback)
+    row = known_errors.recognized(traceback, "program", owner=owner(traceback))
+    why, do, uses = (row.means, row.do, row.uses) if row else ("", _usual_step(traceback), ())
+    text = f"{how}: {what_and_where(traceback)}{why and f'. {why}'}"
+    return Advice(text, next_step or do, traceback, uses=uses)
 
 
 _EXECUTOR = "rclpy/executors.py"

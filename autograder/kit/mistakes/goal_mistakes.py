@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 from autograder.kit.goal_reports import (
     ABORTED,
     LATE,
-    MANY_REQUESTS,
     NO_GOAL,
     NOT_AWAITED,
     NOT_ENDED,
@@ -25,7 +24,7 @@ from autograder.kit.goal_reports import (
     said_of_result,
     unshown_feedback,
 )
-from autograder.kit.mistakes.crashes import meant, on_purpose, what_and_where
+from autograder.kit.mistakes.crashes import meant, on_purpose
 from autograder.kit.model import Advice, Mistake, mistake
 from autograder.kit.reported_texts import mentions, not_filled_in
 
@@ -102,24 +101,12 @@ RESULT_OF_REJECTED_GOAL = mistake(
 )
 
 
-def crashed_by_refusal(evidence: Evidence) -> Advice | None:
-    """Return advice if the client goes on after its goal was rejected, until an exception stops it.
-
-    If the client has such an exception in another part, too, the refusal is not the cause, so None is returned.
-    """
+def crashed_by_refusal(evidence: Evidence) -> bool:
+    """Return True if an exception stops the client only in the run in which its goal is rejected."""
     crashed = [part for part in evidence if part.traceback and not on_purpose(part.traceback)]
-    if [part.name for part in crashed] != [REFUSED]:
-        return None
-    return Advice(
-        "The goal was rejected, but your client went on as if it had been accepted, until an exception stopped it: "
-        f"{what_and_where(crashed[0].traceback)}",
-        "Check `accepted` of the goal handle as soon as the answer to the goal has arrived. If it is False, report "
-        "what the task asks for, and end: there is no result to wait for.",
-        crashed[0].traceback,
-    )
+    return [part.name for part in crashed] == [REFUSED]
 
 
-CRASHED_BY_REFUSAL = Mistake("refused_goal_used", crashed_by_refusal)
 STAYS_AFTER_REFUSAL = mistake(
     "never_ended",
     lambda evidence: refused_as_seen(evidence) == NOT_ENDED,
@@ -166,21 +153,6 @@ RESULT_NOT_REQUESTED = mistake(
     lambda evidence: asked_for(evidence.part(LATE)) and not evidence.part(LATE).first("result_request"),
     "Your client sent its goal, but never requested the result.",
     "Call get_result_async() of the goal handle after the goal was accepted, and wait for the future that it returns.",
-)
-
-
-def _asks_again_and_again(evidence: Evidence) -> int:
-    asked = len(evidence.main.of("result_request"))
-    return asked if asked > MANY_REQUESTS else 0
-
-
-RESULT_REPEATED = mistake(
-    "result_repeated",
-    _asks_again_and_again,
-    "Your client requested the result of one goal {} times.",
-    "Request the result once, when the goal is accepted, and wait for the future that get_result_async() returns. If "
-    "a timer checks whether the result has arrived, call cancel() on the timer when it has.",
-    certain=True,
 )
 
 

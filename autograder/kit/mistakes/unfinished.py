@@ -115,7 +115,7 @@ def _not_written(evidence: Evidence) -> str:
     wanted = evidence.reference.interface
     missing = (
         f"{verb} {name}"
-        for role, (verb, _) in WORDS.items()
+        for role, (verb, *_) in WORDS.items()
         for name in sorted(wanted.get(role, {}).keys() - part.endpoints(role))
     )
     return next(missing, "") if nodes or returned_silently else ""

@@ -338,10 +338,6 @@ def _mixed_up(seen: GoalsSeen) -> str:
     return next(iter([*((one.slip or one.fault) for one in wrong), *others]), "")
 
 
-def _not_succeeded(seen: GoalsSeen) -> bool:
-    return not traceback_of(seen.evidence) and any(one.status == ABORTED for one in seen.good)
-
-
 def _result_never_filled(seen: GoalsSeen) -> object:
     results = [one.result for one in seen.good if one.status == SUCCEEDED]
     is_empty = results and not any(value for result in results for value in result.values())
@@ -371,11 +367,6 @@ def _cancel_not_read(seen: GoalsSeen) -> bool:
     hangs = any(one.accepted and not one.over for one in seen.good)
     long = seen.canceled[0]
     return not (long.cancel_accepted or long.is_quick or hangs) and long.unread >= UNREAD
-
-
-def _cancel_ignored(seen: GoalsSeen) -> str:
-    long = seen.canceled[0]
-    return status_text(long.status) if long.cancel_accepted and long.status != CANCELED else ""
 
 
 IN_EXECUTE = (
@@ -422,14 +413,6 @@ ALONE: tuple[Row, ...] = (
         True,
     ),
     (
-        "goal_not_succeeded",
-        _not_succeeded,
-        "The goal ended as ABORTED (6) although the work was done. Either the execute callback called abort(), or it "
-        "returned without calling succeed(); rclpy then aborts the goal.",
-        "Call succeed() of the goal handle before you return the result. Call abort() only if the work has failed.",
-        True,
-    ),
-    (
         "field_typo",
         _result_never_filled,
         "The goals succeed, but the result is empty: its field {0[1][0]} was never filled.",
@@ -468,14 +451,6 @@ ALONE: tuple[Row, ...] = (
         "is busy with the execute callback.",
         "Spin the node with a MultiThreadedExecutor, as in rclpy.spin(your_node, executor=MultiThreadedExecutor()), so "
         "that another thread can read the cancel request.",
-        False,
-    ),
-    (
-        "cancel_ignored",
-        _cancel_ignored,
-        "Your server accepted the cancel request, but the goal was not canceled (status {}).",
-        "In each turn of the loop, check is_cancel_requested of the goal handle. If it is True, call canceled() of the "
-        "goal handle and return the result so far.",
         False,
     ),
 )

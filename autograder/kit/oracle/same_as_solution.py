@@ -16,13 +16,13 @@ from typing import TYPE_CHECKING, Any
 from autograder.kit.counterparts import Qos
 from autograder.kit.draft import Draft
 from autograder.kit.mistakes import unfinished
+from autograder.kit.mistakes.common_mistakes import NOT_LATCHED, is_not_latched
 from autograder.kit.model import Advice, Mistake, Pace
 from autograder.kit.oracle.action_server import IN_EXECUTE
 from autograder.kit.oracle.goal_sender import GoalSender
 from autograder.kit.oracle.outputs import Kind, Output
-from autograder.kit.oracle.steps import Goal, Serves, Sets, Step, parameter_value
+from autograder.kit.oracle.steps import Goal, Serves, Sets, Step, To, parameter_value
 from autograder.kit.recipes.own_scenario import ENDPOINTS, QUIET, Met, OwnScenario, meet
-from autograder.kit.recipes.relay import To
 
 if TYPE_CHECKING:
     from autograder.kit.evidence import Evidence, Part, Reference
@@ -165,6 +165,8 @@ class SameAsSolution:
             for name, paths in outputs.items()
         ]
         self._draft = Draft(exercise_id, title, task, _Drawn(self._scenario, self._outputs, roles))
+        if late_after:
+            self._draft.knows("not_latched", is_not_latched, *NOT_LATCHED, certain=True)
         for output in self._of(Kind.PARAMETER):
             self._draft.knows(
                 "parameter_not_declared",

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from random import Random  # noqa: TC003  (an alias of types needs it)
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from autograder.kit.in_words import counted
 from autograder.kit.outcomes import STATUS, all_goals
 from autograder.kit.recipes.own_scenario import pick
-from autograder.kit.recipes.relay import To
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Container, Mapping, Sequence
@@ -20,6 +19,18 @@ if TYPE_CHECKING:
 
 TYPES = {1: "bool", 2: "integer", 3: "double", 4: "string"}
 """The types of parameters (rcl_interfaces/msg/ParameterType.msg)."""
+
+
+class To(NamedTuple):
+    """An input for one of several topics and services.
+
+    Attributes:
+        name: The name of the topic or service, such as ``"/left"``.
+        value: The value of the field ``data``; a dictionary is a whole message or request.
+    """
+
+    name: str
+    value: Any
 
 
 @dataclass(frozen=True)

@@ -328,7 +328,6 @@ def unserved(bench: Bench, _: Part) -> None:
 
 
 _WHAT_IS_SAID = (
-    goals.CRASHED_BY_REFUSAL,
     goals.RESULT_OF_REJECTED_GOAL,
     goals.RESULT_NOT_REQUESTED,
     goals.RESULT_NOT_REPORTED,
@@ -399,7 +398,6 @@ def sends_goals() -> ActionClient:
         unfinished.USAGE_MESSAGE,
         WAIT.too_short(),
         goals.ENDED_TOO_EARLY,
-        goals.RESULT_REPEATED,
         WAIT.for_nobody(),
         WAIT.patience_not_kept(),
         WAIT.for_ever(),

@@ -8,11 +8,10 @@ function, and each common wrong answer as a variant of this function.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import partial, reduce
+from functools import reduce
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any
 
 from autograder.kit.counterparts import Qos
 from autograder.kit.draft import OWN, OWN_LATE, Draft, SeenAsItIs
@@ -26,7 +25,7 @@ from autograder.kit.rules import got_through, in_words, same
 from autograder.kit.runners import processes
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator, Mapping, Sequence
 
     from autograder.kit.counterparts import ActionCaller, Caller, Speaker
     from autograder.kit.evidence import Evidence, Part
@@ -389,30 +388,12 @@ class Declared:
         self._draft.knows(key, lambda seen, _: found(seen), says, next_step, certain=certain)
 
 
-Function = TypeVar("Function", bound=Callable[..., Any])
-
-
-def variant(right: Function, changed: Function | Mapping[str, Any]) -> Function | partial[Any]:
-    """Return a wrong function: ``changed`` itself, or ``right`` with other values for some of its arguments."""
-    return partial(right, **changed) if isinstance(changed, Mapping) else changed
-
-
-def fields(seen: Part, kind: str) -> list[Mapping[str, Any]]:
-    """Return the fields of each event of a kind."""
-    return [event.data["fields"] for event in seen.of(kind)]
-
-
-def picked(seen: Part, kind: str, path: str) -> list[Any]:
-    """Return the value of one field of each event of a kind."""
-    return [pick(one, path) for one in fields(seen, kind)]
-
-
 def pick(fields: Any, path: str) -> Any:
-    """Return the value of a field, given by its path, such as ``"pose.position.x"``."""
+    """Return the value of a field, given by its path, such as ``"pose.position.x"``.
+
+    A question mark at the end, as in ``"message?"``, asks only whether there is a value that is not empty, 0 or false.
+    """
+    if path.endswith("?"):
+        value = pick(fields, path[:-1])
+        return bool(value.strip() if isinstance(value, str) else value)
     return reduce(lambda part, key: part[key], path.split("."), fields)
-
-
-def put(fields: dict[str, Any], path: str, given: Any) -> None:
-    """Set the value of a field, given by its path."""
-    *above, last = path.split(".")
-    reduce(lambda part, key: part.setdefault(key, {}), above, fields)[last] = given

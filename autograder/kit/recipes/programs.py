@@ -270,8 +270,6 @@ class Programs:
             wrong = _Wrong(program)
             for mistake in (copied, *program.node.mistakes, *late):
                 yield replace(mistake, recognize=partial(wrong.recognize, mistake))
-        for program in self._programs:
-            yield Mistake("ignores_ctrl_c", partial(_ignores_ctrl_c, program))
 
     def _another_program(self, evidence: Evidence) -> Advice | None:
         """Return advice if a program does what another program should do, and nothing of its own task."""
@@ -343,16 +341,6 @@ def _class_not_in_its_file(program: LabProgram, evidence: Evidence) -> Advice | 
         f"{file} uses the class {found['made']}, but does not contain it (NameError).",
         f"Copy your class {found['made']} into {file}, above main(), and save the file.",
         traceback,
-    )
-
-
-def _ignores_ctrl_c(program: LabProgram, evidence: Evidence) -> Advice | None:
-    if program.ending(evidence) != "went on":
-        return None
-    return Advice(
-        f"{program.name} did not end after Ctrl-C.",
-        "Ctrl-C raises KeyboardInterrupt in the line that is running. Catch it outside of your loop or of "
-        "rclpy.spin, so that main() ends.",
     )
 
 

@@ -281,6 +281,7 @@ class Hears:
                 "Call create_publisher only once, in __init__, and keep the publisher in self. Let the timer's method "
                 "publish with it.",
                 certain=True,
+                uses=("create_publisher",),
             ),
             common.everything_twice("publisher"),
             Mistake("published_before_discovery", self._published_before_discovery),
@@ -335,6 +336,7 @@ class Hears:
             f"in seconds, {_reference_period(evidence.reference):g}: with a longer one, such as "
             f"{10 * _reference_period(evidence.reference):g} or {1000 * _reference_period(evidence.reference):g}, "
             "nothing comes in the time that the judge listens.",
+            uses=("create_timer", "publish"),
         )
 
     def _wrong_rate(self, evidence: Evidence) -> Advice | None:
@@ -350,6 +352,7 @@ class Hears:
             if "unevenly" in finding.seen
             else f"The first argument of create_timer is the time between two messages in seconds ({period:g}), not a "
             "frequency. In a loop, this is the argument of sleep. Do not sleep in callbacks.",
+            uses=("create_timer",),
         )
 
     def _stopped_publishing(self, evidence: Evidence) -> Advice | None:
@@ -363,6 +366,7 @@ class Hears:
             "The task has no end: a timer has to call the method that publishes again and again. If your node has no "
             "timer, make one with create_timer. If it has one, delete the code that stops it, or that returns from "
             "the callback before it publishes.",
+            uses=("create_timer", "publish"),
         )
 
 

@@ -225,6 +225,7 @@ class Calls:
                 "Wait for the service before you call: a call that is sent earlier is lost, even if your client waits "
                 "after it. Send the request with call_async. Check whether a return or raise ends your function before "
                 "the call. A sum that you compute yourself is not the server's answer.",
+                uses=("wait_for_service", "call_async"),
             ),
             *self._about_the_sum(),
             WAIT.silent_end(certain=True),

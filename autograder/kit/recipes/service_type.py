@@ -26,13 +26,8 @@ if TYPE_CHECKING:
 
 GROUP = "rosidl_interface_packages"
 """The group in package.xml that marks a package as one that defines interfaces."""
-NEEDED = {
-    "rosidl_default_generators": ("buildtool_depend", "building the package needs the generators"),
-    "rosidl_default_runtime": ("exec_depend", "a program that uses its types needs this library"),
-}
-"""For each dependency that an interface package needs: its tag in the ROS documentation ("Creating custom msg and srv
-files", section 5) and the reason for it. The judge accepts any dependency tag.
-"""
+NEEDED = ("rosidl_default_generators", "rosidl_default_runtime")
+"""What an interface package must depend on, whatever the tag of the dependency."""
 SERVICE = "/interface_of_the_workspace"
 """The name of the service that a program of the judge serves with the student's type, so that the type is visible on
 the network.
@@ -219,20 +214,6 @@ class ServiceType(SeenAsItIs):
             "ament_package().",
         )
 
-    def _dependency_missing(self, evidence: Evidence) -> Advice | None:
-        """Return advice if everything works on this computer, but package.xml does not declare a dependency."""
-        holder = self._most_thorough(evidence)
-        undeclared = _undeclared(holder) if holder is not None else []
-        if holder is None or not undeclared:
-            return None
-        name = undeclared[0]
-        tag, reason = NEEDED[name]
-        return Advice(
-            f"package.xml of {holder.name} does not name {name}. The package works on this computer, because {name} "
-            "is installed here. On another computer it would not be installed.",
-            f"Add <{tag}>{name}</{tag}> above <export> and not inside a comment: {reason}.",
-        )
-
     @property
     def ladder(self) -> tuple[Mistake, ...]:
         """The common mistakes, most specific first."""
@@ -246,7 +227,6 @@ class ServiceType(SeenAsItIs):
             *package_mistakes.BUILD,
             *CRASHES,
             *OTHER_CRASHES,
-            Mistake("dependency_missing", self._dependency_missing, certain=True),
         )
 
 

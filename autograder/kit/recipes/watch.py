@@ -8,13 +8,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from itertools import groupby, pairwise
 from typing import TYPE_CHECKING, Any
 
 from autograder.kit.evidence import Event, Part
 from autograder.kit.in_words import counted
 from autograder.kit.model import STEP, Finding
-from autograder.kit.recipes.own_scenario import SILENCE, Declared, once_met, pick, variant
+from autograder.kit.recipes.own_scenario import SILENCE, Declared, once_met, pick
 from autograder.kit.rules import Given, in_words, reported_at, same, value
 
 if TYPE_CHECKING:
@@ -154,7 +155,7 @@ class Watch(Declared):
 
     def wrong(self, key: str, state: State | Mapping[str, Any], says: str, next_step: str) -> None:
         """Add a mistake: all messages report the states of a wrong ``state`` function. See :meth:`Relay.wrong`."""
-        wrong = variant(self._state, state)
+        wrong = partial(self._state, **state) if isinstance(state, Mapping) else state
 
         def fits(seen: Part, rule: State) -> bool:
             spans, stray = self._matched(seen, rule)

@@ -22,7 +22,14 @@ from autograder.notebook.checking.card_display import (
 )
 from autograder.notebook.checking.judge_link import CheckContext, JudgeLink, JudgeUnreachable
 from autograder.notebook.checking.subject_reports import CapturedOutput, ToldCalls
-from autograder.notebook.checking.subject_runs import PathRun, SubjectRun, Tell, is_path, send_sources
+from autograder.notebook.checking.subject_runs import (
+    PathRun,
+    SubjectRun,
+    Tell,
+    is_path,
+    own_lines_of,
+    send_sources,
+)
 from autograder.notebook.nodes.ros_session import prepare_environment
 from autograder.student import check_journal
 from autograder.verdict import Verdict, not_checked
@@ -139,6 +146,7 @@ def converse(link: JudgeLink, exercise: str, subject: Any, progress: Progress) -
         return _verdict_in(exercise, link.hear())
     if not isinstance(first, messages.Begin):
         return _verdict_in(exercise, first)
+    link.say(own_lines_of(subject))
     run: SubjectRun | PathRun | None = None
     number = 0
 

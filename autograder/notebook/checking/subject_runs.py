@@ -7,6 +7,7 @@ file is launched.
 from __future__ import annotations
 
 import inspect
+import linecache
 import os
 import threading
 import traceback
@@ -15,16 +16,19 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rclpy._rclpy_pybind11 import InvalidHandle
+from rclpy.action import ActionServer
 from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 from std_msgs.msg import Empty
 
-from autograder.messages.judge_messages import Constructed, Raised, Returned, Sources, Started
+from autograder.messages.judge_messages import Constructed, OwnLines, Raised, Returned, Sources, Started
 from autograder.messages.run_messages import Exited, Output
 from autograder.messages.workspace_messages import Source
-from autograder.notebook.cell_output import meant_name, student_frames
+from autograder.notebook.cell_output import is_students, meant_name, student_frames
+from autograder.notebook.cell_runs import functions_of, names_read
 from autograder.notebook.checking.judge_link import MAX_TEXT
 from autograder.notebook.nodes.spin_threads import SpinFailure, SpinThreads, raise_in_thread
+from autograder.own_lines import own_lines, own_lines_of_files
 from autograder.workspaces.jobs import output_lines
 from autograder.workspaces.packages import workspace_of
 from autograder.workspaces.program_processes import OwnSession
@@ -129,10 +133,17 @@ class SubjectRun:
         threads.stop(grace=END_LIMIT / 3)
 
     def _callback_raised(self, failure: SpinFailure) -> None:
-        # Report an exception in a callback as the end of the subject, because it would also end rclpy.spin in a
-        # program.
-        if not self._stopping.is_set():
-            self._tell(Raised(self._number, student_traceback(failure.error)))
+        if self._stopping.is_set():
+            return
+        shown = student_traceback(failure.error)
+        if isinstance(failure.entity, ActionServer) and student_frames(failure.error.__traceback__):
+            # In a program, rclpy prints an exception of an execute callback, aborts the goal and goes on.
+            for line in shown.splitlines():
+                self._tell(Output(self._number, line))
+            return
+        # Report an exception in any other callback as the end of the subject, because it would also end rclpy.spin in
+        # a program.
+        self._tell(Raised(self._number, shown))
 
 
 def _is_alive(node: Node) -> bool:
@@ -242,6 +253,28 @@ class PathRun:
 def is_path(subject: object) -> bool:
     """Return True if a subject is a path: a string or a ``pathlib.Path``."""
     return isinstance(subject, (str, Path))
+
+
+def own_lines_of(subject: object) -> OwnLines:
+    """Return the lines of the student's code that a card may quote: of the subject and of all that it refers to."""
+    if isinstance(subject, (str, Path)):
+        return own_lines_of_files([Path(subject)] if Path(subject).is_dir() else [])
+    sources: dict[str, str] = {}
+    waiting, done, files = [subject], set[int](), set[str]()
+    for one in waiting:
+        own = [] if id(one) in done else functions_of(one)
+        done.add(id(one))
+        for function in own:
+            file = function.__code__.co_filename
+            if not is_students(file):
+                continue
+            if file not in files:
+                place = f"the cell with {getattr(one, '__name__', '')}" if sources else "your cell"
+                sources[place] = "".join(linecache.getlines(file))
+                files.add(file)
+            waiting += [function.__globals__.get(name) for name in sorted(names_read(function))]
+        waiting += getattr(one, "__bases__", ()) if own else ()
+    return own_lines(sources)
 
 
 def send_sources(tell: Tell, subject: object) -> None:

@@ -11,6 +11,7 @@ from __future__ import annotations
 import atexit
 import functools
 import os
+import shlex
 import sys
 import threading
 import warnings
@@ -27,6 +28,7 @@ from rclpy.task import Future
 from rclpy.utilities import get_default_context, ok, try_shutdown
 
 from autograder.dds_discovery import DOMAIN_VARIABLE, DomainClaim, claim_free_domain, domain_from_environment
+from environment.python_child import python_child
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -37,6 +39,7 @@ if TYPE_CHECKING:
 
 
 _CHECK_FIELDS = "ROS_PYTHON_CHECK_FIELDS"
+_EXPLAIN = shlex.join(python_child("-m", "autograder.known_errors").command)
 
 _DEFAULTS = {
     # Log to stdout, because nbgrader without this package gives no points to a graded cell that wrote to stderr.
@@ -52,6 +55,10 @@ _DEFAULTS = {
     # Make `colcon build` in a cell use the build type of a check, as environment/activate.sh does in a terminal.
     # Otherwise, a check cannot use what it has built, and builds it again.
     "CMAKE_BUILD_TYPE": "Release",
+    # A function that bash inherits and calls if it does not find a command: it adds what is known about the command.
+    "BASH_FUNC_command_not_found_handle%%": (
+        f'() {{ echo "bash: $1: command not found" >&2; {_EXPLAIN} "$1"; return 127; }}'
+    ),
 }
 _DISCOVERY_VARIABLES = ("ROS_AUTOMATIC_DISCOVERY_RANGE", "ROS_LOCALHOST_ONLY")
 

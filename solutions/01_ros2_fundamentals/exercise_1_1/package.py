@@ -66,6 +66,14 @@ def other_names(evidence: Evidence) -> str:
     return "" if _named(files) else ", ".join(files)
 
 
+def not_installed(evidence: Evidence) -> str:
+    """The beginning of a sentence about a build that has not installed the launch file; empty if it has."""
+    files = _misplaced(evidence, "found")
+    if files is None:
+        return ""
+    return f"The package has {files[0]}, but the build" if files else "The build"
+
+
 MISTAKES = (
     Mistake("package_name", lambda evidence: package_name(evidence, PACKAGE), certain=True),
     mistake(
@@ -85,8 +93,8 @@ MISTAKES = (
     ),
     mistake(
         "launch_not_installed",
-        lambda evidence: _misplaced(evidence, "built") is not None,
-        f"The build does not install {SHOWN}: `ros2 launch` finds only what the build has put into share/{PACKAGE}.",
+        not_installed,
+        f"{{}} does not install {SHOWN}: `ros2 launch` finds only what the build has put into share/{PACKAGE}.",
         f"The file belongs in the folder ros2_ws/src/{PACKAGE}/launch. The list data_files in setup.py needs one more "
         f"pair: the folder {FOLDER}, and a list with the path of the file, seen from the folder of the package. A "
         "pattern in glob(...) looks from there, too, and has to begin with launch/ and to match the ending of the "

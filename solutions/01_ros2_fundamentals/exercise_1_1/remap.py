@@ -109,13 +109,6 @@ remap.knows(
     "topic of each node.",
     certain=True,
 )
-remap.knows(
-    "someone_stayed",
-    lambda seen, _: seen.topic in seen.publishers & seen.subscriptions and ", ".join(seen.elsewhere),
-    "Both ends are on {seen.topic}, but something is still on {}.",
-    "Start each of the two programs once, each with its remapping.",
-    certain=True,
-)
 
 
 def missing(seen: Launched, _: Launched) -> tuple[str, str] | None:

@@ -10,7 +10,7 @@ from autograder.kit import service_calls
 from autograder.kit.draft import Draft
 from autograder.kit.model import Finding
 from autograder.kit.recipes.service_client import Calls
-from autograder.kit.service_calls import BIASED, ClientSeen, answers, pair, requests
+from autograder.kit.service_calls import ClientSeen, requests
 
 recipe = Calls(2, wanted="first a + b, then that answer + c")
 adder = Draft(
@@ -34,16 +34,6 @@ adder.asks("late", 1, "Waits for a service that comes late", recipe.waits)
 adder.asks("limit", 1, "Ends clearly when there is no service", service_calls.gives_up_in_time)
 
 
-def first_answer_ignored(seen: ClientSeen, _: ClientSeen) -> tuple[int, ...] | None:
-    """Return the first answer and the numbers of the second call, if only the first call is right."""
-    part = seen.evidence.part(BIASED)
-    made, sums = list(map(pair, requests(part))), answers(part)
-    if len(made) < 2 or not sums or made[0] != sorted(part.inputs["numbers"][:2]):
-        return None
-    # With another sign it is used, but wrongly.
-    return None if abs(sums[0]) in map(abs, made[1]) else (sums[0], *made[1])
-
-
 def called_less(seen: ClientSeen, expected: ClientSeen) -> str:
     """Return in words how often a client called that ended by itself before its second call."""
     part = next((p for p in seen.served if p.ending and len(requests(p)) < expected.calls), None)
@@ -52,15 +42,6 @@ def called_less(seen: ClientSeen, expected: ClientSeen) -> str:
     return "once" if requests(part) else "not at all"
 
 
-adder.knows(
-    "first_answer_ignored",
-    first_answer_ignored,
-    "The service answered {0[0]} to the first call, but your second call does not use that answer: it asks for {0[1]} "
-    "+ {0[2]}.",
-    "Put what the service answered first into the second call, and add nothing up yourself. In a notebook, that is "
-    "what the first `ask` returned.",
-    certain=True,
-)
 adder.knows(
     "one_call_only",
     called_less,

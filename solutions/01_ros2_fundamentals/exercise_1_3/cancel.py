@@ -259,10 +259,8 @@ MISTAKES = (
         )
         for when, counts in (("early", range(FIRST)), ("late", range(LAST + 1, sys.maxsize)))
     ),
-    goal_mistakes.RESULT_REPEATED,
     only_if_ended(NOT_REPORTED),
     NOT_REPORTED,
-    goal_mistakes.CRASHED_BY_REFUSAL,
     goal_mistakes.RESULT_OF_REJECTED_GOAL,
     goal_mistakes.REFUSAL_NOT_REPORTED,
     goal_mistakes.STAYS_AFTER_REFUSAL,
@@ -286,7 +284,9 @@ cancel.asks("once", 1, "Sends one request at that moment", unless("one request a
 cancel.asks(
     "late_feedback", 1, "Sends no other request when later feedback arrives", unless(AGAIN, acts_again)
 )
-cancel.asks("status", 2, "Reports how the goal really ended", unless(ENDS, unsaid))
+cancel.asks(
+    "status", 2, "Reports how the goal really ended", unless(ENDS, unsaid), uses=("get_result_async",)
+)
 cancel.asks("refused", 1, "Says when the goal is rejected", tells_of_refusal)
 
 EXERCISE = cancel.exercise(

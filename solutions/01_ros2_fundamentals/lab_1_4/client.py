@@ -14,7 +14,7 @@ client = Draft(
 )
 client.asks("goal", 2, "Sends one goal of the given order", goal_reports.sends_the_goal)
 client.asks("feedback", 2, "Shows each feedback message", goal_reports.shows_feedback)
-client.asks("result", 2, "Reports the result", goal_reports.reports_the_result)
+client.asks("result", 2, "Reports the result", goal_reports.reports_the_result, uses=("get_result_async",))
 client.asks("refused", 1, "Says when the goal is rejected", goal_reports.returns_nothing_of_a_refused_goal)
 client.asks("aborted", 1, "Says when the goal is aborted", goal_reports.tells_of_abort)
 client.asks("late", 1, "Waits for a server that comes late", goal_reports.waits_for_the_server)

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import json
 from typing import TYPE_CHECKING
 
 import pytest
 
+from autograder.kit.counterparts import Qos
 from autograder.kit.draft import Draft
 from autograder.kit.evidence import Evidence, Reference
 from autograder.kit.quests.quest import Quest
@@ -47,7 +49,10 @@ def robots(random: Random) -> dict[str, Robot]:
         drawn[name] = Robot(
             answer={"robot": called, "topic": topic},
             nodes={
-                f"/{called}/camera": {"publishes": {f"/{called}/image": "std_msgs/msg/String"}},
+                f"/{called}/camera": {
+                    "publishes": {f"/{called}/image": "std_msgs/msg/String"},
+                    "qos": Qos.SENSOR,
+                },
                 motors: {"subscribes": {topic: "geometry_msgs/msg/Twist"}},
             },
             late=[motors] if name == "late" else [],
@@ -65,6 +70,7 @@ def test_a_program_finds_what_the_judge_drew(bench_of: BenchOf, program: str, po
     with bench_of(program, reference) as bench:
         quest.scenario(bench)
         evidence = Evidence(bench.parts, reference)
+    json.dumps([part.inputs for part in evidence])  # as kept evidence needs
     judged = draft.exercise().criteria
     assert [part.name for part in evidence] == ["there", "late"]
     assert sum(criterion.points for criterion in judged if criterion.judge(evidence).passed) == points

@@ -6,11 +6,19 @@ import pytest
 
 from autograder.authoring.answer_bank import answers
 from autograder.judge import evidence_files
-from autograder.judge.timeline.parting_point import parting_point
+from autograder.judge.timeline.parting_point import (
+    LONGEST_LINE,
+    PartingPoint,
+    claimed,
+    own_lines_in_words,
+    parting_point,
+)
 from autograder.kit.evidence import Event, Evidence, Part, Reference
+from autograder.messages.judge_messages import OwnLine
 from tests.measure import evidence as kept_evidence
 
 ACTION = "/fibonacci"
+REFERENCE = Reference("x", {})
 
 
 def _goal(order: int, feedback: int, *, status: int = 4, accepted: bool = True) -> list[Event]:
@@ -23,10 +31,18 @@ def _goal(order: int, feedback: int, *, status: int = 4, accepted: bool = True) 
     return [sent, Event(0.1, "goal_answer", ACTION, {"goal": 0, "accepted": accepted}), *told, ended]
 
 
-def _parted(mine: list[Event], reference: list[Event]) -> str:
+def _point(mine: list[Event], reference: list[Event]) -> PartingPoint | None:
     return parting_point(
         Evidence([Part("goals", {}, mine)], Reference("x", {}, [Part("goals", {}, reference)]))
     )
+
+
+def _parted(mine: list[Event], reference: list[Event]) -> str:
+    return _text(_point(mine, reference))
+
+
+def _text(point: PartingPoint | None) -> str:
+    return point.text if point else ""
 
 
 def test_a_run_of_the_same_kinds_does_not_part() -> None:
@@ -73,6 +89,31 @@ def test_feedback_that_overtakes_the_answer_to_its_goal_is_no_difference() -> No
     assert _parted([sent, first, answer, *rest], _goal(4, 3)) == ""
 
 
+@pytest.mark.parametrize(
+    ("mine", "lines", "says"),
+    [
+        (_goal(4, 0), ["succeed"], "No line of your cell uses `publish_feedback`."),
+        (_goal(4, 4), ["publish_feedback"], "Line 1 of your cell: `it.publish_feedback()`."),
+        (_goal(4, 3, status=6), ["abort", "succeed"], "Line 1 of your cell: `it.abort()`."),
+        (_goal(4, 3, status=6), ["other"], "No line of your cell uses `succeed`."),
+        (_goal(4, 3)[:-1], ["succeed"], "Line 1 of your cell: `it.succeed()`."),
+    ],
+)
+def test_the_students_line_that_causes_the_first_difference_is_quoted(
+    mine: list[Event], lines: list[str], says: str
+) -> None:
+    point = _point(mine, _goal(4, 3))
+    assert point is not None
+    own = [OwnLine(name, "your cell", number, f"it.{name}()") for number, name in enumerate(lines, 1)]
+    assert own_lines_in_words(Evidence([Part("x", {}, claimed(point.causes, own))], REFERENCE)) == says
+
+
+def test_a_claimed_line_is_cut_and_cannot_end_its_quotation() -> None:
+    line = OwnLine("publish", "`your cell`", 7, "`" + "x" * 1000)
+    (event,) = claimed([["publish"]], [line])
+    assert event.data == {"place": "'your cell'", "number": 7, "text": "'" + "x" * (LONGEST_LINE - 1)}
+
+
 def _talking(texts: list[str]) -> Part:
     events = [
         Event(0.5 * n, "message", "/chatter", {"fields": {"data": text}}, sim=0.5 * n)
@@ -91,12 +132,12 @@ def _talking(texts: list[str]) -> Part:
 )
 def test_a_message_that_does_not_come_is_told_with_the_one_that_is_due(texts: list[str], says: str) -> None:
     reference = Reference("x", {}, [_talking(["0", "1", "2", "3"])])
-    assert says in parting_point(Evidence([_talking(texts)], reference))
+    assert says in _text(parting_point(Evidence([_talking(texts)], reference)))
 
 
 def test_a_topic_on_which_much_came_says_nothing_of_its_end() -> None:
     reference = Reference("x", {}, [_talking(["0", "1", "2", "3", "4"])])
-    assert parting_point(Evidence([_talking(["0", "1", "2"])], reference)) == ""
+    assert parting_point(Evidence([_talking(["0", "1", "2"])], reference)) is None
 
 
 def test_hardly_a_right_answer_of_the_bank_parts() -> None:

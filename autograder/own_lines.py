@@ -1,0 +1,107 @@
+"""Finds the lines of a student's code that use a name, such as ``publish``, so that a card can point at them.
+
+The code is only read, never run, and only in a process of the student: a notebook's kernel, or for a program
+``python -m autograder.own_lines FILE…``. The judge takes the result as a claim, which no point depends on.
+"""
+
+from __future__ import annotations
+
+import ast
+import sys
+from collections import defaultdict
+from contextlib import suppress
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import msgspec
+
+from autograder.messages.judge_messages import OwnLine, OwnLines
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
+
+MOST_OF_A_NAME = 3
+"""The maximum number of lines for each name in each source. A card shows at most two of them."""
+MOST_NAMES = 500
+"""The maximum number of names. If the code uses more, no lines are reported: a part could be taken for the whole."""
+MOST_FILES = 30
+"""The maximum number of files that are read in a workspace."""
+LONGEST_SOURCE = 200_000
+"""The maximum length of a source, in characters. Longer code is not read."""
+LONGEST_LINE = 120
+"""The maximum length of a quoted line, in characters."""
+
+
+def own_lines(sources: Mapping[str, str]) -> OwnLines:
+    """Return the lines that use a name, for each name that stands after a dot or is called.
+
+    ``def tick`` and ``count =`` are names, too, of the lines that define the function and that set the variable.
+
+    Args:
+        sources: The student's code, by its place, such as ``your cell``. The first source defines what is checked.
+            If this code calls a function of another one, as a tool, the line of the call counts as the line that uses
+            what the tool uses: the tool may have been given, and the student may not have to change it.
+    """
+    lines: dict[str, list[OwnLine]] = defaultdict(list)
+    for place, text in sources.items():
+        try:
+            tree = ast.parse(text if len(text) <= LONGEST_SOURCE else "")
+        except (SyntaxError, ValueError, RecursionError, MemoryError):
+            continue  # the card shows this error
+        tools = {name: list(found) for name, found in lines.items()}
+        for statement in ast.walk(tree):
+            if isinstance(statement, ast.FunctionDef) and statement.name in tools:
+                for name in {name for name, _ in _uses(statement, text)} - set(tools):
+                    lines[name] += [msgspec.structs.replace(one, name=name) for one in tools[statement.name]]
+        for name, (number, quote) in _uses(tree, text):
+            if sum(line.place == place for line in lines[name]) < MOST_OF_A_NAME:
+                lines[name].append(OwnLine(name, place, number, quote))
+    if len(lines) > MOST_NAMES:
+        return OwnLines([])
+    return OwnLines([line for found in lines.values() for line in found])
+
+
+def _uses(tree: ast.AST, text: str) -> Iterator[tuple[str, tuple[int, str]]]:
+    """Yield each name that a statement uses, with the number and text of the line, in the order of the code."""
+    lines = text.splitlines()
+    statements = [one for one in ast.walk(tree) if isinstance(one, ast.stmt)]
+    for statement in sorted(statements, key=lambda one: one.lineno):
+        if isinstance(statement, ast.FunctionDef | ast.AsyncFunctionDef):
+            yield f"def {statement.name}", (statement.lineno, _quote(lines[statement.lineno - 1 :][:1]))
+        # The statements inside of this one, as in the body of a loop, come by themselves.
+        own = [one for one in ast.iter_child_nodes(statement) if isinstance(one, ast.expr | ast.withitem)]
+        used = [node for one in own for node in ast.walk(one)]
+        end = max((node.end_lineno or 0 for node in used if isinstance(node, ast.expr)), default=0)
+        quote = _quote(lines[statement.lineno - 1 : end])
+        for name in dict.fromkeys(filter(None, map(_name, used))):
+            yield name, (statement.lineno, quote)
+
+
+def _quote(lines: Sequence[str]) -> str:
+    return " ".join(" ".join(lines).split())[:LONGEST_LINE]
+
+
+def _name(node: ast.AST) -> str:
+    if isinstance(node, ast.Attribute):
+        return node.attr
+    if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store):
+        return f"{node.id} ="
+    return node.func.id if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) else ""
+
+
+def files_of(path: Path) -> list[Path]:
+    """Return a Python file, or the first Python files of a workspace's packages."""
+    return sorted(path.glob("src/**/*.py"))[:MOST_FILES] if path.is_dir() else [path]
+
+
+def own_lines_of_files(paths: Iterable[Path]) -> OwnLines:
+    """Return the lines of Python files and workspaces. A file that cannot be read has no lines."""
+    sources = {}
+    for file in (file for path in paths for file in files_of(path)):
+        with suppress(OSError):
+            sources[file.name] = file.read_text(encoding="utf-8", errors="replace")
+    return own_lines(sources)
+
+
+if __name__ == "__main__":
+    sys.stdout.buffer.write(msgspec.json.encode(own_lines_of_files(map(Path, sys.argv[1:]))))
