@@ -10,7 +10,7 @@ import re2
 from autograder.kit.evidence import INTERRUPTED
 from autograder.kit.giving_up import remark
 from autograder.kit.mistakes.client_waits import Wait
-from autograder.kit.model import Finding
+from autograder.kit.model import Finding, unless
 from autograder.kit.outcomes import Outcome
 from autograder.kit.reported_texts import mentions, said_first_after
 
@@ -236,11 +236,9 @@ def aborted_as_seen(evidence: Evidence) -> str:
 # --- criteria -----------------------------------------------------------------------------------------------
 
 
-def sends_the_goal(evidence: Evidence) -> Finding:
-    """Decide whether the client sends one goal in each run, with the order that it was given."""
-    wrong = goals_as_seen(evidence)
-    expected = "one goal of the given order, in each run"
-    return Finding(not wrong, expected, wrong or expected)
+_ONE_GOAL = "one goal of the given order, in each run"
+sends_the_goal = unless(_ONE_GOAL, goals_as_seen, _ONE_GOAL)
+"""Decides whether the client sends one goal in each run, with the order that it was given."""
 
 
 def shows_feedback(evidence: Evidence) -> Finding:
@@ -280,10 +278,8 @@ def reports_the_result(evidence: Evidence) -> Finding:
     )
 
 
-def tells_of_refusal(evidence: Evidence) -> Finding:
-    """Decide whether the client reports a refused goal, requests no result for it, and ends."""
-    wrong = refused_as_seen(evidence)
-    return Finding(not wrong, f"says {REJECTED} and ends", wrong or "it did")
+tells_of_refusal = unless(f"says {REJECTED} and ends", refused_as_seen)
+"""Decides whether the client reports a refused goal, requests no result for it, and ends."""
 
 
 def returns_nothing_of_a_refused_goal(evidence: Evidence) -> Finding:
@@ -295,19 +291,19 @@ def returns_nothing_of_a_refused_goal(evidence: Evidence) -> Finding:
     return Finding(False, "an empty list is returned for a goal that was rejected", f"returned {returned}")
 
 
-def tells_of_abort(evidence: Evidence) -> Finding:
-    """Decide whether the client reports an aborted goal, by the name or the number of the goal's status."""
-    wrong = aborted_as_seen(evidence)
-    return Finding(not wrong, f"says {WAS_ABORTED}, or `status` and 6", wrong or "it did")
+tells_of_abort = unless(f"says {WAS_ABORTED}, or `status` and 6", aborted_as_seen)
+"""Decides whether the client reports an aborted goal, by the name or the number of the goal's status."""
 
 
-def waits_for_the_server(evidence: Evidence) -> Finding:
-    """Decide whether the client sends its goal even if the server comes late."""
+def _goal_missed(evidence: Evidence) -> str:
     part = evidence.part(LATE)
-    wrong = "" if asked_for(part) else "no goal came"
-    if not wrong and left_at_once(part):
-        wrong = NOT_AWAITED
-    return Finding(not wrong, "waits, then sends its goal", wrong or "it did")
+    if not asked_for(part):
+        return "no goal came"
+    return NOT_AWAITED if left_at_once(part) else ""
+
+
+waits_for_the_server = unless("waits, then sends its goal", _goal_missed)
+"""Decides whether the client sends its goal even if the server comes late."""
 
 
 ends_without_a_server = WAIT.gives_up

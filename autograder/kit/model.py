@@ -139,6 +139,31 @@ def mistake(
     return Mistake(key, recognize, certain)
 
 
+def unless(
+    expected: str, wrong: Callable[[Evidence], str], right: str = "it did"
+) -> Callable[[Evidence], Finding]:
+    """Return a function that decides a criterion: it is met unless something is wrong.
+
+    Args:
+        expected: The expected behavior in words for the card.
+        wrong: Returns what is wrong, in words; empty if nothing is.
+        right: The observed behavior in words if nothing is wrong.
+
+    Example::
+
+        def too_many(evidence: Evidence) -> str:
+            return f"{count} calls" if (count := len(evidence.main.of("request"))) > 1 else ""
+
+        client.asks("once", 2, "Calls once", unless("at most one call", too_many))
+    """
+
+    def judge(evidence: Evidence) -> Finding:
+        seen = wrong(evidence)
+        return Finding(not seen, expected, seen or right)
+
+    return judge
+
+
 class Bench(Protocol):
     """The methods with which a scenario is written. Each wait has a time limit, and returns whether it ended before."""
 

@@ -42,7 +42,7 @@ RECIPES: dict[str, Recipe[Any]] = {
     "Hears": HEARS,
     "Speaks": Speaks(pace=0.5, paced_by="a timer"),
     "Asks": Asks(lambda _: [], lambda _: {}),
-    "Calls": Calls(1, lambda _: [], [], wanted=""),
+    "Calls": Calls(1, wanted=""),
     "SendsGoals": SendsGoals(lambda _: None, lambda seen: GoalsSeen(seen, [], [], [], [], [], [], [], None)),
     "ActionClient": ActionClient(lambda _: None),
     "Program": Program("my_robot_pkg", "simple_node", "a program"),

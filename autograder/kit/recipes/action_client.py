@@ -174,8 +174,8 @@ def _meets_late_server(
     return works_on_a_goal(bench, server, "succeeded", FEEDBACKS, shown_within[bench.pace])
 
 
-def _meets_server(
-    bench: Bench, begin_it: Callable[[], object], *, accept: bool = True, prepared: bool = False
+def meets_server(
+    bench: Bench, begin_it: Callable[[], object], *, prepared: bool = False, late: float = 0.0, **how: Any
 ) -> ActionCounterpart:
     """Start the subject, and its server once the judge has discovered the subject. Return the server.
 
@@ -183,14 +183,16 @@ def _meets_server(
     client that ends at once reaches the judge.
 
     Args:
-        accept: True to accept goals, False to refuse them.
         prepared: True to start the server before the subject.
+        late: The delay of the server in seconds, once the subject is there.
+        how: How the server answers: see :meth:`autograder.kit.model.Bench.serve_action`.
     """
     action, type_name = bench.reference.only("action_client")
-    server = bench.serve_action(action, type_name, accept_goal=accept) if prepared else None
+    server = bench.serve_action(action, type_name, **how) if prepared else None
     begin_it()
-    bench.await_endpoint("action_client", action)
-    return server or bench.serve_action(action, type_name, accept_goal=accept)
+    if bench.await_endpoint("action_client", action) and late:
+        bench.let_wait(late)
+    return server or bench.serve_action(action, type_name, **how)
 
 
 def aborted(bench: Bench, first: Part) -> None:
@@ -200,7 +202,7 @@ def aborted(bench: Bench, first: Part) -> None:
     inputs = _begin(bench, ABORTED)
 
     def meet() -> bool:
-        server = _meets_server(bench, lambda: _start(bench, inputs), prepared=needs_no_search(bench, first))
+        server = meets_server(bench, lambda: _start(bench, inputs), prepared=needs_no_search(bench, first))
         return works_on_a_goal(bench, server, "aborted", 1, HASTE[bench.pace])
 
     meets_present(bench, meet, "goal", known=bool(first.of("goal")))
@@ -304,7 +306,7 @@ def refuse(
         return may_stay and bool(REJECTED.lines(seen.main))
 
     def meet() -> bool:
-        server = _meets_server(bench, begin_it, accept=False, prepared=prepared)
+        server = meets_server(bench, begin_it, accept_goal=False, prepared=prepared)
         if server.await_goal(GOAL_LIMIT) and bench.wait_until(reported, END_LIMIT[bench.pace]):
             bench.await_end(AFTERMATH)
         return bench.await_end(0.0)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 from autograder.kit.draft import OWN, OWN_LATE
 from autograder.kit.mistakes import common_mistakes as common
@@ -32,9 +32,8 @@ LIVES_ON = (2.0, 3.0)
 
 Fields = Mapping[str, Any]
 """The fields of a request or of a response, by name."""
-Objection = Callable[[Fields, Fields | None], str]
-"""A function of a request and its answer (None for no answer) that returns in words what is wrong; empty if nothing is.
-"""
+Objection = Callable[[Fields, Fields], str]
+"""A function of a request and its answer that returns in words what is wrong; empty if nothing is."""
 
 
 @dataclass(frozen=True)
@@ -80,8 +79,12 @@ class ServerSeen:
         return common.servers(self.part)
 
     def objections(self, calls: Sequence[Event], objection: Objection) -> list[str]:
-        """Return in words what is wrong with the answers to the given calls."""
-        found = (objection(e.data["fields"], self.answers.get(int(e.data["call"]))) for e in calls)
+        """Return in words what is wrong with the answers to the given calls, or that an answer is missing."""
+        asked = [(call.data["fields"], self.answers.get(int(call.data["call"]))) for call in calls]
+        found = (
+            _unanswered(request) if answer is None else objection(request, answer)
+            for request, answer in asked
+        )
         return [words for words in found if words]
 
     def all_right(self, calls: Sequence[Event], objection: Objection, expected: str) -> Finding:
@@ -104,6 +107,10 @@ class ServerSeen:
         return Finding(bool(calls) and not wrong and not ended, expected, wrong[0] if wrong else right)
 
 
+def _unanswered(request: Fields) -> str:
+    return f"no answer to {', '.join(f'{name} = {value}' for name, value in request.items()) or 'a call'}"
+
+
 class Asks:
     """The recipe for a service server.
 
@@ -117,10 +124,10 @@ class Asks:
         adder = Draft("lab_8_1.adder", "Lab 8.1 · The adder", "Answer each request with the sum.", asks)
         adder.asks("service", 2, "Serves add_two_ints, with the right type", asks.serves)
 
-        @adder.criterion("sums", 8, "Answers with the sum")
-        def sums(seen: ServerSeen, expected: ServerSeen) -> Finding:
-            right = lambda asked, answer: "" if answer and answer["sum"] == asked["a"] + asked["b"] else "a wrong sum"
-            return seen.all_right(seen.singly, right, "the sum, for every request")
+        def wrong(request: Fields, answer: Fields) -> str:
+            return "" if answer["sum"] == request["a"] + request["b"] else "a wrong sum"
+
+        adder.asks("sums", 8, "Answers with the sum", asks.right("singly", wrong, "the sum, for every request"))
     """
 
     roles = ("service",)
@@ -177,6 +184,23 @@ class Asks:
             if raised
             else "no call was answered",
         )
+
+    def right(
+        self, calls: Literal["singly", "together", "last"], objection: Objection, expected: str
+    ) -> Callable[[Evidence], Finding]:
+        """Return a function that decides whether some of the calls were answered, and answered right.
+
+        Args:
+            calls: Which calls: those made one at a time, those made at once, or the last one.
+            objection: Returns in words what is wrong with one answer.
+            expected: The expected behavior in words for the card.
+        """
+
+        def judge(evidence: Evidence) -> Finding:
+            seen = self.seen(evidence)
+            return seen.all_right(getattr(seen, calls), objection, expected)
+
+        return judge
 
     @property
     def ladder(self) -> tuple[Mistake, ...]:

@@ -17,7 +17,7 @@ from autograder.kit.mistakes import unfinished
 from autograder.kit.mistakes.crashes import CRASHES, OTHER_CRASHES, OTHER_SLIPS
 from autograder.kit.mistakes.hangs import HANGS
 from autograder.kit.model import Advice, Bench, Finding, Mistake, mistake
-from autograder.kit.recipes.service_runs import scenario
+from autograder.kit.recipes.service_runs import drawn_runs, extreme, negative, scenario
 from autograder.kit.reported_texts import mentions
 from autograder.kit.service_calls import (
     WAIT,
@@ -35,11 +35,9 @@ from autograder.kit.service_calls import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
-    from random import Random
+    from collections.abc import Iterator, Sequence
 
     from autograder.kit.evidence import Evidence, Part
-    from autograder.kit.recipes.service_runs import Run
 
 
 class Calls:
@@ -47,43 +45,25 @@ class Calls:
 
     Args:
         calls: The number of calls of a client that has finished its work.
-        runs: Draws the runs with a service: one with a late service, one with hidden numbers added, and one with large
-            numbers.
-        kinds: Functions that each draw numbers of one kind. One of them is chosen for the run without a service.
+            The first call adds the first two numbers, each later one the answer before and the next number.
         wanted: The right calls in words, for the card.
-        right: Returns the numbers of each right call of a run, if the run has the right number of calls.
 
     Example::
 
-        def two(random: Random) -> list[int]:
-            return random.sample(range(1001, 99_999), 2)
-
-        def runs(random: Random) -> tuple[Run, ...]:
-            late = Run(LATE, two(random), (-hidden(random),))
-            return late, Run(BIASED, two(random), (0,), held=1), Run(EXTREME, (2**62, 1 - 2**63))
-
-        recipe = Calls(1, runs, (two,), wanted="one call with the two numbers, in each run")
+        recipe = Calls(1, wanted="one call with the two numbers, in each run")
     """
 
     roles = ("client",)
 
-    def __init__(
-        self,
-        calls: int,
-        runs: Callable[[Random], Sequence[Run]],
-        kinds: Sequence[Callable[[Random], Sequence[int]]],
-        *,
-        wanted: str,
-        right: Callable[[Part], Sequence[Sequence[int]]] = lambda part: [part.inputs["numbers"]],
-    ) -> None:
-        self._calls, self._runs, self._kinds = calls, runs, kinds
-        self._wanted, self._right = wanted, right
+    def __init__(self, calls: int, *, wanted: str) -> None:
+        self._calls, self._wanted = calls, wanted
 
     def scenario(self, bench: Bench) -> None:
         """Make four runs: a late service, hidden numbers in the answers, large numbers, and no service."""
-        runs = self._runs(bench.random)
-        nobody = bench.random.choice(self._kinds)(bench.random)
-        scenario(bench, runs, nobody, calls=self._calls)
+        runs = drawn_runs(bench.random, self._calls)
+        # Not of the everyday kind: with zeros the sum is one of the numbers, and a client may say what it will ask.
+        numbers = bench.random.choice((negative, extreme))(bench.random, self._calls + 1)
+        scenario(bench, runs, numbers, calls=self._calls)
 
     def seen(self, evidence: Evidence) -> ClientSeen:
         """Return the subject's client, as the judge saw it."""
@@ -99,7 +79,9 @@ class Calls:
 
     def _is_right_so_far(self, part: Part) -> bool:
         made = list(map(pair, requests(part)))
-        return made == list(map(sorted, self._right(part)))[: len(made)]
+        first, *later = part.inputs["numbers"]
+        right = zip([first, *answers(part)], later, strict=False)
+        return made == list(map(sorted, right))[: len(made)]
 
     def calls_right(self, evidence: Evidence) -> Finding:
         """Decide whether each run has the right calls."""

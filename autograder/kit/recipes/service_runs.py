@@ -41,7 +41,17 @@ from autograder.kit.lateness import (
     was_patient_with_an_answer,
 )
 from autograder.kit.model import Bench, Pace
-from autograder.kit.service_calls import ABSENT, HANGS_AFTER, LATE, has_reported, new_words, reports, requests
+from autograder.kit.service_calls import (
+    ABSENT,
+    BIASED,
+    EXTREME,
+    HANGS_AFTER,
+    LATE,
+    has_reported,
+    new_words,
+    reports,
+    requests,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -77,12 +87,12 @@ class Run:
     held: int = 0
 
 
-def scenario(bench: Bench, runs: Sequence[Run], nobody: Sequence[int], *, calls: int) -> None:
+def scenario(bench: Bench, runs: Sequence[Run], numbers: Sequence[int], *, calls: int) -> None:
     """Make all runs with a service, and one without.
 
     Args:
         runs: The runs with a service; the one with the late service comes first.
-        nobody: The numbers for the run without a service.
+        numbers: The numbers for the run without a service.
         calls: The number of calls of a subject that has finished its work.
     """
     late, *others = runs
@@ -98,7 +108,7 @@ def scenario(bench: Bench, runs: Sequence[Run], nobody: Sequence[int], *, calls:
     served, impatient = [first], False
     for run in order:
         if run is None:
-            unserved(bench, nobody)
+            unserved(bench, numbers)
             impatient = may_be_impatient(bench)
         elif not hangs:
             _begin(bench, run)
@@ -260,9 +270,39 @@ def unserved(bench: Bench, numbers: Sequence[int]) -> None:
     bench.stop()
 
 
+def drawn_runs(random: Random, calls: int) -> tuple[Run, ...]:
+    """Draw the runs with a service for a client that makes so many calls: a late one, a surprising one, and 64 bits.
+
+    0 is an answer in two of them: as the last one where none of the numbers looks like it.
+    """
+    many = calls + 1
+    return (
+        Run(LATE, _everyday(random, many), (*[0] * (calls - 1), -hidden(random))),
+        Run(BIASED, negative(random, many), (*(-hidden(random) for _ in range(calls - 1)), 0), calls - 1),
+        # The last answer is held back: a client that does not wait for it must differ from one that takes 0 for none.
+        Run(EXTREME, extreme(random, many), held=calls),
+    )
+
+
 def hidden(random: Random) -> int:
     """Return a random number from such a large range that a program cannot print all of its numbers."""
     return random.randint(10**9, 10**12)
+
+
+def _everyday(random: Random, many: int) -> tuple[int, ...]:
+    """Draw a number of everyday size, and zeros, because 0 is a number to be added, too."""
+    return *random.sample((random.randint(1001, 99_999), 0), 2), *[0] * (many - 2)
+
+
+def negative(random: Random, many: int) -> tuple[int, ...]:
+    """Draw a negative number and larger positive ones."""
+    return -random.randint(1001, 49_999), *(random.randint(50_001, 99_999) for _ in range(many - 1))
+
+
+def extreme(random: Random, many: int) -> tuple[int, ...]:
+    """Draw numbers near the ends of an int64 whose sums, one number after the other, stay inside it."""
+    first = 2**62 - 1 - random.randint(0, 999), -(2**63) + random.randint(0, 999)
+    return *first, *(-(2**62) // (many - 2) + random.randint(2001, 2999) for _ in range(many - 2))
 
 
 def answering(scripted: Sequence[int]) -> Callable[[Mapping[str, Any]], Mapping[str, Any]]:

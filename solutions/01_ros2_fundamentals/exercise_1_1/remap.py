@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from autograder.kit.draft import Draft
 from autograder.kit.in_words import counted
-from autograder.kit.model import Advice, Finding
+from autograder.kit.model import Finding
 from autograder.kit.recipes.launch_file import Launched, LaunchFile
 from autograder.kit.runners import Launches
 
@@ -32,130 +32,107 @@ def names(endpoints: set[str]) -> str:
 @remap.criterion("talker", 3, "The talker speaks under the new name")
 def talker(seen: Launched, _: Launched) -> Finding:
     """The talker's messages come under the new name."""
-    found = f"a publisher on {names(seen.publishers)}" if seen.publishers else "no publisher"
-    expected, heard = f"the talker's messages on {seen.topic}", seen.heard
-    if heard and not seen.has_a_talker:
-        return Finding(False, expected, f"“{heard[0]}” from something else")
-    return Finding(bool(heard), expected, f"“{heard[0]}”" if heard else found)
+    found = f"“{seen.heard[0]}”" if seen.heard else f"publishers: {names(seen.publishers) or 'none'}"
+    stranger = " from something else" if seen.heard and not seen.has_a_talker else ""
+    right = bool(seen.heard) and not stranger
+    return Finding(right, f"the talker's messages on {seen.topic}", f"{found}{stranger}")
 
 
 @remap.criterion("listener", 4, "The listener hears under the new name")
 def listener(seen: Launched, _: Launched) -> Finding:
     """A text that is sent under the new name is said by the listener."""
-    found = f"it listens on {names(seen.subscriptions)}" if seen.subscriptions else "no subscription"
-    said, expected = seen.says_what_it_hears, f"the listener says what is sent on {seen.topic}"
-    if said and not seen.has_a_listener:
-        return Finding(False, expected, "something else says it")
-    return Finding(said, expected, "it says it" if said else found)
+    says, is_ours = seen.says_what_it_hears, seen.has_a_listener
+    found = f"subscriptions: {names(seen.subscriptions) or 'none'}"
+    words = ("it says it" if is_ours else "something else says it") if says else found
+    return Finding(says and is_ours, f"the listener says what is sent on {seen.topic}", words)
 
 
 @remap.criterion("nothing_left", 1, "No node uses the old name")
 def nothing_left(seen: Launched, _: Launched) -> Finding:
     """No node of the subject's uses the old name, in whatever namespace; other topics are free."""
-    there = names(seen.publishers | seen.subscriptions) or "nothing"
-    old = seen.old_names
-    right = not old and bool(seen.publishers) and bool(seen.subscriptions)
-    return Finding(
-        right, f"both nodes, and none on {OLD_NAME}", f"{', '.join(old)} as well" if old else there
+    found = (
+        f"{', '.join(seen.old_names)} as well"
+        if seen.old_names
+        else names(seen.publishers | seen.subscriptions)
     )
+    right = not seen.old_names and bool(seen.publishers and seen.subscriptions)
+    return Finding(right, f"both nodes, and none on {OLD_NAME}", found or "nothing")
 
 
 @remap.criterion("launch", 2, "The launch file does it")
 def by_the_launch(seen: Launched, _: Launched) -> Finding:
     """Both programs were given a rule for the name that moves them, and there is one talker."""
+    expected = f"each program is given a remapping of {OLD_NAME} by the launch file"
     if seen.moved_by_rules and seen.talkers > 1:
         return Finding(False, "one talker", f"{seen.talkers} talkers on {seen.topic}")
-    count = seen.given_a_rule
-    some = f"{counted(count, 'program')} on {seen.topic} with a remapping rule"
-    expected = f"each program is given a remapping of {OLD_NAME} by the launch file"
     if seen.not_moved:
-        moved = f"each program is on {seen.topic} because of its rule"
-        return Finding(False, moved, f"there without a rule, too: {', '.join(seen.not_moved)}")
-    return Finding(
-        seen.moved_by_rules,
-        expected,
-        some if count else f"no program was remapped from {OLD_NAME} to {seen.topic}",
-    )
+        return Finding(False, expected, f"on {seen.topic} without a rule, too: {', '.join(seen.not_moved)}")
+    found = f"{counted(seen.given_a_rule, 'program')} on {seen.topic} with a remapping rule"
+    return Finding(seen.moved_by_rules, expected, found)
 
 
-@remap.mistake("only_one_remapped", certain=lambda seen: seen.all_are_there)
-def only_one_remapped(seen: Launched, _: Launched) -> Advice | None:
-    """One end was moved, the other stayed behind."""
-    talks, listens = seen.topic in seen.publishers, seen.topic in seen.subscriptions
-    if not (seen.publishers and seen.subscriptions) or talks == listens:
-        return None
-    moved, left = ("talker", "listener") if talks else ("listener", "talker")
-    others = seen.subscriptions if talks else seen.publishers
-    return Advice(
-        f"The {moved} is on {seen.topic}, but the {left} is still on {names(others)}: the two do not meet.",
-        f"Give the {left}'s node in the launch file the same remapping. A rule holds only for the node that it is "
-        "given to.",
-    )
+def left_behind(seen: Launched, _: Launched) -> tuple[str, str] | None:
+    """Return the only program that was not moved, and the names that it uses."""
+    ends = {"talker": seen.publishers, "listener": seen.subscriptions}
+    stayed = [(end, names(used)) for end, used in ends.items() if seen.topic not in used]
+    return stayed[0] if len(stayed) == 1 and all(ends.values()) else None
 
 
-@remap.mistake("not_remapped", certain=lambda seen: seen.all_are_there)
-def not_remapped(seen: Launched, _: Launched) -> Advice | None:
-    """Both programs run, but under a wrong name."""
-    there = seen.publishers | seen.subscriptions
-    if not (seen.publishers and seen.subscriptions) or seen.topic in there:
-        return None
-    why = f"Your nodes use {names(there)}; the task asks for {seen.topic}."
-    how = (
-        f"In Python: remappings=[('chatter', '{seen.topic}')]. In XML, inside <node>: <remap from=\"chatter\" "
-        f'to="{seen.topic}"/>. The name in the code comes first.'
-    )
-    if seen.rules:
-        return Advice(why, how)
-    return Advice(
-        f"{why} The launch file gives your programs no remapping rule.",
-        f"{how} A SetRemap holds only for the nodes below it in its own group.",
-    )
+def unmoved(seen: Launched, _: Launched) -> str:
+    """Return the wrong names under which both programs run, with what may be missing."""
+    used = seen.publishers | seen.subscriptions
+    no_rule = "" if seen.rules else ". The launch file gives your programs no remapping rule"
+    both = seen.publishers and seen.subscriptions and seen.topic not in used
+    return f"Your nodes use {names(used)}; the task asks for {seen.topic}{no_rule}" if both else ""
 
 
 remap.knows(
+    "only_one_remapped",
+    left_behind,
+    "One program is on {seen.topic}, but the {0[0]} is still on {0[1]}: the two do not meet.",
+    "Give the {0[0]}'s node in the launch file the same remapping. A rule holds only for the node that it is given to.",
+    certain=lambda seen: seen.all_are_there,
+)
+remap.knows(
+    "not_remapped",
+    unmoved,
+    "{}.",
+    "In Python: remappings=[('chatter', '{seen.topic}')]. In XML, inside <node>: <remap from=\"chatter\" "
+    'to="{seen.topic}"/>. The name in the code comes first. A SetRemap holds only for the nodes below it in its group.',
+    certain=lambda seen: seen.all_are_there,
+)
+remap.knows(
     "renamed_in_code",
-    lambda seen, _: seen.moved_by_rules and " and ".join(seen.not_moved),
-    "Without the rule of the launch file, {seen.topic} was still the topic of your {}: the new name is in the code, so "
-    "the rule moves nothing.",
-    f"Put the old name, {OLD_NAME}, back into the code of your {{}}, and build. The rule in the launch file then moves "
-    "it.",
+    lambda seen, _: (seen.moved_by_rules or seen.says_what_it_hears) and " and ".join(seen.not_moved),
+    "Started without the launch file, your {} is on {seen.topic}, too: the new name is in the code.",
+    f"Put the old name, {OLD_NAME}, back into the code of your {{}}, and build. Then let the launch file remap the "
+    "topic of each node.",
     certain=True,
 )
 
 
-remap.knows(
-    "renamed_in_code",
-    lambda seen, _: not seen.moved_by_rules and seen.says_what_it_hears and " and ".join(seen.not_moved),
-    "Both nodes are on {seen.topic}, but not by the launch file: started without it, your {} is there, too. The name "
-    "was changed in the code.",
-    "Leave the programs as they are, with chatter in them, and remap the topic for each node in the launch file.",
-    certain=True,
-)
-
-
-def _missing(seen: Launched) -> str:
-    """Return the package's program that was replaced, for example by a command; empty if none was."""
+def missing(seen: Launched, _: Launched) -> tuple[str, str] | None:
+    """Return the package's program that does not run, and what the judge saw instead."""
     if seen.heard and not seen.has_a_talker:
-        return "talker"
-    return "listener" if seen.says_what_it_hears and not seen.has_a_listener else ""
-
-
-@remap.mistake("one_node_only", late=True)
-def one_node_only(seen: Launched, _: Launched) -> Advice | None:
-    """Only one of the two programs runs, perhaps with something else in the place of the other."""
-    if missing := _missing(seen):
-        does = "speaks" if missing == "talker" else "listens"
-        return Advice(
-            f"The {missing} of your package was not started: something else {does} on {seen.topic}.",
-            f"Start the program {missing} of my_robot_pkg in the launch file, with the remapping.",
-        )
+        return "talker", f"something else speaks on {seen.topic}"
+    if seen.says_what_it_hears and not seen.has_a_listener:
+        return "listener", f"something else listens on {seen.topic}"
     if bool(seen.publishers) == bool(seen.subscriptions):
         return None
-    there, missing = ("talker", "listener") if seen.publishers else ("listener", "talker")
-    return Advice(
-        f"Only the {there} is there; no {missing} was started, or it ended.",
-        f"The launch file must start both programs. Is there a node for the {missing} in it?",
+    return (
+        ("listener", "only the talker is there")
+        if seen.publishers
+        else ("talker", "only the listener is there")
     )
+
+
+remap.knows(
+    "one_node_only",
+    missing,
+    "The {0[0]} of your package was not started, or it ended: {0[1]}.",
+    "The launch file must start both programs of my_robot_pkg. Is there a node for the {0[0]} in it?",
+    late=True,
+)
 
 
 def nodes_of_one_name(evidence: Evidence) -> str:

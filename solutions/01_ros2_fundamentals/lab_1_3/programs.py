@@ -4,23 +4,11 @@ from lab_1_3 import client, server
 
 from autograder.kit.recipes.programs import LabProgram, Programs
 
+SUM, REPORT = "The server answers each call with the sum", "The client reports what the server answers"
 EXERCISE = Programs(
     "my_robot_pkg",
-    LabProgram(
-        "add_server",
-        server.EXERCISE,
-        "The server answers each call with the sum",
-        3,
-        file="add_two_ints_server",
-    ),
-    LabProgram(
-        "add_client",
-        client.EXERCISE,
-        "The client reports what the server answers",
-        3,
-        file="add_two_ints_client",
-        ends_by_itself=True,
-    ),
+    LabProgram("add_server", server.EXERCISE, SUM, 3, file="add_two_ints_server"),
+    LabProgram("add_client", client.EXERCISE, REPORT, 3, file="add_two_ints_client", ends_by_itself=True),
 ).exercise(
     "lab_1_3.programs",
     "Lab 1.3 · The programs",
@@ -32,8 +20,6 @@ EXERCISE = Programs(
         "and presses <kbd>Ctrl</kbd>+<kbd>C</kbd>: the server has to end then.": "ctrl_c",
         "once there is none: then the client has to do what step 3 says.": "add_client ctrl_c",
         "if it still spins after its report, <kbd>Ctrl</kbd>+<kbd>C</kbd> has to end it.": "ctrl_c",
-        "A program gets its points only if its node passes everything that the check": (
-            "add_server add_client"
-        ),
+        "A program gets its points only if its node passes everything": "add_server add_client",
     },
 )

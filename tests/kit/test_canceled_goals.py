@@ -1,4 +1,4 @@
-"""Which runs Exercise 1.3 makes, and what it does not wait for: no ROS is started."""
+"""Which runs a client that cancels its goal gets, and what is not waited for: no ROS is started."""
 
 from __future__ import annotations
 
@@ -7,14 +7,6 @@ from typing import TYPE_CHECKING, Any, cast
 from unittest.mock import MagicMock
 
 import pytest
-from exercise_1_3 import _cancel_scenario as cancel
-from exercise_1_3._cancel_evidence import (
-    AGREED,
-    CANCEL_REFUSED,
-    FIRST_FEEDBACK,
-    HONOURED,
-    LAST_FEEDBACK,
-)
 
 from autograder.judge import evidence_files
 from autograder.kit.evidence import Event, Evidence, Part
@@ -22,6 +14,10 @@ from autograder.kit.giving_up import LATENESS
 from autograder.kit.goal_reports import REFUSED
 from autograder.kit.lateness import SOON
 from autograder.kit.model import Pace
+from autograder.kit.oracle import canceled_goals as cancel
+from autograder.kit.oracle.cancel_requests import AGREED, CANCEL_REFUSED, HONORED
+from autograder.kit.oracle.canceled_goals import CancelsGoal
+from autograder.kit.recipes.action_client import END_LIMIT
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -31,6 +27,10 @@ if TYPE_CHECKING:
 REFERENCE = evidence_files.load_reference("exercise_1_3.cancel")
 ACTION = "/fibonacci"
 FEEDBACK_EVERY = 0.2
+EARLIEST, LATEST, MOST = 3, 5, 19
+RECIPE = CancelsGoal(
+    (EARLIEST, LATEST), lambda count: {"partial_sequence": [count]}, lambda _: {"sequence": []}
+)
 
 
 def run(
@@ -58,7 +58,7 @@ def run(
 
 def fast_look(*parts: Part) -> Evidence:
     """The evidence of a fast look, with right runs where no other is given."""
-    usual = (run(HONOURED), run(CANCEL_REFUSED, pause=cancel.PAUSE), run(AGREED))
+    usual = (run(HONORED), run(CANCEL_REFUSED, pause=cancel.PAUSE), run(AGREED))
     given = {part.name: part for part in parts}
     return Evidence([given.get(part.name, part) for part in usual], REFERENCE)
 
@@ -70,16 +70,16 @@ def runs_made(first: Part, *, before: Evidence | None = None, monkeypatch: pytes
     def serve(_: Any, name: str, *__: Any, **___: Any) -> None:
         made.append(name)
 
-    monkeypatch.setattr(cancel, "serve_goal", serve)
+    monkeypatch.setattr(RECIPE, "_serve", serve)
     monkeypatch.setattr(cancel, "refuse", lambda *_, **__: made.append(REFUSED))
     bench = MagicMock(pace=Pace.REAL_TIME if before else Pace.FAST, before=before, seen=lambda: first)
     bench.random = Random(0)
     bench.reference = REFERENCE
-    cancel.scenario(bench)
+    RECIPE.scenario(bench)
     return list(dict.fromkeys(made))
 
 
-ALL = [HONOURED, CANCEL_REFUSED, AGREED, REFUSED]
+ALL = [HONORED, CANCEL_REFUSED, AGREED, REFUSED]
 REJECTED = Part(
     REFUSED,
     {},
@@ -95,10 +95,10 @@ REJECTED = Part(
 @pytest.mark.parametrize(
     ("first", "made"),
     [
-        (run(HONOURED), ALL),
+        (run(HONORED), ALL),
         # It has lost the points for all ends of goals.
-        (run(HONOURED, says="it is over"), [HONOURED, CANCEL_REFUSED, REFUSED]),
-        (run(HONOURED, cancels=0), [HONOURED, REFUSED]),
+        (run(HONORED, says="it is over"), [HONORED, CANCEL_REFUSED, REFUSED]),
+        (run(HONORED, cancels=0), [HONORED, REFUSED]),
     ],
     ids=["right", "says no end", "never asks"],
 )
@@ -111,22 +111,22 @@ def test_the_fast_look_leaves_out_runs_that_can_change_no_points(
 @pytest.mark.parametrize(
     ("parts", "first", "made"),
     [
-        ([REJECTED], run(HONOURED), []),
-        ([], run(HONOURED), [REFUSED]),
-        ([run(HONOURED, says="it is over", ends=False)], run(HONOURED), [HONOURED, REFUSED]),
+        ([REJECTED], run(HONORED), []),
+        ([], run(HONORED), [REFUSED]),
+        ([run(HONORED, says="it is over", ends=False)], run(HONORED), [HONORED, REFUSED]),
         # A clock may have made it ask.
-        ([run(HONOURED, later=0.15)], run(HONOURED), ALL),
+        ([run(HONORED, later=0.15)], run(HONORED), ALL),
         (
-            [run(HONOURED, later=0.15), run(CANCEL_REFUSED, pause=cancel.PAUSE, later=0.15)],
-            run(HONOURED),
-            [HONOURED, CANCEL_REFUSED, REFUSED],
+            [run(HONORED, later=0.15), run(CANCEL_REFUSED, pause=cancel.PAUSE, later=0.15)],
+            run(HONORED),
+            [HONORED, CANCEL_REFUSED, REFUSED],
         ),
         # After a pause it asks at the moment at which it asked without one.
-        ([run(CANCEL_REFUSED)], run(HONOURED), ALL),
-        ([run(CANCEL_REFUSED, pause=cancel.PAUSE, cancels=2)], run(HONOURED), [CANCEL_REFUSED, REFUSED]),
+        ([run(CANCEL_REFUSED)], run(HONORED), ALL),
+        ([run(CANCEL_REFUSED, pause=cancel.PAUSE, cancels=2)], run(HONORED), [CANCEL_REFUSED, REFUSED]),
         # It is too late again, whatever the other runs show.
-        ([run(HONOURED, count=6), REJECTED], run(HONOURED, count=6), [HONOURED]),
-        ([run(HONOURED, count=6), REJECTED], run(HONOURED), [HONOURED, CANCEL_REFUSED, AGREED]),
+        ([run(HONORED, count=6), REJECTED], run(HONORED, count=6), [HONORED]),
+        ([run(HONORED, count=6), REJECTED], run(HONORED), [HONORED, CANCEL_REFUSED, AGREED]),
     ],
     ids=[
         "right",
@@ -150,25 +150,25 @@ def test_the_look_in_real_time_repeats_what_time_may_have_decided(
 
 @pytest.mark.parametrize(
     ("before", "late"),
-    [(None, LATENESS), (fast_look(run(HONOURED, later=0.15)), SOON), (fast_look(Part(HONOURED)), LATENESS)],
+    [(None, LATENESS), (fast_look(run(HONORED, later=0.15)), SOON), (fast_look(Part(HONORED)), LATENESS)],
     ids=["first look", "waited", "never sent a goal"],
 )
 def test_a_client_that_has_waited_for_a_late_server_is_not_kept_waiting_again(
     before: Evidence | None, late: float, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     came: list[float] = []
-    monkeypatch.setattr(cancel, "serve_goal", lambda *_, late, **__: came.append(late))
+    monkeypatch.setattr(RECIPE, "_serve", lambda *_, late, **__: came.append(late))
     bench = MagicMock(pace=Pace.REAL_TIME if before else Pace.FAST, before=before, reference=REFERENCE)
     bench.random = Random(0)
-    bench.seen = lambda: run(HONOURED)
-    cancel.run(bench, HONOURED, accept=True)
+    bench.seen = lambda: run(HONORED)
+    RECIPE._run(bench, HONORED)
     assert came == [late]
 
 
 def window(gap: float, first: float = cancel.FIRST_AFTER) -> tuple[float, float]:
     """The seconds after the goal at which the third message comes, and the sixth."""
     began = first + cancel.LATE_GAP  # the status comes before the second message
-    return began + (FIRST_FEEDBACK - 1) * gap, began + LAST_FEEDBACK * gap
+    return began + (EARLIEST - 1) * gap, began + LATEST * gap
 
 
 def test_no_fixed_time_after_anything_is_right_at_both_paces() -> None:
@@ -181,16 +181,16 @@ def test_no_fixed_time_after_anything_is_right_at_both_paces() -> None:
 def test_the_paces_are_drawn_and_differ_between_the_two_runs_that_are_judged(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr(cancel, "serve_goal", lambda *_, **__: None)
+    monkeypatch.setattr(RECIPE, "_serve", lambda *_, **__: None)
     gaps: dict[str, set[float]] = {}
     for seed in range(5):
         bench = MagicMock(pace=Pace.FAST, before=None, reference=REFERENCE, random=Random(seed))
-        bench.seen = lambda: run(HONOURED)
-        for name, first in ((HONOURED, None), (CANCEL_REFUSED, run(HONOURED))):
-            cancel.run(bench, name, first, accept=True)
+        bench.seen = lambda: run(HONORED)
+        for name, first in ((HONORED, None), (CANCEL_REFUSED, run(HONORED))):
+            RECIPE._run(bench, name, first)
             gaps.setdefault(name, set()).add(bench.part.call_args.kwargs["gap"])
     assert [len(drawn) for drawn in gaps.values()] == [5, 5]
-    assert max(gaps[HONOURED]) < min(gaps[CANCEL_REFUSED])
+    assert max(gaps[HONORED]) < min(gaps[CANCEL_REFUSED])
 
 
 @pytest.mark.parametrize(
@@ -199,35 +199,35 @@ def test_the_paces_are_drawn_and_differ_between_the_two_runs_that_are_judged(
 def test_the_server_is_there_before_a_function_that_is_known_to_ask_for_its_result(
     in_a_cell: bool, asks: bool, prepared: bool
 ) -> None:
-    calls = [name for name, *_ in _served(run(HONOURED) if asks else _never_asks(), in_a_cell).mock_calls]
+    calls = [name for name, *_ in _served(run(HONORED) if asks else _never_asks(), in_a_cell).mock_calls]
     assert (calls.index("serve_action") < calls.index("start")) == prepared
 
 
 @pytest.mark.parametrize("asks", [True, False])
 def test_a_client_that_never_asked_for_its_result_is_not_waited_for_in_the_later_runs(asks: bool) -> None:
-    bench = _served(run(HONOURED) if asks else _never_asks())
-    usual = cancel.END_LIMIT[Pace.FAST]
+    bench = _served(run(HONORED) if asks else _never_asks())
+    usual = END_LIMIT[Pace.FAST]
     (waited,) = bench.serve_action.return_value.await_result_request.call_args.args
     assert (waited == usual) if asks else (waited < usual)
 
 
 @pytest.mark.parametrize("says", ["canceled", "it is over"])
 def test_a_client_that_did_not_say_how_its_first_goal_ended_need_not_say_so_again(says: str) -> None:
-    bench = _served(run(HONOURED, says=says))
+    bench = _served(run(HONORED, says=says))
     hangs = [call.args[1] for call in bench.wait_until.mock_calls if len(call.args) > 1]
-    assert (cancel.HANGS_AFTER[Pace.FAST] in hangs) == (says == "canceled")
+    assert (END_LIMIT[Pace.FAST] in hangs) == (says == "canceled")
 
 
 def _never_asks() -> Part:
-    usual = run(HONOURED)
-    return Part(HONOURED, {}, [event for event in usual.events if event.kind != "result_request"])
+    usual = run(HONORED)
+    return Part(HONORED, {}, [event for event in usual.events if event.kind != "result_request"])
 
 
 def _served(first: Part, in_a_cell: bool = False) -> MagicMock:
     """A bench on which a later run was served to a client that asks to cancel at once."""
     bench = MagicMock(pace=Pace.FAST, in_a_cell=in_a_cell, reference=REFERENCE)
     bench.seen = lambda: Part(AGREED, {"gap": cancel.QUICK[0]}, run(AGREED).events)
-    cancel.serve_goal(bench, AGREED, first, accept=True, pause=0.0, late=0.0, held=0.0)
+    RECIPE._serve(bench, AGREED, first, late=0.0, held=0.0)
     return bench
 
 
@@ -251,10 +251,10 @@ class Server:
 
 def test_once_the_moment_is_over_the_rest_of_the_feedback_comes_quickly() -> None:
     server = Server()
-    bench = MagicMock(pace=Pace.REAL_TIME, seen=lambda: Part(HONOURED, {"gap": cancel.QUICK[0]}))
-    asked = cancel.send_feedback_until_cancelled(bench, cast("ActionCounterpart", server), [0, 1], 0.0)
+    bench = MagicMock(pace=Pace.REAL_TIME, seen=lambda: Part(HONORED, {"gap": cancel.QUICK[0]}))
+    _, asked = RECIPE._until_canceled(bench, cast("ActionCounterpart", server), 0.0)
     assert not asked
-    quick, last = server.waits[LAST_FEEDBACK + 1 : -1], server.waits[-1]
-    assert server.sent == cancel.WITHOUT_CANCEL == LAST_FEEDBACK + len(quick)
+    quick, last = server.waits[LATEST + 1 : -1], server.waits[-1]
+    assert server.sent == MOST == LATEST + len(quick)
     assert set(quick) == {cancel.AT_ONCE}
     assert last == cancel.CLOCKS
