@@ -21,7 +21,7 @@ from autograder.kit.mission.moment import Moment, World
 from autograder.kit.mission.robot import Robot
 from autograder.kit.mission.steps import Goal, Journey, Step
 from autograder.kit.model import Finding
-from autograder.kit.recipes.relay import To
+from autograder.kit.oracle.steps import To
 from autograder.robot.motion import Pose, Wall, Walls
 
 if TYPE_CHECKING:

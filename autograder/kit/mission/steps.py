@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from autograder.kit.mission.moment import World
+from autograder.kit.oracle.steps import To
 from autograder.kit.recipes.own_scenario import QUIET
-from autograder.kit.recipes.relay import To
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
