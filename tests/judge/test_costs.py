@@ -23,7 +23,7 @@ COSTS = {
     "lab_1_4.server/wrong/older_goal_ended.py": "two",
     "lab_1_4.server/wrong/goals_mixed_up_cancel_stops_all.py": "two",
     # Bad orders are refused by the goal callback, however a good goal ends.
-    "lab_1_4.server/wrong/goal_not_succeeded.py": "sequence two",
+    "lab_1_4.server/wrong/unknown_goal_not_succeeded.py": "sequence two",
     "lab_1_4.server/wrong/wrong_sequence_start.py": "sequence feedback two cancel",
     # The cancel comes at its moment, whichever goal it is.
     "exercise_1_3.cancel/wrong/wrong_order_smaller_goal.py": "goal",

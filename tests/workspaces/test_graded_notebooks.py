@@ -30,7 +30,7 @@ HANDED_OUT = "lab_1_1"
 ANSWERS = (
     "lab_1_1.hello/wrong/entry_point_module.workspace",
     "lab_1_2.programs/right/the_labs_own.workspace",
-    "lab_1_2.programs/wrong/ignores_ctrl_c.workspace",
+    "lab_1_2.programs/wrong/unknown_ignores_ctrl_c.workspace",
     "exercise_1_1.remap/wrong/only_one_remapped_listener.launch.xml",
     "exercise_1_1.package/right/without_programs.workspace",
     "exercise_1_1.package/wrong/launch_elsewhere_outside_share.workspace",

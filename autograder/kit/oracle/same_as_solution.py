@@ -61,7 +61,9 @@ class _Drawn(OwnScenario):
     def expected(self, evidence: Evidence) -> Part:
         """Return the record of the solution in the drawing that the subject was given."""
         recorded = evidence.reference.parts
-        return evidence.reference.part(evidence.main.name) if recorded else evidence.main
+        # A subject that was not built was given no drawing: it did nothing, in whichever it is compared.
+        same_drawing = [part for part in recorded if part.name == evidence.main.name]
+        return next(iter([*same_drawing, *recorded]), evidence.main)
 
     @property
     def ladder(self) -> tuple[Mistake, ...]:

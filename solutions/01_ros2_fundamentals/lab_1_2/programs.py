@@ -16,7 +16,7 @@ EXERCISE = Programs(
     text={
         "Each program needs an entry point in `setup.py`. The executables are `talker` and `listener`.": "entry_points",
         "The entry point of Lab 1.1 stays in the list.": "entry_points",
-        "Copy your class from step 1 to the place of the `TODO`.": "talker",
+        "Copy your class from step 1 to the place of the `TODO`": "talker",
         "puts your newest `ListenerNode` in the place of the comment.": "listener",
         "To stop a program, press <kbd>Ctrl</kbd>+<kbd>C</kbd> in its terminal.": "ctrl_c",
         "A program gets its points only if its node passes everything that the check": "talker listener",
