@@ -98,7 +98,8 @@ class SentGoal:
             (self.status != SUCCEEDED, f"status {status_text(self.status)}"),
             (not is_right, result),
         )
-        return next((f"{self}: {fault}" for holds, fault in faults if holds), "")
+        # A goal that was never sent has no words.
+        return next((f"{self}: {fault}".removeprefix(": ") for holds, fault in faults if holds), "")
 
     @property
     def was_canceled_too_late(self) -> bool:
