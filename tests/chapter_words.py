@@ -16,7 +16,7 @@ import tomllib
 from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import nbformat
 import re2
@@ -27,10 +27,9 @@ if TYPE_CHECKING:
 
 ROOT = Path(__file__).resolve().parents[1]
 CEILINGS = ROOT / "tests" / "chapter_words.toml"
-PREDICTIONS = ("**Before you run it:**", "**Check yourself:**")
-"""How a question begins that a student answers before going on."""
 _FIGURE = re2.compile(r"!\[[^\]]*\]\(([^)]+\.svg)\)")
 _FOLD = re2.compile(r"(?s)<details>.*?</details>")
+_ANSWERS = re2.compile(r"(?s)(?:<details>\s*<summary>.*?</details>\s*)+")
 _SUMMARY = re2.compile(r"(?s)<summary>(.*?)</summary>")
 _TARGET = re2.compile(r"\]\([^)\s]*\)")
 _WORD = re2.compile(r"\pL[\pL\pN'’_./-]*|\pN+")
@@ -67,8 +66,8 @@ def words_of(path: Path) -> Words:
     for cell in notebook.cells:
         if cell.cell_type == "markdown":
             for piece in _pieces(cell.source):
-                if piece.startswith(PREDICTIONS):
-                    marks.append(visible + _count(piece.partition("<details")[0]))
+                if piece.startswith("<details>"):
+                    marks.append(visible)
                 shown = _FOLD.sub(lambda fold: " ".join(_SUMMARY.findall(fold.group())), piece)
                 folded += _count(piece) - _count(shown)
                 visible += _count(shown) + sum(map(_count, _labels(shown, path.parent)))
@@ -80,10 +79,13 @@ def words_of(path: Path) -> Words:
 
 
 def _pieces(text: str) -> list[str]:
-    """Return a text in pieces, each of which begins with a question, but perhaps the first."""
-    for prediction in PREDICTIONS:
-        text = text.replace(prediction, f"\0{prediction}")
-    return text.split("\0")
+    """Return a text in pieces, each of which begins with the folded answers to a question, but perhaps the first."""
+
+    def marked(folds: Any) -> str:
+        answers = folds.group()
+        return f"\0{answers}" if "✓" in answers or "<summary>Answer</summary>" in answers else answers
+
+    return _ANSWERS.sub(marked, text).split("\0")
 
 
 def _count(text: str) -> int:

@@ -45,18 +45,27 @@ def test_a_shell_cell_has_its_comments(tmp_path: Path) -> None:
     assert counted(tmp_path, v4.new_code_cell("%%bash\n# list them\nros2 topic list")).visible == 2
 
 
-def test_a_prediction_and_a_cell_to_write_end_a_gap_and_a_cell_to_run_does_not(tmp_path: Path) -> None:
+def test_a_question_and_a_cell_to_write_end_a_gap_and_a_cell_to_run_does_not(tmp_path: Path) -> None:
     write = v4.new_code_cell("pass", metadata={"nbgrader": {"solution": True}})
     words = counted(
         tmp_path,
         v4.new_markdown_cell("One two."),
         v4.new_code_cell("run()"),
-        v4.new_markdown_cell("Three.\n\n**Before you run it:** what? Decide."),
+        v4.new_markdown_cell(
+            "Three. What?\n\n<details><summary>Answer</summary>\n\nThat.\n</details>\n\nAnd on."
+        ),
         write,
         v4.new_markdown_cell("Last."),
     )
-    assert words.gaps == (9, 0, 1)
+    assert words.gaps == (4, 3, 1)
     assert words.things_to_do == 2
+
+
+def test_a_question_with_choices_is_one_thing_to_do_and_a_hint_is_none(tmp_path: Path) -> None:
+    choices = "<details><summary>A</summary>\n\n✗ No.\n</details>\n<details><summary>B</summary>\n\n✓ Yes.\n</details>"
+    hint = "<details><summary>Where?</summary>\n\nHere.\n</details>"
+    words = counted(tmp_path, v4.new_markdown_cell(f"Which?\n\n{choices}\n\nText.\n\n{hint}"))
+    assert words.things_to_do == 1
 
 
 def test_a_notebook_without_a_ceiling_has_the_usual_one() -> None:
