@@ -65,8 +65,8 @@ def words_of(path: Path) -> Words:
     marks, visible, folded = [0], 0, 0
     for cell in notebook.cells:
         if cell.cell_type == "markdown":
-            for piece in _pieces(cell.source):
-                if piece.startswith("<details>"):
+            for number, piece in enumerate(_pieces(cell.source)):
+                if number:
                     marks.append(visible)
                 shown = _FOLD.sub(lambda fold: " ".join(_SUMMARY.findall(fold.group())), piece)
                 folded += _count(piece) - _count(shown)
@@ -79,7 +79,7 @@ def words_of(path: Path) -> Words:
 
 
 def _pieces(text: str) -> list[str]:
-    """Return a text in pieces, each of which begins with the folded answers to a question, but perhaps the first."""
+    """Return a text in pieces. Each piece but the first begins with the folded answers to a question."""
 
     def marked(folds: Any) -> str:
         answers = folds.group()
