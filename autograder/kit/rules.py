@@ -22,9 +22,6 @@ from autograder.kit.in_words import counted
 from autograder.kit.model import Finding
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from autograder.kit.draft import Judge
     from autograder.kit.evidence import Event, Part
 
 
@@ -256,95 +253,6 @@ State = Callable[[Sequence[Given]], Any]
 """A function that is given all inputs of the subject up to a moment, in order. It returns what the subject must report
 at that moment, or whether a condition holds.
 """
-
-
-@dataclass(frozen=True)
-class StateRule:
-    """A rule for a subject that reports a state from time to time, which depends on its inputs and on time.
-
-    Attributes:
-        rule: Returns what the subject must report.
-        slack: Tolerance in seconds. A report also counts as right if it was right at most this long before, or will be
-            right at most this long after.
-        given: The kind of event that records an input of the subject.
-
-    Example::
-
-        def text_set(asked: Sequence[Given]) -> str:
-            return asked[-1].value["data"] if asked else "Hello"
-
-        text = StateRule(text_set, slack=1.0, given="asked")
-        greeter = Draft("lab_8_1.greeter", "Lab 8.1 · The greeter", "Publish the text that was set.", recipe)
-        greeter.criterion("default", 3, "Says Hello until a text is set")(text.when(lambda asked: not asked))
-        greeter.criterion("follows", 7, "Says the text once it is set")(text.when(bool))
-    """
-
-    rule: State
-    slack: float = 0.25
-    given: str = "sent"
-
-    def when(self, holds: State) -> Judge[Part]:
-        """Return a criterion that the subject's reports are right at all times at which a condition holds.
-
-        The subject must also report at least a quarter as often as the reference solution, so that silence is not
-        right. The exact rate is not judged here, but by another criterion.
-        """
-
-        def judge(seen: Part, expected: Part) -> Finding:
-            mine, theirs = (list(self._decided(part, holds)) for part in (seen, expected))
-            many, wrong = counted(len(mine), "message"), [pair for pair in mine if not same(*pair)]
-            if wrong:
-                due, said = wrong[0]
-                return Finding(False, in_words([due]), f"{in_words([said])} in {len(wrong)} of {many}")
-            usual = in_words(list(dict.fromkeys(in_words([due]) for due, _ in mine or theirs)))
-            enough = bool(mine) and 4 * len(mine) >= len(theirs)
-            return Finding(enough, usual, usual if enough else f"{many} at such times")
-
-        return judge
-
-    def taken_for(self, *wrong: State) -> Callable[[Part, Part], bool]:
-        """Return a function that recognizes a mistake: all reports are those of a wrong variant of :attr:`rule`."""
-
-        def recognize(seen: Part, _: Part) -> bool:
-            said = list(self._said(seen))
-            right, *others = (
-                all(any(same(what, rule(given)) for given in views) for what, views in said)
-                for rule in (self.rule, *wrong)
-            )
-            return not right and any(others)
-
-        return recognize
-
-    def only_in_answer(self, seen: Part, _: Part) -> bool:
-        """Return True if the subject makes at most one report for each input, and never reports without one."""
-        given = [len(later) for _, (*_, later) in self._said(seen)]
-        return bool(given) and all(number <= so_far for number, so_far in enumerate(given, 1))
-
-    def _decided(self, part: Part, holds: State) -> Iterator[tuple[Any, Any]]:
-        """Yield pairs of the required and the actual report, for each report at whose time only one content is right.
-
-        A report is also left out unless the condition certainly holds at the report's time.
-        """
-        for what, views in self._said(part):
-            due, *others = map(self.rule, views)
-            if all(map(holds, views)) and all(same(due, other) for other in others):
-                yield due, what
-
-    def _said(self, part: Part) -> Iterator[tuple[Any, list[list[Given]]]]:
-        """Yield each report with the inputs given until shortly before, at, and shortly after its time."""
-        given: list[Event] = []
-        for event in part.events:
-            if event.kind == self.given:
-                given.append(event)
-            if event.kind == "message":
-                now = reported_at(event)
-                yield (
-                    value(event),
-                    [
-                        [Given(age, value(g), g.name) for g in given if (age := at - g.moment) >= 0.0]
-                        for at in (now - self.slack, now, now + self.slack)
-                    ],
-                )
 
 
 def reported_at(event: Event) -> float:
