@@ -117,7 +117,7 @@ def test_the_card_names_what_to_mend(last: str) -> None:
         (
             "self.create_subscription(String, 'chatter', None, 10)",
             "RuntimeError: Subscription.__init__(): callback should be either be callable with one argument",
-            "the callback does not take exactly one message",
+            "the callback has to take exactly one message",
         ),
         (
             "total = fut.result().sum",
