@@ -52,9 +52,15 @@ class Goals(GoalsSeen):
     @property
     def feedback_faults(self) -> list[str]:
         """What is wrong with the feedback of goals that have the server to themselves, or are not disturbed."""
-        beside = [one for one in self.beside if one.over and not (one.fault or one.slip)]
+        beside = [
+            one for one in self.beside if one.over and not (one.fault or one.slip or self.may_have_lost(one))
+        ]
         faults = [one.feedback_fault for one in (*self.sent(ALONE, AGAIN), *beside)]
         return [*faults, "all of it came at once, when the work was done" if self.tells_at_the_end else ""]
+
+    def may_have_lost(self, goal: ComparedGoal) -> bool:
+        """Return True if no feedback came, and the server sends it faster than a busy judge can take it in."""
+        return self.takes_no_time and not goal.feedback
 
     @property
     def went_on(self) -> str:

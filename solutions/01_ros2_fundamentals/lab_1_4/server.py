@@ -105,7 +105,7 @@ server.knows(
 
 def _wrong_feedback(seen: Goals, _: Goals) -> str:
     # What a goal that hangs has sent says nothing about feedback that does not grow by one number.
-    told = [one for one in seen.good if was_computed(one)]
+    told = [one for one in seen.good if was_computed(one) and not seen.may_have_lost(one)]
     faults = [one.feedback_fault for one in told if any(one.feedback for one in told)]
     return next(filter(None, faults), "")
 
