@@ -60,7 +60,7 @@ def test_the_terminal_says_the_same(tmp_path: Path) -> None:
     check_journal.note(TALKER, tmp_path / check_journal.NAME)
     said = CliRunner().invoke(cli, ["progress", "--folder", str(tmp_path)])
     assert said.exit_code == 0
-    assert re.search(r"\[~\] Lab 1\.2: A talker and a listener +60 min +10 of 30 points", said.output)
+    assert re.search(r"\[~\] Lab 1\.2: A talker and a listener +75 min +10 of 50 points", said.output)
     assert "Go on with Lab 1.2: A talker and a listener" in said.output
     data = json.loads(CliRunner().invoke(cli, ["progress", "--json", "--folder", str(tmp_path)]).output)
     lab = next(one for one in data["chapters"][0]["notebooks"] if one["name"] == "lab_1_2")

@@ -35,14 +35,16 @@ def test_it_has_the_notebooks_in_their_order_with_their_titles_and_minutes() -> 
     assert all((FOLDER / one.path).is_file() and one.minutes for one in chapter.notebooks)
     talker = next(one for one in chapter.notebooks if one.name == "lab_1_2")
     assert talker.title == "Lab 1.2: A talker and a listener"
-    assert [one.id for one in talker.exercises] == ["lab_1_2.talker", "lab_1_2.listener", "lab_1_2.programs"]
+    assert [one.id for one in talker.exercises] == [
+        f"lab_1_2.{name}" for name in ("talker", "listener", "wall", "rooms", "programs")
+    ]
 
 
 def test_points_make_a_notebook_done_and_a_mark_one_that_is_only_read() -> None:
     lines = [
         full("lab_1_2.talker"),
         JournalEntry("check", "lab_1_2.listener", 2, 99, 10),
-        full("lab_1_2.programs"),
+        *(full(f"lab_1_2.{name}") for name in ("wall", "rooms", "programs")),
         JournalEntry("read", "inspecting_actions", 3),
     ]
     states = {one.name: one for one in after(*lines).chapters[0].notebooks}
