@@ -35,7 +35,7 @@ def made_from(step: Step) -> str:
 
 def test_the_order() -> None:
     assert list(steps(with_tests=True)) == [
-        *("environment", "uv", "packages", "imports", "fast_dds", "interfaces", "start", "ros2", "jupyter"),
+        *("environment", "uv", "packages", "sources", "fast_dds", "interfaces", "start", "ros2", "jupyter"),
         *("project", "dev"),
     ]
 
