@@ -21,7 +21,7 @@ from autograder.kit.mistakes import unfinished
 from autograder.kit.mistakes.crashes import CRASHES, OTHER_CRASHES
 from autograder.kit.mistakes.hangs import HANGS
 from autograder.kit.model import Finding, Pace
-from autograder.kit.rules import got_through, in_words, same
+from autograder.kit.rules import got_through
 from autograder.kit.runners import processes
 
 if TYPE_CHECKING:
@@ -344,7 +344,6 @@ class Declared:
         self._draft = Draft(exercise_id, title, task, self._subject)
         self._text: dict[str, str] = {}
         self._given = given
-        self._tolerance = 1e-6
 
     def asks(self, name: str, points: float, title: str, role: str, words: str = "") -> None:
         """Add the criterion that the subject's endpoints of a role have the same names and types as the reference's.
@@ -361,27 +360,6 @@ class Declared:
     def exercise(self) -> Exercise:
         """Return the finished exercise. Call this after adding all criteria and mistakes."""
         return self._draft.exercise(text=self._text)
-
-    def _compares(
-        self,
-        name: str,
-        points: float,
-        title: str,
-        due: Callable[[Part], Sequence[Any]],
-        came: Callable[[Part], Sequence[Any]],
-        words: str,
-    ) -> None:
-        def judge(seen: Part, expected: Part) -> Finding:
-            wanted, made = due(seen), came(seen)
-            if not wanted:
-                return Finding(False, f"such as {in_words(due(expected))}", in_words(made))
-            whole = self._got_through(seen, expected)
-            more = "" if whole else ", and more after that"
-            passed = whole and same(list(wanted), list(made), self._tolerance)
-            return Finding(passed, in_words(wanted) + more, in_words(made))
-
-        self._draft.criterion(name, points, title)(judge)
-        self._judges(name, words)
 
     def _got_through(self, seen: Part, expected: Part) -> bool:
         return got_through(seen, expected, self._given)
