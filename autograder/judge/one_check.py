@@ -290,7 +290,15 @@ def judge(exercise: Exercise, evidence: Evidence, seed: str) -> Verdict:
         raise TooManyEvents
     lost = {event.data["costs"]: event for part in evidence for event in part.of("misnamed")}
     criteria = tuple(
-        CriterionResult(c.name, c.title, c.points, finding.passed, _cut(finding.expected), _cut(finding.seen))
+        CriterionResult(
+            c.name,
+            c.title,
+            c.points,
+            finding.passed,
+            _cut(finding.expected),
+            _cut(finding.seen),
+            exercise.counts.get(c.name, ""),
+        )
         for c in exercise.criteria
         for finding in [_with_name(c.judge(evidence), lost.get(c.name))]
     )
@@ -312,6 +320,8 @@ def judge(exercise: Exercise, evidence: Evidence, seed: str) -> Verdict:
         seed=seed,
         # The last lines of a traceback name the error and the student's line.
         detail=traceback[-MAX_DETAIL:],
+        counts=exercise.counts_as_a_whole,
+        nothing_seen=not any(one.passed for one in criteria) and verdict_timeline.shows_nothing(evidence),
     )
 
 

@@ -1,8 +1,7 @@
 """Every demand of a task is judged or listed as not graded; and every criterion has its words in the task.
 
-Each exercise has the table: the sentences of its notebook, and the criteria that judge them (``Exercise.text``). The
-list *What counts* below a task, which is folded, names the words of the task that are not graded, and what is accepted
-besides.
+Each exercise has the table: the sentences of its notebook, and the criteria that judge them (``Exercise.text``); none
+for a sentence that is not graded. What is accepted besides (``Exercise.counts``) stands on the card, not in the task.
 """
 
 from __future__ import annotations

@@ -395,6 +395,12 @@ KINDS = {
 }
 
 
+def shows_nothing(evidence: Evidence) -> bool:
+    """Return True if the subject sent, said and returned nothing. An error says nothing of the task."""
+    sent = {kind for kind, shown in KINDS.items() if shown.direction == _HEARD} - {"log", "output"}
+    return not any(any(map(part.of, sent)) or set(part.said()) - {"None"} for part in evidence)
+
+
 def label_of(event: Event) -> str:
     """Return the label of an event's dot, cut to :data:`MAX_LABEL` characters."""
     text = KINDS[event.kind].label(event)
