@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
     from playwright.sync_api import Browser, Locator, Page
 
@@ -66,3 +66,12 @@ def look(page: Page, name: str) -> None:
     """Keep a picture for whoever develops the cards, where ``SCREENSHOTS`` names a folder."""
     if folder := os.environ.get("SCREENSHOTS"):
         page.screenshot(path=Path(folder) / f"{name}.png")
+
+
+def until(page: Page, holds: Callable[[], bool]) -> None:
+    """Wait until something holds that no page shows, such as that a file is there."""
+    for _ in range(int(LIMIT * 10)):
+        if holds():
+            return
+        page.wait_for_timeout(100)
+    raise AssertionError("it has not come to hold")

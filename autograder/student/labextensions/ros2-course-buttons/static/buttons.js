@@ -22,7 +22,9 @@ window._JUPYTERLAB["ros2-course-buttons"] = (() => {
   const SHOWN = `
     .jp-Notebook .agc .agc-acts { display: flex !important; }
     .jp-Notebook .ros2-course-drive { display: inline-block !important; margin: 4px 0; padding: 4px 12px; cursor: pointer; }
-    .ros2-course-drives .ros2-course-drive { outline: 3px solid var(--jp-brand-color1); }`;
+    .ros2-course-drives .ros2-course-drive { outline: 3px solid var(--jp-brand-color1); }
+    .jp-Notebook .ros2-course-not-here { display: none !important; }`;
+  const NOT_HERE = "given-set-up"; // the grade_id of the cell that sets the course up outside of `./course lab`
 
   const text = cell => cell.model.sharedModel.getSource();
   const isCheck = cell => cell.model.type === "code" && CHECK.test(text(cell));
@@ -127,6 +129,18 @@ window._JUPYTERLAB["ros2-course-buttons"] = (() => {
         if (!again) return `${ended}, so there is no result: check again.`;
         return `${ended} again, so your code ends it. Look at the cell that defines ${CHECK.exec(text(cell))?.[3]}, and at what `
           + "that code calls: exit(), os._exit(), a call of itself without an end, or a library that crashes.";
+      }
+
+      // The cell that does nothing here is not shown, so that the first cell of the text is the first that a student sees.
+      function hideSetUp(panel) {
+        const hide = () => {
+          const { content } = panel;
+          const place = content.widgets.findIndex(cell => cell.model.getMetadata("nbgrader")?.grade_id === NOT_HERE);
+          if (place < 0) return;
+          content.widgets[place].addClass("ros2-course-not-here");
+          if (content.activeCellIndex === place) content.activeCellIndex = place + 1;
+        };
+        Promise.all([panel.context.ready, panel.revealed]).then(hide);
       }
 
       function endCardsWithKernel(panel) {
@@ -247,7 +261,10 @@ window._JUPYTERLAB["ros2-course-buttons"] = (() => {
             const panel = notebook(app);
             if (panel && event.target.closest?.("jp-button, button")?.textContent.trim() === "Validate") tellOfValidation(panel);
           }, true);
-          tracker?.widgetAdded.connect((_, panel) => endCardsWithKernel(panel));
+          tracker?.widgetAdded.connect((_, panel) => {
+            endCardsWithKernel(panel);
+            hideSetUp(panel);
+          });
           const style = document.createElement("style");
           style.textContent = SHOWN;
           document.head.append(style);
