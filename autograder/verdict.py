@@ -115,8 +115,7 @@ class Verdict:
         seconds: The duration of the check, in seconds of wall time.
         detail: A traceback, or the last lines of output, if they help; else empty.
         counts: What else counts for the exercise as a whole, and what is not graded; empty if there is nothing to say.
-        nothing_seen: True if the subject sent, said and returned nothing, and earned nothing, as before its first line
-            is written.
+        nothing_seen: True if nothing of the subject was seen, not even an error, as before its first line is written.
     """
 
     exercise: str
