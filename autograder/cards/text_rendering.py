@@ -62,7 +62,7 @@ class _Writer:
             for row in card.criteria:
                 yield from self._asked(row) if card.nothing_seen else self._criterion(row)
             if card.counts and card.state is not State.PASSED:
-                yield from self._wrapped(card.counts, f"  {card_wording.COUNTS_BESIDES}: ", "    ")
+                yield from self._wrapped(card.counts, "  ")
         if card.remarks:
             yield ""
             yield self._heading("Worth mentioning (costs no points)")

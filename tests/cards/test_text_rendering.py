@@ -60,7 +60,7 @@ def test_before_the_first_line_is_written_the_text_lists_what_is_asked(
     assert (
         "  - Counts up from the start (2 points)\n  - Keeps the rate (3 points)\n    A timer or any" in text
     )
-    assert "  what else counts, and what does not: Not graded: “log the string that it publishes”.\n" in text
+    assert "\n  Not graded: “log the string that it publishes”.\n" in text
 
 
 def test_what_counts_is_said_of_what_is_not_met(load: Callable[[str], Verdict]) -> None:
