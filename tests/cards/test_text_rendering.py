@@ -43,7 +43,7 @@ def test_color_adds_codes_and_nothing_else(verdict: Verdict) -> None:
 def test_every_criterion_appears_in_words(verdict: Verdict) -> None:
     text = card_text(verdict)
     joined = " ".join(text.split())
-    assert text.count("[PASS]") == sum(criterion.passed for criterion in verdict.criteria)
+    assert text.count("[PASS]") == sum(bool(criterion.passed) for criterion in verdict.criteria)
     assert text.count("[NOT YET]") == sum(not criterion.passed for criterion in verdict.criteria)
     for criterion in verdict.criteria:
         assert " ".join(criterion.title.split()) in joined
