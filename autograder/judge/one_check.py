@@ -290,17 +290,10 @@ def judge(exercise: Exercise, evidence: Evidence, seed: str) -> Verdict:
         raise TooManyEvents
     lost = {event.data["costs"]: event for part in evidence for event in part.of("misnamed")}
     criteria = tuple(
-        CriterionResult(
-            c.name,
-            c.title,
-            c.points,
-            finding.passed,
-            _cut(finding.expected),
-            _cut(finding.seen),
-            exercise.counts.get(c.name, ""),
-        )
+        CriterionResult(c.name, c.title, c.points, one.passed, _cut(one.expected), _cut(one.seen), counts)
         for c in exercise.criteria
-        for finding in [_with_name(c.judge(evidence), lost.get(c.name))]
+        for counts in [exercise.counts.get(c.name, "")]
+        for one in [_with_name(c.judge(evidence), lost.get(c.name))]
     )
     passed = all(criterion.passed for criterion in criteria)
     diagnosis, traceback = (None, "") if passed else diagnose(exercise, evidence, criteria)
