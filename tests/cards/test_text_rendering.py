@@ -45,7 +45,7 @@ def test_every_criterion_appears_in_words(verdict: Verdict) -> None:
     joined = " ".join(text.split())
     if verdict.nothing_seen:
         return
-    assert text.count("[PASS]") == sum(criterion.passed for criterion in verdict.criteria)
+    assert text.count("[PASS]") == sum(bool(criterion.passed) for criterion in verdict.criteria)
     assert text.count("[NOT YET]") == sum(not criterion.passed for criterion in verdict.criteria)
     for criterion in verdict.criteria:
         assert " ".join(criterion.title.split()) in joined
