@@ -6,10 +6,10 @@ Each node has its own ROS context, and so its own DDS participant. The node that
 from __future__ import annotations
 
 import contextlib
+import os
 import secrets
 import threading
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rclpy.context import Context
@@ -243,11 +243,11 @@ round waits for that thread.
 
 @dataclass(frozen=True)
 class _Thread:
-    """The state of a thread, as the kernel reports it (proc_pid_status(5)).
+    """The state of a thread, as the kernel reports it (proc_pid_stat(5), proc_pid_status(5)).
 
     Attributes:
         awake: True if the thread runs, or waits for a processor.
-        slept: The number of times that the thread has gone to sleep.
+        slept: The number of times that the thread has gone to sleep; 0 if it sleeps now.
     """
 
     awake: bool
@@ -267,7 +267,7 @@ def await_turns(patience: Patience) -> bool:
 def _await_turn(patience: Patience) -> bool:
     pause = threading.Event()
     python = {thread.native_id for thread in threading.enumerate()}
-    tasks = (int(task.name) for task in Path("/proc/self/task").iterdir())
+    tasks = (int(task.name) for task in os.scandir("/proc/self/task"))
     awake = {task: thread for task, thread in _thread_states(set(tasks) - python).items() if thread.awake}
     while awake and patience.left > 0:
         pause.wait(THREAD_POLL)
@@ -284,10 +284,18 @@ def _thread_states(tasks: Iterable[int]) -> dict[int, _Thread]:
     """Return the states of these threads, without those that have ended."""
     found: dict[int, _Thread] = {}
     for task in tasks:
-        try:
-            lines = Path(f"/proc/self/task/{task}/status").read_text().splitlines()
-        except OSError:  # the thread has ended meanwhile
-            continue
-        told = dict(line.split(":", 1) for line in lines)
-        found[task] = _Thread(told["State"].split()[0] in "RD", int(told.get("voluntary_ctxt_switches", 0)))
+        # The kernel writes "stat" in half the time of "status", and it is enough for a thread that sleeps.
+        with contextlib.suppress(OSError):  # the thread has ended meanwhile
+            awake = _content(f"/proc/self/task/{task}/stat").rpartition(b") ")[2][:1] in (b"R", b"D")
+            told = _content(f"/proc/self/task/{task}/status") if awake else b""
+            slept = told.partition(b"\nvoluntary_ctxt_switches:")[2].split()
+            found[task] = _Thread(awake, int(slept[0]) if slept else 0)
     return found
+
+
+def _content(file: str) -> bytes:
+    opened = os.open(file, os.O_RDONLY)
+    try:
+        return os.read(opened, 4096)
+    finally:
+        os.close(opened)
