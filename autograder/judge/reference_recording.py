@@ -144,7 +144,14 @@ def _endpoints_of_solution(exercise: Exercise, subject: Subject, domain_id: int)
         # exercise's roles are the same in each recording, so only they are recorded.
         if exercise.runner:
             found, qos = ({r: of[r] for r in exercise.roles if r in of} for of in (found, qos))
-        return Reference(exercise.id, found, qos=qos)
+        asked, asked_qos = (
+            {
+                role: {name: of for name, of in ends.items() if name not in exercise.unasked}
+                for role, ends in all_of.items()
+            }
+            for all_of in (found, qos)
+        )
+        return Reference(exercise.id, asked, qos=asked_qos)
     finally:
         bench.close()
 

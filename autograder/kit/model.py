@@ -447,6 +447,8 @@ class Exercise:
             pass the card tells no cause (:mod:`autograder.kit.hunts.repairs`).
         remarks: Functions that return a sentence for the card that costs no points, or an empty text.
         roles: The roles of the subject's endpoints, such as ``("publisher",)``. `record` waits for one of them.
+        unasked: The names of the solution's endpoints that the task does not ask for. The recording leaves them out, so
+            a subject need not have them.
         limit: The time limit of a check in seconds of wall time, for both looks together. A command gets more time,
             because it may build first (`autograder/judge/command_check.py`).
         arguments: A description of the arguments that a command takes; empty if it takes none.
@@ -466,6 +468,7 @@ class Exercise:
     criteria: Sequence[Criterion]
     mistakes: Sequence[Mistake]
     roles: tuple[str, ...]
+    unasked: Sequence[str] = ()
     limit: float = 60.0
     arguments: str = ""
     sample_arguments: tuple[Any, ...] = field(default=())
