@@ -11,8 +11,8 @@ from autograder.judge.bench.bench import TestBench
 from autograder.judge.evidence_files import as_recorded
 from autograder.judge.one_check import is_certain, judge, look
 from autograder.judge.recording_differences import differences
+from autograder.kit.bench import Pace
 from autograder.kit.evidence import Evidence, Reference
-from autograder.kit.model import Exercise, Pace
 from autograder.kit.runners import RunsPrograms, all_are_there, processes, report_of
 
 if TYPE_CHECKING:
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
     from autograder.judge.subject import Subject
     from autograder.kit.evidence import Part
+    from autograder.kit.model import Exercise
 
 TOPIC_ROLES = ("publisher", "subscription")
 SEED = "reference"
