@@ -118,7 +118,7 @@ def _without(recorded: Reference, gone: str) -> Evidence:
     of_others = {name for ends in ends.values() for name in ends} if gone else None
     parts = []
     for part in recorded.parts:
-        # What the scenario noted about no endpoint, such as where a robot stood, may have come of this one.
+        # A note about no endpoint, such as the place at which a robot stood, may be a result of the missing one.
         kept = [
             event
             for event in part.events
