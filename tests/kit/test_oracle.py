@@ -169,6 +169,17 @@ def test_a_run_like_a_recorded_wrong_answer_is_named_for_certain_in_simulated_ti
     assert told(run(RIGHT)) == told(run(ALWAYS_AHEAD, drawing=0)) == told(run([[0.1, 0.0]] * 3)) == []
 
 
+def test_a_run_in_real_time_is_named_by_what_it_did_in_simulated_time() -> None:
+    once_more = evidence_of(run([*ALWAYS_AHEAD[:2], []], simulated=False))
+    (likely,) = [one for one in exercise().mistakes if one.key == "variant" and not one.certain]
+    assert not likely.recognize(once_more)
+    named = likely.recognize(replace(once_more, before=evidence_of(run(ALWAYS_AHEAD))))
+    assert named is not None
+    assert named.key == "always_ahead"
+    right = replace(evidence_of(run(RIGHT)), before=evidence_of(run(ALWAYS_AHEAD)))
+    assert not likely.recognize(right)
+
+
 def test_in_real_time_a_message_belongs_to_the_step_in_which_it_was_sent() -> None:
     """The second message is sent 0.02 s before the next step begins, and arrives 0.03 s after that."""
     arrived, sent = (10.1, 10.78), (10.09, 10.73)

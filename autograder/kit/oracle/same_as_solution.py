@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
+from itertools import product
 from random import Random
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
@@ -92,9 +93,11 @@ class _Drawn(OwnScenario):
             return None
         if self._agree(mine, self.expected(evidence)):
             return None
-        for variant in evidence.reference.variants:
-            part = next((part for part in variant.parts if part.name == mine.name), None)
-            if part and self._agree(mine, part) and self._agree(part, mine):
+        # In real time a node may say the same once more or less, so what it did in simulated time counts, too.
+        runs = [mine, *([evidence.before.main] if evidence.before else [])]
+        for run, variant in product(runs, evidence.reference.variants):
+            part = next((part for part in variant.parts if part.name == run.name), None)
+            if part and self._agree(run, part) and self._agree(part, run):
                 return Advice(variant.text, variant.next_step, key=variant.key)
         return None
 
