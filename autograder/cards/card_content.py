@@ -16,11 +16,12 @@ import re2
 from autograder.cards import card_wording
 from autograder.cards.card_traffic import Traffic, traffic
 from autograder.cards.readable_text import TRACEBACK, TracebackLine, block, one_line, paragraph, students_line
+from autograder.verdict import State
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from autograder.verdict import CriterionResult, State, Verdict
+    from autograder.verdict import CriterionResult, Verdict
 
 
 _UNFOLDED = 16
@@ -92,11 +93,16 @@ class Choices(TypedDict, total=False):
     short: bool
 
 
+_STATES = {True: State.PASSED, False: State.FAILED, None: State.CHECKING}
+"""The state of a criterion, by whether it is met."""
+
+
 @dataclass(frozen=True)
 class CriterionRow:
     """A criterion as the card shows it, with its points in words and as a fraction of the bar."""
 
     passed: bool
+    state: State
     word: str
     title: str
     expected: str
@@ -114,7 +120,8 @@ class CriterionRow:
         earned = criterion.points if criterion.passed else 0.0
         pieces = difference(criterion)
         return cls(
-            passed=criterion.passed,
+            passed=bool(criterion.passed),
+            state=_STATES[criterion.passed],
             word=card_wording.CRITERION_WORDS[criterion.passed],
             title=one_line(criterion.title, 160, mark=form.mark),
             expected=one_line(criterion.expected, 240, mark=form.mark) or form.nothing,

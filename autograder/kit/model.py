@@ -175,6 +175,10 @@ class Bench(Protocol):
     in_a_cell: bool
     """True if the subject runs in a notebook's kernel, so that a student may be waiting for the check cell to finish.
     """
+    is_waited_for: bool
+    """True if a student waits for the card, which grows with each part: then the shortest part comes first. In a class,
+    it may not, because a subject must not know what its first run is about.
+    """
 
     def part(self, name: str, **inputs: Any) -> None:
         """Begin a part, which is a new run of the subject. ``inputs`` are stored in the part's record."""
@@ -184,6 +188,9 @@ class Bench(Protocol):
 
         The record of the earlier run is discarded.
         """
+
+    def leave_out(self, name: str) -> None:
+        """Discard the record of a part, because a class's check would not have made it."""
 
     def keep(self, name: str) -> bool:
         """In the second look, reuse a part of the first look in which the subject ended by itself. Return True if so.

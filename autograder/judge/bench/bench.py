@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import contextlib
 import itertools
-from functools import partial
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from autograder.judge.bench import discovery
@@ -28,7 +27,7 @@ from autograder.kit.giving_up import patience
 from autograder.kit.model import STEP, Pace
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Container, Iterable, Mapping
+    from collections.abc import Callable, Container, Iterable, Mapping, Sequence
     from random import Random
 
     from autograder.judge.subject import Subject
@@ -53,6 +52,8 @@ class TestBench:
 
     Attributes:
         in_a_cell: True if the subject runs in a notebook's kernel.
+        is_waited_for: True if a student waits for the check's card.
+        begin_run: Called at the beginning of each run, with the finished parts.
         parts: The finished parts, in order.
         doubtful: True if an observation in a fast look must be confirmed in real time.
         unmet: True if a run began although the subject's participant had not reported that it discovered the judge's
@@ -78,6 +79,8 @@ class TestBench:
         self.random = random
         self.reference = reference
         self.in_a_cell = subject.shares_participant
+        self.is_waited_for = False
+        self.begin_run: Callable[[Sequence[Part]], None] = lambda _: None
         self.parts: list[Part] = []
         self.doubtful = False
         self.unmet = False
@@ -103,6 +106,7 @@ class TestBench:
 
     def part(self, name: str, **inputs: Any) -> None:
         self.stop()
+        self.begin_run(self.parts)
         self._recorder = recorder = Recorder(name, inputs, self._hurry)
         for asked, facts in self._misnamed.items():
             self._recorder.record("misnamed", asked, **facts)
@@ -114,7 +118,7 @@ class TestBench:
             # log lines of earlier parts again.
             self._log = LogReader(self._participant, lambda: self._recorder)
             self._subject.renew()
-        recorder.take_in = partial(self._participant.take_in, lambda: recorder.count)
+        recorder.take_in = self._participant.take_in
         self._on_graph = Presence(
             self._participant.node, self._recorder, self._subject, self.pace, self._has_announced_itself
         )
@@ -133,6 +137,10 @@ class TestBench:
         dropped = next(part for part in reversed(self.parts) if name in ("", part.name))
         self.parts.remove(dropped)
         self.part(dropped.name, **dropped.inputs)
+
+    def leave_out(self, name: str) -> None:
+        self.stop()
+        self.parts = [part for part in self.parts if part.name != name]
 
     def keep(self, name: str) -> bool:
         known = self.before.part(name) if self.before else Part(name)

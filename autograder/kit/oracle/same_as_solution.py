@@ -19,8 +19,7 @@ from autograder.kit.counterparts import Qos
 from autograder.kit.draft import Draft
 from autograder.kit.mistakes import unfinished
 from autograder.kit.mistakes.common_mistakes import NOT_LATCHED, is_not_latched
-from autograder.kit.model import Advice, Mistake, Pace
-from autograder.kit.oracle.action_server import IN_EXECUTE
+from autograder.kit.model import Advice, Finding, Mistake, Pace
 from autograder.kit.oracle.goal_sender import GoalSender
 from autograder.kit.oracle.outputs import Kind, Output
 from autograder.kit.oracle.steps import Goal, Serves, Sets, Step, To, Turn, parameter_value
@@ -82,9 +81,8 @@ class _Drawn(OwnScenario):
         )
         likely = Mistake("variant", self._same_as_a_variant)
         ladder = super().ladder
-        in_execute = IN_EXECUTE if "action_server" in self.roles else ()
         at = ladder.index(unfinished.NEVER_CONSTRUCTED)
-        return (*in_execute, *ladder[:at], proven, likely, *ladder[at:])
+        return (*ladder[:at], proven, likely, *ladder[at:])
 
     def _same_as_a_variant(self, evidence: Evidence, *, simulated: bool = False) -> Advice | None:
         mine = evidence.main
@@ -195,7 +193,7 @@ class SameAsSolution:
             )
         for output in self._outputs:
             name, each = output.name.strip("/"), points / len(self._outputs)
-            self._draft.criterion(name, each, output.title)(output.compared)
+            self._draft.criterion(name, each, output.title)(partial(_by_one_server, output))
 
     def exercise(self, **more: Any) -> Exercise:
         """Return the finished exercise. For ``more`` see :meth:`autograder.kit.draft.Draft.exercise`."""
@@ -352,6 +350,14 @@ class SameAsSolution:
 
     def _of(self, kind: Kind) -> list[Output]:
         return [output for output in self._outputs if output.kind is kind]
+
+
+def _by_one_server(output: Output, seen: Part, expected: Part) -> Finding:
+    """Compare an output, unless several servers have its name: each gets the call, and chance decides who answers."""
+    count = max((event.data["count"] for event in seen.of("servers", output.name)), default=0)
+    if count > 1:
+        return Finding(False, f"one server of {output.name}", f"{count} servers of {output.name}")
+    return output.compared(seen, expected)
 
 
 def _nodes(part: Part, begins: str) -> list[str]:

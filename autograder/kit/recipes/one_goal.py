@@ -93,19 +93,29 @@ more.
 
 
 def _scenario(bench: Bench) -> None:
-    """Make four runs: first a late server; then, in random order, a refused goal, an aborted goal, and no server."""
+    """Make four runs: first a late server; then, in random order, a refused goal, an aborted goal, and no server.
+
+    If a student waits for the card, the run without a server comes first, because it is the shortest.
+    """
+    runs, impatient = bench.random.sample((refused, aborted, unserved), 3), False
+    if bench.is_waited_for:
+        runs.remove(unserved)
+        unserved(bench, Part(LATE))
+        impatient = may_be_impatient(bench)
     inputs = _begin(bench, LATE)
     again = second_lateness([part for part in bench.before or () if part.name != LATE], "goal")
-    if not _late(bench, inputs, late_at_first(bench), again) or called_before_server(bench.seen()):
+    lateness = LATENESS if impatient else late_at_first(bench)
+    if not _late(bench, inputs, lateness, again) or called_before_server(bench.seen()):
+        bench.leave_out(ABSENT)
         return
-    first, served, impatient = bench.seen(), list[Part](), False
-    for run in bench.random.sample((refused, aborted, unserved), 3):
+    first, served = bench.seen(), list[Part]()
+    for run in runs:
         run(bench, first)
         served.append(bench.seen())
         impatient = may_be_impatient(bench) if run is unserved else impatient
     again = second_lateness(served, "goal")
     clock = bench.pace is Pace.FAST and again > SOON
-    if (impatient or clock) and first.of("goal"):
+    if (impatient or clock) and lateness < LATENESS and first.of("goal"):
         bench.again(LATE)
         _late(bench, inputs, LATENESS, again, answers_late(bench))
 

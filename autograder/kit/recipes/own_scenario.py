@@ -8,12 +8,9 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from autograder.kit.counterparts import Qos
-from autograder.kit.draft import OWN, OWN_LATE, SeenAsItIs
+from autograder.kit.draft import SeenAsItIs
 from autograder.kit.evidence import Event
-from autograder.kit.mistakes import common_mistakes as common
-from autograder.kit.mistakes import unfinished
-from autograder.kit.mistakes.crashes import CRASHES, OTHER_CRASHES
-from autograder.kit.mistakes.hangs import HANGS
+from autograder.kit.mistakes.role_mistakes import ladder
 from autograder.kit.model import Finding, Pace
 from autograder.kit.runners import processes
 
@@ -210,22 +207,7 @@ class OwnScenario:
     @property
     def ladder(self) -> tuple[Mistake, ...]:
         """The common mistakes, most specific first."""
-        on_topics = [role for role in self.roles if role in ("publisher", "subscription")]
-        return (
-            *CRASHES,
-            unfinished.NEVER_CONSTRUCTED,
-            *map(common.endpoint_name, self.roles),
-            *map(common.message_type, self.roles),
-            OWN,
-            *map(common.qos_mismatch, on_topics),
-            *OTHER_CRASHES,
-            *HANGS,
-            common.AWAITS_IN_VAIN,
-            *map(common.never_spun, self.roles),
-            *map(common.went_deaf, self.roles),
-            OWN_LATE,
-            *unfinished.NOTHING_THERE,
-        )
+        return ladder(self.roles)
 
 
 def _endpoints(role: str, endpoints: Mapping[str, str]) -> str:

@@ -126,7 +126,7 @@ EXERCISE = replace(
         "The file has to do everything that step 2 asks for.": "launched",
     },
     counts={
-        "installed": "A file in XML or YAML counts as well. What you write into `setup.py` yourself belongs into the cell, "
-        "too: a class is graded by its cells.",
+        "installed": "A file in XML or YAML counts as well. What you write into `setup.py` yourself belongs into the "
+        "cell, too: a class is graded by its cells.",
     },
 )
