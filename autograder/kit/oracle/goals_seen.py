@@ -1,4 +1,4 @@
-"""What the judge saw of the goals that it sent to an action server, and which goal an exercise sent for what."""
+"""The goals that the judge sent to an action server and their outcomes, and which goal an exercise sent for which test."""
 
 from __future__ import annotations
 

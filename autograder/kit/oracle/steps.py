@@ -147,7 +147,7 @@ Step = To | Sets | Goal | float
 
 
 class Turn(NamedTuple):
-    """A step that the subject was given, its place among all, and where it begins: which event, and when."""
+    """A step that the subject was given, with its number, and the event and the moment at which it begins."""
 
     number: int
     step: Step
