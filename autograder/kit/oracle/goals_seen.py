@@ -1,4 +1,4 @@
-"""The goals that the judge sent to an action server and their outcomes, and which goal an exercise sent for which test."""
+"""The goals that the judge sent to an action server, their outcomes, and which of them an exercise sent for what test."""
 
 from __future__ import annotations
 
