@@ -1,4 +1,4 @@
-"""The goals that the judge sent to an action server, their outcomes, and which of them an exercise sent for what test."""
+"""The goals that the judge sent to an action server, their outcomes, and which of them tests what."""
 
 from __future__ import annotations
 
