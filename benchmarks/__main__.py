@@ -26,7 +26,6 @@ from benchmarks.interrupt import measure_interrupts
 from benchmarks.machine import Usage, Watch, machine
 from benchmarks.ours import OurRun, diagnosed, problems_of, run_ours
 from benchmarks.overload import differences, run_overloaded, verdicts_of
-from benchmarks.profiling import profile_grade
 from benchmarks.regrade import measure_regrade
 from benchmarks.stock import StockRun, run_stock
 
@@ -214,7 +213,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
         "--short", action="store_true", help="a minute instead of half an hour; nothing is kept"
     )
     parser.add_argument("--students", type=int, help="students in the class that is graded")
-    parser.add_argument("--profile", action="store_true", help="only profile the grader's own process")
     parser.add_argument("--output", type=Path, help="keep the figures here; beside this program by default")
     chosen = parser.parse_args(arguments)
     form = SHORT if chosen.short else FULL
@@ -223,9 +221,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
     os.environ.setdefault("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
     folder = fresh_folder("benchmark-")
     try:
-        if chosen.profile:
-            profile_grade(folder / "class")
-            return 0
         found = measure(form, folder)
     finally:
         shutil.rmtree(folder, ignore_errors=True)
