@@ -61,7 +61,8 @@ LENT_STEP = 0.1
 step, less often than in real time.
 """
 _SIM_TIME = "use_sim_time"
-_QUESTION = GetParameters.Request(names=[_SIM_TIME])
+_QUESTION = GetParameters.Request()
+"""The question for no parameter at all, which costs both sides least."""
 
 
 class NodeClock:
