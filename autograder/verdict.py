@@ -21,6 +21,8 @@ class State(StrEnum):
     """The subject was checked, and at least one criterion is not met."""
     NOT_CHECKED = "not_checked"
     """The judge itself failed, for example because no ROS domain was free. This says nothing about the subject."""
+    CHECKING = "checking"
+    """The check goes on. Only the card that a student sees meanwhile has this state."""
 
 
 @dataclass(frozen=True)
@@ -31,17 +33,19 @@ class CriterionResult:
         name: The criterion's key, such as ``"rate"``, which does not change with the wording.
         title: A one-line name for people, such as ``"Publishes every 0.5 s"``.
         points: The points that the criterion is worth.
-        passed: True if the criterion is met.
+        passed: True if the criterion is met; None if this is not decided yet, while the check goes on.
         expected: What the reference solution does.
         seen: What the subject did.
+        counts: What else is accepted, or is not judged, in one or two sentences; empty if there is nothing to say.
     """
 
     name: str
     title: str
     points: float
-    passed: bool
+    passed: bool | None
     expected: str
     seen: str
+    counts: str = ""
 
 
 @dataclass(frozen=True)
@@ -112,6 +116,8 @@ class Verdict:
         seed: The seed of the random inputs; the same seed gives the same inputs.
         seconds: The duration of the check, in seconds of wall time.
         detail: A traceback, or the last lines of output, if they help; else empty.
+        counts: What else counts for the exercise as a whole, and what is not graded; empty if there is nothing to say.
+        nothing_seen: True if nothing of the subject was seen, not even an error, as before its first line is written.
     """
 
     exercise: str
@@ -126,6 +132,8 @@ class Verdict:
     seed: str = ""
     seconds: float = 0.0
     detail: str = ""
+    counts: str = ""
+    nothing_seen: bool = False
 
     @property
     def passed(self) -> bool:

@@ -102,7 +102,7 @@ def _points(verdict: Verdict) -> str:
     return f"{verdict.score:g} of {verdict.max_score:g}"
 
 
-def _held(passed: bool, points: float) -> str:
+def _held(passed: bool | None, points: float) -> str:
     return f"{'met' if passed else 'not met'} ({points:g} points)"
 
 

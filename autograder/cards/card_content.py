@@ -16,11 +16,12 @@ import re2
 from autograder.cards import card_wording
 from autograder.cards.card_traffic import Traffic, traffic
 from autograder.cards.readable_text import TRACEBACK, TracebackLine, block, one_line, paragraph, students_line
+from autograder.verdict import State
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from autograder.verdict import CriterionResult, State, Verdict
+    from autograder.verdict import CriterionResult, Verdict
 
 
 _UNFOLDED = 16
@@ -92,19 +93,26 @@ class Choices(TypedDict, total=False):
     short: bool
 
 
+_STATES = {True: State.PASSED, False: State.FAILED, None: State.CHECKING}
+"""The state of a criterion, by whether it is met."""
+
+
 @dataclass(frozen=True)
 class CriterionRow:
     """A criterion as the card shows it, with its points in words and as a fraction of the bar."""
 
     passed: bool
+    state: State
     word: str
     title: str
     expected: str
     seen: str
     points: str
+    possible: str
     unit: str
     weight: str
     difference: tuple[TextPiece, ...]
+    counts: str
 
     @classmethod
     def of(cls, criterion: CriterionResult, form: Form) -> CriterionRow:
@@ -112,15 +120,18 @@ class CriterionRow:
         earned = criterion.points if criterion.passed else 0.0
         pieces = difference(criterion)
         return cls(
-            passed=criterion.passed,
+            passed=bool(criterion.passed),
+            state=_STATES[criterion.passed],
             word=card_wording.CRITERION_WORDS[criterion.passed],
             title=one_line(criterion.title, 160, mark=form.mark),
             expected=one_line(criterion.expected, 240, mark=form.mark) or form.nothing,
             seen=one_line(criterion.seen, 240, mark=form.mark) or form.nothing,
             points=f"{card_wording.points(earned)} of {card_wording.points(criterion.points)}",
+            possible=f"{card_wording.points(criterion.points)} {card_wording.unit(criterion.points)}",
             unit=card_wording.unit(criterion.points),
             weight=card_wording.points(max(criterion.points, 0.1)),
             difference=tuple(TextPiece(one.kind, one_line(one.text, 200, mark=form.mark)) for one in pieces),
+            counts=one_line(criterion.counts, 400, mark=form.mark),
         )
 
 
@@ -134,6 +145,8 @@ class Card:
         notice: Why the card is out of date; empty if it is up to date.
         traffic: The traffic on the wire. Its texts come from the subject.
         traffic_notes: Which parts of the traffic are left out.
+        counts: What else counts for the exercise as a whole, and what is not graded.
+        nothing_seen: True to list what is asked instead of what was seen, because nothing was.
         place: The student's line in which the traceback ends; None if there is none.
         unfolded: True if the detail is short enough to be shown unfolded.
         facts: The facts that a student should quote in a question.
@@ -153,6 +166,8 @@ class Card:
     advice: card_wording.AdviceBlock
     place: TracebackLine | None
     criteria: tuple[CriterionRow, ...]
+    counts: str
+    nothing_seen: bool
     remarks: tuple[str, ...]
     traffic: Traffic
     traffic_notes: str
@@ -197,6 +212,8 @@ class Card:
             ),
             place=_readable(students_line(verdict.detail, advice.text), mark),
             criteria=tuple(CriterionRow.of(criterion, form) for criterion in verdict.criteria),
+            counts=one_line(verdict.counts, 1200, mark=mark),
+            nothing_seen=verdict.nothing_seen,
             remarks=tuple(paragraph(remark, 600, mark=mark) for remark in verdict.remarks),
             traffic=shown,
             traffic_notes=card_wording.traffic_notes(shown),
@@ -211,7 +228,9 @@ class Card:
         return card._shortened() if short else card
 
     def _shortened(self) -> Card:
-        return replace(self, criteria=(), remarks=(), traffic=Traffic(()), detail=(), facts=(), solution=None)
+        return replace(
+            self, criteria=(), counts="", remarks=(), traffic=Traffic(()), detail=(), facts=(), solution=None
+        )
 
 
 def _readable(found: TracebackLine | None, mark: str) -> TracebackLine | None:

@@ -18,6 +18,7 @@ STATE_WORDS = {
     State.PASSED: "Passed",
     State.FAILED: "Not yet",
     State.NOT_CHECKED: "Could not be checked",
+    State.CHECKING: "Checking",
 }
 
 DIRECTION_WORDS = {
@@ -27,9 +28,16 @@ DIRECTION_WORDS = {
     "expected": "expected, and did not come",
 }
 
-CRITERION_WORDS = {True: "PASS", False: "NOT YET"}
+CRITERION_WORDS = {True: "PASS", False: "NOT YET", None: "TO COME"}
 
 DIFFERENCE = "the difference ([ ] is missing, { } is too much)"
+
+ASKED = "What is asked"
+"""The heading of the criteria on a card before anything of the student's code was seen."""
+COUNTS = "what counts"
+"""The label of what else is accepted for a criterion."""
+COUNTS_BESIDES = "what else counts, and what does not"
+"""The label of the same about the exercise as a whole."""
 
 SOLUTION = "The reference solution, and why it is written so"
 """The heading of the folded reference solution."""
@@ -62,6 +70,8 @@ def advice(verdict: Verdict) -> AdviceBlock:
     if verdict.state is State.PASSED:
         return AdviceBlock("", "Well done: your code did everything that was asked for.")
     diagnosis = verdict.diagnosis
+    if verdict.state is State.CHECKING:
+        return AdviceBlock("", diagnosis.text if diagnosis else "")
     if verdict.state is State.NOT_CHECKED:
         reason = diagnosis.text.strip() if diagnosis else ""
         next_step = diagnosis.next_step.strip() if diagnosis else ""
@@ -119,8 +129,10 @@ def tally(verdict: Verdict) -> str:
     """Return how many criteria are met, such as ``"3 of 4 criteria hold"``; empty if there are no criteria."""
     if not verdict.criteria:
         return ""
-    held = sum(criterion.passed for criterion in verdict.criteria)
+    held = sum(criterion.passed is True for criterion in verdict.criteria)
     total = len(verdict.criteria)
+    if verdict.state is State.CHECKING:
+        return f"{held} of {total} decided"
     if total == 1:
         return f"{held} of 1 criterion holds"
     if held == total:

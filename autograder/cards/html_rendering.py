@@ -31,11 +31,16 @@ if TYPE_CHECKING:
     from autograder.verdict import Verdict
 
 
-_SYMBOLS = {State.PASSED: "✓", State.FAILED: "✗", State.NOT_CHECKED: "?"}
+_SYMBOLS = {State.PASSED: "✓", State.FAILED: "✗", State.NOT_CHECKED: "?", State.CHECKING: "…"}
 
 # These colors are used only in an untrusted notebook, which has no style sheet. They are legible on white and on
 # black.
-_PLAIN_COLORS = {State.PASSED: "#2f8f57", State.FAILED: "#c8641a", State.NOT_CHECKED: "#6482c8"}
+_PLAIN_COLORS = {
+    State.PASSED: "#2f8f57",
+    State.FAILED: "#c8641a",
+    State.NOT_CHECKED: "#6482c8",
+    State.CHECKING: "#6482c8",
+}
 
 
 def card_bundle(verdict: Verdict, **choices: Unpack[Choices]) -> dict[str, str]:
@@ -75,7 +80,7 @@ def card_html(verdict: Verdict, *, buttons: bool = False, **choices: Unpack[Choi
         card=card,
         parts=[_Part.of(part, width) for part in card.traffic.parts],
         moments=[moment for part in card.traffic.parts for moment in part.moments],
-        symbol=_SYMBOLS[card.state],
+        symbols=_SYMBOLS,
         color=_PLAIN_COLORS[card.state],
         facts=one_line(" · ".join(card.facts), 200),
         buttons=buttons,

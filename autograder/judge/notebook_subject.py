@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 
     from autograder.judge.bench.discovery import Endpoint
     from autograder.judge.bench.recorder import Recorder
+    from autograder.verdict import Verdict
 
 
 MAX_TEXT = 4_000
@@ -87,9 +88,9 @@ class NotebookSubject:
         self._tell(judge_messages.Begin(domain_id, self.keeper))
         self._ready.wait(STOP_LIMIT)
 
-    def tell_so_far(self, words: str) -> None:
-        """Have the notebook show these words on the card while the check goes on."""
-        self._tell(judge_messages.SoFar(words))
+    def tell_so_far(self, verdict: Verdict, words: str) -> None:
+        """Have the notebook show a card while the check goes on."""
+        self._tell(judge_messages.SoFar(verdict, words))
 
     def renew(self) -> None:
         """Have the notebook open a new ROS context for the next run."""

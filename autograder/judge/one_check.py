@@ -6,6 +6,7 @@ import contextlib
 import time
 import traceback
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from random import Random
 from typing import TYPE_CHECKING
@@ -25,12 +26,14 @@ from autograder.judge.machine_fitness import (
     delivers,
 )
 from autograder.judge.timeline import verdict_timeline
+from autograder.judge.timeline.growing_card import GrowingCard
 from autograder.judge.timeline.parting_point import claimed, own_lines_in_words, parting_point
+from autograder.kit.bench import Pace
 from autograder.kit.evidence import Evidence, Reference
 from autograder.kit.hunts.repairs import without_causes
 from autograder.kit.in_words import of_its_kind, shortened, visible
 from autograder.kit.mistakes.package_mistakes import changed_since_build
-from autograder.kit.model import Advice, Exercise, Finding, Mistake, Pace
+from autograder.kit.model import Advice, Criterion, Exercise, Finding, Mistake
 from autograder.kit.runners import runner_trouble
 from autograder.verdict import CriterionResult, Diagnosis, State, Verdict, failed
 
@@ -38,7 +41,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
 
     from autograder.judge.subject import Subject
-    from autograder.kit.evidence import Event
+    from autograder.kit.evidence import Event, Part
     from autograder.messages.judge_messages import OwnLine
 
 
@@ -123,9 +126,11 @@ def _check(
 ) -> Checked:
     began = time.monotonic()
     crowded, delivered = False, delivers()
-    # Hurry only if a student may be waiting, that is, in a check cell that no grader runs.
+    # Hurry, and tell what is known so far, only if a student may be waiting, that is, in a check cell that no grader
+    # runs: the code of a submission must not learn the verdict.
     waited_for = subject.in_a_notebook and not marks_crowded
     hurry = Hurry(is_building=lambda: subject.is_building) if waited_for else _no_hurry
+    card = GrowingCard(exercise, partial(_result, exercise), subject.tell_so_far) if waited_for else None
     names: Mapping[str, Mapping[str, str]] = {}
     verdict: Verdict | None = None
 
@@ -141,6 +146,7 @@ def _check(
                 before=before,
                 hurry=hurry,
                 names=names,
+                card=card,
             )
         except OutOfTime:
             raise _too_busy(verdict) from None
@@ -164,8 +170,8 @@ def _check(
         again = exercise.second_look and (seen.doubtful or not verdict.passed)
         again = again and not _is_explained(exercise, evidence, verdict, names)
         if again:
-            if not marks_crowded:  # code of a submission must not learn the verdict
-                subject.tell_so_far(_so_far(verdict))
+            if card is not None:
+                card.words = _so_far(verdict)
             with Crowding() as crowding:
                 seen = next_look(Pace.REAL_TIME, evidence)
             evidence = replace(seen.evidence, before=evidence)
@@ -258,6 +264,7 @@ def look(
     before: Evidence | None = None,
     hurry: Callable[[], None] = _no_hurry,
     names: Mapping[str, Mapping[str, str]] | None = None,
+    card: GrowingCard | None = None,
 ) -> Seen:
     """Run the scenario once and return the evidence.
 
@@ -268,8 +275,15 @@ def look(
         before: The evidence of the first look; None if this is the first look.
         hurry: Called repeatedly while the judge waits. It may raise an exception to end the look.
         names: The wrong names that :func:`autograder.judge.one_check.misnamed` found in an earlier look.
+        card: The card of a student who waits for the check; None if no student waits.
     """
+
+    def begin_run(ended: Sequence[Part]) -> None:
+        if card is not None:
+            card.begin(Evidence(ended, reference, pace is Pace.REAL_TIME, before))
+
     bench = TestBench(subject, domain_id, reference, pace, Random(seed), before, hurry, names)
+    bench.is_waited_for, bench.begin_run = card is not None, begin_run
     try:
         exercise.scenario(bench)
     finally:
@@ -289,11 +303,7 @@ def judge(exercise: Exercise, evidence: Evidence, seed: str) -> Verdict:
     if sum(len(part.events) for part in evidence) > MOST_EVENTS:
         raise TooManyEvents
     lost = {event.data["costs"]: event for part in evidence for event in part.of("misnamed")}
-    criteria = tuple(
-        CriterionResult(c.name, c.title, c.points, finding.passed, _cut(finding.expected), _cut(finding.seen))
-        for c in exercise.criteria
-        for finding in [_with_name(c.judge(evidence), lost.get(c.name))]
-    )
+    criteria = tuple(_result(exercise, one, evidence, lost.get(one.name)) for one in exercise.criteria)
     passed = all(criterion.passed for criterion in criteria)
     diagnosis, traceback = (None, "") if passed else diagnose(exercise, evidence, criteria)
     told = (diagnosis.text if diagnosis else "", *(one.seen for one in criteria if not one.passed))
@@ -312,14 +322,23 @@ def judge(exercise: Exercise, evidence: Evidence, seed: str) -> Verdict:
         seed=seed,
         # The last lines of a traceback name the error and the student's line.
         detail=traceback[-MAX_DETAIL:],
+        counts=exercise.counts_as_a_whole,
+        nothing_seen=not any(one.passed for one in criteria) and verdict_timeline.shows_nothing(evidence),
     )
 
 
-def _with_name(finding: Finding, wrong: Event | None) -> Finding:
-    """Return a criterion's finding. If this is the criterion that a wrong name should fail, change it to failed."""
-    if wrong is None or not finding.passed:
-        return finding
-    return Finding(False, f"the name {wrong.name}", f"the name {wrong.data['real']}")
+def _result(
+    exercise: Exercise, criterion: Criterion, evidence: Evidence, wrong: Event | None = None
+) -> CriterionResult:
+    """Return the result of a criterion; not met if it is the one that a wrong name should fail."""
+    finding = criterion.judge(evidence)
+    if wrong is not None and finding.passed:
+        finding = Finding(False, f"the name {wrong.name}", f"the name {wrong.data['real']}")
+    expected, seen = _cut(finding.expected), _cut(finding.seen)
+    counts = exercise.counts.get(criterion.name, "")
+    return CriterionResult(
+        criterion.name, criterion.title, criterion.points, finding.passed, expected, seen, counts
+    )
 
 
 def diagnose(

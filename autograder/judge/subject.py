@@ -33,6 +33,7 @@ if TYPE_CHECKING:
 
     from autograder.judge.bench.discovery import Endpoint
     from autograder.judge.bench.recorder import Recorder
+    from autograder.verdict import Verdict
 
     Record = Callable[..., None]
 
@@ -54,8 +55,11 @@ class Subject(Protocol):
     def begin(self, domain_id: int) -> None:
         """Prepare for the first run, on the ROS domain of this check. The judge calls this once."""
 
-    def tell_so_far(self, words: str) -> None:
-        """Tell the waiting student in one sentence what the judge knows so far. Only a notebook shows this sentence."""
+    def tell_so_far(self, verdict: Verdict, words: str) -> None:
+        """Show the waiting student what the judge knows so far: see :class:`autograder.messages.judge_messages.SoFar`.
+
+        Only a notebook shows it.
+        """
 
     @property
     def is_building(self) -> bool:
@@ -133,7 +137,7 @@ class InOwnProcesses:
         """Return an empty set: the subject's processes are not children of the judge, so their ids are unknown."""
         return frozenset()
 
-    def tell_so_far(self, words: str) -> None:
+    def tell_so_far(self, verdict: Verdict, words: str) -> None:
         """Do nothing, because a command shows no card while it is checked."""
 
     def renew(self) -> None:

@@ -12,14 +12,15 @@ from typing import TYPE_CHECKING
 
 import re2
 
-from autograder.kit.model import Advice, Pace
+from autograder.kit.bench import Pace
+from autograder.kit.model import Advice
 from autograder.kit.outcomes import Outcome, all_lines
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
 
+    from autograder.kit.bench import Bench
     from autograder.kit.evidence import Evidence, Part
-    from autograder.kit.model import Bench
 
 PATIENCE = "patience_sec"
 """The name of the parameter that tells a notebook's function how long to wait, and of the same value in a part's
@@ -64,6 +65,11 @@ PART_OF_A_WAIT = 1.0
 """The number of seconds by which a function may end before its patience is over, because it may wait in whole seconds.
 """
 NOT_AVAILABLE = Outcome("not available")
+COUNTS = (
+    "Another exception, or a line that contains `not available`, counts as well. A program without `patience_sec` ends "
+    "within 12 seconds, or says every three that it is `waiting`."
+)
+"""Says on the card which ways to give up count (:attr:`autograder.kit.model.Exercise.counts`)."""
 """The words that a client must report if its service or action server is missing."""
 WAITING = Outcome("not available", "waiting")
 """The words that a client must repeat if it keeps waiting."""

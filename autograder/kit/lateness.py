@@ -10,16 +10,18 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from autograder.kit.bench import Pace
 from autograder.kit.giving_up import CLOSELY, LATE_AT_FIRST, LATENESS, TOO_SHORT, patience, waited
-from autograder.kit.model import Pace, mistake
+from autograder.kit.model import mistake
 from autograder.kit.service_calls import HANGS_AFTER
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
 
+    from autograder.kit.bench import Bench
     from autograder.kit.counterparts import ActionCounterpart
     from autograder.kit.evidence import Event, Evidence, Part
-    from autograder.kit.model import Bench, Mistake
+    from autograder.kit.model import Mistake
 
 SOON = 0.3
 """Seconds after which the server starts in a repeated run, if the client ended shortly before its server was there."""
@@ -60,10 +62,9 @@ def answers_late(bench: Bench) -> float:
 
 
 def late_at_first(bench: Bench) -> float:
-    """Return the delay of the server in the first run, in seconds.
+    """Return the delay of a server that comes late, in seconds.
 
-    In the fast look the delay is short, because the judge does not know yet how long the client waits: only the last
-    run, without a server, shows that.
+    In the fast look the delay is short: only a run without a server shows how long the client would wait.
     """
     return LATE_AT_FIRST if bench.pace is Pace.FAST else LATENESS
 
@@ -71,13 +72,16 @@ def late_at_first(bench: Bench) -> float:
 def may_be_impatient(bench: Bench) -> bool:
     """Return True if the last run, which has no server, does not show that the client waits long enough.
 
-    A function that was told how long to wait must wait for that time, any other client for a few seconds. In real time
-    the result is always False, because the server of the first run was already as late as allowed.
+    A function that was told how long to wait must wait for that time, any other client for a few seconds. A client that
+    sends its request all the same has not waited. In real time the result is always False, because the server of the
+    first run is as late as allowed in any case.
     """
     absent = bench.seen()
     limit = patience(absent)
-    if absent.ending is None or bench.pace is Pace.REAL_TIME:
+    if bench.pace is Pace.REAL_TIME:
         return False
+    if absent.ending is None:
+        return bool(absent.of("called"))
     if limit is None:
         return not was_patient(absent)
     return not limit * TOO_SHORT <= waited(absent) <= limit + CLOSELY

@@ -182,12 +182,14 @@ class Stack(RunMessage, frozen=True):
 
 
 class SoFar(Message, frozen=True, tag="so_far"):
-    """A sentence about what the judge knows so far. The check goes on, and may show that the sentence is wrong.
+    """The judge's findings so far, while the check goes on. No submission in a sandbox gets this message.
 
     Attributes:
-        words: A sentence for the student; empty if nothing is known.
+        verdict: A verdict in the state ``checking``. What it shows as met stays met.
+        words: A sentence about the first look, which the second one may show to be wrong; empty if nothing is known.
     """
 
+    verdict: Verdict
     words: str
 
 

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import sys
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import pytest
 
 from autograder import course, exercises
 from autograder.authoring.answer_bank import answers
-from autograder.authoring.exercise_faults import still_to_do
+from autograder.authoring.exercise_faults import still_to_do, unasked_outputs
 from autograder.authoring.new_exercise import EXAMPLES, new_exercise, recipes
+from autograder.judge import evidence_files
 from environment import python_child
 
 if TYPE_CHECKING:
@@ -55,7 +57,7 @@ def test_an_example_keeps_every_rule(recipe: str, monkeypatch: pytest.MonkeyPatc
 
 def test_folded_text_does_not_delay_the_first_task(lab: Path) -> None:
     master = lab / "lab.md"
-    fold = f"<details>\n<summary>What counts</summary>\n\n{'Robots ' * 401}\n\n</details>\n\nRobots tell"
+    fold = f"<details>\n<summary>More</summary>\n\n{'Robots ' * 401}\n\n</details>\n\nRobots tell"
     master.write_text(master.read_text().replace("Robots tell", fold, 1))
     assert not [line for line in told() if line.startswith("lab.md")]
 
@@ -102,6 +104,18 @@ def test_folded_text_does_not_delay_the_first_task(lab: Path) -> None:
         ),
         ("battery.py", '        "every 0.5 s": "rate",\n', "", "text: the criterion rate is not mapped"),
         ("battery.py", '": "rate"', '": "rate volts"', "text: the criterion volts does not exist"),
+        (
+            "battery.py",
+            "    text={",
+            '    counts={"rate": "A. B! C?"},\n    text={',
+            "text: counts has more than 2 sentences about rate",
+        ),
+        (
+            "battery.py",
+            "    text={",
+            '    counts={"volts": "A."},\n    text={',
+            "text: the criterion volts does not",
+        ),
         ("battery.py", '"every 0.5 s"', '"Cows"', "text: lab.md does not say “Cows”"),
         (
             "battery.answers/wrong/answers.toml",
@@ -138,3 +152,12 @@ def test_a_difference_in_format_is_one_line(lab: Path) -> None:
 def test_what_is_not_installed_is_told(lab: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(python_child, "INTERPRETER", str(lab / "python3"))
     assert [line.partition(",")[0] for line in told()] == ["ruff: not installed", "mypy: not installed"]
+
+
+def test_an_output_that_no_criterion_asks_for_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv(course.VARIABLE, str(EXAMPLES))
+    careful = exercises.get("oracle.careful")
+    recorded = evidence_files.load_reference(careful.id)
+    assert unasked_outputs(careful, recorded) == []
+    (drives,) = (criterion for criterion in careful.criteria if criterion.name == "cmd_vel")
+    assert unasked_outputs(replace(careful, criteria=[drives]), recorded) == ["/state"]

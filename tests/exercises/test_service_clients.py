@@ -12,9 +12,9 @@ from exercise_1_2 import three_ints as exercise_1_2_three_ints
 from lab_1_3 import client as lab_1_3_client
 
 from autograder.judge import evidence_files, one_check
+from autograder.kit.bench import Pace
 from autograder.kit.evidence import Event, Evidence, Part, Reference
 from autograder.kit.lateness import ANSWERS_SOON
-from autograder.kit.model import Pace
 from autograder.kit.recipes import service_runs
 from autograder.kit.recipes.service_client import NOT_RETURNED
 from autograder.kit.recipes.service_runs import Run, answering, has_spoken, is_done
@@ -53,7 +53,9 @@ ON_PURPOSE = Event(
 )
 
 
-def runs_of(scenario: Any, seed: int, monkeypatch: pytest.MonkeyPatch) -> list[tuple[str, Any]]:
+def runs_of(
+    scenario: Any, seed: int, monkeypatch: pytest.MonkeyPatch, *, waited_for: bool = False
+) -> list[tuple[str, Any]]:
     """The runs of a check in their order, each with its name and what it is made of."""
     order: list[tuple[str, Any]] = []
 
@@ -64,13 +66,18 @@ def runs_of(scenario: Any, seed: int, monkeypatch: pytest.MonkeyPatch) -> list[t
     monkeypatch.setattr(service_runs, "called", called)
     monkeypatch.setattr(service_runs, "called_late", called)
     monkeypatch.setattr(service_runs, "unserved", lambda _, numbers: order.append((ABSENT, numbers)))
-    scenario(MagicMock(pace=Pace.FAST, random=Random(seed), seen=lambda: Part(LATE)))
+    bench = MagicMock(pace=Pace.FAST, random=Random(seed), seen=lambda: Part(LATE), is_waited_for=waited_for)
+    scenario(bench)
     return order
 
 
-@pytest.mark.parametrize(("impatient", "lateness"), [(False, [0.65]), (True, [0.65, 1.5])])
-def test_a_service_comes_late_once_more_if_nothing_shows_that_its_client_would_have_waited(
-    impatient: bool, lateness: list[float], monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize(
+    ("impatient", "waited_for", "lateness"),
+    [(False, False, [0.65]), (True, False, [0.65, 1.5]), (False, True, [0.65]), (True, True, [1.5])],
+    ids=["patient", "impatient", "patient, a student waits", "impatient, a student waits"],
+)
+def test_a_service_comes_as_late_as_allowed_if_nothing_shows_that_its_client_would_have_waited(
+    impatient: bool, waited_for: bool, lateness: list[float], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     came: list[float] = []
 
@@ -83,10 +90,20 @@ def test_a_service_comes_late_once_more_if_nothing_shows_that_its_client_would_h
     monkeypatch.setattr(service_runs, "unserved", lambda *_: None)
     monkeypatch.setattr(service_runs, "may_be_impatient", lambda _: impatient)
     asked = Part(LATE, {}, [Event(0.0, "request", "/add_two_ints", {})])
-    bench = MagicMock(pace=Pace.FAST, random=Random(0), seen=lambda: asked, before=None)
+    bench = MagicMock(
+        pace=Pace.FAST, random=Random(0), seen=lambda: asked, before=None, is_waited_for=waited_for
+    )
     service_runs.scenario(bench, [Run(LATE, (1, 2)), Run(BIASED, (1, 2))], (3, 4), calls=1)
     assert came == lateness
-    assert [call.args for call in bench.again.mock_calls] == [(LATE,)] * impatient
+    assert [call.args for call in bench.again.mock_calls] == [(LATE,)] * (len(lateness) - 1)
+
+
+@pytest.mark.parametrize("exercise", [exercise_1_2_three_ints, lab_1_3_client])
+def test_the_run_without_a_service_comes_first_if_a_student_waits_since_it_is_the_shortest(
+    exercise: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    order = runs_of(exercise.EXERCISE.scenario, SEEDS[0], monkeypatch, waited_for=True)
+    assert [name for name, _ in order][:2] == [ABSENT, LATE]
 
 
 @pytest.mark.parametrize("exercise", [exercise_1_2_three_ints, lab_1_3_client])

@@ -12,13 +12,15 @@ from autograder.cards.text_rendering import card_text
 from autograder.judge import evidence_files, machine_fitness, one_check
 from autograder.judge.machine_fitness import ANSWER_WITHIN, Crowding, NotDelivered, TooBusy
 from autograder.judge.one_check import WHAT_TO_DO, ExerciseFailed
+from autograder.kit.bench import Pace
 from autograder.kit.evidence import Event, Evidence, Part
-from autograder.kit.model import Advice, Criterion, Finding, Mistake, Pace
+from autograder.kit.model import Advice, Criterion, Finding, Mistake
 from autograder.kit.rules import value
-from autograder.verdict import not_checked
+from autograder.verdict import State, not_checked
 
 if TYPE_CHECKING:
     from autograder.kit.model import Exercise
+    from autograder.verdict import Verdict
 
 
 FAST, REAL = Pace.FAST, Pace.REAL_TIME
@@ -35,7 +37,8 @@ class Anybody:
     def begin(self, domain_id: int) -> None:
         del domain_id
 
-    def tell_so_far(self, words: str) -> None:
+    def tell_so_far(self, verdict: Verdict, words: str) -> None:
+        assert verdict.state is State.CHECKING
         self.told.append(words)
 
 
@@ -156,7 +159,9 @@ class BusyFor:
     def hurry(self, **how: Any) -> machine_fitness.Hurry:
         return machine_fitness.Hurry(lambda: 16, 2, lambda: self._now, **how)
 
-    def look(self, *_: Any, hurry: Any, **__: Any) -> one_check.Seen:
+    def look(self, *_: Any, hurry: Any, card: Any, **__: Any) -> one_check.Seen:
+        if card is not None:
+            card.begin(Evidence([], self.stored))
         self._now += next(self._seconds)
         hurry()
         return one_check.Seen(Evidence([Part("bad")], self.stored), doubtful=False)
@@ -176,7 +181,7 @@ def test_who_waits_on_a_busy_machine_is_told_what_is_known(
     with pytest.raises(TooBusy, match="The machine is too busy") as raised:
         one_check.check(exercise(), cast("Any", subject), busy.stored, seed="s", domain_id=0)
     assert ("It says b." in str(raised.value)) is known
-    assert ["It says b." in words for words in subject.told] == [True] * known
+    assert ["It says b." in words for words in subject.told] == [False, True][: 1 + known]
 
 
 def test_a_grader_lets_a_check_take_its_time_and_a_submission_hears_nothing(

@@ -9,11 +9,11 @@ from unittest.mock import MagicMock
 import pytest
 
 from autograder.judge import evidence_files
+from autograder.kit.bench import Pace
 from autograder.kit.evidence import Event, Evidence, Part
-from autograder.kit.giving_up import LATENESS
+from autograder.kit.giving_up import LATE_AT_FIRST, LATENESS
 from autograder.kit.goal_reports import REFUSED
 from autograder.kit.lateness import SOON
-from autograder.kit.model import Pace
 from autograder.kit.oracle import canceled_goals as cancel
 from autograder.kit.oracle.cancel_requests import AGREED, CANCEL_REFUSED, HONORED
 from autograder.kit.oracle.canceled_goals import CancelsGoal
@@ -150,7 +150,11 @@ def test_the_look_in_real_time_repeats_what_time_may_have_decided(
 
 @pytest.mark.parametrize(
     ("before", "late"),
-    [(None, LATENESS), (fast_look(run(HONORED, later=0.15)), SOON), (fast_look(Part(HONORED)), LATENESS)],
+    [
+        (None, LATE_AT_FIRST),
+        (fast_look(run(HONORED, later=0.15)), SOON),
+        (fast_look(Part(HONORED)), LATENESS),
+    ],
     ids=["first look", "waited", "never sent a goal"],
 )
 def test_a_client_that_has_waited_for_a_late_server_is_not_kept_waiting_again(

@@ -28,7 +28,7 @@ from autograder.judge.evidence_files import Kept, evidence_of, packed, plain, re
 from autograder.verdict import State, to_json
 from autograder.workspaces.builds import build_cache
 from tests.cards import sweep
-from tests.judge import quoting
+from tests.judge import quoting, shown_early
 from tests.measure import bank, stimulus
 
 if TYPE_CHECKING:
@@ -204,6 +204,7 @@ def objection(answer: Answer) -> str:
         now = replay(record.seen).now
         quoted = evidence_of(record.seen, evidence_files.load_reference(answer.exercise))
         why = answer.objection(now) or sweep.objection(now) or quoting.objection(now, quoted)
+        why = why or shown_early.objection(now, quoted)
     except CannotReplay as error:
         return f"{answer.name}: {error}; {COMMAND} {answer.name}"
     except BadEvidence as error:

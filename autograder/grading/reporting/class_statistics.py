@@ -166,7 +166,7 @@ def _criteria(table: ClassTable, store: ClassStore) -> dict[tuple[str, str], lis
                 for criterion in verdict.criteria:
                     known = of_exercise.get(criterion.name, _CriterionFigures(criterion.title, 0, 0))
                     of_exercise[criterion.name] = replace(
-                        known, passed=known.passed + criterion.passed, of=known.of + 1
+                        known, passed=known.passed + bool(criterion.passed), of=known.of + 1
                     )
     return {key: list(figures.values()) for key, figures in seen.items()}
 

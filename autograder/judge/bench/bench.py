@@ -21,13 +21,13 @@ from autograder.judge.bench.ros_interfaces import expected_hashes, served_hashes
 from autograder.judge.bench.subject_presence import GRAPH_POLL, MATCH, Presence
 from autograder.judge.bench.subject_time import SubjectTime, answers
 from autograder.judge.machine_fitness import JudgeFailed
+from autograder.kit.bench import STEP, Pace
 from autograder.kit.counterparts import Qos
 from autograder.kit.evidence import INTERRUPTED, Evidence, Part, Reference
 from autograder.kit.giving_up import patience
-from autograder.kit.model import STEP, Pace
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Container, Iterable, Mapping
+    from collections.abc import Callable, Container, Iterable, Mapping, Sequence
     from random import Random
 
     from autograder.judge.subject import Subject
@@ -48,10 +48,12 @@ _Client = TypeVar("_Client", RecordedCaller, RecordedActionClient)
 
 
 class TestBench:
-    """Implements :class:`autograder.kit.model.Bench` on real ROS. Its methods are documented there.
+    """Implements :class:`autograder.kit.bench.Bench` on real ROS. Its methods are documented there.
 
     Attributes:
         in_a_cell: True if the subject runs in a notebook's kernel.
+        is_waited_for: True if a student waits for the check's card.
+        begin_run: Called at the beginning of each run, with the finished parts.
         parts: The finished parts, in order.
         doubtful: True if an observation in a fast look must be confirmed in real time.
         unmet: True if a run began although the subject's participant had not reported that it discovered the judge's
@@ -77,6 +79,8 @@ class TestBench:
         self.random = random
         self.reference = reference
         self.in_a_cell = subject.shares_participant
+        self.is_waited_for = False
+        self.begin_run: Callable[[Sequence[Part]], None] = lambda _: None
         self.parts: list[Part] = []
         self.doubtful = False
         self.unmet = False
@@ -102,6 +106,7 @@ class TestBench:
 
     def part(self, name: str, **inputs: Any) -> None:
         self.stop()
+        self.begin_run(self.parts)
         self._recorder = recorder = Recorder(name, inputs, self._hurry)
         for asked, facts in self._misnamed.items():
             self._recorder.record("misnamed", asked, **facts)
@@ -132,6 +137,10 @@ class TestBench:
         dropped = next(part for part in reversed(self.parts) if name in ("", part.name))
         self.parts.remove(dropped)
         self.part(dropped.name, **dropped.inputs)
+
+    def leave_out(self, name: str) -> None:
+        self.stop()
+        self.parts = [part for part in self.parts if part.name != name]
 
     def keep(self, name: str) -> bool:
         known = self.before.part(name) if self.before else Part(name)

@@ -9,13 +9,14 @@ from typing import TYPE_CHECKING
 import re2
 
 from autograder import known_errors
+from autograder.kit.bench import Pace
 from autograder.kit.mistakes.traceback_lines import own_line
-from autograder.kit.model import Advice, Mistake, Pace, mistake
+from autograder.kit.model import Advice, Mistake, mistake
 from autograder.kit.runners import BUILDING, WorkspaceReport, report_of
 
 if TYPE_CHECKING:
+    from autograder.kit.bench import Bench
     from autograder.kit.evidence import Evidence, Part
-    from autograder.kit.model import Bench
     from autograder.kit.runners import PackageReport
 
 
@@ -256,6 +257,15 @@ def mistakes(entry: EntryPoint) -> tuple[Mistake, ...]:
         Mistake("wrong_folder", lambda evidence: wrong_folder(evidence, entry), certain=True),
         Mistake("entry_point", lambda evidence: entry_point(evidence, entry), certain=True),
         Mistake("entry_point", lambda evidence: no_executable(evidence, entry), certain=True),
+    )
+
+
+def in_package(package: str, *entries: EntryPoint) -> tuple[Mistake, ...]:
+    """Return the mistakes of a workspace that must have a package, with the programs of these entry points."""
+    return (
+        *BUILD,
+        Mistake("package_name", lambda evidence: package_name(evidence, package), certain=True),
+        *(known for entry in entries for known in mistakes(entry)),
     )
 
 

@@ -21,10 +21,16 @@ from collections.abc import Callable, Mapping
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from autograder.kit.giving_up import LATENESS
+from autograder.kit.bench import Bench, Pace
 from autograder.kit.goal_reports import REFUSED, refused_as_seen
-from autograder.kit.lateness import SOON, await_goal, hold_back, meets_late_action, meets_present
-from autograder.kit.model import Bench, Pace
+from autograder.kit.lateness import (
+    SOON,
+    await_goal,
+    hold_back,
+    late_at_first,
+    meets_late_action,
+    meets_present,
+)
 from autograder.kit.oracle.cancel_requests import (
     AGREED,
     CANCEL_REFUSED,
@@ -147,7 +153,7 @@ class CancelsGoal(ActionClient):
         bench.part(name, gap=bench.random.uniform(*(SLOW if name == CANCEL_REFUSED else QUICK)))
         if first is None:
             waited = before is not None and bool(before.part(name).of("goal"))
-            meets_late_action(bench, meet, ["goal", "cancel"], SOON if waited else LATENESS)
+            meets_late_action(bench, meet, ["goal", "cancel"], SOON if waited else late_at_first(bench))
         else:
             meets_present(bench, meet, "goal", known=True)
         bench.stop()

@@ -12,6 +12,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
+from autograder.kit.bench import Bench, Pace
 from autograder.kit.draft import SeenAsItIs
 from autograder.kit.evidence import Part
 from autograder.kit.giving_up import (
@@ -55,14 +56,13 @@ from autograder.kit.mistakes import goal_mistakes as goals
 from autograder.kit.mistakes import unfinished
 from autograder.kit.mistakes.crashes import CRASHES, OTHER_CRASHES, OTHER_SLIPS
 from autograder.kit.mistakes.hangs import HANGS
-from autograder.kit.model import Bench, Mistake, Pace
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from autograder.kit.counterparts import ActionCounterpart
     from autograder.kit.evidence import Evidence
-    from autograder.kit.model import Advice
+    from autograder.kit.model import Advice, Mistake
 
 ORDERS = {LATE: (41, 46), REFUSED: (-9, -1), ABORTED: (0, 0), ABSENT: (11, 30)}
 """For each part, the smallest and the largest order that the client may be given. Negative numbers and 0 are valid."""
@@ -96,19 +96,29 @@ more.
 
 
 def _scenario(bench: Bench) -> None:
-    """Make four runs: first a late server; then, in random order, a refused goal, an aborted goal, and no server."""
+    """Make four runs: first a late server; then, in random order, a refused goal, an aborted goal, and no server.
+
+    If a student waits for the card, the run without a server comes first, because it is the shortest.
+    """
+    runs, impatient = bench.random.sample((refused, aborted, unserved), 3), False
+    if bench.is_waited_for:
+        runs.remove(unserved)
+        unserved(bench, Part(LATE))
+        impatient = may_be_impatient(bench)
     inputs = _begin(bench, LATE)
     again = second_lateness([part for part in bench.before or () if part.name != LATE], "goal")
-    if not _late(bench, inputs, late_at_first(bench), again) or called_before_server(bench.seen()):
+    lateness = LATENESS if impatient else late_at_first(bench)
+    if not _late(bench, inputs, lateness, again) or called_before_server(bench.seen()):
+        bench.leave_out(ABSENT)
         return
-    first, served, impatient = bench.seen(), list[Part](), False
-    for run in bench.random.sample((refused, aborted, unserved), 3):
+    first, served = bench.seen(), list[Part]()
+    for run in runs:
         run(bench, first)
         served.append(bench.seen())
         impatient = may_be_impatient(bench) if run is unserved else impatient
     again = second_lateness(served, "goal")
     clock = bench.pace is Pace.FAST and again > SOON
-    if (impatient or clock) and first.of("goal"):
+    if (impatient or clock) and lateness < LATENESS and first.of("goal"):
         bench.again(LATE)
         _late(bench, inputs, LATENESS, again, answers_late(bench))
 
@@ -185,7 +195,7 @@ def meets_server(
     Args:
         prepared: True to start the server before the subject.
         late: The delay of the server in seconds, once the subject is there.
-        how: How the server answers: see :meth:`autograder.kit.model.Bench.serve_action`.
+        how: How the server answers: see :meth:`autograder.kit.bench.Bench.serve_action`.
     """
     action, type_name = bench.reference.only("action_client")
     server = bench.serve_action(action, type_name, **how) if prepared else None

@@ -11,10 +11,11 @@ from typing import TYPE_CHECKING, Any, cast
 
 import re2
 
+from autograder.kit.bench import Bench, Pace
 from autograder.kit.evidence import INTERRUPTED, Evidence, Part
 from autograder.kit.mistakes import package_mistakes, unfinished
 from autograder.kit.mistakes.crashes import traceback_of
-from autograder.kit.model import Advice, Bench, Criterion, Exercise, Finding, Mistake, Pace
+from autograder.kit.model import Advice, Criterion, Exercise, Finding, Mistake
 from autograder.kit.runners import RunsPrograms, report_of
 
 if TYPE_CHECKING:
@@ -256,8 +257,7 @@ class Programs:
     # --- mistakes ------------------------------------------------------------------------------------------------
 
     def _of_the_package(self) -> Iterable[Mistake]:
-        yield from package_mistakes.BUILD
-        yield Mistake("package_name", lambda e: package_mistakes.package_name(e, self._name), certain=True)
+        yield from package_mistakes.in_package(self._name)
         for program in self._programs:
             for mistake in package_mistakes.mistakes(self._entry(program)):
                 yield replace(mistake, recognize=partial(_of_the_view, mistake, program))

@@ -12,8 +12,9 @@ late as the task allows.
 The judge repeats a run only while a repetition can still save points. For example, a client of another type of service
 is served in one run only.
 
-A subject cannot predict which run has no service: after the run with the late service, the others come in random order,
-with the same kinds of numbers and the same time limits.
+In a class, a subject cannot predict which run has no service: after the run with the late service, the others come in
+random order, with the same kinds of numbers and the same time limits. If a student waits for the card, the run without
+a service comes first, because it is the shortest.
 """
 
 from __future__ import annotations
@@ -23,6 +24,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from autograder.kit import giving_up
+from autograder.kit.bench import Bench, Pace
 from autograder.kit.giving_up import LATENESS, PATIENCE, drawn_patience, patience_without_a_server
 from autograder.kit.lateness import (
     ANSWERS_LATE,
@@ -40,7 +42,6 @@ from autograder.kit.lateness import (
     second_lateness,
     was_patient_with_an_answer,
 )
-from autograder.kit.model import Bench, Pace
 from autograder.kit.service_calls import (
     ABSENT,
     BIASED,
@@ -96,29 +97,40 @@ def scenario(bench: Bench, runs: Sequence[Run], numbers: Sequence[int], *, calls
         calls: The number of calls of a subject that has finished its work.
     """
     late, *others = runs
-    _begin(bench, late)
-    again = second_lateness([part for part in bench.before or () if part.name != LATE], "request")
-    if not called_late(bench, late, calls, late_at_first(bench), again) or called_before_server(bench.seen()):
-        return
-    first = bench.seen()
     order: list[Run | None] = [*others, None]
     bench.random.shuffle(order)
+    impatient = False
+    if bench.is_waited_for:
+        order.remove(None)
+        impatient = _is_impatient(bench, numbers)
+    _begin(bench, late)
+    again = second_lateness([part for part in bench.before or () if part.name != LATE], "request")
+    lateness = LATENESS if impatient else late_at_first(bench)
+    if not called_late(bench, late, calls, lateness, again) or called_before_server(bench.seen()):
+        bench.leave_out(ABSENT)
+        return
+    first = bench.seen()
     # A client of another type of service never reaches the judge's service.
     hangs = looks_for_it(bench, first, "client") is False
-    served, impatient = [first], False
+    served = [first]
     for run in order:
         if run is None:
-            unserved(bench, numbers)
-            impatient = may_be_impatient(bench)
+            impatient = _is_impatient(bench, numbers)
         elif not hangs:
             _begin(bench, run)
             hangs = not called(bench, run, calls, served)
             served.append(bench.seen())
     again = second_lateness(served[1:], "request")
     clock = bench.pace is Pace.FAST and again > SOON
-    if (impatient or clock) and requests(first):
+    if (impatient or clock) and lateness < LATENESS and requests(first):
         bench.again(LATE)
         called_late(bench, late, calls, LATENESS, again)
+
+
+def _is_impatient(bench: Bench, numbers: Sequence[int]) -> bool:
+    """Make the run without a service. Return True if the client may miss a service that comes as late as allowed."""
+    unserved(bench, numbers)
+    return may_be_impatient(bench)
 
 
 def _begin(bench: Bench, run: Run) -> None:

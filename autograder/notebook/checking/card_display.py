@@ -39,7 +39,7 @@ if TYPE_CHECKING:
 
 VALIDATING = "NBGRADER_VALIDATING"
 """The environment variable that nbgrader sets while its Validate button runs the notebook."""
-SOON = 0.7
+SOON = 0.4
 """Seconds of wall time after which a running check shows its progress; also the time between two updates."""
 LONG = 30.0
 """Seconds of wall time after which a running check also shows what the judge knows so far, and whether the machine is
@@ -56,14 +56,25 @@ class Progress:
     Attributes:
         step: The current step, such as ``"run 2"``.
         known: What the judge knows so far, in a sentence.
+        verdict: The criteria that are decided so far; None as long as the judge has not told any.
         began: The time at which the check began, in seconds of a monotonic clock.
         on_step: Called after each change of the step.
+        on_news: Called as soon as the card should show a newer verdict.
     """
 
     step: str = "the judge gets ready"
     known: str = ""
+    verdict: Verdict | None = None
     began: float = field(default_factory=time.monotonic)
     on_step: Callable[[], None] = lambda: None
+    on_news: Callable[[], None] = lambda: None
+
+    def take(self, verdict: Verdict, known: str) -> None:
+        """Take what the judge knows so far. Once it has watched a run to its end, the card shows it at once."""
+        is_news = self.verdict is not None
+        self.verdict, self.known = verdict, known
+        if is_news:
+            self.on_news()
 
     def doing(self, step: str) -> None:
         """Change the current step."""
@@ -91,18 +102,27 @@ class ProgressUpdater:
     """
 
     def __init__(self, tell: Callable[[], None]) -> None:
-        self._tell, self._over = tell, threading.Event()
+        self._tell, self._news, self._is_over = tell, threading.Event(), False
         here = contextvars.copy_context()  # tells ipykernel to which cell the output belongs
         self._thread = threading.Thread(target=here.run, args=(self._repeat,), name="check", daemon=True)
         self._thread.start()
 
     def stop(self) -> None:
         """Stop updating. After this call the card is not changed any more."""
-        self._over.set()
+        self._is_over = True
+        self.tell_now()
         self._thread.join()
 
+    def tell_now(self) -> None:
+        """Update the card now, not only after a while."""
+        self._news.set()
+
     def _repeat(self) -> None:
-        while not self._over.wait(SOON):
+        while True:
+            self._news.wait(SOON)
+            self._news.clear()
+            if self._is_over:
+                return
             self._tell()
 
 
@@ -147,6 +167,7 @@ class CardDisplay:
                     _dated(earlier, "Checking again: this is the result of the previous check.")
                 )
             self._updater = ProgressUpdater(self._tell)
+            self.progress.on_news = self._updater.tell_now
         return self
 
     def __exit__(
@@ -184,9 +205,13 @@ class CardDisplay:
             self._updater.stop()
 
     def _tell(self) -> None:
-        earlier = _shown.get(self.exercise)
+        words, so_far, earlier = self.progress.words(), self.progress.verdict, _shown.get(self.exercise)
         title = earlier.verdict.title if earlier is not None else self.exercise
-        card = html_rendering.waiting_bundle(title, self.progress.words())
+        card = (
+            html_rendering.card_bundle(so_far, notice=words)
+            if so_far is not None
+            else html_rendering.waiting_bundle(title, words)
+        )
         if self._handle is None:
             self._handle = display_card(card)
         else:

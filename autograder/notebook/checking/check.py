@@ -193,7 +193,7 @@ def converse(link: JudgeLink, exercise: str, subject: Any, progress: Progress) -
                         progress.doing(f"the judge examines run {number}")
                         run = None
                     case messages.SoFar():
-                        progress.known = order.words
+                        progress.take(order.verdict, order.words)
                     case messages.Judged() | messages.Refused():
                         return _verdict_in(exercise, order)
         finally:

@@ -6,7 +6,7 @@ reported sum show whether they were really used.
 
 from __future__ import annotations
 
-from autograder.kit import service_calls
+from autograder.kit import giving_up, service_calls
 from autograder.kit.draft import Draft
 from autograder.kit.model import Finding
 from autograder.kit.recipes.service_client import Calls
@@ -21,17 +21,17 @@ adder = Draft(
 )
 
 
-@adder.criterion("calls", 2, "Calls exactly twice")
+@adder.criterion("calls", "Calls exactly twice", points=2)
 def calls(seen: ClientSeen, expected: ClientSeen) -> Finding:
     """In each run it calls as often as the reference solution."""
     found = ", ".join(f"{len(requests(part))} ({part.name})" for part in seen.served)
     return Finding(seen.called(expected.calls), f"{expected.calls} calls in each run", found)
 
 
-adder.asks("chain", 3, "Builds the second call on the first answer", recipe.calls_right)
-adder.asks("sum", 3, "Reports the final sum", service_calls.reports_the_sum)
-adder.asks("late", 1, "Waits for a service that comes late", recipe.waits)
-adder.asks("limit", 1, "Ends clearly when there is no service", service_calls.gives_up_in_time)
+adder.asks("chain", "Builds the second call on the first answer", recipe.calls_right, points=3)
+adder.asks("sum", "Reports the final sum", service_calls.reports_the_sum, points=3)
+adder.asks("late", "Waits for a service that comes late", recipe.waits, points=1)
+adder.asks("limit", "Ends clearly when there is no service", service_calls.gives_up_in_time, points=1)
 
 
 def called_less(seen: ClientSeen, expected: ClientSeen) -> str:
@@ -60,13 +60,15 @@ EXERCISE = adder.exercise(
     text={
         "Wait for the service for `patience_sec` seconds.": "late limit",
         "raise `TimeoutError` then, with a message that contains `not available`": "limit",
-        "you may also raise another exception, or log a line that contains `not available` and return `None`.": "limit",
         "Ask for the sum of `a` and `b`.": "calls chain",
         "Ask for the sum of that answer and `c`.": "calls chain",
         "Use the sum that the *service* gave you": "chain",
         "Log or print the sum, and return it.": "sum",
-        "returning the sum is enough for the judge, and logging it alone is not.": "sum",
-        "A program has to log or print it.": "sum",
-        "it must say `not available` and end within 12 seconds, or say at least every three seconds": "limit",
+        "Do not catch it": "",
+    },
+    counts={
+        "chain": "The two numbers of a call may come in either order.",
+        "sum": service_calls.SUM_COUNTS,
+        "limit": giving_up.COUNTS,
     },
 )

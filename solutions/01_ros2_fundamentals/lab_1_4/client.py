@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from autograder.kit import goal_reports
+from autograder.kit import giving_up, goal_reports
 from autograder.kit.draft import Draft
 from autograder.kit.recipes.action_client import sends_goals
 
@@ -12,13 +12,17 @@ client = Draft(
     "Send a goal to the action fibonacci, show its feedback, report its result and how it ended.",
     sends_goals(),
 )
-client.asks("goal", 2, "Sends one goal of the given order", goal_reports.sends_the_goal)
-client.asks("feedback", 2, "Shows each feedback message", goal_reports.shows_feedback)
-client.asks("result", 2, "Reports the result", goal_reports.reports_the_result, uses=("get_result_async",))
-client.asks("refused", 1, "Says when the goal is rejected", goal_reports.returns_nothing_of_a_refused_goal)
-client.asks("aborted", 1, "Says when the goal is aborted", goal_reports.tells_of_abort)
-client.asks("late", 1, "Waits for a server that comes late", goal_reports.waits_for_the_server)
-client.asks("limit", 1, "Ends clearly when there is no server", goal_reports.ends_without_a_server)
+client.asks("goal", "Sends one goal of the given order", goal_reports.sends_the_goal, points=2)
+client.asks("feedback", "Shows each feedback message", goal_reports.shows_feedback, points=2)
+client.asks(
+    "result", "Reports the result", goal_reports.reports_the_result, uses=("get_result_async",), points=2
+)
+client.asks(
+    "refused", "Says when the goal is rejected", goal_reports.returns_nothing_of_a_refused_goal, points=1
+)
+client.asks("aborted", "Says when the goal is aborted", goal_reports.tells_of_abort, points=1)
+client.asks("late", "Waits for a server that comes late", goal_reports.waits_for_the_server, points=1)
+client.asks("limit", "Ends clearly when there is no server", goal_reports.ends_without_a_server, points=1)
 
 EXERCISE = client.exercise(
     limit=180.0,
@@ -28,19 +32,20 @@ EXERCISE = client.exercise(
     text={
         "Wait for the server: `client.actions.wait_for_server(timeout_sec=...)` returns `False`": "late limit",
         "In this case raise `TimeoutError`, with a message that contains `not available`.": "limit",
-        "you may also raise another exception, or log a line that contains `not available` and return `None`.": "limit",
         "Make the goal, `Fibonacci.Goal(order=...)`, and send it": "goal feedback",
         "Wait for the future that you get, and return its result": "goal",
         "so wait until the future is done.": "goal",
-        "it must say `not available` and end within 12 seconds, or say at least every three seconds": "limit",
         "Your function must say how the goal ended": "refused aborted",
         "If the goal was not accepted, log a line that contains `rejected`, and return an empty list.": "refused",
-        "an exception with the word `rejected` is accepted as well.": "refused",
         "Log or print the name of the status": "aborted",
-        "The number of a status is accepted as well as its name": "aborted",
-        "You need not log the sequence of the result if you return it": "result",
         "The given `on_feedback` logs each feedback message.": "feedback",
         "Return the sequence as a list.": "result",
-        "Any kind of sequence is accepted, such as a tuple.": "result",
+        "wait for the result, at most `RESULT_PATIENCE` seconds": "",
+    },
+    counts={
+        "result": "Return or log it, as any kind of sequence.",
+        "refused": "An exception with the word `rejected` counts as well.",
+        "aborted": "`status: 6` counts as well. You may leave out `succeeded`.",
+        "limit": giving_up.COUNTS,
     },
 )
