@@ -110,14 +110,11 @@ def _words(evidence: Evidence) -> str:
     *runs, _ = evidence.parts
     left = [run.name for run in runs if isinstance(run, RunToCome)]
     ended = [run.name for run in runs if not isinstance(run, RunToCome)]
-    look = (
-        "Something was not as asked, so the judge looks again, in real time. " if evidence.real_time else ""
-    )
+    look = "Not all was as asked, so the judge looks again, in real time. " if evidence.real_time else ""
     if not ended:
         return f"{look}The judge watches your code."
-    return f"{look}Your code has run where {_listed(ended)}." + (
-        (left and f" Still to come: {_listed(left)}.") or ""
-    )
+    to_come = f" Still to come: {_listed(left)}." if left else ""
+    return f"{look}Runs that have ended: {_listed(ended)}.{to_come}"
 
 
 def _listed(names: Sequence[str]) -> str:
