@@ -56,8 +56,8 @@ MAX_WORDS = 500
 
 
 CUT = (
-    "The machine is busy, so the judge did not look again. When what the card names is mended, more criteria may be met "
-    "than it seems now."
+    "The machine is busy, so the judge did not look again. After you have corrected what the card names, more criteria "
+    "may be met than it seems now."
 )
 """A remark on a check that a busy machine has cut after a look that proves a mistake."""
 
