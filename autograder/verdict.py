@@ -36,6 +36,7 @@ class CriterionResult:
         passed: True if the criterion is met; None if this is not decided yet, while the check goes on.
         expected: What the reference solution does.
         seen: What the subject did.
+        counts: What else is accepted, or is not judged, in one or two sentences; empty if there is nothing to say.
     """
 
     name: str
@@ -44,6 +45,7 @@ class CriterionResult:
     passed: bool | None
     expected: str
     seen: str
+    counts: str = ""
 
 
 @dataclass(frozen=True)
@@ -114,6 +116,8 @@ class Verdict:
         seed: The seed of the random inputs; the same seed gives the same inputs.
         seconds: The duration of the check, in seconds of wall time.
         detail: A traceback, or the last lines of output, if they help; else empty.
+        counts: What else counts for the exercise as a whole, and what is not graded; empty if there is nothing to say.
+        nothing_seen: True if nothing of the subject was seen, not even an error, as before its first line is written.
     """
 
     exercise: str
@@ -128,6 +132,8 @@ class Verdict:
     seed: str = ""
     seconds: float = 0.0
     detail: str = ""
+    counts: str = ""
+    nothing_seen: bool = False
 
     @property
     def passed(self) -> bool:

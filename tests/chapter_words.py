@@ -22,6 +22,8 @@ import nbformat
 import re2
 from bs4 import BeautifulSoup
 
+from autograder.masters.source_notebooks import SET_UP_CELL
+
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
@@ -64,6 +66,8 @@ def words_of(path: Path) -> Words:
     notebook = nbformat.read(path, as_version=4)
     marks, visible, folded = [0], 0, 0
     for cell in notebook.cells:
+        if cell.metadata.get("nbgrader", {}).get("grade_id") == SET_UP_CELL:
+            continue  # hidden in JupyterLab as ./course lab opens it
         if cell.cell_type == "markdown":
             for number, piece in enumerate(_pieces(cell.source)):
                 if number:

@@ -110,7 +110,16 @@ def faults_of_text(exercise: Exercise, lab_text: str) -> Iterator[str]:
     yield from (
         f"the criterion {name} is not mapped to any words of the task" for name in sorted(known - judged)
     )
-    yield from (f"the criterion {name} does not exist" for name in sorted(judged - known))
+    of_criteria = {name for name in exercise.counts if name}
+    yield from (f"the criterion {name} does not exist" for name in sorted((judged | of_criteria) - known))
+    for name, words in exercise.counts.items():
+        if len(_SENTENCE.findall(words)) > _MAX_SENTENCES:
+            yield f"counts has more than {_MAX_SENTENCES} sentences about {name or 'the exercise'}"
+
+
+_MAX_SENTENCES = 2
+"""The maximum number of sentences below a criterion, because a card must not read like a contract."""
+_SENTENCE = re.compile(r"[.!?](?= |$)")
 
 
 def _of_linters(lab: Path) -> Iterator[str]:
@@ -243,7 +252,7 @@ def _tasks(cells: list[NamedCell]) -> Iterator[str]:
                 if len(_PARENTHESIS.findall(_CODE.sub("", paragraph))) > 1:
                     yield (
                         f"a task is plain: a paragraph before line {one.cell.line} has more than one "
-                        "parenthesis: write sentences, or a list 'What counts' below the task"
+                        "parenthesis: write sentences, or an argument counts of the exercise"
                     )
 
 

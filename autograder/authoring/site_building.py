@@ -19,7 +19,7 @@ from docutils import nodes
 from nbformat.v4 import new_code_cell, new_markdown_cell
 from sphinx.application import Sphinx
 
-from autograder import course
+from autograder import course, exercises
 from autograder.authoring.executed_masters import run_masters
 from autograder.masters.master_files import chapter_path, lab_name, masters
 from autograder.masters.notebook_release import release_text
@@ -41,6 +41,7 @@ _STATIC = "_static"
 _START = "README"
 """The page with which the website begins, so that the links to it in the guides lead there."""
 _GUIDES = "docs/README.md"
+_FAIRNESS = "docs/fairness.md"
 MAX_PAGE_BYTES = 1_000_000
 """The maximum size of a page in bytes."""
 _STYLE_SHEET = "book.css"
@@ -133,6 +134,8 @@ def _write_sources(root: Path, folder: Path, edition: str, executed: Mapping[str
     _append(start, _chapters(root))
     if (folder / _GUIDES).is_file():
         _append(folder / _GUIDES, _contents("All pages", beside))
+    if (folder / _FAIRNESS).is_file():
+        _append(folder / _FAIRNESS, _task_by_task())
     outcomes = _outcomes(root)
     for master in masters(root):
         source = executed.get(lab_name(master)) or source_notebook(master)
@@ -207,6 +210,16 @@ def _folded(solved: NotebookNode, outputs: list[NotebookNode]) -> NotebookNode:
     return new_code_cell(
         "\n".join(shown), outputs=outputs, metadata={"tags": ["hide-input"], "mystnb": labels}
     )
+
+
+def _task_by_task() -> str:
+    """Return, as Markdown, what the card of each exercise says about what else counts, and what is not graded."""
+    sections = []
+    for one in exercises.unbroken():
+        said = [f"{item.title}: {one.counts[item.name]}" for item in one.criteria if item.name in one.counts]
+        if listed := [f"- {text}" for text in (*said, one.counts_as_a_whole) if text]:
+            sections.append("\n".join([f"### {one.title}\n", *listed]))
+    return "\n\n".join(["\n## Task by task", *sections, ""])
 
 
 def _outcomes(root: Path) -> dict[str, tuple[str, ...]]:

@@ -108,9 +108,11 @@ class CriterionRow:
     expected: str
     seen: str
     points: str
+    possible: str
     unit: str
     weight: str
     difference: tuple[TextPiece, ...]
+    counts: str
 
     @classmethod
     def of(cls, criterion: CriterionResult, form: Form) -> CriterionRow:
@@ -125,9 +127,11 @@ class CriterionRow:
             expected=one_line(criterion.expected, 240, mark=form.mark) or form.nothing,
             seen=one_line(criterion.seen, 240, mark=form.mark) or form.nothing,
             points=f"{card_wording.points(earned)} of {card_wording.points(criterion.points)}",
+            possible=f"{card_wording.points(criterion.points)} {card_wording.unit(criterion.points)}",
             unit=card_wording.unit(criterion.points),
             weight=card_wording.points(max(criterion.points, 0.1)),
             difference=tuple(TextPiece(one.kind, one_line(one.text, 200, mark=form.mark)) for one in pieces),
+            counts=one_line(criterion.counts, 400, mark=form.mark),
         )
 
 
@@ -141,6 +145,8 @@ class Card:
         notice: Why the card is out of date; empty if it is up to date.
         traffic: The traffic on the wire. Its texts come from the subject.
         traffic_notes: Which parts of the traffic are left out.
+        counts: What else counts for the exercise as a whole, and what is not graded.
+        nothing_seen: True to list what is asked instead of what was seen, because nothing was.
         place: The student's line in which the traceback ends; None if there is none.
         unfolded: True if the detail is short enough to be shown unfolded.
         facts: The facts that a student should quote in a question.
@@ -160,6 +166,8 @@ class Card:
     advice: card_wording.AdviceBlock
     place: TracebackLine | None
     criteria: tuple[CriterionRow, ...]
+    counts: str
+    nothing_seen: bool
     remarks: tuple[str, ...]
     traffic: Traffic
     traffic_notes: str
@@ -204,6 +212,8 @@ class Card:
             ),
             place=_readable(students_line(verdict.detail, advice.text), mark),
             criteria=tuple(CriterionRow.of(criterion, form) for criterion in verdict.criteria),
+            counts=one_line(verdict.counts, 1200, mark=mark),
+            nothing_seen=verdict.nothing_seen,
             remarks=tuple(paragraph(remark, 600, mark=mark) for remark in verdict.remarks),
             traffic=shown,
             traffic_notes=card_wording.traffic_notes(shown),
@@ -218,7 +228,9 @@ class Card:
         return card._shortened() if short else card
 
     def _shortened(self) -> Card:
-        return replace(self, criteria=(), remarks=(), traffic=Traffic(()), detail=(), facts=(), solution=None)
+        return replace(
+            self, criteria=(), counts="", remarks=(), traffic=Traffic(()), detail=(), facts=(), solution=None
+        )
 
 
 def _readable(found: TracebackLine | None, mark: str) -> TracebackLine | None:

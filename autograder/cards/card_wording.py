@@ -32,6 +32,13 @@ CRITERION_WORDS = {True: "PASS", False: "NOT YET", None: "TO COME"}
 
 DIFFERENCE = "the difference ([ ] is missing, { } is too much)"
 
+ASKED = "What is asked"
+"""The heading of the criteria on a card before anything of the student's code was seen."""
+COUNTS = "what counts"
+"""The label of what else is accepted for a criterion."""
+COUNTS_BESIDES = "what else counts, and what does not"
+"""The label of the same about the exercise as a whole."""
+
 SOLUTION = "The reference solution, and why it is written so"
 """The heading of the folded reference solution."""
 OTHER_WAY = "Another way"

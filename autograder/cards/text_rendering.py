@@ -58,9 +58,11 @@ class _Writer:
         yield from self._advice(card)
         if card.criteria:
             yield ""
-            yield self._heading("Criteria")
+            yield self._heading(card_wording.ASKED if card.nothing_seen else "Criteria")
             for row in card.criteria:
-                yield from self._criterion(row)
+                yield from self._asked(row) if card.nothing_seen else self._criterion(row)
+            if card.counts and card.state is not State.PASSED:
+                yield from self._wrapped(card.counts, "  ")
         if card.remarks:
             yield ""
             yield self._heading("Worth mentioning (costs no points)")
@@ -101,6 +103,10 @@ class _Writer:
             yield self._heading("What to do next")
             yield from self._wrapped(advice.next_step, "  > ", "    ")
 
+    def _asked(self, row: CriterionRow) -> Iterator[str]:
+        yield from self._wrapped(f"{row.title} ({row.possible})", "  - ", "    ")
+        yield from self._wrapped(row.counts, "    ") if row.counts else ()
+
     def _criterion(self, row: CriterionRow) -> Iterator[str]:
         badge = self._styled(f"[{row.word}]", _COLORS[row.state])
         line = f"{row.title} ({row.points} {row.unit})"
@@ -113,6 +119,8 @@ class _Writer:
         named["seen"] = row.seen
         if row.difference:
             named[card_wording.DIFFERENCE] = one_line(marked(row.difference), 240, mark=_MARK)
+        if row.counts and not row.passed:
+            named[card_wording.COUNTS] = row.counts
         for name, value in named.items():
             yield from self._wrapped(value, f"    {name}: ", "      ")
 

@@ -313,7 +313,7 @@ def judge(exercise: Exercise, evidence: Evidence, seed: str) -> Verdict:
     if sum(len(part.events) for part in evidence) > MOST_EVENTS:
         raise TooManyEvents
     lost = {event.data["costs"]: event for part in evidence for event in part.of("misnamed")}
-    criteria = tuple(_result(one, evidence, lost.get(one.name)) for one in exercise.criteria)
+    criteria = tuple(_result(exercise, one, evidence, lost.get(one.name)) for one in exercise.criteria)
     passed = all(criterion.passed for criterion in criteria)
     diagnosis, traceback = (None, "") if passed else diagnose(exercise, evidence, criteria)
     told = (diagnosis.text if diagnosis else "", *(one.seen for one in criteria if not one.passed))
@@ -332,16 +332,23 @@ def judge(exercise: Exercise, evidence: Evidence, seed: str) -> Verdict:
         seed=seed,
         # The last lines of a traceback name the error and the student's line.
         detail=traceback[-MAX_DETAIL:],
+        counts=exercise.counts_as_a_whole,
+        nothing_seen=not any(one.passed for one in criteria) and verdict_timeline.shows_nothing(evidence),
     )
 
 
-def _result(criterion: Criterion, evidence: Evidence, wrong: Event | None = None) -> CriterionResult:
+def _result(
+    exercise: Exercise, criterion: Criterion, evidence: Evidence, wrong: Event | None = None
+) -> CriterionResult:
     """Return the result of a criterion; not met if it is the one that a wrong name should fail."""
     finding = criterion.judge(evidence)
     if wrong is not None and finding.passed:
         finding = Finding(False, f"the name {wrong.name}", f"the name {wrong.data['real']}")
     expected, seen = _cut(finding.expected), _cut(finding.seen)
-    return CriterionResult(criterion.name, criterion.title, criterion.points, finding.passed, expected, seen)
+    counts = exercise.counts.get(criterion.name, "")
+    return CriterionResult(
+        criterion.name, criterion.title, criterion.points, finding.passed, expected, seen, counts
+    )
 
 
 def diagnose(

@@ -440,7 +440,9 @@ class Exercise:
         criteria: The requirements, in the order in which the card shows them.
         mistakes: The known mistakes, most specific first.
         text: Maps each sentence of the task's text to the names of the criteria that judge it, separated by spaces. A
-            sentence that no criterion judges is listed below the task as not graded.
+            sentence without names is not graded, and the card says so.
+        counts: For criteria by their names, one or two short sentences about what else is accepted. The card shows them
+            below the criterion. Under the name ``""``, the same about the exercise as a whole.
         hides_causes: True if finding the cause is the task. Then no look uses the subject's own names, and until the
             pass the card tells no cause (:mod:`autograder.kit.hunts.repairs`).
         remarks: Functions that return a sentence for the card that costs no points, or an empty text.
@@ -474,12 +476,19 @@ class Exercise:
     tolerance: float = 1e-6
     remarks: Sequence[Callable[[Evidence], str]] = ()
     text: Mapping[str, str] = field(default_factory=dict)
+    counts: Mapping[str, str] = field(default_factory=dict)
     hides_causes: bool = False
 
     @property
     def points(self) -> float:
         """The points of all criteria together."""
         return sum(criterion.points for criterion in self.criteria)
+
+    @property
+    def counts_as_a_whole(self) -> str:
+        """The sentences about the exercise as a whole, then those of the task that are not graded."""
+        free = "; ".join(f"“{words}”" for words, names in self.text.items() if not names)
+        return f"{self.counts.get('', '')} {free and f'Not graded: {free}.'}".strip()
 
     def judge_as_one(self, evidence: Evidence, right: str) -> Finding:
         """Return the finding of the first criterion that fails; if all criteria hold, a finding that says so.

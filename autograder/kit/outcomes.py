@@ -121,6 +121,11 @@ class SentGoal:
         return self.status is not None or self.accepted is False
 
     @property
+    def end(self) -> str:
+        """``"SUCCEEDED"``, ``"CANCELED"``, ``"ABORTED"`` or ``"REJECTED"``; ``"UNKNOWN"`` if no result came."""
+        return STATUS.get(self.status or 0, "UNKNOWN") if self.accepted else "REJECTED"
+
+    @property
     def is_quick(self) -> bool:
         """True if the server needed hardly any time for the goal."""
         return self.seconds is not None and self.seconds < IMMEDIATELY

@@ -1,22 +1,19 @@
-"""Rules for a subject that publishes from time to time: the rate of its messages, and the state that they report.
+"""Rules for a subject that publishes from time to time: the rate of its messages, and how contents are compared.
 
 The rate is measured in simulated time if the subject follows it, otherwise in real time. In simulated time, intervals
 are exact, so all of them count. But in real time, a busy machine may delay a message, so it is enough if several
 successive messages have the right rate, and even one of these may be late. The times are those at which the publisher
 says it sent the messages, unless the times of arrival contradict them.
-
-The state depends on the inputs that the subject was given. For a subject that answers each input, see
-``recipes/relay.py`` and ``recipes/machine.py``. Functions that compare the contents of messages are here, too.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from math import isclose, isnan
 from statistics import mean, median
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 from autograder.kit.in_words import counted
 from autograder.kit.model import Finding
@@ -211,54 +208,6 @@ def _reference_period(expected: Part) -> float:
 def value(event: Event) -> Any:
     """Return the content of a message, request or answer: its field ``data``, or all fields if it has no such field."""
     return event.data["fields"].get("data", event.data["fields"])
-
-
-def values(kind: str, name: str | None = None) -> Callable[[Part], list[Any]]:
-    """Return a function that lists, for a part, the contents of its events of a kind, in order of time.
-
-    If ``name`` is given, the function lists only events with this name.
-    """
-    return lambda seen: [value(event) for event in seen.of(kind, name)]
-
-
-SENT = values("sent")
-"""Returns the contents of the messages that the judge published."""
-
-
-def got_through(seen: Part, expected: Part, *kinds: str) -> bool:
-    """Return True if the subject was given as many inputs as the reference solution.
-
-    If the result is False, the subject ended or hung before it had been given all inputs.
-
-    Args:
-        seen: The record of the subject.
-        expected: The record of the reference solution.
-        kinds: The kinds of events that record an input, such as ``"sent"`` and ``"asked"``.
-    """
-    return all(len(seen.of(kind)) >= len(expected.of(kind)) for kind in kinds)
-
-
-class Given(NamedTuple):
-    """An input of the subject.
-
-    Its fields are its age in seconds of the subject's time, its :func:`value`, and the name of its topic or service.
-    """
-
-    age: float
-    value: Any
-    name: str
-
-
-State = Callable[[Sequence[Given]], Any]
-"""A function that is given all inputs of the subject up to a moment, in order. It returns what the subject must report
-at that moment, or whether a condition holds.
-"""
-
-
-def reported_at(event: Event) -> float:
-    """Return the time at which a report was sent; in simulated time, the time at which it was recorded."""
-    on_its_way = float(event.data.get("arrived", event.t)) - sent_times([event])[0]
-    return event.moment - (on_its_way if event.sim is None else 0.0)
 
 
 def same(one: Any, other: Any, tolerance: float = 1e-6) -> bool:

@@ -193,6 +193,8 @@ def _own_sum(part: Part) -> int | None:
 
 
 no_limit = giving_up.remark(ABSENT)
+SUM_COUNTS = "A function has to return it, and a program to log or print it."
+"""Says on the card which ways to report the sum count."""
 
 
 def how_it_went(part: Part) -> str:

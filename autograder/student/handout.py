@@ -54,7 +54,7 @@ README = """\
 
 Notebooks about ROS 2 in which a judge checks your nodes: it is a ROS node itself, and looks at what yours do.
 
-You need Linux on x86-64 (or Windows with WSL 2) and Python 3.11 or newer. Then, in this folder:
+You need Linux on x86-64 and Python 3.11 or newer (or Windows with WSL 2, which was not tried). Then, in this folder:
 
 {begin}
 
@@ -74,8 +74,8 @@ $ ./course lab
 The first time this sets everything up, in one to three minutes, or longer if the network is slow or the computer is
 busy. It opens a map of all notebooks; press *Begin*.
 
-On a Mac, on Windows without WSL or on an ARM computer, use Docker: `environment/jazzy.Dockerfile` begins with the two
-commands to type. Or open this folder in VS Code, choose *Reopen in Container*, and type
+On a Mac, on Windows without WSL or on an ARM computer, Docker should work (not tried): `environment/jazzy.Dockerfile`
+begins with the two commands to type. Or open this folder in VS Code, choose *Reopen in Container*, and type
 `./course lab --no-browser`.""",
     "guide": "| know how to work with the notebooks | [the student's guide](docs/students-guide.md) |\n",
     "mistakes": "| know what a diagnosis means | [known mistakes](docs/mistakes.md) |\n",

@@ -1,4 +1,4 @@
-"""`ros2 action list` and `info`."""
+"""`ros2 action list`, `type` and `info`."""
 
 from __future__ import annotations
 
@@ -21,13 +21,28 @@ def _list_arguments(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def _list(args: argparse.Namespace) -> Outcome:
+def _actions(args: argparse.Namespace) -> list[tuple[str, list[str]]]:
     with graph_node(args) as node:
         from rclpy.action.graph import get_action_names_and_types
 
-        actions = get_action_names_and_types(node)
-    show(actions, count=args.count_actions, types=args.show_types)
+        return get_action_names_and_types(node)
+
+
+def _list(args: argparse.Namespace) -> Outcome:
+    show(_actions(args), count=args.count_actions, types=args.show_types)
     return None
+
+
+def _type_arguments(parser: argparse.ArgumentParser) -> None:
+    add_graph_arguments(parser)
+    parser.add_argument("action_name", help="Name of the ROS action to get type (e.g. '/fibonacci')")
+
+
+def _type(args: argparse.Namespace) -> Outcome:
+    types = dict(_actions(args)).get(args.action_name)
+    for name in types or ():
+        print(name)
+    return 0 if types else 1
 
 
 def _info_arguments(parser: argparse.ArgumentParser) -> None:
@@ -78,4 +93,8 @@ def _info(args: argparse.Namespace) -> Outcome:
     return None
 
 
-VERBS = {"info": Verb(_info_arguments, _info), "list": Verb(_list_arguments, _list)}
+VERBS = {
+    "info": Verb(_info_arguments, _info),
+    "list": Verb(_list_arguments, _list),
+    "type": Verb(_type_arguments, _type),
+}

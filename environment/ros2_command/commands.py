@@ -66,8 +66,9 @@ COMMANDS: Mapping[str, Command] = {
             "info": Word("Print information about an action", "action"),
             "list": Word("Output a list of action names", "action"),
             "send_goal": Word("Send an action goal", "action_goal"),
+            "type": Word("Print an action's type", "action"),
         },
-        frozenset({"find", "type"}),
+        frozenset({"find"}),
     ),
     "doctor": Command("Check ROS setup and other potential issues", itself=Word("", "doctor")),
     "interface": Command(

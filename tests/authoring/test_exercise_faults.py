@@ -55,7 +55,7 @@ def test_an_example_keeps_every_rule(recipe: str, monkeypatch: pytest.MonkeyPatc
 
 def test_folded_text_does_not_delay_the_first_task(lab: Path) -> None:
     master = lab / "lab.md"
-    fold = f"<details>\n<summary>What counts</summary>\n\n{'Robots ' * 401}\n\n</details>\n\nRobots tell"
+    fold = f"<details>\n<summary>More</summary>\n\n{'Robots ' * 401}\n\n</details>\n\nRobots tell"
     master.write_text(master.read_text().replace("Robots tell", fold, 1))
     assert not [line for line in told() if line.startswith("lab.md")]
 
@@ -102,6 +102,18 @@ def test_folded_text_does_not_delay_the_first_task(lab: Path) -> None:
         ),
         ("battery.py", '        "every 0.5 s": "rate",\n', "", "text: the criterion rate is not mapped"),
         ("battery.py", '": "rate"', '": "rate volts"', "text: the criterion volts does not exist"),
+        (
+            "battery.py",
+            "    text={",
+            '    counts={"rate": "A. B! C?"},\n    text={',
+            "text: counts has more than 2 sentences about rate",
+        ),
+        (
+            "battery.py",
+            "    text={",
+            '    counts={"volts": "A."},\n    text={',
+            "text: the criterion volts does not",
+        ),
         ("battery.py", '"every 0.5 s"', '"Cows"', "text: lab.md does not say “Cows”"),
         (
             "battery.answers/wrong/answers.toml",

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 from nbformat.v4 import new_code_cell, new_notebook, new_output
 
-from autograder import course
+from autograder import course, exercises
 from autograder.authoring.executed_masters import _run, show_as_a_students
 from autograder.authoring.site_building import (
     CLASS_EDITION,
@@ -89,6 +89,14 @@ def test_a_page_with_all_that_it_loads_is_small_for_a_phone(book: tuple[str, Pat
 def test_a_table_that_is_wider_than_a_phone_is_moved_by_the_keyboard(book: tuple[str, Path]) -> None:
     tables = re.findall(r'<table class="table"[^>]*>', (book[1] / "docs/learning-outcomes.html").read_text())
     assert set(tables) == {'<table class="table" tabindex="0">'}
+
+
+def test_fairness_tells_task_by_task_what_the_cards_say(book: tuple[str, Path]) -> None:
+    text = re.sub(r"<[^>]*>", "", (book[1] / "docs/fairness.html").read_text(encoding="utf-8"))
+    talker = exercises.get("lab_1_2.talker")
+    assert f"{talker.title}#" in text
+    assert f"Keeps the rate: {talker.counts['rate']}" in text
+    assert "Not graded: “log the string that it publishes”." in text
 
 
 def test_solutions_are_folded_or_absent(book: tuple[str, Path]) -> None:

@@ -154,7 +154,7 @@ def test_a_flood_of_output_makes_no_flood_of_a_card(hostile: Verdict) -> None:
 
 def test_every_criterion_is_a_row_with_its_words(verdict: Verdict) -> None:
     table = Tree(card_html(verdict)).root.all("table", "agc-table")
-    if not verdict.criteria:
+    if not verdict.criteria or verdict.nothing_seen:
         assert not table
         return
     rows = table[0].all("tr", "agc-row")
@@ -305,6 +305,25 @@ def test_one_card_looks_as_it_was_agreed(load: Callable[[str], Verdict]) -> None
     if os.environ.get("UPDATE_GOLDEN"):
         path.write_text(source + "\n", encoding="utf-8")
     assert source + "\n" == path.read_text(encoding="utf-8")
+
+
+def test_before_the_first_line_is_written_the_card_lists_what_is_asked(
+    load: Callable[[str], Verdict],
+) -> None:
+    listed = Tree(card_html(load("talker_unsolved"))).root.all("div", "agc-asked")[0]
+    assert words(listed).startswith("What is asked Publishes on the right topic (2 points)")
+    assert "Keeps the rate (3 points) A timer or any other way to keep it." in words(listed)
+    assert words(listed).endswith("Not graded: “log the string that it publishes”.")
+
+
+def test_what_counts_is_folded_below_a_criterion_with_a_result(load: Callable[[str], Verdict]) -> None:
+    verdict = load("talker_unsolved")
+    tree = Tree(card_html(replace(verdict, nothing_seen=False))).root
+    rate, whole = tree.all("details", "agc-counts")
+    assert rate.inside("agc-criterion")
+    assert words(rate) == f"what counts {verdict.criteria[-1].counts}"
+    assert words(whole) == f"what else counts, and what does not {verdict.counts}"
+    assert not Tree(card_html(load("talker_passed"))).root.all("details", "agc-counts")
 
 
 def test_two_cards_share_a_page(load: Callable[[str], Verdict]) -> None:

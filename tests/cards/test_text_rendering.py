@@ -43,12 +43,31 @@ def test_color_adds_codes_and_nothing_else(verdict: Verdict) -> None:
 def test_every_criterion_appears_in_words(verdict: Verdict) -> None:
     text = card_text(verdict)
     joined = " ".join(text.split())
+    if verdict.nothing_seen:
+        return
     assert text.count("[PASS]") == sum(bool(criterion.passed) for criterion in verdict.criteria)
     assert text.count("[NOT YET]") == sum(not criterion.passed for criterion in verdict.criteria)
     for criterion in verdict.criteria:
         assert " ".join(criterion.title.split()) in joined
         if not criterion.passed and len(criterion.seen) < 160:
             assert f"expected: {criterion.expected} seen: {criterion.seen}" in joined
+
+
+def test_before_the_first_line_is_written_the_text_lists_what_is_asked(
+    load: Callable[[str], Verdict],
+) -> None:
+    text = card_text(load("talker_unsolved"))
+    assert (
+        "  - Counts up from the start (2 points)\n  - Keeps the rate (3 points)\n    A timer or any" in text
+    )
+    assert "\n  Not graded: “log the string that it publishes”.\n" in text
+
+
+def test_what_counts_is_said_of_what_is_not_met(load: Callable[[str], Verdict]) -> None:
+    verdict = replace(load("talker_unsolved"), nothing_seen=False)
+    assert card_text(verdict).count("    what counts: A timer or any other way to keep it.\n") == 1
+    met = replace(verdict, criteria=tuple(replace(one, passed=True) for one in verdict.criteria))
+    assert "what counts" not in card_text(met)
 
 
 def test_its_own_marks_are_ascii() -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
 from autograder import exercises
@@ -22,6 +24,19 @@ def test_doing_nothing_earns_nothing(exercise_id: str, nodes: list[str]) -> None
     passed = [c.name for c in exercises.get(exercise_id).criteria if c.judge(evidence).passed]
     # Lab 1.1 asks for a bare node: to have one is a part of its answer.
     assert passed == (["node"] if nodes and exercise_id == "lab_1_1.hello" else [])
+
+
+@pytest.mark.parametrize("exercise_id", exercises.all_ids())
+def test_of_a_subject_that_does_nothing_the_card_lists_what_is_asked(exercise_id: str) -> None:
+    stored, exercise = evidence_files.load_reference(exercise_id), exercises.get(exercise_id)
+    returned = Event(0.6, "subject", "returned", {"value": None})
+    silent = Evidence([Part(part.name, part.inputs, [returned]) for part in stored.parts], stored)
+    verdict = one_check.judge(exercise, silent, "")
+    assert verdict.nothing_seen
+    assert {one.name: one.counts for one in verdict.criteria if one.counts}.items() <= exercise.counts.items()
+    said = Event(0.5, "log", "node", {"text": "Here I am"})
+    loud = replace(silent, parts=[replace(part, events=[said, returned]) for part in silent.parts])
+    assert not one_check.judge(exercise, loud, "").nothing_seen
 
 
 @pytest.mark.parametrize("exercise_id", exercises.all_ids())

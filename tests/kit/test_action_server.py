@@ -104,7 +104,6 @@ HONORED = replace(sent(status=CANCELED), cancel_accepted=True, unread=0)
         ([compared(sent(accepted=False))], HONORED, "goal_rejected"),
         ([compared(sent(), "a fault")], HONORED, "goals_mixed_up"),
         ([compared(sent(), slip="a slip")], HONORED, "goals_mixed_up"),
-        ([compared(sent())], replace(sent(), cancel_accepted=False), "cancel_not_accepted"),
         ([compared(sent())], replace(sent(), cancel_accepted=None, unread=6), "cancel_not_accepted"),
     ],
 )

@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from autograder.kit.evidence import Event, Evidence, Part, Reference
-from autograder.kit.oracle.action_server import IN_EXECUTE
+from autograder.kit.mistakes.action_server_mistakes import RESULT_MISSING
 from autograder.kit.outcomes import SUCCEEDED, all_goals, goal
 
 ACTION, TYPE = "/drive", "a_package/action/DriveTo"
@@ -46,10 +46,11 @@ def test_a_goal_that_was_never_sent_has_no_fields() -> None:
 
 @pytest.mark.parametrize(("field", "found"), [("_steps", True), ("arrived", True), ("sequence", False)])
 def test_a_missing_result_is_told_in_the_words_of_the_action(field: str, found: bool) -> None:
-    missing = next(one for one in IN_EXECUTE if one.key == "result_missing")
     traceback = f"AttributeError: 'NoneType' object has no attribute '{field}'"
     part = Part("main", {}, [Event(0.0, "subject", "raised", {"traceback": traceback})])
-    advice = missing.recognize(Evidence([part], Reference("", {"action_server": {ACTION: TYPE}}, [PART])))
+    advice = RESULT_MISSING.recognize(
+        Evidence([part], Reference("", {"action_server": {ACTION: TYPE}}, [PART]))
+    )
     assert (advice is not None) is found
     assert advice is None or "DriveTo.Result() in which you have set arrived and steps" in advice.next_step
 

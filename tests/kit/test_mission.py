@@ -219,8 +219,8 @@ def test_what_became_of_a_goal_is_read_from_the_answers() -> None:
         ("result_heard", "/dock", {"goal": 0, "status": 5, "fields": {"arrived": False}}),
     )
     run = now.goal(0)
-    assert (run.accepted, run.cancel_accepted, run.status, len(run.feedback)) == (True, True, "canceled", 1)
-    assert now.goal(1).status == ""
+    assert (run.accepted, run.cancel_accepted, run.end, len(run.feedback)) == (True, True, "CANCELED", 1)
+    assert not now.goal(1).over
 
 
 DRIVER = {"publisher": {"/cmd_vel": TWIST}}

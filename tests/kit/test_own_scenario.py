@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from autograder.kit.evidence import Event, Evidence, Part, Reference
-from autograder.kit.recipes.own_scenario import OwnScenario, Spoken
+from autograder.kit.recipes.own_scenario import OwnScenario
 
 COUNT, RESET = {"/count": "std_srvs/srv/Trigger"}, {"/reset": "std_srvs/srv/Empty"}
 REFERENCE = Reference("lab.counter", {"service": COUNT | RESET}, [Part("counting")])
@@ -54,36 +54,3 @@ def test_what_is_expected_has_the_references_endpoints() -> None:
     evidence = seen(COUNT)
     assert RECIPE.expected(evidence).endpoints("service") == COUNT | RESET
     assert RECIPE.seen(evidence).endpoints("service") == COUNT
-
-
-def spoken(*lines: tuple[str, float, str]) -> list[tuple[float, str]]:
-    """The reports of a node that logged (log) or printed (output) these lines, each at a time."""
-    events = [Event(t, kind, "any", {"text": text}) for kind, t, text in lines]
-    seen = Spoken(lambda _: None, ("lost", "back"), "subscription").view(Part("met", {}, events))
-    return [(event.t, event.data["fields"]["data"]) for event in seen.of("message")]
-
-
-def test_a_word_is_reported_by_a_line_in_any_case_with_any_other_words() -> None:
-    assert spoken(("log", 1.0, "Heartbeat LOST!"), ("output", 2.0, "It is back.")) == [
-        (1.0, "lost"),
-        (2.0, "back"),
-    ]
-    assert spoken(("log", 1.0, "not lost, but back"), ("log", 2.0, "hello")) == []
-
-
-def test_what_is_logged_and_printed_is_one_report_also_if_the_terminal_is_late() -> None:
-    logged = [("log", 1.0, "lost"), ("log", 3.0, "back")]
-    assert spoken(
-        *logged, ("output", 4.0, "[INFO] [1.2] [dog]: lost"), ("output", 4.0, "[INFO] [1.2] [dog]: back")
-    ) == [
-        (1.0, "lost"),
-        (3.0, "back"),
-    ]
-    mixed = [logged[0], ("output", 1.1, "lost"), logged[1], ("log", 5.0, "lost"), ("output", 7.0, "back")]
-    assert spoken(*mixed) == [(1.0, "lost"), (3.0, "back"), (5.0, "lost"), (7.0, "back")]
-
-
-def test_a_word_that_is_said_again_and_again_is_as_many_reports() -> None:
-    again = [("output", n / 10, "lost") for n in range(3)]
-    assert len(spoken(*again)) == 3
-    assert len(spoken(*(line for n in range(3) for line in (("log", n / 10, "lost"), again[n])))) == 3

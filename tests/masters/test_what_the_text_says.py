@@ -55,10 +55,10 @@ def test_what_was_untrue_is_said_as_it_is(lab: str, untrue: str, true: str) -> N
     ("lab", "words"),
     [
         ("00_nervous_system", "inter-process communication*, IPC"),
-        ("00_nervous_system", "[Learning Outcomes](../../docs/learning-outcomes.md)"),
+        ("00_nervous_system", "`docs/learning-outcomes.md`"),
         ("summary", "**inter-process communication (IPC)**"),
         ("summary", "| | how many | preemptable | examples |"),
-        ("summary", "[Learning Outcomes](../../docs/learning-outcomes.md)"),
+        ("summary", "`docs/learning-outcomes.md`"),
         ("summary", "*Bridging Python Agents to ROS 2*"),
         ("summary", 'check("summary.patrol", Patrol)'),
         ("exercise_1_1", 'check("exercise_1_1.package", "ros2_ws")'),

@@ -11,6 +11,7 @@ from __future__ import annotations
 import threading
 import time
 import uuid
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from action_msgs.msg import GoalInfo, GoalStatus, GoalStatusArray
@@ -282,16 +283,14 @@ class RecordedActionClient(Client):
         request = self._parts.SendGoalService.Request(goal_id=self._goals[number])
         filled(request.goal, fields)
         self._recorder.record("goal_sent", self._name, goal=number, fields=dict(fields))
-        future = self._send.call_async(request)
-        future.add_done_callback(lambda done: self._take_answer(number, done.result()))
+        self._wire.executor.ask(self._send, request, partial(self._take_answer, number))
         return number
 
     def cancel(self, goal: int) -> None:
         """Request to cancel a goal."""
         self._recorder.record("cancel_sent", self._name, goal=goal)
         request = CancelGoal.Request(goal_info=GoalInfo(goal_id=self._goals[goal]))
-        future = self._cancel.call_async(request)
-        future.add_done_callback(lambda done: self._take_cancel_answer(goal, done.result()))
+        self._wire.executor.ask(self._cancel, request, partial(self._take_cancel_answer, goal))
 
     def close(self) -> None:
         for client in (self._send, self._cancel, self._result):
@@ -308,8 +307,7 @@ class RecordedActionClient(Client):
         self._note("goal_answer", number, accepted=bool(response.accepted))
         if response.accepted:
             request = self._parts.GetResultService.Request(goal_id=self._goals[number])
-            future = self._result.call_async(request)
-            future.add_done_callback(lambda done: self._take_result(number, done.result()))
+            self._wire.executor.ask(self._result, request, partial(self._take_result, number))
 
     def _take_result(self, number: int, response: Any) -> None:
         self._note_servers()

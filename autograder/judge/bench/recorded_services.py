@@ -6,6 +6,7 @@ import threading
 import warnings
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
+from functools import partial
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
@@ -199,8 +200,8 @@ class RecordedCaller(Client):
         for number, fields in numbered:
             self._recorder.record("asked", self._name, call=number, fields=dict(fields))
         for number, fields in numbered:
-            future = self._client.call_async(filled(self._type.Request(), fields))
-            future.add_done_callback(lambda done, number=number: self._take(number, done.result()))
+            request = filled(self._type.Request(), fields)
+            self._wire.executor.ask(self._client, request, partial(self._take, number))
 
     def await_answers(self, quiet: float) -> bool:
         """Wait until every call is answered. Return False if nothing was recorded for ``quiet`` seconds before that."""

@@ -14,6 +14,7 @@ from rclpy.qos import (
     qos_policy_name_from_kind,
 )
 
+from autograder.judge.bench.batch_executor import LONG_QUEUE
 from autograder.judge.bench.qos_profiles import profile
 from autograder.judge.bench.ros_interfaces import filled, interface, to_data
 from autograder.kit.counterparts import Qos
@@ -25,10 +26,8 @@ if TYPE_CHECKING:
     from autograder.judge.bench.recorder import Recorder
 
 
-_LONG_QUEUE = 1000
-"""The queue depth of the judge's subscriptions, so that nothing is lost while the judge is slow."""
 _LOG_HISTORY = QoSProfile(
-    depth=1000, history=HistoryPolicy.KEEP_LAST, reliability=ReliabilityPolicy.RELIABLE,
+    depth=LONG_QUEUE, history=HistoryPolicy.KEEP_LAST, reliability=ReliabilityPolicy.RELIABLE,
     durability=DurabilityPolicy.TRANSIENT_LOCAL,
 )  # fmt: skip
 
@@ -90,7 +89,7 @@ class RecordedSubscription(_RecordedEndpoint):
             interface(type_name),
             at or topic,
             self._hear,  # type: ignore[arg-type]  # a callback with two parameters also gets the message info
-            profile(qos, _LONG_QUEUE),
+            profile(qos, LONG_QUEUE),
             event_callbacks=SubscriptionEventCallbacks(
                 matched=self._match, incompatible_qos=self._mismatch, use_default_callbacks=False
             ),

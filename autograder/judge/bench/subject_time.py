@@ -88,7 +88,7 @@ class NodeClock:
         """Tell the nodes to follow simulated time, or real time again. Return True if all have accepted this."""
         value = ParameterValue(type=ParameterType.PARAMETER_BOOL, bool_value=simulated)
         request = SetParameters.Request(parameters=[Parameter(name=_SIM_TIME, value=value)])
-        told = [_ask(self._recorder, client, request, ANSWER_LIMIT) for client in self._set]
+        told = [_ask(self._wire, self._recorder, client, request, ANSWER_LIMIT) for client in self._set]
         return all(answer and answer.results and answer.results[0].successful for answer in told)
 
     def is_heard(self) -> bool:
@@ -108,7 +108,7 @@ class NodeClock:
     def keeps_up(self) -> bool:
         """Return True if the nodes' executors make as many rounds as they need to handle what has arrived."""
         return all(
-            _ask(self._recorder, client, _QUESTION, ANSWER_LIMIT, turns=TURNS) is not None
+            _ask(self._wire, self._recorder, client, _QUESTION, ANSWER_LIMIT, turns=TURNS) is not None
             for client in self._get
         )
 
@@ -141,7 +141,7 @@ class NodeClock:
             self._wire.node.destroy_client(client)
 
 
-def _ask(recorder: Recorder, client: Any, request: Any, limit: float, *, turns: int = 1) -> Any:
+def _ask(wire: Wire, recorder: Recorder, client: Any, request: Any, limit: float, *, turns: int = 1) -> Any:
     """Return the answer of a service of the subject; None if the subject's executor does not answer in time.
 
     Args:
@@ -152,26 +152,31 @@ def _ask(recorder: Recorder, client: Any, request: Any, limit: float, *, turns: 
     """
     if not recorder.wait(client.service_is_ready, limit, poll=0.005):
         return None
-    futures = [client.call_async(request) for _ in range(turns)]
-    return futures[-1].result() if all(_is_there(future, limit) for future in futures) else None
+    answers: list[Any] = []
+    all_came = threading.Event()
 
+    def take(answer: Any) -> None:
+        answers.append(answer)
+        if len(answers) == turns:
+            all_came.set()
 
-def _is_there(future: Any, limit: float) -> bool:
-    if future.done():
-        return True
-    done = threading.Event()
-    future.add_done_callback(lambda _: done.set())
-    patience = Patience(limit)
-    while not done.is_set() and (left := patience.left) > 0:
-        done.wait(left)
-    return done.is_set()
+    for _ in range(turns):
+        wire.executor.ask(client, request, take)
+    patience, before = Patience(limit), 0
+    while not all_came.wait(max(0.0, patience.left)):
+        if len(answers) > before:
+            patience.restart()
+        elif patience.left <= 0:
+            return None
+        before = len(answers)
+    return answers[-1]
 
 
 def answers(wire: Wire, recorder: Recorder, node: NodeName, limit: float = PATIENT_ANSWER) -> bool:
     """Return True if a node answers a request for a parameter in time. Every node that is spun can answer."""
     client = wire.node.create_client(GetParameters, f"{node.full}/get_parameters")
     try:
-        return _ask(recorder, client, _QUESTION, limit) is not None
+        return _ask(wire, recorder, client, _QUESTION, limit) is not None
     finally:
         wire.node.destroy_client(client)
 

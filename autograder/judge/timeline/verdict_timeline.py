@@ -395,6 +395,19 @@ KINDS = {
 }
 
 
+def shows_nothing(evidence: Evidence) -> bool:
+    """Return True if the subject sent, said and returned nothing, raised no error, and made no unexpected endpoint."""
+    sent = {kind for kind, shown in KINDS.items() if shown.direction == _HEARD} - {"log", "output"}
+    asked = evidence.reference.interface
+    return not any(
+        part.traceback
+        or set(part.said()) - {"None"}
+        or any(map(part.of, sent))
+        or any(part.endpoints(role).items() - asked.get(role, {}).items() for role in _ENDS)
+        for part in evidence
+    )
+
+
 def label_of(event: Event) -> str:
     """Return the label of an event's dot, cut to :data:`MAX_LABEL` characters."""
     text = KINDS[event.kind].label(event)

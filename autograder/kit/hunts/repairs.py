@@ -89,6 +89,7 @@ class Repairs:
             mistakes=[_without_diagnosis(judged, known) for known in (*judged.mistakes, _ANY_OTHER)],
             remarks=(cause,),
             text={},
+            counts={},
             hides_causes=True,
         )
 

@@ -9,11 +9,11 @@ from autograder.kit import rules
 from autograder.kit.draft import OWN_LATE
 from autograder.kit.in_words import counted
 from autograder.kit.mission.moment import TWIST, number_of, published
-from autograder.kit.mistakes import common_mistakes as common
+from autograder.kit.mistakes.role_mistakes import ladder
+from autograder.kit.mistakes.silence import GO_ON, NO_MORE
 from autograder.kit.mistakes.unfinished import STEP_MISSING
 from autograder.kit.model import Finding, Mistake, mistake
 from autograder.kit.recipes.own_scenario import OwnScenario
-from autograder.kit.recipes.publisher import GO_ON, NO_MESSAGE, NO_MORE, PUBLISH
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -107,24 +107,13 @@ class Driving(OwnScenario):
     @property
     def ladder(self) -> tuple[Mistake, ...]:
         """The common mistakes, most specific first."""
-        ladder = super().ladder
-        if "publisher" not in self.roles:
-            return ladder
         silent = (
             mistake(
                 "not_written", self._not_written, "Your node drives, and no {} came after that.", STEP_MISSING
             ),
-            mistake("never_published", self._never_published, NO_MESSAGE, PUBLISH),
             mistake("stopped_publishing", self._stopped_publishing, NO_MORE, GO_ON),
         )
-        late = ladder.index(OWN_LATE) + 1
-        return (common.everything_twice("publisher"), *ladder[:late], *silent, *ladder[late:])
-
-    @staticmethod
-    def _never_published(evidence: Evidence) -> bool:
-        part, topic = evidence.main, drive_topic(evidence.reference.interface)
-        there = topic in part.endpoints("publisher") and part.ending is None
-        return there and not part.of("message", topic) and not part.of("unanswered")
+        return ladder(self.roles, late=(OWN_LATE, *silent) if "publisher" in self.roles else (OWN_LATE,))
 
     @staticmethod
     def _not_written(evidence: Evidence) -> str:

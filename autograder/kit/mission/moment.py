@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence  # noqa: TC003  (an author reads t
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
+from autograder.kit import outcomes
 from autograder.kit.in_words import counted
 from autograder.kit.rules import value
 from autograder.robot.motion import ROOM, START, STILL, Point, Pose, Velocity, Walls
@@ -14,12 +15,11 @@ from autograder.robot.sensors import FARTHEST
 
 if TYPE_CHECKING:
     from autograder.kit.evidence import Event, Part
+    from autograder.kit.outcomes import SentGoal
 
 TWIST = "geometry_msgs/msg/Twist"
 SLACK = 0.25
 """Seconds by which a message may seem to come after a call or goal that was sent right behind it."""
-ENDED = {4: "succeeded", 5: "canceled", 6: "aborted"}
-"""The statuses with which a goal ends (action_msgs/msg/GoalStatus)."""
 
 
 @dataclass(frozen=True)
@@ -37,27 +37,6 @@ class World:
     start: Pose = START
     places: Mapping[str, Point] = field(default_factory=dict)
     turns: bool = True
-
-
-@dataclass(frozen=True)
-class GoalRun:
-    """The outcome of a goal that the judge sent to the subject's action.
-
-    Attributes:
-        goal: The fields of the goal.
-        accepted: True if the subject accepted the goal.
-        cancel_accepted: True if the subject accepted the request to cancel the goal.
-        status: ``"succeeded"``, ``"canceled"`` or ``"aborted"``; empty if no result came, ``"unknown"`` for others.
-        feedback: The fields of each feedback message.
-        result: The fields of the result; empty if none came.
-    """
-
-    goal: Mapping[str, Any]
-    accepted: bool = False
-    cancel_accepted: bool = False
-    status: str = ""
-    feedback: Sequence[Mapping[str, Any]] = ()
-    result: Mapping[str, Any] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -132,20 +111,9 @@ class Moment:
         early = ", before the answer" if len(answers) < len(calls) else ""
         return f"{counted(len(goals), 'goal')}: {_each(goals)}{early}" if goals else "no goal"
 
-    @property
-    def goals(self) -> list[GoalRun]:
-        """The outcomes of the goals that the judge has sent to the subject's action, in order."""
-        runs = [GoalRun(event.data["fields"]) for event in self.part.of("goal_sent")]
-        for event in self.part.events:
-            number = event.data.get("goal")
-            if not isinstance(number, int) or not 0 <= number < len(runs):
-                continue
-            runs[number] = _after(runs[number], event)
-        return runs
-
-    def goal(self, number: int) -> GoalRun:
-        """Return the outcome of a goal, counted from 0; if it was not sent yet, a goal without fields."""
-        return self.goals[number] if number < len(self.goals) else GoalRun({})
+    def goal(self, number: int) -> SentGoal:
+        """Return what came of a goal that the judge sent to the subject's action, counted from 0."""
+        return outcomes.goal(self.part, number)
 
     def before(self, kind: str, name: str | None = None) -> Moment:
         """Return what the judge had recorded before the first event of a kind, such as ``"request"``, and a name.
@@ -167,19 +135,6 @@ class Moment:
     def __str__(self) -> str:
         """Return the time and the place in words."""
         return f"after {self.time:.1f} s, at x = {self.pose.x:.2f} m, y = {self.pose.y:.2f} m"
-
-
-def _after(run: GoalRun, event: Event) -> GoalRun:
-    if event.kind == "goal_answer":
-        return replace(run, accepted=event.data["accepted"])
-    if event.kind == "cancel_answer":
-        return replace(run, cancel_accepted=event.data["accepted"])
-    if event.kind == "feedback_heard":
-        return replace(run, feedback=(*run.feedback, event.data["fields"]))
-    if event.kind == "result_heard":
-        status = ENDED.get(event.data["status"], "unknown")
-        return replace(run, status=status, result=event.data["fields"])
-    return run
 
 
 def number_of(command: Event, part: str, axis: str) -> float:

@@ -87,12 +87,12 @@ class Journey:
         if not self._came("goal_answer", number):
             return False
         if step.cancel_after is not None:
-            ended = self._go(step.cancel_after, lambda now: bool(now.goal(number).status))
+            ended = self._go(step.cancel_after, lambda now: now.goal(number).over)
             caller.cancel(number)
             if not (ended and self._came("cancel_answer", number)):
                 return False
-        answers = self._go(step.within, lambda now: bool(now.goal(number).status))
-        return answers and bool(self._robot.now.goal(number).status)
+        answers = self._go(step.within, lambda now: now.goal(number).over)
+        return answers and self._robot.now.goal(number).over
 
     def _came(self, kind: str, number: int) -> bool:
         def has_come(evidence: Evidence) -> bool:

@@ -10,13 +10,12 @@ from typing import TYPE_CHECKING
 import re2
 
 from autograder.kit.counterparts import Qos
-from autograder.kit.mistakes.crashes import CRASHES, OTHER_CRASHES
-from autograder.kit.mistakes.hangs import HANGS, something_spins
+from autograder.kit.mistakes.hangs import something_spins
 from autograder.kit.model import Advice, Mistake, mistake
 from autograder.kit.reported_texts import said_first_after
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     from autograder.kit.evidence import Event, Evidence, Part
 
@@ -168,17 +167,10 @@ def everything_twice(role: str) -> Mistake:
     """Return the mistake "everything twice": two nodes or timers do the same work, so each message arrives twice."""
 
     def are_pairs(evidence: Evidence) -> bool:
-        name, _ = evidence.reference.only(role)
-        messages = evidence.main.of("message", name)
-        heard = [str(event.data["fields"]) for event in messages]
-        times = Counter(heard)
-        pairs = [times[text] for text in heard[:-1]]
-        if len(heard) < 4 or sum(count == 2 for count in pairs) < len(pairs) * 0.7:
-            return False
-        # Each publisher numbers its own messages, so equal numbers show that there are two publishers. A single
-        # publisher that counts in a circle also repeats texts, but each time with another number.
-        numbers = [event.data.get("number") for event in messages]
-        return len(set(numbers)) < len(numbers) or sum(a == b for a, b in pairwise(heard)) >= len(heard) // 3
+        return any(
+            _are_pairs(evidence.main.of("message", topic), evidence.reference.parts, topic)
+            for topic in _wanted(evidence, role)
+        )
 
     return mistake(
         "everything_twice",
@@ -187,6 +179,26 @@ def everything_twice(role: str) -> Mistake:
         "Make the node only once. In a notebook, a node from an earlier run of the cell may still exist.",
         certain=True,
     )
+
+
+def _are_pairs(messages: Sequence[Event], expected: Sequence[Part], topic: str) -> bool:
+    heard = [str(event.data["fields"]) for event in messages]
+    times = Counter(heard)
+    pairs = [times[text] for text in heard[:-1]]
+    if len(heard) < 4 or sum(count == 2 for count in pairs) < len(pairs) * 0.7:
+        return False
+    # Each publisher numbers its own messages, so equal numbers show that there are two publishers.
+    numbers = [event.data.get("number") for event in messages]
+    if len(set(numbers)) < len(numbers):
+        return True
+    # A single publisher that counts in a circle also repeats texts. One that repeats each text at once has two timers,
+    # unless the solution, of which then the messages have to be recorded, repeats them, too.
+    due = [str(event.data["fields"]) for part in expected for event in part.of("message", topic)]
+    return bool(due) and _repeats(heard) and not _repeats(due)
+
+
+def _repeats(texts: Sequence[str]) -> bool:
+    return sum(a == b for a, b in pairwise(texts)) >= len(texts) // 3
 
 
 def never_spun(role: str) -> Mistake:
@@ -212,17 +224,6 @@ def went_deaf(role: str) -> Mistake:
         "while another executor spins the node, that executor loses the node for good. In a callback, do not await "
         "anything that needs another callback of the same group.",
     )
-
-
-def connecting(role: str) -> tuple[Mistake, ...]:
-    """Return the mistakes that can keep the subject's endpoint from being connected, most specific first."""
-    qos = [qos_mismatch(role)] if role in ("publisher", "subscription") else []
-    return *CRASHES, endpoint_name(role), message_type(role), *qos, *OTHER_CRASHES
-
-
-def spinning(role: str) -> tuple[Mistake, ...]:
-    """Return the mistakes of a node that has an endpoint of this role and hangs or is not spun, most specific first."""
-    return *HANGS, never_spun(role), went_deaf(role)
 
 
 def _was_spun(part: Part, role: str) -> bool:

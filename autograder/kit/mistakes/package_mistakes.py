@@ -259,6 +259,15 @@ def mistakes(entry: EntryPoint) -> tuple[Mistake, ...]:
     )
 
 
+def in_package(package: str, *entries: EntryPoint) -> tuple[Mistake, ...]:
+    """Return the mistakes of a workspace that must have a package, with the programs of these entry points."""
+    return (
+        *BUILD,
+        Mistake("package_name", lambda evidence: package_name(evidence, package), certain=True),
+        *(known for entry in entries for known in mistakes(entry)),
+    )
+
+
 def lost_entry_point(report: WorkspaceReport | None, package: str, program: str) -> bool:
     """Return True if the package contains the module of an earlier lab, but no program starts that module.
 

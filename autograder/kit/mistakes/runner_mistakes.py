@@ -2,28 +2,48 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import re2
 
 from autograder.kit.mistakes.crashes import OTHER_CRASHES
-from autograder.kit.mistakes.package_mistakes import BUILD
+from autograder.kit.mistakes.package_mistakes import BUILD, EntryPoint, in_package
 from autograder.kit.model import Advice, Mistake, mistake
-from autograder.kit.runners import Launches, LaunchesFromPackage, processes
+from autograder.kit.runners import (
+    Launches,
+    LaunchesFromPackage,
+    RunsProgram,
+    RunsPrograms,
+    ServesInterface,
+    processes,
+)
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
     from autograder.kit.evidence import Evidence, Part
     from autograder.kit.runners import Runner
+
+OF_THE_WORKSPACE: Mapping[type[Runner], Callable[[Any], Sequence[Mistake]]] = {
+    RunsProgram: lambda runs: in_package(runs.package, EntryPoint(runs.package, runs.program)),
+    RunsPrograms: lambda runs: in_package(
+        runs.package, *(EntryPoint(runs.package, p) for p in runs.programs)
+    ),
+    ServesInterface: lambda _: BUILD,
+    Launches: lambda _: BUILD,
+    LaunchesFromPackage: lambda runs: in_package(runs.package),
+}
+"""For each kind of runner, the mistakes that keep the workspace from being built or its program from being found."""
+OF_A_LAUNCH = (Launches, LaunchesFromPackage)
+"""The kinds of runners whose subject is a launch file."""
 
 
 def with_those_of(runner: Runner | None, ladder: Sequence[Mistake]) -> Sequence[Mistake]:
     """Return a recipe's mistakes with those that the runner brings, unless the recipe already has these."""
     keys = {known.key for known in ladder}
     if runner is not None and "build_failed" not in keys:
-        ladder = (*BUILD, *ladder)
-    if not isinstance(runner, Launches | LaunchesFromPackage) or "launch_error" in keys:
+        ladder = (*OF_THE_WORKSPACE[type(runner)](runner), *ladder)
+    if not isinstance(runner, OF_A_LAUNCH) or "launch_error" in keys:
         return ladder
     kept = [known for known in ladder if known.key not in _OF_A_PROGRAM]
     at = kept.index(OTHER_CRASHES[0]) if OTHER_CRASHES[0] in kept else len(kept)

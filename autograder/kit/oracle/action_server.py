@@ -5,14 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
-import re2
-
 from autograder.kit.draft import OWN, OWN_LATE
 from autograder.kit.mistakes import common_mistakes as common
-from autograder.kit.mistakes import unfinished
-from autograder.kit.mistakes.crashes import CRASHES, OTHER_CRASHES, raised, traceback_of
-from autograder.kit.model import Advice, Bench, Finding, Mistake, mistake
-from autograder.kit.outcomes import ABORTED, CANCELED, SUCCEEDED, SentGoal, all_goals, goal, status_text
+from autograder.kit.mistakes.action_server_mistakes import result_type
+from autograder.kit.mistakes.crashes import traceback_of
+from autograder.kit.mistakes.role_mistakes import ladder
+from autograder.kit.model import Bench, Finding, Mistake, mistake
+from autograder.kit.outcomes import CANCELED, SUCCEEDED, SentGoal, goal, status_text
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -235,70 +234,18 @@ class SendsGoals(Generic[Seen]):
     @property
     def ladder(self) -> tuple[Mistake, ...]:
         """The common mistakes, most specific first."""
-        return (
-            common.two_servers(
-                "action_server",
-                "Each goal reaches both servers, and both execute it.",
-                "Make only one ActionServer and only one node.",
-            ),
-            IN_EXECUTE[0],
-            *self._about_goals(BESIDE_ANOTHER),
-            OWN,
-            *CRASHES,
-            common.endpoint_name("action_server"),
-            common.message_type("action_server"),
-            IN_EXECUTE[1],
-            *OTHER_CRASHES,
-            *self._about_goals(ALONE),
-            OWN_LATE,
-            *common.spinning("action_server"),
-            *unfinished.NOTHING_THERE,
+        return ladder(
+            self.roles,
+            first=(*self._about_goals(BESIDE_ANOTHER), OWN),
+            named=(),
+            working=(*self._about_goals(ALONE), OWN_LATE),
+            late=(),
         )
 
     def _about_goals(self, rows: Iterable[Row]) -> Iterator[Mistake]:
         for key, found, text, next_step, certain in rows:
             shows = lambda evidence, found=found: found(self.seen(evidence))  # noqa: E731
             yield mistake(key, shows, text, next_step, certain=certain)
-
-
-def _result_missing(evidence: Evidence) -> Advice | None:
-    """Return advice if the execute callback returned no result."""
-    result, fields = _result_type(evidence)
-    # The first alternative is rclpy's error when it sends the result. The second is the clearer error that
-    # autograder/notebook raises.
-    absent = (
-        rf"'NoneType' object has no attribute '_?(?:{'|'.join(fields)})'"
-        if fields
-        else "in _send_result_response"
-    )
-    said = f"{absent}|must return a result of the action"
-    traceback = traceback_of(evidence)
-    if not re2.search(said, traceback):
-        return None
-    return Advice(
-        f"The execute callback did not return a {result} object. It returned nothing, a plain list, or the type "
-        "without parentheses.",
-        f"End the callback with `return result`, where `result` is a {result}() in which you have set "
-        f"{' and '.join(fields) or 'the fields'}. Do this wherever the callback returns, also after a cancel.",
-        traceback,
-    )
-
-
-def _result_type(evidence: Evidence) -> tuple[str, list[str]]:
-    """Return the name of the action's result type, and its fields."""
-    _, kind = evidence.reference.only("action_server")
-    recorded = (
-        list(one.result) for part in evidence.reference.parts for one in all_goals(part) if one.result
-    )
-    return f"{kind.rpartition('/')[2]}.Result", next(recorded, [])
-
-
-def _exception_in_execute(evidence: Evidence) -> Advice | None:
-    """Return advice if the execute callback raised an exception, so that rclpy aborted the goal."""
-    traceback = traceback_of(evidence)
-    if not traceback or not any(seen.status == ABORTED for part in evidence for seen in all_goals(part)):
-        return None
-    return raised("The execute callback raised an exception, so rclpy aborted the goal", traceback)
 
 
 def _canceled_unasked(seen: GoalsSeen) -> bool:
@@ -342,7 +289,7 @@ def _mixed_up(seen: GoalsSeen) -> str:
 def _result_never_filled(seen: GoalsSeen) -> object:
     results = [one.result for one in seen.good if one.status == SUCCEEDED]
     is_empty = results and not any(value for result in results for value in result.values())
-    return _result_type(seen.evidence) if is_empty else None
+    return result_type(seen.evidence) if is_empty else None
 
 
 def _done_at_once(seen: GoalsSeen) -> object:
@@ -358,11 +305,6 @@ def _ended_before_its_work(seen: GoalsSeen) -> bool:
     return long.cancelled_too_late and long.sent_after(long.cancel_answered_at) > 0
 
 
-def _cancel_refused(seen: GoalsSeen) -> bool:
-    long = seen.canceled[0]
-    return long.cancel_accepted is False and not (long.cancelled_too_late or long.is_quick)
-
-
 def _cancel_not_read(seen: GoalsSeen) -> bool:
     # A goal without a result may keep the only thread busy.
     hangs = any(one.accepted and not one.over for one in seen.good)
@@ -370,10 +312,6 @@ def _cancel_not_read(seen: GoalsSeen) -> bool:
     return not (long.cancel_accepted or long.is_quick or hangs) and long.unread >= UNREAD
 
 
-IN_EXECUTE = (
-    Mistake("result_missing", _result_missing, certain=True),
-    Mistake("exception_in_callback", _exception_in_execute, certain=True),
-)
 Row = tuple[str, "Callable[[GoalsSeen], object]", str, str, bool]
 """A mistake: its key, what shows it, the two texts with placeholders for that, and whether the evidence proves it."""
 BESIDE_ANOTHER: tuple[Row, ...] = (
@@ -435,15 +373,6 @@ ALONE: tuple[Row, ...] = (
         "already ended, but the server still sent feedback.",
         "Call succeed(), canceled() or abort() of the goal handle exactly once, just before you return the result.",
         False,
-    ),
-    (
-        "cancel_not_accepted",
-        _cancel_refused,
-        "Your server refuses the cancel request. rclpy does this if the ActionServer has no cancel_callback, or if the "
-        "cancel_callback does not return CancelResponse.ACCEPT.",
-        "Pass cancel_callback=... to the ActionServer: a method that returns CancelResponse.ACCEPT. In the loop of the "
-        "execute callback, check is_cancel_requested of the goal handle.",
-        True,
     ),
     (
         "cancel_not_accepted",

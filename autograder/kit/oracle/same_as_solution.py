@@ -17,8 +17,7 @@ from autograder.kit.counterparts import Qos
 from autograder.kit.draft import Draft
 from autograder.kit.mistakes import unfinished
 from autograder.kit.mistakes.common_mistakes import NOT_LATCHED, is_not_latched
-from autograder.kit.model import Advice, Mistake, Pace
-from autograder.kit.oracle.action_server import IN_EXECUTE
+from autograder.kit.model import Advice, Finding, Mistake, Pace
 from autograder.kit.oracle.goal_sender import GoalSender
 from autograder.kit.oracle.outputs import Kind, Output
 from autograder.kit.oracle.steps import Goal, Serves, Sets, Step, To, parameter_value
@@ -50,13 +49,20 @@ class _Drawn(OwnScenario):
 
     Args:
         outputs: What is compared.
+        is_timed: True if time alone decides some of it. A right node with a clock of its own may then do the same as a
+            wrong one while the judge moves its clock, so no wrong answer is proven before the look in real time.
     """
 
     def __init__(
-        self, scenario: Callable[[Bench], None], outputs: Sequence[Output], roles: Sequence[str]
+        self,
+        scenario: Callable[[Bench], None],
+        outputs: Sequence[Output],
+        roles: Sequence[str],
+        *,
+        is_timed: bool,
     ) -> None:
         super().__init__(scenario, *roles)
-        self._outputs = outputs
+        self._outputs, self._is_timed = outputs, is_timed
 
     def expected(self, evidence: Evidence) -> Part:
         """Return the record of the solution in the drawing that the subject was given."""
@@ -73,13 +79,13 @@ class _Drawn(OwnScenario):
         )
         likely = Mistake("variant", self._same_as_a_variant)
         ladder = super().ladder
-        in_execute = IN_EXECUTE if "action_server" in self.roles else ()
         at = ladder.index(unfinished.NEVER_CONSTRUCTED)
-        return (*in_execute, *ladder[:at], proven, likely, *ladder[at:])
+        return (*ladder[:at], proven, likely, *ladder[at:])
 
     def _same_as_a_variant(self, evidence: Evidence, *, simulated: bool = False) -> Advice | None:
         mine = evidence.main
-        if not mine.of("noted") or (simulated and any(event.sim is None for event in mine.of("noted"))):
+        noted = mine.of("noted")
+        if not noted or (simulated and (self._is_timed or any(event.sim is None for event in noted))):
             return None
         if self._agree(mine, self.expected(evidence)):
             return None
@@ -114,6 +120,7 @@ class SameAsSolution:
         serves: The services that the subject calls, by name, and how the judge answers: at once, late or never.
         parameters: The names of the parameters whose description (type and range) is compared, and which values of
             them are taken and which are refused with a reason, if a step :class:`Sets` them.
+        waits: Seconds of wall time before the first step. What the subject says by itself so early is compared, too.
         late_after: Seconds of the subject's time after which the judge subscribes, and asks for the last message, too.
         qos: The topics on which the QoS counts: the judge's endpoint gets the QoS of the solution's, and an endpoint
             that does not match gets or tells nothing.
@@ -145,6 +152,7 @@ class SameAsSolution:
         lists: Mapping[str, str | tuple[str, ...]] = NOTHING,
         serves: Mapping[str, Serves] = NOTHING,
         parameters: Sequence[str] = (),
+        waits: float = 0.0,
         late_after: float = 0.0,
         qos: Sequence[str] = (),
         every: bool = False,
@@ -155,7 +163,7 @@ class SameAsSolution:
     ) -> None:
         self._id, self._gives, self._serves = exercise_id, gives, serves
         self._every, self._pause, self._tolerance = every, pause, tolerance
-        self._late_after, self._qos = late_after, qos
+        self._waits, self._late_after, self._qos = waits, late_after, qos
         kinds = {
             Kind.STEPS: tells,
             Kind.LIST: lists,
@@ -166,7 +174,9 @@ class SameAsSolution:
             for kind, outputs in kinds.items()
             for name, paths in outputs.items()
         ]
-        self._draft = Draft(exercise_id, title, task, _Drawn(self._scenario, self._outputs, roles))
+        is_timed = any(isinstance(step, (int, float)) for step in gives(Random(0)))
+        drawn = _Drawn(self._scenario, self._outputs, roles, is_timed=is_timed)
+        self._draft = Draft(exercise_id, title, task, drawn)
         if late_after:
             self._draft.knows("not_latched", is_not_latched, *NOT_LATCHED, certain=True)
         for output in self._of(Kind.PARAMETER):
@@ -179,7 +189,7 @@ class SameAsSolution:
             )
         for output in self._outputs:
             name, each = output.name.strip("/"), points / len(self._outputs)
-            self._draft.criterion(name, each, output.title)(output.compared)
+            self._draft.criterion(name, each, output.title)(partial(_by_one_server, output))
 
     def exercise(self, **more: Any) -> Exercise:
         """Return the finished exercise. For ``more`` see :meth:`autograder.kit.draft.Draft.exercise`."""
@@ -229,6 +239,9 @@ class SameAsSolution:
         """Give the subject one step, and note its outputs. Return False if the subject does not answer."""
         bench = met.bench
         before = 0 if number == 0 else len(bench.seen().events)
+        if number == 0:
+            # A node that begins to count before the first input does so in real time.
+            bench.wait_until(lambda evidence: bool(evidence.main.of("message")), self._waits)
         went_through = True
         if not isinstance(step, (int, float)):
             went_through = self._given(met, step)
@@ -313,6 +326,14 @@ class SameAsSolution:
 
     def _of(self, kind: Kind) -> list[Output]:
         return [output for output in self._outputs if output.kind is kind]
+
+
+def _by_one_server(output: Output, seen: Part, expected: Part) -> Finding:
+    """Compare an output, unless several servers have its name: each gets the call, and chance decides who answers."""
+    count = max((event.data["count"] for event in seen.of("servers", output.name)), default=0)
+    if count > 1:
+        return Finding(False, f"one server of {output.name}", f"{count} servers of {output.name}")
+    return output.compared(seen, expected)
 
 
 def _nodes(part: Part, begins: str) -> list[str]:

@@ -7,7 +7,7 @@ from random import Random  # noqa: TC003  (an alias of types needs it)
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from autograder.kit.in_words import counted
-from autograder.kit.outcomes import STATUS, all_goals
+from autograder.kit.outcomes import all_goals
 from autograder.kit.recipes.own_scenario import pick
 
 if TYPE_CHECKING:
@@ -134,7 +134,7 @@ class Goal:
     def _outcome(self, sent: SentGoal, path: str) -> Any:
         part, _, field_path = path.partition(".")
         if part == "status":
-            return STATUS.get(sent.status or 0) if sent.accepted else "REJECTED"
+            return sent.end
         if part == "feedback":
             return [pick(fields, field_path) for fields in sent.feedback[: self.cancel_after]]
         return None if self.cancel_after is not None or not sent.result else pick(sent.result, field_path)

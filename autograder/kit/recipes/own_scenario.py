@@ -1,10 +1,4 @@
-"""The bases of the recipes for nodes: an exercise writes its own scenario, or it only declares the right output.
-
-For an own scenario, the recipe adds the common mistakes. For a declared exercise, the kit also makes the scenario, the
-criteria and the mistakes. For example, a ``Relay`` is a node that listens on one topic and publishes on another, and a
-``Machine`` is a node with a state that a service changes and a topic reports. The author declares the right output as a
-function, and each common wrong answer as a variant of this function.
-"""
+"""The base of the recipes for nodes: an exercise writes its own scenario, and the recipe adds the common mistakes."""
 
 from __future__ import annotations
 
@@ -14,28 +8,22 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from autograder.kit.counterparts import Qos
-from autograder.kit.draft import OWN, OWN_LATE, Draft, SeenAsItIs
-from autograder.kit.evidence import Event, spoken_by, without_tracebacks
-from autograder.kit.mistakes import common_mistakes as common
-from autograder.kit.mistakes import unfinished
-from autograder.kit.mistakes.crashes import CRASHES, OTHER_CRASHES
-from autograder.kit.mistakes.hangs import HANGS
+from autograder.kit.draft import SeenAsItIs
+from autograder.kit.evidence import Event
+from autograder.kit.mistakes.role_mistakes import ladder
 from autograder.kit.model import Finding, Pace
-from autograder.kit.rules import got_through
 from autograder.kit.runners import processes
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
     from autograder.kit.counterparts import ActionCaller, Caller, Speaker
     from autograder.kit.evidence import Evidence, Part
-    from autograder.kit.model import Bench, Exercise, Mistake
+    from autograder.kit.model import Bench, Mistake
 
 
 _NOUN = {"publisher": "a publisher on", "subscription": "a subscription to", "client": "a client of"}
 _NOUN |= {"service": "a service", "action_client": "a client of the action", "action_server": "an action"}
-ECHO = 1.0
-"""The maximum number of seconds between a logged and a printed line with the same word that count as one report."""
 THREADS = 4
 """The number of threads that spin a notebook's class with an action server."""
 ENDPOINTS = "endpoints"
@@ -219,73 +207,7 @@ class OwnScenario:
     @property
     def ladder(self) -> tuple[Mistake, ...]:
         """The common mistakes, most specific first."""
-        on_topics = [role for role in self.roles if role in ("publisher", "subscription")]
-        return (
-            *CRASHES,
-            unfinished.NEVER_CONSTRUCTED,
-            *map(common.endpoint_name, self.roles),
-            *map(common.message_type, self.roles),
-            OWN,
-            *map(common.qos_mismatch, on_topics),
-            *OTHER_CRASHES,
-            *HANGS,
-            common.AWAITS_IN_VAIN,
-            *map(common.never_spun, self.roles),
-            *map(common.went_deaf, self.roles),
-            OWN_LATE,
-            *unfinished.NOTHING_THERE,
-        )
-
-
-class Spoken(OwnScenario):
-    """The recipe for a subject that logs or prints words instead of publishing them.
-
-    For criteria, a line that contains exactly one of the words, in upper or lower case, is a message with this word.
-
-    Args:
-        words: The words, as the task names them.
-    """
-
-    def __init__(self, scenario: Callable[[Bench], None], words: Sequence[str], *roles: str) -> None:
-        super().__init__(scenario, *roles)
-        self._words = words
-
-    def view(self, part: Part) -> Part:
-        """Return the record, in which each line with exactly one of the task's words is replaced by a message event."""
-        lines = [
-            (event, word) for _, event in without_tracebacks(part.events) if (word := self._word_in(event))
-        ]
-        # A logged line is recorded twice: on /rosout and in the terminal. Leave out the terminal's copy.
-        if any(event.kind == "log" for event, _ in lines):
-            lines = [(event, word) for event, word in lines if not _has_logger_prefix(event)]
-        told = {
-            id(event): replace(
-                event, kind="message", name="log", data={**event.data, "fields": {"data": word}}
-            )
-            for event, word in _without_echoes(lines)
-        }
-        heard = [event for event in part.events if event.kind != "message"]
-        return replace(part, events=[told.get(id(event), event) for event in heard])
-
-    def _word_in(self, event: Event) -> str:
-        """Return the only word in a logged or printed line; empty if the line has none of them or several."""
-        line = (spoken_by(event) or "").casefold() if event.kind in ("log", "output") else ""
-        found = [word for word in self._words if word.casefold() in line]
-        return found[0] if len(found) == 1 else ""
-
-
-def _has_logger_prefix(event: Event) -> bool:
-    """Return True if a line of the terminal has the prefix of a logger."""
-    return event.kind == "output" and spoken_by(event) != event.data["text"]
-
-
-def _without_echoes(lines: Sequence[tuple[Event, str]]) -> Iterator[tuple[Event, str]]:
-    """Yield the lines. If the same word is logged and at once printed, or printed and logged, yield one line only."""
-    said, kind, at = "", "", 0.0
-    for event, word in lines:
-        if word != said or event.kind == kind or event.moment - at > ECHO:
-            said, kind, at = word, event.kind, event.moment
-            yield event, word
+        return ladder(self.roles)
 
 
 def _endpoints(role: str, endpoints: Mapping[str, str]) -> str:
@@ -311,67 +233,6 @@ class OwnLadder(SeenAsItIs):
 
 QUIET = {Pace.FAST: 3.0, Pace.REAL_TIME: 6.0}
 """The judge stops waiting for an answer or a message if no event comes for this many seconds of wall time."""
-SILENCE = object()
-"""The author's function returns this if the subject must not publish anything."""
-
-
-class Declared:
-    """The base class of exercises in which the author declares the right output.
-
-    Args:
-        exercise_id: The lab's folder and the file's name, such as ``"lab_8_1.filter"``.
-        title: The title of the card, naming the lab and the subject.
-        task: One sentence that states the task.
-        scenario: The function that runs all parts of the exercise on a bench.
-        roles: The roles of the subject's endpoints. The first role is the one whose endpoint shows most about the
-            subject.
-        given: The kind of event that records an input that the subject has certainly received. If a subject got fewer
-            inputs than the reference solution, it fails the criteria about its outputs.
-        words: The words that the subject logs or prints; empty if it publishes its output.
-    """
-
-    def __init__(
-        self,
-        exercise_id: str,
-        title: str,
-        task: str,
-        scenario: Callable[[Bench], None],
-        *roles: str,
-        given: str,
-        words: Sequence[str] = (),
-    ) -> None:
-        self._subject = Spoken(scenario, words, *roles) if words else OwnScenario(scenario, *roles)
-        self._draft = Draft(exercise_id, title, task, self._subject)
-        self._text: dict[str, str] = {}
-        self._given = given
-
-    def asks(self, name: str, points: float, title: str, role: str, words: str = "") -> None:
-        """Add the criterion that the subject's endpoints of a role have the same names and types as the reference's.
-
-        Args:
-            name: A stable key for the criterion.
-            title: The criterion in one line, as the card shows it.
-            role: The role of the endpoints, such as ``"subscription"``.
-            words: The sentence of the task that the criterion judges, exactly as in ``lab.md``.
-        """
-        self._draft.asks(name, points, title, self._subject.has(role))
-        self._judges(name, words)
-
-    def exercise(self) -> Exercise:
-        """Return the finished exercise. Call this after adding all criteria and mistakes."""
-        return self._draft.exercise(text=self._text)
-
-    def _got_through(self, seen: Part, expected: Part) -> bool:
-        return got_through(seen, expected, self._given)
-
-    def _judges(self, name: str, words: str) -> None:
-        if words:
-            self._text[words] = f"{self._text[words]} {name}" if words in self._text else name
-
-    def _knows(
-        self, key: str, found: Callable[[Part], object], says: str, next_step: str, *, certain: bool = True
-    ) -> None:
-        self._draft.knows(key, lambda seen, _: found(seen), says, next_step, certain=certain)
 
 
 def pick(fields: Any, path: str) -> Any:

@@ -170,12 +170,8 @@ class Program:
 
     @property
     def ladder(self) -> tuple[Mistake, ...]:
-        """The common mistakes, most specific first."""
-        entry = self._entry
+        """The mistakes of the program, most specific first. Those of its package come with the runner."""
         return (
-            *package_mistakes.BUILD,
-            Mistake("package_name", lambda e: package_mistakes.package_name(e, entry.package), certain=True),
-            *package_mistakes.mistakes(entry),
             OWN,
             *CRASHES,
             *OTHER_CRASHES,

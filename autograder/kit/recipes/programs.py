@@ -256,8 +256,7 @@ class Programs:
     # --- mistakes ------------------------------------------------------------------------------------------------
 
     def _of_the_package(self) -> Iterable[Mistake]:
-        yield from package_mistakes.BUILD
-        yield Mistake("package_name", lambda e: package_mistakes.package_name(e, self._name), certain=True)
+        yield from package_mistakes.in_package(self._name)
         for program in self._programs:
             for mistake in package_mistakes.mistakes(self._entry(program)):
                 yield replace(mistake, recognize=partial(_of_the_view, mistake, program))

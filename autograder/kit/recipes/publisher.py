@@ -11,6 +11,8 @@ from autograder.kit.draft import OWN, OWN_LATE
 from autograder.kit.in_words import counted
 from autograder.kit.mistakes import common_mistakes as common
 from autograder.kit.mistakes import unfinished
+from autograder.kit.mistakes.role_mistakes import ladder
+from autograder.kit.mistakes.silence import GO_ON, NO_MESSAGE, NO_MORE, PUBLISH
 from autograder.kit.model import STEP, Advice, Bench, Finding, Mistake, Pace, mistake
 from autograder.kit.published_texts import Counting, Publisher
 from autograder.kit.rules import ROW, Rate, burst_at_the_start, confirmed, rate_of, simulated_times
@@ -46,18 +48,6 @@ PERSISTS = 1.0
 """The number of seconds for which a program must still run after the judge has its messages. Simulated time may have
 passed within a moment, so this shows whether the program ends.
 """
-
-NO_MESSAGE = "Your node has a publisher, but no message arrives while the judge listens."
-PUBLISH = (
-    "If your code still has a TODO, write that step first. The timer's method must call publish(...) with the message "
-    "between the parentheses; a log line is not a message."
-)
-NO_MORE = "Your node published {} and then no more, although it still exists."
-GO_ON = (
-    "The task has no end: a timer has to call the method that publishes again and again. If your node has no timer, "
-    "make one with create_timer. If it has one, delete the code that stops it, or that returns from the callback "
-    "before it publishes."
-)
 
 
 class Hears:
@@ -282,31 +272,33 @@ class Hears:
         early = [("field_typo", published_texts.field_typo)] * texts + [("counter_stuck", of.stuck)] * numbers
         early += [("wrong_text", of.wrong_text)] * texts
         late = [("counter_start", of.start), ("counter_step", of.step)] * numbers
-        return (
-            unfinished.NEVER_CONSTRUCTED,
-            *common.connecting("publisher"),
-            mistake(
-                "published_before_discovery",
-                lambda evidence: self.seen(evidence).replaced,
-                "Your node made {}. Each must be discovered before a subscriber receives its messages, so chance "
-                "decides which messages arrive.",
-                "Call create_publisher only once, in __init__, and keep the publisher in self. Let the timer's method "
-                "publish with it.",
-                certain=True,
-                uses=("create_publisher",),
+        replaced = mistake(
+            "published_before_discovery",
+            lambda evidence: self.seen(evidence).replaced,
+            "Your node made {}. Each must be discovered before a subscriber receives its messages, so chance "
+            "decides which messages arrive.",
+            "Call create_publisher only once, in __init__, and keep the publisher in self. Let the timer's method "
+            "publish with it.",
+            certain=True,
+            uses=("create_publisher",),
+        )
+        return ladder(
+            self.roles,
+            named=(),
+            working=(
+                replaced,
+                Mistake("published_before_discovery", self._published_before_discovery),
+                OWN,
+                *(self._mistake(*one, certain=True) for one in early),
+                Mistake("never_published", self._never_published),
             ),
-            common.everything_twice("publisher"),
-            Mistake("published_before_discovery", self._published_before_discovery),
-            OWN,
-            *(self._mistake(*one, certain=True) for one in early),
-            Mistake("never_published", self._never_published),
-            *common.spinning("publisher"),
-            OWN_LATE,
-            *(self._mistake(*one) for one in late),
-            Mistake("ended_too_early", unfinished.ended_too_early),
-            Mistake("wrong_rate", self._wrong_rate),
-            Mistake("stopped_publishing", self._stopped_publishing),
-            *unfinished.NOTHING_THERE,
+            late=(
+                OWN_LATE,
+                *(self._mistake(*one) for one in late),
+                Mistake("ended_too_early", unfinished.ended_too_early),
+                Mistake("wrong_rate", self._wrong_rate),
+                Mistake("stopped_publishing", self._stopped_publishing),
+            ),
         )
 
     def _mistake(

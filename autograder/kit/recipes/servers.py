@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal
 
-from autograder.kit.draft import OWN, OWN_LATE
+from autograder.kit.draft import OWN
 from autograder.kit.mistakes import common_mistakes as common
-from autograder.kit.mistakes import unfinished
+from autograder.kit.mistakes.role_mistakes import ladder
 from autograder.kit.model import Bench, Finding, Mistake, Pace
 from autograder.kit.recipes.own_scenario import meet
 
@@ -205,17 +205,6 @@ class Asks:
     @property
     def ladder(self) -> tuple[Mistake, ...]:
         """The common mistakes, most specific first."""
-        return (
-            common.two_servers(
-                "service",
-                "Each call reaches both servers, and the quicker one answers.",
-                "Call create_service only once, and make only one node.",
-            ),
-            # A wrong answer is looked for before crashes: rclpy's server crashes if an answer does not fit into its
-            # field, and then the student should read about the answer, not about the crash.
-            OWN,
-            *common.connecting("service"),
-            *common.spinning("service"),
-            OWN_LATE,
-            *unfinished.NOTHING_THERE,
-        )
+        # A wrong answer is looked for before crashes: rclpy's server crashes if an answer does not fit into its field,
+        # and then the student should read about the answer, not about the crash.
+        return ladder(self.roles, first=(OWN,), named=())

@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING
 import re2
 
 from autograder.kit.draft import OWN, OWN_LATE
-from autograder.kit.lateness import called_too_early
 from autograder.kit.mistakes import common_mistakes as common
 from autograder.kit.mistakes import unfinished
 from autograder.kit.mistakes.crashes import CRASHES, OTHER_CRASHES, OTHER_SLIPS
 from autograder.kit.mistakes.hangs import HANGS
+from autograder.kit.mistakes.role_mistakes import BY_ROLE, Stage
 from autograder.kit.model import Advice, Bench, Finding, Mistake, mistake
 from autograder.kit.recipes.service_runs import drawn_runs, extreme, negative, scenario
 from autograder.kit.reported_texts import mentions
@@ -178,9 +178,8 @@ class Calls:
         return (
             WAIT.the_wrong_way_round(),
             *CRASHES,
-            called_too_early("called the service", "wait_for_service"),
-            common.endpoint_name("client"),
-            common.message_type("client"),
+            *BY_ROLE["client"][Stage.FIRST],
+            *BY_ROLE["client"][Stage.NAMED],
             *OTHER_SLIPS,
             unfinished.NOT_BEGUN,
             unfinished.USAGE_MESSAGE,

@@ -6,8 +6,8 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from autograder.kit.draft import OWN, OWN_LATE
-from autograder.kit.mistakes import common_mistakes as common
 from autograder.kit.mistakes import unfinished
+from autograder.kit.mistakes.role_mistakes import ladder
 from autograder.kit.model import Advice, Bench, Finding, Mistake, Pace
 from autograder.kit.reported_texts import (
     AT_PACE,
@@ -158,20 +158,22 @@ class Speaks:
     @property
     def ladder(self) -> tuple[Mistake, ...]:
         """The common mistakes, most specific first."""
-        return (
-            unfinished.NEVER_CONSTRUCTED,
-            *common.connecting("subscription"),
-            OWN,
-            Mistake("ended_too_early", unfinished.ended_too_early),
-            Mistake("not_logged", _subscribes_again, certain=True),
-            *common.spinning("subscription"),
-            OWN_LATE,
-            Mistake("wrong_text", _changed_text),
-            Mistake("invented_text", _invented_text, certain=True),
-            Mistake("callback_too_slow", self._too_slow),
-            Mistake("everything_twice", _said_again, certain=True),
-            Mistake("not_logged", _not_logged),
-            *unfinished.NOTHING_THERE,
+        return ladder(
+            self.roles,
+            named=(),
+            working=(
+                OWN,
+                Mistake("ended_too_early", unfinished.ended_too_early),
+                Mistake("not_logged", _subscribes_again, certain=True),
+            ),
+            late=(
+                OWN_LATE,
+                Mistake("wrong_text", _changed_text),
+                Mistake("invented_text", _invented_text, certain=True),
+                Mistake("callback_too_slow", self._too_slow),
+                Mistake("everything_twice", _said_again, certain=True),
+                Mistake("not_logged", _not_logged),
+            ),
         )
 
     def _too_slow(self, evidence: Evidence) -> Advice | None:

@@ -125,4 +125,8 @@ EXERCISE = replace(
         "Write the pair that installs your launch file into the folder `share/my_robot_pkg/launch`.": "installed",
         "The file has to do everything that step 2 asks for.": "launched",
     },
+    counts={
+        "installed": "A file in XML or YAML counts as well. What you write into `setup.py` yourself belongs into the "
+        "cell, too: a class is graded by its cells.",
+    },
 )

@@ -156,5 +156,10 @@ EXERCISE = remap.exercise(
         "let both use `/robot/status_updates` instead of `chatter`": "talker listener nothing_left",
         "Leave the programs as they are, with `chatter` in their code.": "launch",
         "It also checks that the launch file starts one talker, and gives both programs the rule.": "launch",
+        "Show the output of both on the screen": "",
+    },
+    counts={
+        "launch": "In a terminal, a file in XML or YAML counts as well.",
+        "": "The names of the nodes are free.",
     },
 )

@@ -6,7 +6,7 @@ reported sum show whether they were really used.
 
 from __future__ import annotations
 
-from autograder.kit import service_calls
+from autograder.kit import giving_up, service_calls
 from autograder.kit.draft import Draft
 from autograder.kit.model import Finding
 from autograder.kit.recipes.service_client import Calls
@@ -60,13 +60,15 @@ EXERCISE = adder.exercise(
     text={
         "Wait for the service for `patience_sec` seconds.": "late limit",
         "raise `TimeoutError` then, with a message that contains `not available`": "limit",
-        "you may also raise another exception, or log a line that contains `not available` and return `None`.": "limit",
         "Ask for the sum of `a` and `b`.": "calls chain",
         "Ask for the sum of that answer and `c`.": "calls chain",
         "Use the sum that the *service* gave you": "chain",
         "Log or print the sum, and return it.": "sum",
-        "returning the sum is enough for the judge, and logging it alone is not.": "sum",
-        "A program has to log or print it.": "sum",
-        "it must say `not available` and end within 12 seconds, or say at least every three seconds": "limit",
+        "Do not catch it": "",
+    },
+    counts={
+        "chain": "The two numbers of a call may come in either order.",
+        "sum": service_calls.SUM_COUNTS,
+        "limit": giving_up.COUNTS,
     },
 )

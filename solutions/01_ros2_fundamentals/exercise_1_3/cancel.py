@@ -290,7 +290,6 @@ EXERCISE = cancel.exercise(
     limit=120.0,
     text={
         "After the **third** feedback message, ask to cancel the goal.": "cancel",
-        "A request after the fourth or the fifth message is accepted as well.": "cancel",
         "Ask only **once**, even if more feedback arrives or the server refuses to cancel": "once late_feedback",
         "Send a goal of order 20": "goal",
         "Send the goal: call `send_goal`": "goal",
@@ -300,6 +299,12 @@ EXERCISE = cancel.exercise(
         "While you wait, the client is spun": "cancel status",
         "report the status that you *really* got": "status",
         "Log or print the name of the final status": "status",
-        "The number of the final status is accepted as well as its name": "status",
+        "Wait for it at most 30 s": "",
+    },
+    counts={
+        "cancel": "After the fourth or the fifth message counts as well.",
+        "status": "You may ask up to three times. `status: 5` or `cancelled` counts as well.",
+        "refused": "Any exception, or a line that contains `rejected`.",
+        "": "`add_done_callback` is not graded.",
     },
 )

@@ -50,4 +50,8 @@ EXERCISE = hello.exercise(
         "**log** `Hello, ROS 2! From SimpleNode.`": "line",
         "Write the entry point of the executable `simple_node`, which calls `main` of your module.": "starts",
     },
+    counts={
+        "node": "Its name is not graded.",
+        "line": "Or `print` it.",
+    },
 )

@@ -22,4 +22,8 @@ EXERCISE = listener.exercise(
         "Do not report a message that has not arrived.": "honest",
         "Logs every string that arrives on the topic chatter.": "says honest",
     },
+    counts={
+        "says": "Or print it, in a line of its own. The line may have other words, too.",
+        "honest": "Lines about something else are free, such as `Listener node has started`.",
+    },
 )

@@ -24,5 +24,7 @@ EXERCISE = talker.exercise(
         "The talker has to publish one message every half second, also at the beginning.": "rate",
         "The method does three things: it makes a message, publishes it, and adds one to the count.": "text counter",
         'Says "Hello, world! N" on the topic chatter every 0.5 s; N counts up from 0.': "topic text rate counter",
+        "log the string that it publishes": "",
     },
+    counts={"rate": "A timer or any other way to keep it."},
 )

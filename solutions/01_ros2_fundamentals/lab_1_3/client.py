@@ -5,7 +5,7 @@ The judge serves, and its answers are not what the client could have added up by
 
 from __future__ import annotations
 
-from autograder.kit import service_calls
+from autograder.kit import giving_up, service_calls
 from autograder.kit.draft import Draft
 from autograder.kit.recipes.service_client import Calls
 
@@ -29,13 +29,16 @@ EXERCISE = client.exercise(
     text={
         "Wait for the service for `patience_sec` seconds.": "late limit",
         "raise `TimeoutError` with a message that contains `not available`.": "limit",
-        "you may also raise another exception, or log a line that contains `not available` and return `None`.": "limit",
         "Send the request, and spin the node until the answer has arrived": "call",
         "so wait until the future is done.": "call sum",
         "Log or print the sum that the server sent": "sum",
         "Return it, too": "sum",
-        "returning the sum is enough for the judge, and logging it alone is not.": "sum",
-        "A program has to log or print it.": "sum",
-        "it must say `not available` and end within 12 seconds, or say at least every three seconds": "limit",
+        "at most `patience_sec` seconds": "",
+        "Raise `TimeoutError` if there is no answer in time": "",
+    },
+    counts={
+        "call": "The two numbers may come in either order. `call` beside a thread that spins counts as well.",
+        "sum": service_calls.SUM_COUNTS,
+        "limit": giving_up.COUNTS,
     },
 )

@@ -27,4 +27,7 @@ EXERCISE = interface.exercise(
         "One point is for `package.xml`: it has to name what the package needs.": "declares",
         '`rosidl_generate_interfaces(${PROJECT_NAME} "FILE" ...)` generates the code.': "builds",
     },
+    counts={
+        "declares": "Another tag for the first two lines, such as `depend`, counts as well.",
+    },
 )

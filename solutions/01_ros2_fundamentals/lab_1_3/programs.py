@@ -2,6 +2,7 @@
 
 from lab_1_3 import client, server
 
+from autograder.kit import giving_up
 from autograder.kit.recipes.programs import LabProgram, Programs
 
 SUM, REPORT = "The server answers each call with the sum", "The client reports what the server answers"
@@ -19,7 +20,11 @@ EXERCISE = Programs(
         "`%%program` copies your function from step 3:": "add_client",
         "and presses <kbd>Ctrl</kbd>+<kbd>C</kbd>: the server has to end then.": "ctrl_c",
         "once there is none: then the client has to do what step 3 says.": "add_client ctrl_c",
-        "if it still spins after its report, <kbd>Ctrl</kbd>+<kbd>C</kbd> has to end it.": "ctrl_c",
         "A program gets its points only if its node passes everything": "add_server add_client",
+        "`package.xml` of `my_robot_pkg` has to name it": "",
+    },
+    counts={
+        "add_client": giving_up.COUNTS,
+        "ctrl_c": "A client may spin on after its report.",
     },
 )

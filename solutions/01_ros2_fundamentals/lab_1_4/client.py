@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from autograder.kit import goal_reports
+from autograder.kit import giving_up, goal_reports
 from autograder.kit.draft import Draft
 from autograder.kit.recipes.action_client import sends_goals
 
@@ -28,19 +28,20 @@ EXERCISE = client.exercise(
     text={
         "Wait for the server: `client.actions.wait_for_server(timeout_sec=...)` returns `False`": "late limit",
         "In this case raise `TimeoutError`, with a message that contains `not available`.": "limit",
-        "you may also raise another exception, or log a line that contains `not available` and return `None`.": "limit",
         "Make the goal, `Fibonacci.Goal(order=...)`, and send it": "goal feedback",
         "Wait for the future that you get, and return its result": "goal",
         "so wait until the future is done.": "goal",
-        "it must say `not available` and end within 12 seconds, or say at least every three seconds": "limit",
         "Your function must say how the goal ended": "refused aborted",
         "If the goal was not accepted, log a line that contains `rejected`, and return an empty list.": "refused",
-        "an exception with the word `rejected` is accepted as well.": "refused",
         "Log or print the name of the status": "aborted",
-        "The number of a status is accepted as well as its name": "aborted",
-        "You need not log the sequence of the result if you return it": "result",
         "The given `on_feedback` logs each feedback message.": "feedback",
         "Return the sequence as a list.": "result",
-        "Any kind of sequence is accepted, such as a tuple.": "result",
+        "wait for the result, at most `RESULT_PATIENCE` seconds": "",
+    },
+    counts={
+        "result": "Return or log it, as any kind of sequence.",
+        "refused": "An exception with the word `rejected` counts as well.",
+        "aborted": "`status: 6` counts as well. You may leave out `succeeded`.",
+        "limit": giving_up.COUNTS,
     },
 )

@@ -2,6 +2,7 @@
 
 from lab_1_4 import client, server
 
+from autograder.kit import giving_up
 from autograder.kit.recipes.programs import LabProgram, Programs
 
 EXERCISE = Programs(
@@ -33,6 +34,10 @@ EXERCISE = Programs(
             "fibonacci_server fibonacci_client"
         ),
         "The server has to end on <kbd>Ctrl</kbd>+<kbd>C</kbd>.": "ctrl_c",
-        "if it still spins after its report, <kbd>Ctrl</kbd>+<kbd>C</kbd> has to end it.": "ctrl_c",
+        "two packages that `package.xml` has to name": "",
+    },
+    counts={
+        "fibonacci_client": giving_up.COUNTS,
+        "ctrl_c": "A client may spin on after its report.",
     },
 )

@@ -125,7 +125,6 @@ EXERCISE = server.exercise(
     text={
         "Reject a goal whose order is negative or greater than 46, and accept any other.": "refuse sequence",
         "0 is a good order: its sequence is a single number.": "sequence",
-        "For order 0, the sequence `[0, 1]` is accepted as well.": "sequence",
         "Return one of two constants, `GoalResponse.ACCEPT` or `GoalResponse.REJECT`.": "refuse",
         "Call exactly one of the last three:": "sequence cancel",
         "A canceled goal has a result, too: the numbers so far.": "cancel",
@@ -137,5 +136,11 @@ EXERCISE = server.exercise(
         "Each of two goals has to end with its own sequence": "two",
         "a cancel request has to end only the goal that it is about": "cancel two",
         "Let your node offer the action `fibonacci`.": "action",
+    },
+    counts={
+        "sequence": "For order 0, `[0, 1]` counts as well.",
+        "feedback": "You may publish before you append: the result has the last number.",
+        "two": "At the same time, or one after the other.",
+        "cancel": "You may sleep from a tenth of a second to two seconds.",
     },
 )

@@ -80,4 +80,9 @@ EXERCISE = Mission(
         "Pass `patrol.on_feedback` for the feedback": "cancel",
         "At the first feedback that says that less than 1 metre is left, ask once to cancel the goal.": "cancel",
     },
+    counts={
+        "lamp": "A round that is not twelve commands costs this, too.",
+        "cancel": "How the walk ends is not graded.",
+        "": "Only what your node sends is judged. A step that is not written also costs those that it would start.",
+    },
 )

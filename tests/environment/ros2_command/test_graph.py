@@ -189,6 +189,8 @@ def test_call_says_that_it_waits_for_a_service(start: Callable[..., Running]) ->
 def test_an_action_is_found_and_described(servers: Running, call: Call) -> None:
     assert call("action", "list") == "/fibonacci\n"
     assert call("action", "list", "-t") == "/fibonacci [my_robot_interfaces/action/Fibonacci]\n"
+    assert call("action", "type", "/fibonacci") == "my_robot_interfaces/action/Fibonacci\n"
+    assert call("action", "type", "/fibonaci", code=1) == ""
     assert call("action", "info", "/fibonacci") == (
         "Action: /fibonacci\nAction clients: 0\nAction servers: 1\n    /desk/servers\n"
     )

@@ -9,7 +9,6 @@ import re2
 from autograder.kit.draft import Draft
 from autograder.kit.model import Finding, Pace
 from autograder.kit.recipes.own_scenario import Met, OwnScenario, once_met
-from autograder.kit.rules import SENT
 
 if TYPE_CHECKING:
     from random import Random
@@ -45,15 +44,20 @@ guard = Draft(
 guard.asks("topic", 2, "Subscribes to the right topic, with the right type", subject.has("subscription"))
 
 
+def sent(seen: Part) -> list[int]:
+    """Return the charges that the judge published."""
+    return [event.data["fields"]["data"] for event in seen.of("sent")]
+
+
 def named(seen: Part) -> list[set[int]]:
     """Return, for each line that was said, the charges in it."""
-    sent = set(SENT(seen))
-    return [sent & {int(number) for number in re2.findall(r"\d{1,3}", line)} for line in seen.said()]
+    charges_sent = set(sent(seen))
+    return [charges_sent & {int(number) for number in re2.findall(r"\d{1,3}", line)} for line in seen.said()]
 
 
 def missing(seen: Part) -> list[int]:
     """Return the low charges without a warning."""
-    return [c for c in SENT(seen) if c < LIMIT and not any(c in line for line in named(seen))]
+    return [c for c in sent(seen) if c < LIMIT and not any(c in line for line in named(seen))]
 
 
 def needless(seen: Part) -> list[int]:
@@ -65,7 +69,7 @@ def needless(seen: Part) -> list[int]:
 def warns(seen: Part, _: Part) -> Finding:
     """Each low charge is in something that was said."""
     silent = [f"no word of {charge}" for charge in missing(seen)]
-    return Finding(bool(SENT(seen)) and not silent, "a line for each", ", ".join(silent) or "a line for each")
+    return Finding(bool(sent(seen)) and not silent, "a line for each", ", ".join(silent) or "a line for each")
 
 
 @guard.criterion("only", 4, "Says nothing of any other charge")

@@ -1,38 +1,27 @@
-"""A watchdog, declared: the state that follows from the heartbeats and the time, and wrong ways to tell it."""
+"""A watch: time alone decides what is due, and the node says each change once."""
 
-from collections.abc import Sequence
+from autograder.kit.oracle.same_as_solution import SameAsSolution, To
 
-from autograder.kit.recipes.watch import SILENCE, Watch
-from autograder.kit.rules import Given
+BEAT = To("/heartbeat", {})
+LOST = (BEAT, 0.7)
+"""A heartbeat and 1.45 s of silence. The judge looks after 0.75 s and at the end: far from 1 s and from 1.3 s."""
 
-
-def state(beats: Sequence[Given], limit: float = 1.0) -> object:
-    """Return what holds: the heartbeat is lost a second after the last one."""
-    return "lost" if beats and beats[-1].age >= limit else "back"
-
-
-SECONDS = (0.3, 0.75, 0.45, 1.65, 1.7, 0.57, 0.4, 2.95, 0.42, 0.25, 2.3)
-"""Until the next heartbeat. It is lost four times, in different thirds of a second, once right after it was back."""
-
-task = Watch(
+EXERCISE = SameAsSolution(
     "watch.watchdog",
     "A watch · The watchdog",
     "Say once when the heartbeat is lost, and once when it is back.",
-    state=state,
-    gives=[({}, seconds) for seconds in SECONDS],
-    within=0.3,
+    # The losses fall into different thirds of a second: a node that looks once a second is late for one of them.
+    gives=lambda _: [1.0, BEAT, BEAT, *LOST, *LOST, BEAT, *LOST, 2.0, BEAT, BEAT],
     waits=1.5,
+    tells={"/alarm": "data"},
+    every=True,
+    roles=("subscription", "publisher"),
+).exercise(
+    text={
+        "Subscribe to `heartbeat`": "alarm",
+        "publishes `String` on `alarm`": "alarm",
+        "no heartbeat has come for 1 s": "alarm",
+        "when the heartbeat comes again": "alarm",
+        "Say each change once, and nothing": "alarm",
+    }
 )
-task.asks("listens", 1, "Subscribes to the right topic and type", "subscription", "Subscribe to `heartbeat`")
-task.asks("speaks", 1, "Publishes on the right topic and type", "publisher", "publishes `String` on `alarm`")
-task.says("lost", "lost", 3, "Says lost after a second without a heartbeat", "no heartbeat has come for 1 s")
-task.says("back", "back", 3, "Says back when the heartbeat comes again", "when the heartbeat comes again")
-task.once("once", 2, "Says each change once", "Say each change once, and nothing")
-
-task.wrong(
-    "back_at_first_beat",
-    lambda beats: state(beats) if beats else SILENCE,
-    "Your node says back at the first heartbeat, though nothing was lost.",
-    "Begin in the state in which nothing is lost.",
-)
-EXERCISE = task.exercise()

@@ -1,0 +1,74 @@
+"""Mistakes of every action server: in its execute callback, and in its answer to a cancel request."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import re2
+
+from autograder.kit.mistakes.crashes import raised, traceback_of
+from autograder.kit.model import Advice, Mistake, mistake
+from autograder.kit.outcomes import ABORTED, all_goals
+
+if TYPE_CHECKING:
+    from autograder.kit.evidence import Evidence
+
+
+def _result_missing(evidence: Evidence) -> Advice | None:
+    """Return advice if the execute callback returned no result."""
+    result, fields = result_type(evidence)
+    # The first alternative is rclpy's error when it sends the result. The second is the clearer error that
+    # autograder/notebook raises.
+    absent = (
+        rf"'NoneType' object has no attribute '_?(?:{'|'.join(fields)})'"
+        if fields
+        else "in _send_result_response"
+    )
+    said = f"{absent}|must return a result of the action"
+    traceback = traceback_of(evidence)
+    if not re2.search(said, traceback):
+        return None
+    return Advice(
+        f"The execute callback did not return a {result} object. It returned nothing, a plain list, or the type "
+        "without parentheses.",
+        f"End the callback with `return result`, where `result` is a {result}() in which you have set "
+        f"{' and '.join(fields) or 'the fields'}. Do this wherever the callback returns, also after a cancel.",
+        traceback,
+    )
+
+
+def result_type(evidence: Evidence) -> tuple[str, list[str]]:
+    """Return the name of the result type of the subject's action, and its fields."""
+    _, kind = evidence.reference.only("action_server")
+    recorded = (
+        list(one.result) for part in evidence.reference.parts for one in all_goals(part) if one.result
+    )
+    return f"{kind.rpartition('/')[2]}.Result", next(recorded, [])
+
+
+def _exception_in_execute(evidence: Evidence) -> Advice | None:
+    """Return advice if the execute callback raised an exception, so that rclpy aborted the goal."""
+    traceback = traceback_of(evidence)
+    if not traceback or not any(seen.status == ABORTED for part in evidence for seen in all_goals(part)):
+        return None
+    return raised("The execute callback raised an exception, so rclpy aborted the goal", traceback)
+
+
+def _refuses_to_cancel(evidence: Evidence) -> bool:
+    """Return True if the server refused the first cancel request that it answered, for a goal that had not ended."""
+    answered = (one for part in evidence for one in all_goals(part) if one.cancel_accepted is not None)
+    first = next(answered, None)
+    return first is not None and not (first.cancel_accepted or first.cancelled_too_late or first.is_quick)
+
+
+RESULT_MISSING = Mistake("result_missing", _result_missing, certain=True)
+EXCEPTION_IN_EXECUTE = Mistake("exception_in_callback", _exception_in_execute, certain=True)
+CANCEL_REFUSED = mistake(
+    "cancel_not_accepted",
+    _refuses_to_cancel,
+    "Your server refuses the cancel request. rclpy does this if the ActionServer has no cancel_callback, or if the "
+    "cancel_callback does not return CancelResponse.ACCEPT.",
+    "Pass cancel_callback=... to the ActionServer: a method that returns CancelResponse.ACCEPT. In the loop of the "
+    "execute callback, check is_cancel_requested of the goal handle.",
+    certain=True,
+)
