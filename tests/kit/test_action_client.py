@@ -72,8 +72,8 @@ class PatientClient:
     def settle(self) -> None:
         pass
 
-    def run_time(self, seconds: float) -> bool:
-        return True
+    def run_time(self, seconds: float, until: Callable[[], bool]) -> bool:
+        return until()
 
     def pass_time(self, seconds: float, role: str, name: str) -> None:
         self.happens("time")

@@ -80,7 +80,7 @@ def test_a_card_says_which_runs_have_ended_and_which_are_still_to_come() -> None
     assert second.diagnosis is not None
     assert first.diagnosis.text == "The judge watches your code."
     assert second.diagnosis.text == (
-        f"Your code has run where “{LATE}”; “{ABSENT}”. Still to come: “{BIASED}”; “{EXTREME}”."
+        f"Runs that have ended: “{LATE}”; “{ABSENT}”. Still to come: “{BIASED}”; “{EXTREME}”."
     )
 
 
