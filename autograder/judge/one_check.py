@@ -6,6 +6,7 @@ import contextlib
 import time
 import traceback
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from random import Random
 from typing import TYPE_CHECKING
@@ -27,11 +28,12 @@ from autograder.judge.machine_fitness import (
 from autograder.judge.timeline import verdict_timeline
 from autograder.judge.timeline.growing_card import GrowingCard
 from autograder.judge.timeline.parting_point import claimed, own_lines_in_words, parting_point
+from autograder.kit.bench import Pace
 from autograder.kit.evidence import Evidence, Reference
 from autograder.kit.hunts.repairs import without_causes
 from autograder.kit.in_words import of_its_kind, shortened, visible
 from autograder.kit.mistakes.package_mistakes import changed_since_build
-from autograder.kit.model import Advice, Criterion, Exercise, Finding, Mistake, Pace
+from autograder.kit.model import Advice, Criterion, Exercise, Finding, Mistake
 from autograder.kit.runners import runner_trouble
 from autograder.verdict import CriterionResult, Diagnosis, State, Verdict, failed
 
@@ -135,7 +137,7 @@ def _check(
     # runs: the code of a submission must not learn the verdict.
     waited_for = subject.in_a_notebook and not marks_crowded
     hurry = Hurry(is_building=lambda: subject.is_building) if waited_for else _no_hurry
-    card = GrowingCard(exercise, _result, subject.tell_so_far) if waited_for else None
+    card = GrowingCard(exercise, partial(_result, exercise), subject.tell_so_far) if waited_for else None
     names: Mapping[str, Mapping[str, str]] = {}
     verdict: Verdict | None = None
 

@@ -18,8 +18,9 @@ from autograder.kit.recipes.own_scenario import OwnLadder
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from autograder.kit.bench import Bench
     from autograder.kit.evidence import Evidence
-    from autograder.kit.model import Bench, Exercise
+    from autograder.kit.model import Exercise
 
 POINTS = 2.0
 """The points of a question whose author does not say how many it is worth."""
@@ -80,9 +81,9 @@ class Question:
             bench.stop()
 
         subject = OwnLadder(scenario, *CRASHES, *OTHER_CRASHES, OWN)
-        draft = Draft(self.exercise_id, self.title, self.task, subject)
+        draft = Draft(self.exercise_id, self.title, self.task, subject, points=self.points)
 
-        @draft.criterion("right", self.points, "Names the right choice")
+        @draft.criterion("right", "Names the right choice")
         def right(seen: Evidence, _: Evidence) -> Finding:
             said = answer(seen)
             return Finding(_plain(said) == _plain(self.right), "the right choice", f"“{said or 'nothing'}”")

@@ -14,18 +14,19 @@ from typing import TYPE_CHECKING
 import re2
 
 from autograder.kit import giving_up
+from autograder.kit.bench import Pace
 from autograder.kit.draft import OWN, OWN_LATE
 from autograder.kit.evidence import Part
 from autograder.kit.giving_up import LATENESS, PATIENCE, PATIENCES
 from autograder.kit.lateness import SOON, was_patient
 from autograder.kit.mistakes import unfinished
 from autograder.kit.mistakes.crashes import CRASHES, OTHER_CRASHES, OTHER_SLIPS
-from autograder.kit.model import Advice, Finding, Mistake, Pace, mistake
+from autograder.kit.model import Advice, Finding, Mistake, mistake
 from autograder.kit.quests.robot import Robot, Search
 
 if TYPE_CHECKING:
+    from autograder.kit.bench import Bench
     from autograder.kit.evidence import Evidence
-    from autograder.kit.model import Bench
 
 Searches = Mapping[str, Search]
 """All runs of a subject, by the names of the robots."""
@@ -116,8 +117,8 @@ class Quest:
 
         quest = Quest(robots)
         obeys = Draft("lab_8_1.obeys", "Lab 8.1 · What it obeys", "Find what a robot obeys.", quest)
-        obeys.asks("robot", 4, "Finds what it is called", quest.finds("robot"))
-        obeys.asks("topic", 6, "Finds the topic that it obeys", quest.finds("topic"))
+        obeys.asks("robot", "Finds what it is called", quest.finds("robot"), points=4)
+        obeys.asks("topic", "Finds the topic that it obeys", quest.finds("topic"), points=6)
         EXERCISE = obeys.exercise()
     """
 

@@ -12,6 +12,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
+from autograder.kit.bench import Bench, Pace
 from autograder.kit.draft import SeenAsItIs
 from autograder.kit.evidence import Part
 from autograder.kit.giving_up import (
@@ -55,14 +56,13 @@ from autograder.kit.mistakes import goal_mistakes as goals
 from autograder.kit.mistakes import unfinished
 from autograder.kit.mistakes.crashes import CRASHES, OTHER_CRASHES, OTHER_SLIPS
 from autograder.kit.mistakes.hangs import HANGS
-from autograder.kit.model import Bench, Mistake, Pace
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from autograder.kit.counterparts import ActionCounterpart
     from autograder.kit.evidence import Evidence
-    from autograder.kit.model import Advice
+    from autograder.kit.model import Advice, Mistake
 
 ORDERS = {LATE: (41, 46), REFUSED: (-9, -1), ABORTED: (0, 0), ABSENT: (11, 30)}
 """For each part, the smallest and the largest order that the client may be given. Negative numbers and 0 are valid."""
@@ -197,7 +197,7 @@ def meets_server(
     Args:
         prepared: True to start the server before the subject.
         late: The delay of the server in seconds, once the subject is there.
-        how: How the server answers: see :meth:`autograder.kit.model.Bench.serve_action`.
+        how: How the server answers: see :meth:`autograder.kit.bench.Bench.serve_action`.
     """
     action, type_name = bench.reference.only("action_client")
     server = bench.serve_action(action, type_name, **how) if prepared else None

@@ -7,19 +7,21 @@ from functools import reduce
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
+from autograder.kit.bench import Pace
 from autograder.kit.counterparts import Qos
 from autograder.kit.draft import SeenAsItIs
 from autograder.kit.evidence import Event
 from autograder.kit.mistakes.role_mistakes import ladder
-from autograder.kit.model import Finding, Pace
+from autograder.kit.model import Finding
 from autograder.kit.runners import processes
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
+    from autograder.kit.bench import Bench
     from autograder.kit.counterparts import ActionCaller, Caller, Speaker
     from autograder.kit.evidence import Evidence, Part
-    from autograder.kit.model import Bench, Mistake
+    from autograder.kit.model import Mistake
 
 
 _NOUN = {"publisher": "a publisher on", "subscription": "a subscription to", "client": "a client of"}
@@ -166,7 +168,7 @@ class OwnScenario:
 
         recipe = OwnScenario(once_met(listening), "subscription")
         guard = Draft("lab_8_1.guard", "Lab 8.1 · The guard", "Warn of a charge below 20 percent.", recipe)
-        guard.asks("topic", 2, "Subscribes to the right topic and type", recipe.has("subscription"))
+        guard.asks("topic", "Subscribes to the right topic and type", recipe.has("subscription"), points=2)
     """
 
     def __init__(self, scenario: Callable[[Bench], None], *roles: str) -> None:
