@@ -9,9 +9,9 @@ from unittest.mock import MagicMock
 import pytest
 
 from autograder.judge import one_check
+from autograder.kit.bench import Pace
 from autograder.kit.draft import Draft
 from autograder.kit.evidence import Event, Evidence, Part, Reference
-from autograder.kit.model import Pace
 from autograder.kit.quests.quest import Quest
 from autograder.kit.quests.robot import Robot, Search
 
