@@ -154,7 +154,7 @@ def unless(
         def too_many(evidence: Evidence) -> str:
             return f"{count} calls" if (count := len(evidence.main.of("request"))) > 1 else ""
 
-        client.asks("once", 2, "Calls once", unless("at most one call", too_many))
+        client.asks("once", "Calls once", unless("at most one call", too_many), points=2)
     """
 
     def judge(evidence: Evidence) -> Finding:

@@ -41,8 +41,8 @@ def obeys() -> Exercise:
 
     quest = Quest(robots)
     draft = Draft("a.b", "A", "B", quest)
-    draft.asks("robot", 4, "Finds what it is called", quest.finds("robot"))
-    draft.asks("topic", 6, "Finds the topic that it obeys", quest.finds("topic"))
+    draft.asks("robot", "Finds what it is called", quest.finds("robot"), points=4)
+    draft.asks("topic", "Finds the topic that it obeys", quest.finds("topic"), points=6)
     return draft.exercise()
 
 
@@ -170,9 +170,9 @@ def doors() -> Exercise:
         lambda _: {"late": late(), "there": OPEN, "none": Robot(services={"/z": TRIGGER})}, "service"
     )
     draft = Draft("a.b", "A", "B", quest)
-    draft.asks("late", 4, "Finds a late one", quest.finds(robot="late"))
-    draft.asks("there", 3, "Finds one", quest.finds(robot="there"))
-    draft.asks("none", 3, "Says so", quest.says_that_there_is_none)
+    draft.asks("late", "Finds a late one", quest.finds(robot="late"), points=4)
+    draft.asks("there", "Finds one", quest.finds(robot="there"), points=3)
+    draft.asks("none", "Says so", quest.says_that_there_is_none, points=3)
     return draft.exercise()
 
 

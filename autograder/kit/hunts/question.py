@@ -80,9 +80,9 @@ class Question:
             bench.stop()
 
         subject = OwnLadder(scenario, *CRASHES, *OTHER_CRASHES, OWN)
-        draft = Draft(self.exercise_id, self.title, self.task, subject)
+        draft = Draft(self.exercise_id, self.title, self.task, subject, points=self.points)
 
-        @draft.criterion("right", self.points, "Names the right choice")
+        @draft.criterion("right", "Names the right choice")
         def right(seen: Evidence, _: Evidence) -> Finding:
             said = answer(seen)
             return Finding(_plain(said) == _plain(self.right), "the right choice", f"“{said or 'nothing'}”")

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import re2
 
-from autograder.kit.draft import Draft, Judge
+from autograder.kit.draft import POINTS, Draft, Judge
 from autograder.kit.mission import driving
 from autograder.kit.mission.course import MISTAKE, Course, Line, Lines
 from autograder.kit.mission.moment import Moment, World
@@ -32,8 +32,6 @@ __all__ = ["Goal", "Mission", "Moment", "Pose", "To", "Wall", "Walls", "World"]
 
 Row = Sequence[Any]
 """A line of the card: its text, a function of a :class:`Moment`, and perhaps a name without blanks and the points."""
-POINTS = 10.0
-"""The points of an exercise whose author does not say how many it is worth."""
 OTHER = "A command of yours says {0[0]}; the task asks for {0[1]}."
 MOVEMENT = (
     "linear.x points ahead, in metres per second, and angular turns the robot: make a new Twist() for each command, "
@@ -124,7 +122,8 @@ class Mission:
         self._lines = Lines(*([_line(wants, *row) for row in rows] for wants, rows in kinds))
         self._knows = [found for _, found, *_ in knows]
         self._within, self._until, self._quiet, self._threads = within, until, quiet, threads
-        self._draft = Draft(exercise_id, title, task, driving.Driving(self._scenario, *roles))
+        recipe = driving.Driving(self._scenario, *roles)
+        self._draft = Draft(exercise_id, title, task, recipe, points=points)
         rows: list[tuple[Line, Judge[Part]]] = []
         if drives:
             rows.append((_line("", drives[0], str, *drives[1:]), driving.drives))
@@ -132,10 +131,8 @@ class Mission:
         if rate:
             rows.append((_line("", rate[0], str, *rate[1:]), driving.keeps_rate))
         rows += [(line, partial(_as_noted, line)) for line in self._lines.never]
-        without = sum(not line.points for line, _ in rows)
-        share = (points - sum(line.points for line, _ in rows)) / max(1, without)
         for line, judge in rows:
-            self._draft.criterion(line.name, line.points or share, line.text)(judge)
+            self._draft.criterion(line.name, line.text, points=line.points)(judge)
         if drives:
             self._draft.knows("wrong_movement", driving.another_movement, OTHER, MOVEMENT, certain=True)
         for number, (key, _, says, next_step, *how) in enumerate(knows):

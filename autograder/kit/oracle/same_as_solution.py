@@ -14,7 +14,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from autograder.kit.counterparts import Qos
-from autograder.kit.draft import Draft
+from autograder.kit.draft import POINTS, Draft
 from autograder.kit.mistakes import unfinished
 from autograder.kit.mistakes.common_mistakes import NOT_LATCHED, is_not_latched
 from autograder.kit.model import Advice, Finding, Mistake, Pace
@@ -40,8 +40,6 @@ SET = ("set_parameters", "rcl_interfaces/srv/SetParameters")
 DESCRIBE = ("describe_parameters", "rcl_interfaces/srv/DescribeParameters")
 DESCRIBED = ("type", "ranges")
 NOT_DECLARED = {"type": 0, "floating_point_range": (), "integer_range": ()}
-POINTS = 10.0
-"""The points of an exercise whose author does not say how many it is worth."""
 
 
 class _Drawn(OwnScenario):
@@ -176,7 +174,7 @@ class SameAsSolution:
         ]
         is_timed = any(isinstance(step, (int, float)) for step in gives(Random(0)))
         drawn = _Drawn(self._scenario, self._outputs, roles, is_timed=is_timed)
-        self._draft = Draft(exercise_id, title, task, drawn)
+        self._draft = Draft(exercise_id, title, task, drawn, points=points)
         if late_after:
             self._draft.knows("not_latched", is_not_latched, *NOT_LATCHED, certain=True)
         for output in self._of(Kind.PARAMETER):
@@ -188,8 +186,7 @@ class SameAsSolution:
                 certain=True,
             )
         for output in self._outputs:
-            name, each = output.name.strip("/"), points / len(self._outputs)
-            self._draft.criterion(name, each, output.title)(partial(_by_one_server, output))
+            self._draft.criterion(output.name.strip("/"), output.title)(partial(_by_one_server, output))
 
     def exercise(self, **more: Any) -> Exercise:
         """Return the finished exercise. For ``more`` see :meth:`autograder.kit.draft.Draft.exercise`."""

@@ -116,8 +116,8 @@ class Quest:
 
         quest = Quest(robots)
         obeys = Draft("lab_8_1.obeys", "Lab 8.1 · What it obeys", "Find what a robot obeys.", quest)
-        obeys.asks("robot", 4, "Finds what it is called", quest.finds("robot"))
-        obeys.asks("topic", 6, "Finds the topic that it obeys", quest.finds("topic"))
+        obeys.asks("robot", "Finds what it is called", quest.finds("robot"), points=4)
+        obeys.asks("topic", "Finds the topic that it obeys", quest.finds("topic"), points=6)
         EXERCISE = obeys.exercise()
     """
 

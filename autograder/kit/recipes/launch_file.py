@@ -235,7 +235,7 @@ class LaunchFile:
         recipe = LaunchFile("my_robot_pkg", "chatter")
         remap = Draft("lab_8_1.remap", "Lab 8.1 · Remapping", "Start both programs with another topic.", recipe)
 
-        @remap.criterion("talker", 10, "The talker publishes under the new name")
+        @remap.criterion("talker", "The talker publishes under the new name", points=10)
         def talker(seen: Launched, expected: Launched) -> Finding:
             return Finding(bool(seen.heard), f"messages on {seen.topic}", ", ".join(seen.heard) or "none")
 

@@ -166,7 +166,7 @@ class OwnScenario:
 
         recipe = OwnScenario(once_met(listening), "subscription")
         guard = Draft("lab_8_1.guard", "Lab 8.1 · The guard", "Warn of a charge below 20 percent.", recipe)
-        guard.asks("topic", 2, "Subscribes to the right topic and type", recipe.has("subscription"))
+        guard.asks("topic", "Subscribes to the right topic and type", recipe.has("subscription"), points=2)
     """
 
     def __init__(self, scenario: Callable[[Bench], None], *roles: str) -> None:

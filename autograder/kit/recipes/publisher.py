@@ -62,10 +62,10 @@ class Hears:
 
         heard = Hears()
         talker = Draft("lab_8_1.talker", "Lab 8.1 · The talker", "Publish a counted greeting every 0.5 s.", heard)
-        talker.asks("topic", 2, "Publishes on the right topic", heard.on_topic)
-        talker.asks("text", 3, "Says the right string", heard.says_text())
-        talker.asks("counter", 2, "Counts up from the start", heard.counts("self.count"))
-        talker.asks("rate", 3, "Keeps the rate", heard.keeps_rate)
+        talker.asks("topic", "Publishes on the right topic", heard.on_topic, points=2)
+        talker.asks("text", "Says the right string", heard.says_text(), points=3)
+        talker.asks("counter", "Counts up from the start", heard.counts("self.count"), points=2)
+        talker.asks("rate", "Keeps the rate", heard.keeps_rate, points=3)
     """
 
     roles = ("publisher",)

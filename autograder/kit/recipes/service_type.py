@@ -50,9 +50,9 @@ class ServiceType(SeenAsItIs):
 
         recipe = ServiceType("AddTwoInts.srv", "my_robot_interfaces")
         interface = Draft("lab_8_1.interface", "Lab 8.1 · The interface", "A package with a service type.", recipe)
-        interface.asks("fields", 4, "Has the right fields", recipe.has_the_fields)
-        interface.asks("builds", 3, "Builds and generates the type", recipe.builds)
-        interface.asks("wire", 3, "Has the right type on the wire", recipe.is_on_the_wire)
+        interface.asks("fields", "Has the right fields", recipe.has_the_fields, points=4)
+        interface.asks("builds", "Builds and generates the type", recipe.builds, points=3)
+        interface.asks("wire", "Has the right type on the wire", recipe.is_on_the_wire, points=3)
         EXERCISE = interface.exercise(limit=400.0, runner=recipe.runner)
     """
 

@@ -278,16 +278,18 @@ cancel = Draft(
         *MISTAKES,
     ),
 )
-cancel.asks("goal", 2, "Sends one goal of the right order", unless("one goal of order 20", goal))
-cancel.asks("cancel", 3, "Asks to cancel at the right moment", unless(WINDOW, wrong_moment))
-cancel.asks("once", 1, "Sends one request at that moment", unless("one request at that moment", repeated))
+cancel.asks("goal", "Sends one goal of the right order", unless("one goal of order 20", goal), points=2)
+cancel.asks("cancel", "Asks to cancel at the right moment", unless(WINDOW, wrong_moment), points=3)
 cancel.asks(
-    "late_feedback", 1, "Sends no other request when later feedback arrives", unless(AGAIN, acts_again)
+    "once", "Sends one request at that moment", unless("one request at that moment", repeated), points=1
 )
 cancel.asks(
-    "status", 2, "Reports how the goal really ended", unless(ENDS, unsaid), uses=("get_result_async",)
+    "late_feedback", "Sends no other request when later feedback arrives", unless(AGAIN, acts_again), points=1
 )
-cancel.asks("refused", 1, "Says when the goal is rejected", tells_of_refusal)
+cancel.asks(
+    "status", "Reports how the goal really ended", unless(ENDS, unsaid), uses=("get_result_async",), points=2
+)
+cancel.asks("refused", "Says when the goal is rejected", tells_of_refusal, points=1)
 
 EXERCISE = cancel.exercise(
     limit=120.0,
