@@ -53,4 +53,5 @@ def test_each_field_has_its_row_and_no_row_is_of_another_field() -> None:
 
 
 def test_each_state_is_on_the_page() -> None:
-    assert [state for state in State if f"`{state}`" not in PAGE] == []
+    printed = set(State) - {State.CHECKING}  # only a card that still grows has this one
+    assert [state for state in printed if f"`{state}`" not in PAGE] == []
