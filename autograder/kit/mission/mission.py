@@ -20,6 +20,7 @@ from autograder.kit.mission.course import MISTAKE, Course, Line, Lines
 from autograder.kit.mission.moment import Moment, World
 from autograder.kit.mission.robot import Robot
 from autograder.kit.mission.steps import Goal, Journey, Step
+from autograder.kit.mistakes.common_mistakes import KEEP_THE_PERIOD
 from autograder.kit.model import Finding
 from autograder.kit.oracle.steps import To
 from autograder.robot.motion import Pose, Wall, Walls
@@ -38,7 +39,6 @@ MOVEMENT = (
     "set what the task asks for before you publish it, and leave the other numbers alone."
 )
 WRONG_RATE = "Your commands come {}; the task asks for another rate."
-PERIOD = "Give create_timer the period in seconds, and leave time.sleep out of the callback."
 NOTHING: Mapping[str, Any] = MappingProxyType({})
 PART = "mission"
 RECORDED = (
@@ -139,7 +139,7 @@ class Mission:
             shown = partial(_shown, number)
             self._draft.knows(key, shown, says, next_step, **(how[0] if how else {}))
         if rate:
-            self._draft.knows("wrong_rate", driving.another_rate, WRONG_RATE, PERIOD)
+            self._draft.knows("wrong_rate", driving.another_rate, WRONG_RATE, KEEP_THE_PERIOD)
 
     def exercise(self, **more: Any) -> Exercise:
         """Return the finished exercise. For ``more`` see :meth:`autograder.kit.draft.Draft.exercise`."""
