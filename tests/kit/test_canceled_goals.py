@@ -17,7 +17,7 @@ from autograder.kit.model import Pace
 from autograder.kit.oracle import canceled_goals as cancel
 from autograder.kit.oracle.cancel_requests import AGREED, CANCEL_REFUSED, HONORED
 from autograder.kit.oracle.canceled_goals import CancelsGoal
-from autograder.kit.recipes.action_client import END_LIMIT
+from autograder.kit.recipes.one_goal import END_LIMIT
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

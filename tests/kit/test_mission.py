@@ -219,7 +219,7 @@ def test_what_became_of_a_goal_is_read_from_the_answers() -> None:
         ("result_heard", "/dock", {"goal": 0, "status": 5, "fields": {"arrived": False}}),
     )
     run = now.goal(0)
-    assert (run.accepted, run.cancel_accepted, run.end, len(run.feedback)) == (True, True, "CANCELED", 1)
+    assert (run.accepted, run.cancel_accepted, now.ended(), len(run.feedback)) == (True, True, "CANCELED", 1)
     assert not now.goal(1).over
 
 

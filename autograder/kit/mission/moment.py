@@ -115,6 +115,10 @@ class Moment:
         """Return what came of a goal that the judge sent to the subject's action, counted from 0."""
         return outcomes.goal(self.part, number)
 
+    def ended(self, number: int = 0) -> str:
+        """Return how such a goal ended, as :func:`autograder.kit.outcomes.end_of` names it."""
+        return outcomes.end_of(self.goal(number))
+
     def before(self, kind: str, name: str | None = None) -> Moment:
         """Return what the judge had recorded before the first event of a kind, such as ``"request"``, and a name.
 

@@ -39,11 +39,11 @@ from autograder.kit.oracle.cancel_requests import (
     after_result,
     cancel_request,
 )
-from autograder.kit.recipes.action_client import (
+from autograder.kit.recipes.action_client import ActionClient
+from autograder.kit.recipes.one_goal import (
     AFTERMATH,
     END_LIMIT,
     GOAL_LIMIT,
-    ActionClient,
     meets_server,
     needs_no_search,
     refuse,

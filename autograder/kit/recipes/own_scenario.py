@@ -8,7 +8,6 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from autograder.kit.counterparts import Qos
-from autograder.kit.draft import SeenAsItIs
 from autograder.kit.evidence import Event
 from autograder.kit.mistakes.role_mistakes import ladder
 from autograder.kit.model import Finding, Pace
@@ -173,13 +172,9 @@ class OwnScenario:
         self.roles = roles
         self.scenario = scenario
 
-    def view(self, part: Part) -> Part:
-        """Return the record of a part as the exercise's criteria see it."""
-        return part
-
     def seen(self, evidence: Evidence) -> Part:
         """Return the record of the subject in its first part."""
-        return self.view(evidence.main)
+        return evidence.main
 
     def expected(self, evidence: Evidence) -> Part:
         """Return the record of the reference solution, including its endpoints.
@@ -187,7 +182,7 @@ class OwnScenario:
         While the reference is being recorded, there is no earlier record, so the new one is returned.
         """
         if not evidence.reference.parts:
-            return self.view(evidence.main)
+            return evidence.main
         recorded, interface = evidence.reference.parts[0], evidence.reference.interface
         return replace(recorded, events=[Event(0.0, "interface", "graph", interface), *recorded.events])
 
@@ -212,23 +207,6 @@ class OwnScenario:
 
 def _endpoints(role: str, endpoints: Mapping[str, str]) -> str:
     return ", ".join(f"{_NOUN[role]} {name} ({kind})" for name, kind in sorted(endpoints.items()))
-
-
-class OwnLadder(SeenAsItIs):
-    """The recipe for a subject without endpoints, such as a function that only reads the ROS graph.
-
-    The views are the whole evidence, and the exercise itself lists the common mistakes.
-
-    Args:
-        scenario: The function that runs all parts of the exercise on a bench.
-        ladder: The common mistakes, most specific first, with placeholders for the exercise's mistakes.
-    """
-
-    roles = ()
-
-    def __init__(self, scenario: Callable[[Bench], None], *ladder: Mistake) -> None:
-        self.scenario = scenario
-        self.ladder = ladder
 
 
 QUIET = {Pace.FAST: 3.0, Pace.REAL_TIME: 6.0}

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from autograder.kit.oracle.action_server import ROUNDS_LEFT
 from autograder.kit.oracle.goal_sender import AFTERMATH, QUIET, GoalSender
+from autograder.kit.oracle.goals_seen import ROUNDS_LEFT
 from autograder.kit.outcomes import ABORTED, CANCELED, SentGoal, goal
 from autograder.kit.recipes.own_scenario import meet
 

@@ -11,8 +11,8 @@ import pytest
 from autograder.kit.evidence import Event, Evidence, Part, Reference
 from autograder.kit.goal_reports import ABORTED, LATE, REFUSED
 from autograder.kit.model import Bench, Pace
-from autograder.kit.recipes import action_client
-from autograder.kit.recipes.action_client import (
+from autograder.kit.recipes import one_goal
+from autograder.kit.recipes.one_goal import (
     AFTERMATH,
     AT_PACE,
     aborted,
@@ -129,7 +129,7 @@ def test_the_second_look_does_not_repeat_a_run_in_which_nothing_was_wrong(
     made: bool,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr(action_client, "meets_present", lambda *_, **__: True)
+    monkeypatch.setattr(one_goal, "meets_present", lambda *_, **__: True)
     line = _said(word if says == "right" else "it is over")
     before = Evidence([FIRST, _looked(name, line, ENDED)], PatientClient.reference)
     bench = MagicMock(pace=Pace.REAL_TIME, before=before, random=random.Random(0), keep=lambda _: kept)
@@ -142,7 +142,7 @@ def test_a_client_that_may_stay_is_not_waited_for_once_it_has_said_rejected(
     may_stay: bool, waits: list[float], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     waited: list[float] = []
-    monkeypatch.setattr(action_client, "meets_present", lambda _, meet, *__, **___: meet())
+    monkeypatch.setattr(one_goal, "meets_present", lambda _, meet, *__, **___: meet())
     seen = Evidence([Part(REFUSED, ORDERED, [GOAL, _said("rejected")])], PatientClient.reference)
     bench = MagicMock(pace=Pace.FAST)
     bench.reference.only.return_value = ("/fibonacci", "a_package/action/Fibonacci")
