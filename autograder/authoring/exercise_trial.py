@@ -33,6 +33,8 @@ waits.
 
 SLOW = 10.0
 """Seconds from which on a check is slow, so that its author is told which step took longest."""
+LONG = 3.0
+"""Seconds from which on a wait between two events is long enough to be named."""
 _SLOW_STEP = "the slowest step: "
 
 
@@ -83,7 +85,7 @@ class _Tried(Answer):
 
 
 def slowest_step(evidence: Evidence, seconds: float) -> str:
-    """Return in words between which two events of a check most time passed; empty if it passed without events.
+    """Return in words between which two events of a check most time passed; empty if no wait between two was long.
 
     Args:
         seconds: The duration of the check, with the build and the start of the subject, of which there are no events.
@@ -97,7 +99,7 @@ def slowest_step(evidence: Evidence, seconds: float) -> str:
             waits.append((other.t - one.t, f"{where}, {between}"))
         seconds -= part.events[-1].t if part.events else 0.0
     longest, when = max(waits)
-    return f"{longest:.1f} s {when}" if longest >= seconds else ""
+    return f"{longest:.1f} s {when}" if longest >= max(seconds, LONG) else ""
 
 
 def _transcript(evidence: Evidence) -> Iterator[str]:

@@ -23,13 +23,13 @@ from autograder.kit.mission.steps import Goal, Journey, Step
 from autograder.kit.mistakes.common_mistakes import KEEP_THE_PERIOD
 from autograder.kit.model import Finding
 from autograder.kit.oracle.steps import To
-from autograder.robot.motion import Pose, Wall, Walls
+from autograder.robot.motion import ROOM, Pose, Wall, Walls
 
 if TYPE_CHECKING:
     from autograder.kit.evidence import Part
     from autograder.kit.model import Bench, Exercise
 
-__all__ = ["Goal", "Mission", "Moment", "Pose", "To", "Wall", "Walls", "World"]
+__all__ = ["ROOM", "Goal", "Mission", "Moment", "Pose", "To", "Wall", "Walls", "World"]
 
 Row = Sequence[Any]
 """A line of the card: its text, a function of a :class:`Moment`, and perhaps a name without blanks and the points."""
@@ -121,6 +121,7 @@ class Mission:
         kinds = (("yes", reaches), ("never", never), ("", same))
         self._lines = Lines(*([_line(wants, *row) for row in rows] for wants, rows in kinds))
         self._knows = [found for _, found, *_ in knows]
+        self._is_compared = bool(drives or rate)
         self._within, self._until, self._quiet, self._threads = within, until, quiet, threads
         recipe = driving.Driving(self._scenario, *roles)
         self._draft = Draft(exercise_id, title, task, recipe, points=points)
@@ -146,7 +147,9 @@ class Mission:
         return self._draft.exercise(**{"recorded": RECORDED, **more})
 
     def _scenario(self, bench: Bench) -> None:
-        bench.part(PART)
+        # Each solution goes its own way, so a card must not ask for the messages of the recorded one.
+        is_free = bool(bench.reference.parts) and not self._is_compared
+        bench.part(PART, **({"goes": "its own way"} if is_free else {}))
         ends = bench.reference.interface
         for topic, kind in ends.get("publisher", {}).items():
             bench.listen(topic, kind)

@@ -200,7 +200,9 @@ class SameAsSolution:
                 certain=True,
             )
         for output in self._of(Kind.RATE):
-            says = f"On {output.name} your messages come {{}}; the task asks for one every {output.period:g} s."
+            says = (
+                f"On {output.name} your messages come {{}}; the task asks for one every {output.period:g} s."
+            )
             self._draft.knows("wrong_rate", output.another_rate, says, KEEP_THE_PERIOD)
         for output in self._outputs:
             self._draft.criterion(output.key, output.title)(partial(_by_one_server, output))
