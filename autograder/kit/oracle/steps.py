@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import reduce
 from math import inf
 from random import Random  # noqa: TC003  (an alias of types needs it)
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from autograder.kit.in_words import counted
 from autograder.kit.outcomes import all_goals, end_of
-from autograder.kit.recipes.own_scenario import pick
 from autograder.kit.rules import sent_times
 
 if TYPE_CHECKING:
@@ -191,3 +191,14 @@ def parameter_value(value: float | str | bool) -> dict[str, Any]:
         number for number, python in ((1, bool), (2, int), (3, float), (4, str)) if isinstance(value, python)
     )
     return {"type": kind, f"{TYPES[kind]}_value": value}
+
+
+def pick(fields: Any, path: str) -> Any:
+    """Return the value of a field, given by its path, such as ``"pose.position.x"``.
+
+    A question mark at the end, as in ``"message?"``, asks only whether there is a value that is not empty, 0 or false.
+    """
+    if path.endswith("?"):
+        value = pick(fields, path[:-1])
+        return bool(value.strip() if isinstance(value, str) else value)
+    return reduce(lambda part, key: part[key], path.split("."), fields)

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import reduce
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from autograder.kit.counterparts import Qos
 from autograder.kit.evidence import Event
@@ -211,14 +210,3 @@ def _endpoints(role: str, endpoints: Mapping[str, str]) -> str:
 
 QUIET = {Pace.FAST: 3.0, Pace.REAL_TIME: 6.0}
 """The judge stops waiting for an answer or a message if no event comes for this many seconds of wall time."""
-
-
-def pick(fields: Any, path: str) -> Any:
-    """Return the value of a field, given by its path, such as ``"pose.position.x"``.
-
-    A question mark at the end, as in ``"message?"``, asks only whether there is a value that is not empty, 0 or false.
-    """
-    if path.endswith("?"):
-        value = pick(fields, path[:-1])
-        return bool(value.strip() if isinstance(value, str) else value)
-    return reduce(lambda part, key: part[key], path.split("."), fields)
