@@ -28,11 +28,12 @@ from autograder.judge.machine_fitness import (
 from autograder.judge.timeline import verdict_timeline
 from autograder.judge.timeline.growing_card import GrowingCard
 from autograder.judge.timeline.parting_point import claimed, own_lines_in_words, parting_point
+from autograder.kit.bench import Pace
 from autograder.kit.evidence import Evidence, Reference
 from autograder.kit.hunts.repairs import without_causes
 from autograder.kit.in_words import of_its_kind, shortened, visible
 from autograder.kit.mistakes.package_mistakes import changed_since_build
-from autograder.kit.model import Advice, Criterion, Exercise, Finding, Mistake, Pace
+from autograder.kit.model import Advice, Criterion, Exercise, Finding, Mistake
 from autograder.kit.runners import runner_trouble
 from autograder.verdict import CriterionResult, Diagnosis, State, Verdict, failed
 

@@ -16,11 +16,12 @@ from typing import TYPE_CHECKING, Any, Generic, Protocol, TypeVar
 from autograder.kit.in_words import with_placeholders
 from autograder.kit.mistakes.runner_mistakes import with_those_of
 from autograder.kit.mistakes.unfinished import constructor_remark
-from autograder.kit.model import Advice, Bench, Criterion, Exercise, Finding, Mistake
+from autograder.kit.model import Advice, Criterion, Exercise, Finding, Mistake
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from autograder.kit.bench import Bench
     from autograder.kit.evidence import Evidence
 
 POINTS = 10.0

@@ -12,8 +12,9 @@ from autograder.cards.text_rendering import card_text
 from autograder.judge import evidence_files, machine_fitness, one_check
 from autograder.judge.machine_fitness import ANSWER_WITHIN, Crowding, NotDelivered, TooBusy
 from autograder.judge.one_check import WHAT_TO_DO, ExerciseFailed
+from autograder.kit.bench import Pace
 from autograder.kit.evidence import Event, Evidence, Part
-from autograder.kit.model import Advice, Criterion, Finding, Mistake, Pace
+from autograder.kit.model import Advice, Criterion, Finding, Mistake
 from autograder.kit.rules import value
 from autograder.verdict import State, not_checked
 

@@ -9,11 +9,11 @@ from unittest.mock import MagicMock
 import pytest
 
 from autograder.judge import evidence_files
+from autograder.kit.bench import Pace
 from autograder.kit.evidence import Event, Evidence, Part
 from autograder.kit.giving_up import LATE_AT_FIRST, LATENESS
 from autograder.kit.goal_reports import REFUSED
 from autograder.kit.lateness import SOON
-from autograder.kit.model import Pace
 from autograder.kit.oracle import canceled_goals as cancel
 from autograder.kit.oracle.cancel_requests import AGREED, CANCEL_REFUSED, HONORED
 from autograder.kit.oracle.canceled_goals import CancelsGoal

@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import pytest
 
 from autograder.kit.draft import OWN, OWN_LATE, Draft
 from autograder.kit.evidence import Evidence, Part, Reference
-from autograder.kit.model import Advice, Bench, Finding, Mistake, mistake
+from autograder.kit.model import Advice, Finding, Mistake, mistake
+
+if TYPE_CHECKING:
+    from autograder.kit.bench import Bench
 
 
 class Recipe:

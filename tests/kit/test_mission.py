@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from autograder.kit.bench import Pace
 from autograder.kit.evidence import Event, Evidence, Part, Reference
 from autograder.kit.mission.course import NOTHING_REACHED
 from autograder.kit.mission.mission import Goal, Mission, Moment, Pose, To, Wall, Walls, World
-from autograder.kit.model import Pace
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence

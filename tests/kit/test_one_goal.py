@@ -8,9 +8,9 @@ from unittest.mock import MagicMock
 
 import pytest
 
+from autograder.kit.bench import Bench, Pace
 from autograder.kit.evidence import Event, Evidence, Part, Reference
 from autograder.kit.goal_reports import ABORTED, LATE, REFUSED
-from autograder.kit.model import Bench, Pace
 from autograder.kit.recipes import one_goal
 from autograder.kit.recipes.one_goal import (
     AFTERMATH,

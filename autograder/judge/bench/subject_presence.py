@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 from autograder.judge.bench import discovery
 from autograder.judge.machine_fitness import Patience
+from autograder.kit.bench import Pace
 from autograder.kit.counterparts import Qos
-from autograder.kit.model import Pace
 from autograder.kit.runners import BUILDING, report_of
 
 if TYPE_CHECKING:

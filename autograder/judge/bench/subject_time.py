@@ -22,7 +22,7 @@ from rosgraph_msgs.msg import Clock
 from autograder.judge.bench import discovery
 from autograder.judge.bench.subject_presence import MATCH, Presence
 from autograder.judge.machine_fitness import Patience
-from autograder.kit.model import STEP, Pace
+from autograder.kit.bench import STEP, Pace
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -17,8 +17,9 @@ from autograder.kit.model import Advice, Finding
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
+    from autograder.kit.bench import Bench
     from autograder.kit.evidence import Evidence
-    from autograder.kit.model import Bench, Exercise
+    from autograder.kit.model import Exercise
 
 POINTS = 2.0
 """The points of a question whose author does not say how many it is worth."""

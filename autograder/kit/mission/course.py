@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
+    from autograder.kit.bench import Bench
     from autograder.kit.mission.moment import Moment
     from autograder.kit.mission.robot import Robot
     from autograder.kit.mission.steps import Journey, Step
-    from autograder.kit.model import Bench
 
 AFTER = 1.0
 """Seconds of the subject's time for which the world goes on after everything was reached."""

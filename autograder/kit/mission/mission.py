@@ -26,8 +26,9 @@ from autograder.kit.oracle.steps import To
 from autograder.robot.motion import ROOM, Pose, Wall, Walls
 
 if TYPE_CHECKING:
+    from autograder.kit.bench import Bench
     from autograder.kit.evidence import Part
-    from autograder.kit.model import Bench, Exercise
+    from autograder.kit.model import Exercise
 
 __all__ = ["ROOM", "Goal", "Mission", "Moment", "Pose", "To", "Wall", "Walls", "World"]
 

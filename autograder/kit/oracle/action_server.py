@@ -9,13 +9,14 @@ from autograder.kit.mistakes import common_mistakes as common
 from autograder.kit.mistakes.action_server_mistakes import result_type
 from autograder.kit.mistakes.crashes import traceback_of
 from autograder.kit.mistakes.role_mistakes import ladder
-from autograder.kit.model import Bench, Finding, Mistake, mistake
+from autograder.kit.model import Finding, Mistake, mistake
 from autograder.kit.oracle.goals_seen import ENDED, GoalsSeen
 from autograder.kit.outcomes import CANCELED, SUCCEEDED, goal, status_text
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
 
+    from autograder.kit.bench import Bench
     from autograder.kit.evidence import Evidence
 
 UNREAD = 2

@@ -21,6 +21,7 @@ from collections.abc import Callable, Mapping
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
+from autograder.kit.bench import Bench, Pace
 from autograder.kit.goal_reports import REFUSED, refused_as_seen
 from autograder.kit.lateness import (
     SOON,
@@ -30,7 +31,6 @@ from autograder.kit.lateness import (
     meets_late_action,
     meets_present,
 )
-from autograder.kit.model import Bench, Pace
 from autograder.kit.oracle.cancel_requests import (
     AGREED,
     CANCEL_REFUSED,

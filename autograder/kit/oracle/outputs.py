@@ -95,7 +95,7 @@ class Output:
                 for rows in (theirs, mine)
             )
             return Finding(differs == both and missing <= 1 + len(theirs) // ONE_MISSING_IN, due, came)
-        if differs == len(theirs):
+        if theirs and differs == len(theirs):
             return Finding(True, right := f"the same as the solution in all {len(theirs)} steps", right)
         due, came = (
             f"{self._in_words(rows[differs][0])} {rows[differs][1]}" if differs < len(rows) else "nothing"

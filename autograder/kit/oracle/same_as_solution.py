@@ -15,11 +15,12 @@ from random import Random
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
+from autograder.kit.bench import Pace
 from autograder.kit.counterparts import Qos
 from autograder.kit.draft import POINTS, Draft
 from autograder.kit.mistakes import unfinished
 from autograder.kit.mistakes.common_mistakes import KEEP_THE_PERIOD, NOT_LATCHED, is_not_latched
-from autograder.kit.model import Advice, Finding, Mistake, Pace
+from autograder.kit.model import Advice, Finding, Mistake
 from autograder.kit.oracle.goal_sender import GoalSender
 from autograder.kit.oracle.outputs import Kind, Output
 from autograder.kit.oracle.steps import Goal, Serves, Sets, Step, To, Turn, parameter_value
@@ -28,8 +29,9 @@ from autograder.kit.recipes.own_scenario import ENDPOINTS, QUIET, Met, OwnScenar
 if TYPE_CHECKING:
     from collections.abc import Container
 
+    from autograder.kit.bench import Bench
     from autograder.kit.evidence import Evidence, Part, Reference
-    from autograder.kit.model import Bench, Exercise
+    from autograder.kit.model import Exercise
 
 __all__ = ["Goal", "SameAsSolution", "Serves", "Sets", "To"]
 

@@ -14,18 +14,19 @@ from typing import TYPE_CHECKING
 import re2
 
 from autograder.kit import giving_up
+from autograder.kit.bench import Pace
 from autograder.kit.draft import OWN, OWN_LATE
 from autograder.kit.evidence import Part
 from autograder.kit.giving_up import LATENESS, PATIENCE, PATIENCES
 from autograder.kit.lateness import SOON, was_patient
 from autograder.kit.mistakes import unfinished
 from autograder.kit.mistakes.crashes import CRASHES, OTHER_CRASHES, OTHER_SLIPS
-from autograder.kit.model import Advice, Finding, Mistake, Pace, mistake
+from autograder.kit.model import Advice, Finding, Mistake, mistake
 from autograder.kit.quests.robot import Robot, Search
 
 if TYPE_CHECKING:
+    from autograder.kit.bench import Bench
     from autograder.kit.evidence import Evidence
-    from autograder.kit.model import Bench
 
 Searches = Mapping[str, Search]
 """All runs of a subject, by the names of the robots."""

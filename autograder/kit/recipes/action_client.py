@@ -16,8 +16,9 @@ from autograder.kit.mistakes.crashes import CRASHES, OTHER_CRASHES, OTHER_SLIPS
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from autograder.kit.bench import Bench
     from autograder.kit.evidence import Evidence
-    from autograder.kit.model import Advice, Bench, Mistake
+    from autograder.kit.model import Advice, Mistake
 
 
 def _not_by_refusal(mistake: Mistake) -> Mistake:

@@ -12,6 +12,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
+from autograder.kit.bench import Bench, Pace
 from autograder.kit.evidence import Part
 from autograder.kit.giving_up import (
     LATENESS,
@@ -52,7 +53,6 @@ from autograder.kit.mistakes import common_mistakes as common
 from autograder.kit.mistakes import goal_mistakes as goals
 from autograder.kit.mistakes import unfinished
 from autograder.kit.mistakes.hangs import HANGS
-from autograder.kit.model import Bench, Pace
 from autograder.kit.recipes.action_client import ActionClient
 
 if TYPE_CHECKING:
@@ -192,7 +192,7 @@ def meets_server(
     Args:
         prepared: True to start the server before the subject.
         late: The delay of the server in seconds, once the subject is there.
-        how: How the server answers: see :meth:`autograder.kit.model.Bench.serve_action`.
+        how: How the server answers: see :meth:`autograder.kit.bench.Bench.serve_action`.
     """
     action, type_name = bench.reference.only("action_client")
     server = bench.serve_action(action, type_name, **how) if prepared else None

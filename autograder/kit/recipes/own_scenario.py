@@ -6,18 +6,20 @@ from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
+from autograder.kit.bench import Pace
 from autograder.kit.counterparts import Qos
 from autograder.kit.evidence import Event
 from autograder.kit.mistakes.role_mistakes import ladder
-from autograder.kit.model import Finding, Pace
+from autograder.kit.model import Finding
 from autograder.kit.runners import processes
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
+    from autograder.kit.bench import Bench
     from autograder.kit.counterparts import ActionCaller, Caller, Speaker
     from autograder.kit.evidence import Evidence, Part
-    from autograder.kit.model import Bench, Mistake
+    from autograder.kit.model import Mistake
 
 
 _NOUN = {"publisher": "a publisher on", "subscription": "a subscription to", "client": "a client of"}

@@ -7,11 +7,12 @@ from typing import TYPE_CHECKING
 
 import re2
 
+from autograder.kit.bench import Bench, Pace
 from autograder.kit.draft import OWN, OWN_LATE
 from autograder.kit.in_words import first_difference
 from autograder.kit.mistakes import package_mistakes, unfinished
 from autograder.kit.mistakes.crashes import CRASHES, OTHER_CRASHES
-from autograder.kit.model import Bench, Finding, Mistake, Pace
+from autograder.kit.model import Finding, Mistake
 from autograder.kit.runners import RunsProgram
 
 if TYPE_CHECKING:

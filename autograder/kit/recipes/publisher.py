@@ -6,15 +6,16 @@ from itertools import pairwise
 from statistics import median
 from typing import TYPE_CHECKING
 
-from autograder.kit import published_texts
+from autograder.kit.bench import STEP, Bench, Pace
 from autograder.kit.draft import OWN, OWN_LATE
 from autograder.kit.in_words import counted
 from autograder.kit.mistakes import common_mistakes as common
 from autograder.kit.mistakes import unfinished
 from autograder.kit.mistakes.role_mistakes import ladder
 from autograder.kit.mistakes.silence import GO_ON, NO_MESSAGE, NO_MORE, PUBLISH
-from autograder.kit.model import STEP, Advice, Bench, Finding, Mistake, Pace, mistake
-from autograder.kit.published_texts import Counting, Publisher
+from autograder.kit.model import Advice, Finding, Mistake, mistake
+from autograder.kit.recipes import published_texts
+from autograder.kit.recipes.published_texts import Counting, Publisher
 from autograder.kit.rules import ROW, Rate, burst_at_the_start, confirmed, rate_of, simulated_times
 
 if TYPE_CHECKING:

@@ -7,10 +7,11 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal
 
+from autograder.kit.bench import Bench, Pace
 from autograder.kit.draft import OWN
 from autograder.kit.mistakes import common_mistakes as common
 from autograder.kit.mistakes.role_mistakes import ladder
-from autograder.kit.model import Bench, Finding, Mistake, Pace
+from autograder.kit.model import Finding, Mistake
 from autograder.kit.recipes.own_scenario import meet
 
 if TYPE_CHECKING:

@@ -9,7 +9,7 @@ import re2
 from autograder.kit.draft import OWN, SeenAsItIs
 from autograder.kit.mistakes import package_mistakes
 from autograder.kit.mistakes.crashes import CRASHES, OTHER_CRASHES
-from autograder.kit.model import Advice, Bench, Finding, Mistake
+from autograder.kit.model import Advice, Finding, Mistake
 from autograder.kit.runners import (
     AMENT_PACKAGE,
     BUILDING,
@@ -22,6 +22,7 @@ from autograder.kit.runners import (
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from autograder.kit.bench import Bench
     from autograder.kit.evidence import Evidence
 
 GROUP = "rosidl_interface_packages"

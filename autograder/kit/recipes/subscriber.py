@@ -5,10 +5,11 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING
 
+from autograder.kit.bench import Bench, Pace
 from autograder.kit.draft import OWN, OWN_LATE
 from autograder.kit.mistakes import unfinished
 from autograder.kit.mistakes.role_mistakes import ladder
-from autograder.kit.model import Advice, Bench, Finding, Mistake, Pace
+from autograder.kit.model import Advice, Finding, Mistake
 from autograder.kit.reported_texts import (
     AT_PACE,
     SINGLY,

@@ -6,8 +6,9 @@ from typing import TYPE_CHECKING
 
 import re2
 
+from autograder.kit.bench import Pace
 from autograder.kit.draft import Draft
-from autograder.kit.model import Finding, Pace
+from autograder.kit.model import Finding
 from autograder.kit.recipes.own_scenario import Met, OwnScenario, once_met
 
 if TYPE_CHECKING:
