@@ -91,10 +91,10 @@ mismatched = Draft(
     "Find out which topic and type each of two nodes uses.",
     quest,
 )
-mismatched.asks("topic_published", 2.5, "Finds the talker's topic", quest.finds("topic_published"))
-mismatched.asks("topic_subscribed", 2.5, "Finds the listener's topic", quest.finds("topic_subscribed"))
-mismatched.asks("type_published", 2.5, "Finds the talker's type", quest.finds("type_published"))
-mismatched.asks("type_subscribed", 2.5, "Finds the listener's type", quest.finds("type_subscribed"))
+mismatched.asks("topic_published", "Finds the talker's topic", quest.finds("topic_published"))
+mismatched.asks("topic_subscribed", "Finds the listener's topic", quest.finds("topic_subscribed"))
+mismatched.asks("type_published", "Finds the talker's type", quest.finds("type_published"))
+mismatched.asks("type_subscribed", "Finds the listener's type", quest.finds("type_subscribed"))
 
 EXERCISE = mismatched.exercise(
     limit=120.0,
