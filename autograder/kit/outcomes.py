@@ -122,11 +122,6 @@ class SentGoal:
         return self.status is not None or self.accepted is False
 
     @property
-    def end(self) -> str:
-        """``"SUCCEEDED"``, ``"CANCELED"``, ``"ABORTED"`` or ``"REJECTED"``; ``"UNKNOWN"`` if no result came."""
-        return STATUS.get(self.status or 0, "UNKNOWN") if self.accepted else "REJECTED"
-
-    @property
     def is_quick(self) -> bool:
         """True if the server needed hardly any time for the goal."""
         return self.seconds is not None and self.seconds < IMMEDIATELY
@@ -183,6 +178,11 @@ def goal(part: Part, number: int) -> SentGoal:
         status=result.get("status"),
         result=result.get("fields", {}),
     )
+
+
+def end_of(sent: SentGoal) -> str:
+    """Return ``"SUCCEEDED"``, ``"CANCELED"``, ``"ABORTED"`` or ``"REJECTED"``; ``"UNKNOWN"`` if no result came."""
+    return STATUS.get(sent.status or 0, "UNKNOWN") if sent.accepted else "REJECTED"
 
 
 def all_goals(part: Part) -> list[SentGoal]:
