@@ -158,6 +158,11 @@ def faults_of_text(exercise: Exercise, lab_text: str) -> Iterator[str]:
     words_of_lab = " ".join(lab_text.split())
     sentences = (" ".join(words.split()) for words in exercise.text)
     yield from (f"{course.LAB} does not say “{words}”" for words in sentences if words not in words_of_lab)
+    yield from (
+        f"“{words}” states a period, and no criterion judges it: a SameAsSolution takes rates={{topic: seconds}}"
+        for words, names in exercise.text.items()
+        if _PERIOD.search(words) and "rate" not in names
+    )
     judged = {name for names in exercise.text.values() for name in names.split()}
     known = {criterion.name for criterion in exercise.criteria}
     yield from (
@@ -170,6 +175,7 @@ def faults_of_text(exercise: Exercise, lab_text: str) -> Iterator[str]:
             yield f"counts has more than {_MAX_SENTENCES} sentences about {name or 'the exercise'}"
 
 
+_PERIOD = re.compile(r"(?i)\bevery [\d.]+ s\b")
 _MAX_SENTENCES = 2
 """The maximum number of sentences below a criterion, because a card must not read like a contract."""
 _SENTENCE = re.compile(r"[.!?](?= |$)")

@@ -76,18 +76,22 @@ def simulated_times(messages: Sequence[Event]) -> list[float]:
     return [event.sim for event in messages if event.sim is not None][1:] if follows else []
 
 
-def rate_of(messages: Sequence[Event], wanted: float, row: int = ROW) -> Rate | None:
+def rate_of(
+    messages: Sequence[Event], wanted: float, row: int = ROW, *, may_rest: bool = False
+) -> Rate | None:
     """Return the rate of a publisher's messages; None if there are too few messages.
 
     Args:
         messages: The messages that the judge received.
         wanted: The reference's interval, in seconds.
+        may_rest: True if the task lets the publisher be silent for some time. In simulated time, longer intervals are
+            then right if most intervals are.
         row: Used only in real time, where messages may be late: the number of successive messages in a group. The
             result is the rate of the first group with the right rate; if no group has the right rate, the rate of the
             last group.
     """
     if times := simulated_times(messages):
-        return _exact_rate(times, wanted) if len(times) > 1 else None
+        return _exact_rate(times, wanted, may_rest=may_rest) if len(times) > 1 else None
     sent = sent_times(messages)
     rows = [sent[i : i + row] for i in range(max(1, len(sent) - row + 1))] if len(sent) > 1 else []
     rates = [_rate_in_real_time(times, wanted) for times in rows]
@@ -138,11 +142,13 @@ def burst_at_the_start(messages: Sequence[Event], unheard: int, wanted: float) -
     return ""
 
 
-def _exact_rate(times: Sequence[float], wanted: float) -> Rate:
+def _exact_rate(times: Sequence[float], wanted: float, *, may_rest: bool) -> Rate:
     gaps = [later - earlier for earlier, later in pairwise(times)]
-    period = mean(gaps)
-    even = all(abs(gap - period) <= SIMULATED_JITTER + 1e-6 for gap in gaps)
-    return Rate(period, gaps, even, even and abs(period - wanted) <= SIMULATED_TOLERANCE * wanted)
+    period = median(gaps) if may_rest else mean(gaps)
+    offs = [period - gap if may_rest else abs(period - gap) for gap in gaps]
+    even = max(offs) <= SIMULATED_JITTER + 1e-6
+    near = abs(period - wanted) <= SIMULATED_TOLERANCE * wanted
+    return Rate(period if even else mean(gaps), gaps, even, even and near)
 
 
 def _rate_in_real_time(times: Sequence[float], wanted: float) -> Rate:
@@ -184,7 +190,11 @@ def keeps_rate(seen: Part, expected: Part) -> Finding:
         ValueError: The reference has too few messages to measure a rate.
     """
     messages, wanted = seen.of("message"), _reference_period(expected)
-    rate = rate_of(messages, wanted)
+    return has_rate(messages, wanted, rate_of(messages, wanted))
+
+
+def has_rate(messages: Sequence[Event], wanted: float, rate: Rate | None) -> Finding:
+    """Return whether a publisher has the right rate, with the right rate and its own in words."""
     heard = f"one every {rate.period:.2g} s" if rate else f"{counted(len(messages), 'message')} in all"
     unevenly = " on average, but unevenly" if rate and not rate.even else ""
     return Finding(rate is not None and rate.kept, f"one every {wanted:.2g} s", heard + unevenly)

@@ -74,19 +74,9 @@ class Hears:
     def __init__(self, messages: int = 8, long_run: int = 20) -> None:
         self._messages = messages
         self._long_run = long_run
-        self._text: Judge[Publisher] | None = None
-        self._course: Judge[Publisher] | None = None
+        self._text: Judge[Publisher] | None = None  # while it fails, a wrong rate is not diagnosed
+        self._course: Judge[Publisher] | None = None  # while it fails, the judge waits for more messages
         self._variable = "self.count"
-
-    def each_text(self, judge: Judge[Publisher]) -> Judge[Publisher]:
-        """Mark the criterion about the text of each message. While it fails, a wrong rate is not diagnosed."""
-        self._text = judge
-        return judge
-
-    def whole_course(self, judge: Judge[Publisher]) -> Judge[Publisher]:
-        """Mark the criterion about the series of messages. While it fails, the judge waits for more messages."""
-        self._course = judge
-        return judge
 
     # --- the bench -------------------------------------------------------------------------------------------
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from autograder.kit import giving_up, goal_reports
 from autograder.kit.draft import Draft
-from autograder.kit.recipes.action_client import sends_goals
+from autograder.kit.recipes.one_goal import sends_goals
 
 client = Draft(
     "lab_1_4.client",
