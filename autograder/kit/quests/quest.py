@@ -150,10 +150,10 @@ class Quest:
             if robot.late and not search.has() and was_patient(search.since_it_appeared):
                 bench.again()
                 self._meets(bench, robot, patience, SOON)
-            has_answered = Search(bench.seen()).has_answered
+            search = Search(bench.seen())
             bench.stop()
-            if not has_answered and not takes_patience:
-                return  # it hangs, and each criterion needs all robots
+            if not takes_patience and not (search.given and search.has_answered):
+                return  # each criterion needs all robots
 
     def _meets(self, bench: Bench, robot: Robot, patience: Mapping[str, float], lateness: float) -> None:
         _put(bench, robot, late=False)
@@ -290,8 +290,8 @@ def _asked_too_early(seen: Searches) -> bool:
 
 
 def _is_silent(seen: Searches) -> bool:
-    parts = [search.part for search in seen.values()]
-    return all(part.ending and not part.said() and not part.traceback for part in parts)
+    parts = [search.part for search in seen.values() if search.part.events]
+    return bool(parts) and all(part.ending and not part.said() and not part.traceback for part in parts)
 
 
 def _not_returned(seen: Searches) -> Search | None:
@@ -306,7 +306,8 @@ def _invented(seen: Searches) -> bool:
 def _gave_up(seen: Searches) -> object:
     waited = [_GAVE_UP.search(search.part.traceback) for search in _wrong(seen) if not search.given]
     words = [line[0] for line in waited if line]
-    return words and (len(words), len(seen), words[0])
+    made = sum(bool(search.part.events) for search in seen.values())
+    return words and (len(words), made, words[0])
 
 
 def _no_answer(seen: Searches) -> object:

@@ -34,7 +34,7 @@ def _presence(
     announced: bool = False,
 ) -> tuple[Presence, Recorder]:
     """A subject's presence on a graph that shows this, and where it is written down."""
-    monkeypatch.setattr(discovery, "survey", survey)
+    monkeypatch.setattr(discovery, "survey", lambda judge, _=None: survey(judge))
     monkeypatch.setattr(discovery, "every_node", lambda *_: nodes)
     monkeypatch.setattr(discovery, "topic_ends", lambda *_: [])
     recorder = Recorder()
