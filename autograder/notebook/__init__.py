@@ -53,7 +53,7 @@ def start_robot(*, stranger: bool = False) -> LiveRobot:
     date for half an hour; ``.show()`` shows a new picture.
 
     Args:
-        stranger: True for an unknown robot: each start draws its name, and the names of the topic,
+        stranger: True for a robot without a manual: each start draws what it is called, and the names of the topic,
             the action and the lamp's service that it obeys. It says how many corners of the rooms it has visited.
     """
     # Import this here: it imports many message types, which only notebooks with the robot need.

@@ -46,7 +46,7 @@ class RobotState:
 
 @dataclass(frozen=True)
 class RobotNames:
-    """The name of the robot, and the full names of the topic, action and service by which it is told what to do."""
+    """The name of the robot, and the full names of the topic, the action and the service that it obeys."""
 
     robot: str = "robot"
     obeys: str = "/cmd_vel"
@@ -55,7 +55,7 @@ class RobotNames:
 
     @classmethod
     def drawn(cls) -> RobotNames:
-        """Draw the names of an unknown robot."""
+        """Draw the names of a robot that the student has not seen."""
         robot = random.choice(("bolt", "mango", "nova", "pixel"))
         words = (("drive", "steer", "wheels"), ("go_to", "travel", "visit"), ("beam", "glow", "shine"))
         return cls(robot, *(f"/{robot}/{random.choice(names)}" for names in words))

@@ -49,7 +49,7 @@ which. No usual constant from 2 seconds on lies in one of these.
 LONGEST_QUOTE = 200
 """The most characters of a line that a card quotes."""
 UNKNOWN_NODE = "_NODE_NAME_UNKNOWN_"
-"""What the graph says of an endpoint if it has not met its node yet (rmw_dds_common, graph_cache.cpp)."""
+"""The node name that the graph gives for an endpoint before it has discovered the node (rmw_dds_common)."""
 _GAVE_UP = re2.compile(r"(?m)^TimeoutError(?:: .*)?$")
 
 _TEXTS = {

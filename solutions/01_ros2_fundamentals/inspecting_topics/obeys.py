@@ -33,8 +33,8 @@ quest = Quest(robots)
 obeys = Draft(
     "inspecting_topics.obeys", "Inspecting topics · What it obeys", "Find a robot, and what it obeys.", quest
 )
-obeys.asks("robot", "Finds what the robot is called", quest.finds("robot"), points=4)
-obeys.asks("topic", "Finds the topic that it obeys", quest.finds("topic"), points=6)
+obeys.asks("robot", "Finds what the robot is called", quest.finds("robot"))
+obeys.asks("topic", "Finds the topic that it obeys", quest.finds("topic"))
 EXERCISE = obeys.exercise(
     text={
         "`robot`, the name of the node that obeys": "robot",
