@@ -61,7 +61,7 @@ def still_to_do(exercise_id: str, listed: Sequence[Answer]) -> Iterator[str]:
     yield from _of_answers(listed)
     yield from _of_mistakes(exercise_id, listed)
     lab = exercises.path(exercise_id).parent
-    yield from _of_text(exercise_id, lab / course.LAB)
+    yield from to_do_in_text(exercise_id)
     yield from (f"{course.LAB}: {rule}" for rule in broken_rules(lab / course.LAB))
     yield from _of_linters(lab)
 
@@ -139,9 +139,9 @@ def _of_mistakes(exercise_id: str, listed: Sequence[Answer]) -> Iterator[str]:
         yield from (f"{_MISTAKES_PAGE}: no paragraph about `{key}` yet" for key in sorted(used - explained))
 
 
-def _of_text(exercise_id: str, master: Path) -> Iterator[str]:
+def to_do_in_text(exercise_id: str) -> Iterator[str]:
     """Yield a line for each fault in ``Exercise.text``, which maps sentences of the lab to criteria."""
-    exercise = exercises.get(exercise_id)
+    exercise, master = exercises.get(exercise_id), exercises.path(exercise_id).parent / course.LAB
     if not exercise.text:
         yield "text: map words of the task to the criteria that judge them (the argument text of the exercise)"
         return

@@ -11,7 +11,7 @@ from autograder import exercises
 from autograder.authoring import reference_files
 from autograder.authoring.answer_bank import Answer, Turn, answers, answers_folder, judge_all, warm_up
 from autograder.authoring.answer_tables import BadTable, CannotEdit
-from autograder.authoring.exercise_faults import still_to_do
+from autograder.authoring.exercise_faults import still_to_do, to_do_in_text
 from autograder.cards.text_rendering import card_text
 from autograder.command_name import COMMAND
 from autograder.safe_files import HeldFolder
@@ -167,9 +167,9 @@ def try_exercise(
     tell(f"\n{count}, {len(surprises) or 'none'} not as expected")
     for line in gifts:
         tell(f"the unsolved notebook earns points: {line}")
-    if not only:
-        for line in still_to_do(exercise_id, wanted):
-            tell(f"to do: {line}")
+    # With a part of the answers, what the bank lacks cannot be told.
+    for line in to_do_in_text(exercise_id) if only else still_to_do(exercise_id, wanted):
+        tell(f"to do: {line}")
     return not surprises and not gifts
 
 

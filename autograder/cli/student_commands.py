@@ -78,7 +78,7 @@ def check(
     from autograder.judge.command_check import CommandNotFound, check_and_keep
     from autograder.standard_output import stray_lines_on_stderr
 
-    # On stderr, because a judgement shows nothing else for up to half a minute, also in a pipe.
+    # Otherwise nothing is shown for up to half a minute, and in a pipe this looks like a program that hangs.
     click.echo(
         f"autograder: judging {exercise}: a right answer takes about 5 s, a wrong one up to 30 s", err=True
     )

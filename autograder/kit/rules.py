@@ -12,7 +12,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from math import isclose, isnan
-from statistics import mean, median
+from statistics import mean, median, median_low
 from typing import TYPE_CHECKING, Any
 
 from autograder.kit.in_words import counted
@@ -77,21 +77,22 @@ def simulated_times(messages: Sequence[Event]) -> list[float]:
 
 
 def rate_of(
-    messages: Sequence[Event], wanted: float, row: int = ROW, *, may_rest: bool = False
+    messages: Sequence[Event], wanted: float, row: int = ROW, *, may_vary: bool = False
 ) -> Rate | None:
     """Return the rate of a publisher's messages; None if there are too few messages.
 
     Args:
         messages: The messages that the judge received.
         wanted: The reference's interval, in seconds.
-        may_rest: True if the task lets the publisher be silent for some time. In simulated time, longer intervals are
-            then right if most intervals are.
+        may_vary: True if the publisher may be silent for some time, or publish one message more at an input. In
+            simulated time, the usual interval counts then.
         row: Used only in real time, where messages may be late: the number of successive messages in a group. The
             result is the rate of the first group with the right rate; if no group has the right rate, the rate of the
             last group.
     """
     if times := simulated_times(messages):
-        return _exact_rate(times, wanted, may_rest=may_rest) if len(times) > 1 else None
+        measured = _usual_rate if may_vary else _exact_rate
+        return measured(times, wanted) if len(times) > 1 else None
     sent = sent_times(messages)
     rows = [sent[i : i + row] for i in range(max(1, len(sent) - row + 1))] if len(sent) > 1 else []
     rates = [_rate_in_real_time(times, wanted) for times in rows]
@@ -142,13 +143,20 @@ def burst_at_the_start(messages: Sequence[Event], unheard: int, wanted: float) -
     return ""
 
 
-def _exact_rate(times: Sequence[float], wanted: float, *, may_rest: bool) -> Rate:
+def _exact_rate(times: Sequence[float], wanted: float) -> Rate:
     gaps = [later - earlier for earlier, later in pairwise(times)]
-    period = median(gaps) if may_rest else mean(gaps)
-    offs = [period - gap if may_rest else abs(period - gap) for gap in gaps]
-    even = max(offs) <= SIMULATED_JITTER + 1e-6
-    near = abs(period - wanted) <= SIMULATED_TOLERANCE * wanted
-    return Rate(period if even else mean(gaps), gaps, even, even and near)
+    period = mean(gaps)
+    even = all(abs(gap - period) <= SIMULATED_JITTER + 1e-6 for gap in gaps)
+    return Rate(period, gaps, even, even and abs(period - wanted) <= SIMULATED_TOLERANCE * wanted)
+
+
+def _usual_rate(times: Sequence[float], wanted: float) -> Rate:
+    gaps = [later - earlier for earlier, later in pairwise(times)]
+    middle = median_low(gaps)
+    # The judge moves its clock in steps, so a period between two of them is only right on average.
+    on_average = mean(gap for gap in gaps if abs(gap - middle) <= SIMULATED_JITTER)
+    period = min(middle, on_average, key=lambda one: abs(one - wanted))
+    return Rate(period, gaps, True, abs(period - wanted) <= SIMULATED_TOLERANCE * wanted)
 
 
 def _rate_in_real_time(times: Sequence[float], wanted: float) -> Rate:

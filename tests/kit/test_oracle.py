@@ -160,7 +160,7 @@ EVERY_SECOND = range(10)
         (EVERY_SECOND, True, "one every 1 s"),
         ([moment / 10 for moment in EVERY_SECOND], False, "one every 0.1 s"),
         ([moment * 2 for moment in EVERY_SECOND], False, "one every 2 s"),
-        ([moment // 2 for moment in range(20)], False, "unevenly"),
+        ([moment // 2 for moment in range(20)], False, "one every 0"),
         ([1], False, "1 message in all"),
     ],
     ids=["right", "ten times as often", "half as often", "told twice", "too few"],
@@ -173,8 +173,17 @@ def test_a_rate_that_the_task_asks_for_is_kept(
     assert seen in came
 
 
-def test_a_node_that_may_rest_keeps_its_rate() -> None:
-    assert rated(0, 1, 2, 3, 7.5, 8.5, 9.5)[0]
+@pytest.mark.parametrize(
+    "moments",
+    [
+        (0, 1, 2, 3, 7.5, 8.5, 9.5),
+        (0, 1, 1.3, 2, 3, 4, 5, 6, 7),
+        (0, 0.95, 2, 2.95, 4, 4.95, 6),
+    ],
+    ids=["a silence", "one more at an input", "a clock that moves in steps"],
+)
+def test_a_rate_is_kept_if_the_usual_interval_is_right(moments: Sequence[float]) -> None:
+    assert rated(*moments)[0]
 
 
 @pytest.mark.parametrize(

@@ -50,7 +50,7 @@ class Lines:
 
 
 NOTHING_REACHED = "nothing yet: this counts once your robot has reached something"
-"""What the card says about a line of ``never`` before a line of ``reaches`` was reached."""
+"""The words of the card for a line of ``never`` before a line of ``reaches`` was reached."""
 
 
 class Course:

@@ -113,7 +113,7 @@ class Output:
         return "" if finding.passed or self._rate(seen) is None else finding.seen
 
     def _rate(self, seen: Part) -> Rate | None:
-        return rate_of(seen.of("message", self.name), self.period, may_rest=True)
+        return rate_of(seen.of("message", self.name), self.period, may_vary=True)
 
     def _rows(self, part: Part) -> list[tuple[Any, str]]:
         """Return what is compared, in order: the values of each step with its words, or each message of a list."""

@@ -135,7 +135,8 @@ class SameAsSolution:
         every: The topics of which all messages of a step are compared, not only the last one, because the task asks for
             one message for each input; True for all of ``tells``.
         rates: The topics for which the task asks for a period, with this period in seconds. A node that publishes more
-            often or less often fails; it may be silent for some time. On other topics, the period is the student's.
+            often or less often fails; it may be silent for some time, or publish once more at an input. On other
+            topics, the period is the student's.
         pause: Seconds of the subject's time after each input.
         tolerance: The absolute or relative tolerance for numbers.
         roles: The roles of the subject's endpoints, the most telling first.
