@@ -358,8 +358,8 @@ def diagnose(
 ) -> tuple[Diagnosis, str]:
     """Return the diagnosis of the first known mistake in the evidence, and the traceback that shows it, if any.
 
-    If no mistake is known, the diagnosis says where the run leaves the reference solution's. If that is not clear
-    either, it quotes the first criterion that is not met.
+    If no mistake is known, the diagnosis quotes the event at which the run leaves the reference solution's. If that is
+    not clear either, it quotes the first criterion that is not met.
 
     Another traceback is not returned. It may come from another run and from a correct line, but a student would take it
     for the mistake.
