@@ -61,7 +61,7 @@ def still_to_do(exercise_id: str, listed: Sequence[Answer]) -> Iterator[str]:
     yield from _of_answers(listed)
     yield from _of_mistakes(exercise_id, listed)
     lab = exercises.path(exercise_id).parent
-    yield from _of_text(exercise_id, lab / course.LAB)
+    yield from to_do_in_text(exercise_id)
     yield from (f"{course.LAB}: {rule}" for rule in broken_rules(lab / course.LAB))
     yield from _of_linters(lab)
 
@@ -139,9 +139,9 @@ def _of_mistakes(exercise_id: str, listed: Sequence[Answer]) -> Iterator[str]:
         yield from (f"{_MISTAKES_PAGE}: no paragraph about `{key}` yet" for key in sorted(used - explained))
 
 
-def _of_text(exercise_id: str, master: Path) -> Iterator[str]:
+def to_do_in_text(exercise_id: str) -> Iterator[str]:
     """Yield a line for each fault in ``Exercise.text``, which maps sentences of the lab to criteria."""
-    exercise = exercises.get(exercise_id)
+    exercise, master = exercises.get(exercise_id), exercises.path(exercise_id).parent / course.LAB
     if not exercise.text:
         yield "text: map words of the task to the criteria that judge them (the argument text of the exercise)"
         return
@@ -158,6 +158,11 @@ def faults_of_text(exercise: Exercise, lab_text: str) -> Iterator[str]:
     words_of_lab = " ".join(lab_text.split())
     sentences = (" ".join(words.split()) for words in exercise.text)
     yield from (f"{course.LAB} does not say “{words}”" for words in sentences if words not in words_of_lab)
+    yield from (
+        f"“{words}” states a period, and no criterion judges it: a SameAsSolution takes rates={{topic: seconds}}"
+        for words, names in exercise.text.items()
+        if _PERIOD.search(words) and "rate" not in names
+    )
     judged = {name for names in exercise.text.values() for name in names.split()}
     known = {criterion.name for criterion in exercise.criteria}
     yield from (
@@ -170,6 +175,7 @@ def faults_of_text(exercise: Exercise, lab_text: str) -> Iterator[str]:
             yield f"counts has more than {_MAX_SENTENCES} sentences about {name or 'the exercise'}"
 
 
+_PERIOD = re.compile(r"(?i)\bevery [\d.]+ s\b")
 _MAX_SENTENCES = 2
 """The maximum number of sentences below a criterion, because a card must not read like a contract."""
 _SENTENCE = re.compile(r"[.!?](?= |$)")

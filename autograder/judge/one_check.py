@@ -57,6 +57,13 @@ MAX_WORDS = 500
 """The maximum length of one sentence of a verdict, in characters; it may quote the subject's output."""
 
 
+CUT = (
+    "The machine is busy, so the judge did not look again. After you have corrected what the card names, more criteria "
+    "may be met than it seems now."
+)
+"""A remark on a check that a busy machine has cut after a look that proves a mistake."""
+
+
 class TooManyEvents(Exception):
     """The subject said and sent more than the judge reads."""
 
@@ -188,6 +195,11 @@ def _check(
                 raise NotDelivered(NOT_DELIVERED)
     except TooManyEvents:
         verdict = _undecidable(exercise, seed)
+    except TooBusy:
+        # The machine left no time for a further look, but the last whole one may prove a mistake, such as a wrong name.
+        if verdict is None or not is_certain(exercise, evidence):
+            raise
+        verdict = replace(verdict, remarks=(*verdict.remarks, CUT))
     if crowded and not marks_crowded:
         raise _too_busy(verdict)
     return Checked(replace(verdict, seconds=round(time.monotonic() - began, 3)), evidence, crowded)
@@ -346,8 +358,8 @@ def diagnose(
 ) -> tuple[Diagnosis, str]:
     """Return the diagnosis of the first known mistake in the evidence, and the traceback that shows it, if any.
 
-    If no mistake is known, the diagnosis says where the run leaves the reference solution's. If that is not clear
-    either, it quotes the first criterion that is not met.
+    If no mistake is known, the diagnosis quotes the event at which the run leaves the reference solution's. If that is
+    not clear either, it quotes the first criterion that is not met.
 
     Another traceback is not returned. It may come from another run and from a correct line, but a student would take it
     for the mistake.

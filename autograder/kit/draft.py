@@ -28,6 +28,8 @@ POINTS = 10.0
 """The points of an exercise whose author does not say how many it is worth."""
 SHARE = 0.0
 """In place of points: an equal share of those that are left."""
+PART = 0.5
+"""The points of which each share is a multiple, so that a card shows no thirds."""
 View = TypeVar("View")
 View_co = TypeVar("View_co", covariant=True)
 Judge = Callable[[View, View], Finding]
@@ -89,7 +91,8 @@ class Draft(Generic[View]):
         title: The title of the card; it names the lab and the subject.
         task: One sentence that states the task.
         recipe: The recipe for the kind of subject.
-        points: The points of the exercise. The criteria for which no points are given share the rest equally.
+        points: The points of the exercise. The criteria for which no points are given share the rest equally, in whole
+            and half points, the first ones more if it does not come out even.
 
     Example::
 
@@ -288,13 +291,16 @@ class Draft(Generic[View]):
     def _with_points(self) -> tuple[Criterion, ...]:
         without = [one.name for one in self._criteria if one.points == SHARE]
         given = sum(one.points for one in self._criteria if one.points != SHARE)
-        if without and given >= self._points:
+        parts = (self._points - given) / PART
+        if parts < len(without):
             raise ValueError(
                 f"{self._id}: the other criteria have {given:g} of {self._points:g} points already: write points=... "
                 f"for {' and '.join(without)}"
             )
-        share = (self._points - given) / max(1, len(without))
-        return tuple(replace(one, points=share) if one.points == SHARE else one for one in self._criteria)
+        each, more = divmod(parts, max(1, len(without)))
+        # The first criteria get half a point more, as long as there is some; what is given may leave less than a half.
+        shares = {name: PART * (each + min(1.0, max(0.0, more - n))) for n, name in enumerate(without)}
+        return tuple(replace(one, points=shares.get(one.name, one.points)) for one in self._criteria)
 
     def _views(self, evidence: Evidence) -> tuple[View, View]:
         return self._recipe.seen(evidence), self._recipe.expected(evidence)

@@ -103,6 +103,12 @@ def test_folded_text_does_not_delay_the_first_task(lab: Path) -> None:
             "docs/mistakes.md: no paragraph about `counted_up`",
         ),
         ("battery.py", '        "every 0.5 s": "rate",\n', "", "text: the criterion rate is not mapped"),
+        (
+            "battery.py",
+            '": "rate"',
+            '": "charge"',
+            "text: “every 0.5 s” states a period, and no criterion judges it",
+        ),
         ("battery.py", '": "rate"', '": "rate volts"', "text: the criterion volts does not exist"),
         (
             "battery.py",

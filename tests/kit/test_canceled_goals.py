@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from random import Random
 from typing import TYPE_CHECKING, Any, cast
 from unittest.mock import MagicMock
@@ -79,6 +80,11 @@ def runs_made(first: Part, *, before: Evidence | None = None, monkeypatch: pytes
     return list(dict.fromkeys(made))
 
 
+def answers_no_more(part: Part) -> Part:
+    """The same run of a client that answers nothing in the end."""
+    return replace(part, events=[*part.events, Event(9.0, "unanswered", "/client")])
+
+
 ALL = [HONORED, CANCEL_REFUSED, AGREED, REFUSED]
 REJECTED = Part(
     REFUSED,
@@ -99,8 +105,9 @@ REJECTED = Part(
         # It has lost the points for all ends of goals.
         (run(HONORED, says="it is over"), [HONORED, CANCEL_REFUSED, REFUSED]),
         (run(HONORED, cancels=0), [HONORED, REFUSED]),
+        (answers_no_more(run(HONORED, cancels=0)), [HONORED]),
     ],
-    ids=["right", "says no end", "never asks"],
+    ids=["right", "says no end", "never asks", "answers no more"],
 )
 def test_the_fast_look_leaves_out_runs_that_can_change_no_points(
     first: Part, made: list[str], monkeypatch: pytest.MonkeyPatch

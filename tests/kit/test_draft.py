@@ -95,6 +95,17 @@ def test_criteria_without_points_share_what_the_others_leave() -> None:
     assert [one.points for one in draft.exercise().criteria] == [4.0, 4.0, 4.0]
 
 
+@pytest.mark.parametrize(
+    ("points", "shares"),
+    [(10.0, [3.5, 3.5, 3.0]), (6.0, [2.0, 2.0, 2.0]), (8.0, [3.0, 2.5, 2.5]), (1.75, [0.75, 0.5, 0.5])],
+)
+def test_shares_are_whole_or_half_points_and_sum_to_the_whole(points: float, shares: list[float]) -> None:
+    draft = Draft("lab.it", "", "", Recipe(), points=points)
+    for name in ("first", "second", "third"):
+        draft.criterion(name, "")(lambda *_: Finding(True, "", ""))
+    assert [one.points for one in draft.exercise().criteria] == shares
+
+
 def test_points_that_leave_nothing_to_share_are_an_error_that_says_what_to_write() -> None:
     draft = Draft("lab.it", "", "", Recipe())
     draft.asks("first", "", lambda _: Finding(True, "", ""), points=10)

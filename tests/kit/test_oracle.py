@@ -138,6 +138,54 @@ def test_messages_of_a_list_before_the_judge_stepped_the_clock_are_not_too_many(
     assert ("beat" not in failed(run(RIGHT, ten_more, early=early, simulated=simulated))) == passes
 
 
+def rated(*moments: float, simulated: bool = True) -> tuple[bool, str]:
+    """Return whether beats at these moments keep a rate of one in a second, and what the card says came."""
+    exercise = SameAsSolution("a.b", "A", "B", gives=lambda _: [], rates={"/beat": 1.0}).exercise()
+    beats = [Event(at, "message", "/beat", {}, at if simulated else None) for at in moments]
+    evidence = Evidence([Part("drawing 0", {}, beats)], Reference("a.b", INTERFACE, [Part("drawing 0")]))
+    (criterion,) = exercise.criteria
+    mistake = next(one for one in exercise.mistakes if one.key == "wrong_rate")
+    finding = criterion.judge(evidence)
+    assert (mistake.recognize(evidence) is None) == (finding.passed or len(moments) < 3)
+    return finding.passed, finding.seen
+
+
+EVERY_SECOND = range(10)
+
+
+@pytest.mark.parametrize("simulated", [True, False])
+@pytest.mark.parametrize(
+    ("moments", "passes", "seen"),
+    [
+        (EVERY_SECOND, True, "one every 1 s"),
+        ([moment / 10 for moment in EVERY_SECOND], False, "one every 0.1 s"),
+        ([moment * 2 for moment in EVERY_SECOND], False, "one every 2 s"),
+        ([moment // 2 for moment in range(20)], False, "one every 0"),
+        ([1], False, "1 message in all"),
+    ],
+    ids=["right", "ten times as often", "half as often", "told twice", "too few"],
+)
+def test_a_rate_that_the_task_asks_for_is_kept(
+    moments: Sequence[float], passes: bool, seen: str, simulated: bool
+) -> None:
+    kept, came = rated(*moments, simulated=simulated)
+    assert kept == passes
+    assert seen in came
+
+
+@pytest.mark.parametrize(
+    "moments",
+    [
+        (0, 1, 2, 3, 7.5, 8.5, 9.5),
+        (0, 1, 1.3, 2, 3, 4, 5, 6, 7),
+        (0, 0.95, 2, 2.95, 4, 4.95, 6),
+    ],
+    ids=["a silence", "one more at an input", "a clock that moves in steps"],
+)
+def test_a_rate_is_kept_if_the_usual_interval_is_right(moments: Sequence[float]) -> None:
+    assert rated(*moments)[0]
+
+
 @pytest.mark.parametrize(
     ("speed", "seen"),
     [

@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
+from random import Random
 from typing import TYPE_CHECKING, Any
+from unittest.mock import MagicMock
 
 import pytest
 
 from autograder.judge import one_check
+from autograder.kit.bench import Pace
 from autograder.kit.draft import Draft
 from autograder.kit.evidence import Event, Evidence, Part, Reference
 from autograder.kit.quests.quest import Quest
 from autograder.kit.quests.robot import Robot, Search
 
 if TYPE_CHECKING:
-    from random import Random
-
     from autograder.kit.model import Exercise
 
 TWIST, POINT, TRIGGER = "geometry_msgs/msg/Twist", "geometry_msgs/msg/Point", "std_srvs/srv/Trigger"
@@ -162,6 +163,16 @@ def test_an_answer_has_to_be_right_for_each_robot(
 def test_a_subject_that_stays_without_an_answer_never_ended() -> None:
     stays = part(MIA, "still looking", name="robot 0", ending="")
     assert _judged(obeys(), stays) == (0, "never_ended")
+
+
+@pytest.mark.parametrize(
+    ("said", "made"), [([SAID], 2), (["no idea"], 1)], ids=["an answer", "no answer, so no point is left"]
+)
+def test_a_subject_meets_further_robots_only_while_points_are_left(said: list[str], made: int) -> None:
+    seen = part(MIA, *said)
+    bench = MagicMock(pace=Pace.FAST, random=Random(0), seen=lambda: seen, keep=lambda _: False)
+    Quest(lambda _: {"one": MIA, "other": NOA}).scenario(bench)
+    assert bench.part.call_count == made
 
 
 def doors() -> Exercise:

@@ -49,6 +49,10 @@ class Lines:
     same: Sequence[Line]
 
 
+NOTHING_REACHED = "nothing yet: this counts once your robot has reached something"
+"""The words of the card for a line of ``never`` before a line of ``reaches`` was reached."""
+
+
 class Course:
     """Steps the world of one mission, and notes what became of its lines.
 
@@ -115,7 +119,7 @@ class Course:
         for line in self._lines.never:
             # A robot that never leaves its place breaks no rule, and has done nothing for the points either.
             did = bool(self._reached) or not self._lines.reaches
-            broken = self._broken.get(line.name, "" if did else "nothing was reached")
+            broken = self._broken.get(line.name, "" if did else NOTHING_REACHED)
             self._bench.note(line.name, holds=not broken, text=broken or "never")
             holds.append(not broken)
         for line in self._lines.same:

@@ -20,16 +20,17 @@ from autograder.kit.mission.course import MISTAKE, Course, Line, Lines
 from autograder.kit.mission.moment import Moment, World
 from autograder.kit.mission.robot import Robot
 from autograder.kit.mission.steps import Goal, Journey, Step
+from autograder.kit.mistakes.common_mistakes import KEEP_THE_PERIOD
 from autograder.kit.model import Finding
 from autograder.kit.oracle.steps import To
-from autograder.robot.motion import Pose, Wall, Walls
+from autograder.robot.motion import ROOM, Pose, Wall, Walls
 
 if TYPE_CHECKING:
     from autograder.kit.bench import Bench
     from autograder.kit.evidence import Part
     from autograder.kit.model import Exercise
 
-__all__ = ["Goal", "Mission", "Moment", "Pose", "To", "Wall", "Walls", "World"]
+__all__ = ["ROOM", "Goal", "Mission", "Moment", "Pose", "To", "Wall", "Walls", "World"]
 
 Row = Sequence[Any]
 """A line of the card: its text, a function of a :class:`Moment`, and perhaps a name without blanks and the points."""
@@ -39,7 +40,6 @@ MOVEMENT = (
     "set what the task asks for before you publish it, and leave the other numbers alone."
 )
 WRONG_RATE = "Your commands come {}; the task asks for another rate."
-PERIOD = "Give create_timer the period in seconds, and leave time.sleep out of the callback."
 NOTHING: Mapping[str, Any] = MappingProxyType({})
 PART = "mission"
 RECORDED = (
@@ -122,6 +122,7 @@ class Mission:
         kinds = (("yes", reaches), ("never", never), ("", same))
         self._lines = Lines(*([_line(wants, *row) for row in rows] for wants, rows in kinds))
         self._knows = [found for _, found, *_ in knows]
+        self._is_compared = bool(drives or rate)
         self._within, self._until, self._quiet, self._threads = within, until, quiet, threads
         recipe = driving.Driving(self._scenario, *roles)
         self._draft = Draft(exercise_id, title, task, recipe, points=points)
@@ -140,14 +141,16 @@ class Mission:
             shown = partial(_shown, number)
             self._draft.knows(key, shown, says, next_step, **(how[0] if how else {}))
         if rate:
-            self._draft.knows("wrong_rate", driving.another_rate, WRONG_RATE, PERIOD)
+            self._draft.knows("wrong_rate", driving.another_rate, WRONG_RATE, KEEP_THE_PERIOD)
 
     def exercise(self, **more: Any) -> Exercise:
         """Return the finished exercise. For ``more`` see :meth:`autograder.kit.draft.Draft.exercise`."""
         return self._draft.exercise(**{"recorded": RECORDED, **more})
 
     def _scenario(self, bench: Bench) -> None:
-        bench.part(PART)
+        # Each solution goes its own way, so a card must not ask for the messages of the recorded one.
+        is_free = bool(bench.reference.parts) and not self._is_compared
+        bench.part(PART, **({"goes": "its own way"} if is_free else {}))
         ends = bench.reference.interface
         for topic, kind in ends.get("publisher", {}).items():
             bench.listen(topic, kind)

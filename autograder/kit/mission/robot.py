@@ -150,7 +150,8 @@ class Robot:
         walking = [velocity for walk in self._walks if (velocity := walk.next(now)) is not None]
         told = self._told if silent < OBEYS_FOR else STILL
         moved = move(now.pose, walking[0] if walking else told, seconds, now.world.walls)
-        stood = now.stood + seconds if moved.pose == now.pose else 0.0
+        stands = moved.pose == now.pose and not moved.bumped
+        stood = now.stood + seconds if stands else 0.0
         self.now = replace(
             now, pose=moved.pose, velocity=moved.velocity, bumped=moved.bumped, stood=stood, silent=silent,
             lamp=next((bool(one) for one in reversed(_switched(now))), False),

@@ -133,7 +133,9 @@ class CancelsGoal(ActionClient):
             if tells_of_cancel(first):
                 self._run(bench, AGREED, first)
         before = bench.before
-        if not first.of("goal") or (before and not refused_as_seen(before) and bench.keep(REFUSED)):
+        if not first.of("goal") or first.of("unanswered"):
+            return  # a client that no longer answers at all has lost the next run, too
+        if before and not refused_as_seen(before) and bench.keep(REFUSED):
             return
         bench.part(REFUSED)
         prepared = needs_no_search(bench, first)

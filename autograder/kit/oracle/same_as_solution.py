@@ -19,7 +19,7 @@ from autograder.kit.bench import Pace
 from autograder.kit.counterparts import Qos
 from autograder.kit.draft import POINTS, Draft
 from autograder.kit.mistakes import unfinished
-from autograder.kit.mistakes.common_mistakes import NOT_LATCHED, is_not_latched
+from autograder.kit.mistakes.common_mistakes import KEEP_THE_PERIOD, NOT_LATCHED, is_not_latched
 from autograder.kit.model import Advice, Finding, Mistake
 from autograder.kit.oracle.goal_sender import GoalSender
 from autograder.kit.oracle.outputs import Kind, Output
@@ -27,6 +27,8 @@ from autograder.kit.oracle.steps import Goal, Serves, Sets, Step, To, Turn, para
 from autograder.kit.recipes.own_scenario import ENDPOINTS, QUIET, Met, OwnScenario, meet
 
 if TYPE_CHECKING:
+    from collections.abc import Container
+
     from autograder.kit.bench import Bench
     from autograder.kit.evidence import Evidence, Part, Reference
     from autograder.kit.model import Exercise
@@ -101,7 +103,9 @@ class _Drawn(OwnScenario):
 
     def _agree(self, seen: Part, expected: Part) -> bool:
         made, due = ([e.data["made"] for e in part.of("noted", ENDPOINTS)] for part in (seen, expected))
-        return made == due and all(output.compared(seen, expected).passed for output in self._outputs)
+        # The rate of a recorded answer is not known, because a recording keeps no messages.
+        compared = [output for output in self._outputs if output.kind is not Kind.RATE]
+        return made == due and all(output.compared(seen, expected).passed for output in compared)
 
 
 class SameAsSolution:
@@ -128,7 +132,11 @@ class SameAsSolution:
         late_after: Seconds of the subject's time after which the judge subscribes, and asks for the last message, too.
         qos: The topics on which the QoS counts: the judge's endpoint gets the QoS of the solution's, and an endpoint
             that does not match gets or tells nothing.
-        every: True to compare all messages of a step, not only the last: for a node that answers each input.
+        every: The topics of which all messages of a step are compared, not only the last one, because the task asks for
+            one message for each input; True for all of ``tells``.
+        rates: The topics for which the task asks for a period, with this period in seconds. A node that publishes more
+            often or less often fails; it may be silent for some time, or publish once more at an input. On other
+            topics, the period is the student's.
         pause: Seconds of the subject's time after each input.
         tolerance: The absolute or relative tolerance for numbers.
         roles: The roles of the subject's endpoints, the most telling first.
@@ -159,14 +167,16 @@ class SameAsSolution:
         waits: float = 0.0,
         late_after: float = 0.0,
         qos: Sequence[str] = (),
-        every: bool = False,
+        every: bool | Container[str] = False,
+        rates: Mapping[str, float] = NOTHING,
         pause: float = PAUSE,
         tolerance: float = TOLERANCE,
         roles: Sequence[str] = ("publisher", "subscription"),
         points: float = POINTS,
     ) -> None:
         self._id, self._gives, self._serves = exercise_id, gives, serves
-        self._every, self._pause, self._tolerance = every, pause, tolerance
+        self._every = tells if every is True else every or ()
+        self._pause, self._tolerance = pause, tolerance
         self._waits, self._late_after, self._qos = waits, late_after, qos
         kinds = {
             Kind.STEPS: tells,
@@ -178,6 +188,7 @@ class SameAsSolution:
             for kind, outputs in kinds.items()
             for name, paths in outputs.items()
         ]
+        self._outputs += [Output(name, (), Kind.RATE, tolerance, period) for name, period in rates.items()]
         is_timed = any(isinstance(step, (int, float)) for step in gives(Random(0)))
         drawn = _Drawn(self._scenario, self._outputs, roles, is_timed=is_timed)
         self._draft = Draft(exercise_id, title, task, drawn, points=points)
@@ -191,8 +202,13 @@ class SameAsSolution:
                 f'Declare it in __init__, with its default: self.declare_parameter("{output.name}", …).',
                 certain=True,
             )
+        for output in self._of(Kind.RATE):
+            says = (
+                f"On {output.name} your messages come {{}}; the task asks for one every {output.period:g} s."
+            )
+            self._draft.knows("wrong_rate", output.another_rate, says, KEEP_THE_PERIOD)
         for output in self._outputs:
-            self._draft.criterion(output.name.strip("/"), output.title)(partial(_by_one_server, output))
+            self._draft.criterion(output.key, output.title)(partial(_by_one_server, output))
 
     def exercise(self, **more: Any) -> Exercise:
         """Return the finished exercise. For ``more`` see :meth:`autograder.kit.draft.Draft.exercise`."""
@@ -290,7 +306,7 @@ class SameAsSolution:
             if isinstance(step, Goal) and output.name == step.name:
                 until = following.first if following else None
                 values = step.outcomes(replace(seen, events=seen.events[:until]), output.paths)
-            elif not self._every:
+            elif output.name not in self._every:
                 values = values[-1:]
             bench.note(output.name, step=turn.number, given=given, values=values)
 

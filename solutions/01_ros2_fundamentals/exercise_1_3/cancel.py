@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import sys
-from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -42,8 +41,6 @@ FIRST, LAST = 3, 5
 WINDOW = f"after {FIRST} to {LAST} feedback messages"
 AGAIN = "nothing more is asked for"
 ENDS = "says `canceled`, `succeeded` or `aborted`, or `status` and the number, as each goal ended"
-WAITS_FOR_ITSELF = ("nested_spin", "call_in_same_group")
-"""Hangs that no time can end. In the others the client may be busy with something that comes to an end."""
 
 
 def numbers(feedbacks: int) -> list[int]:
@@ -207,7 +204,7 @@ MISTAKES = (
         "Keep it alive until the result is there: rclpy.spin(your_node), or rclpy.spin_until_future_complete("
         "your_node, your_future, timeout_sec=30.0). A single spin_once takes in one thing only.",
     ),
-    *(replace(hang, certain=hang.key in WAITS_FOR_ITSELF) for hang in HANGS),
+    *HANGS,
     mistake(
         "gave_up_too_early",
         lost_goal,
