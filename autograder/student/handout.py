@@ -42,6 +42,7 @@ PAGES = (
     "learning-outcomes.md",
     "mistakes.md",
     "fairness.md",
+    "glossary.md",
     "ros2-command.md",
     "robot.md",
 )

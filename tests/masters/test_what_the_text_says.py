@@ -32,11 +32,11 @@ def text_of(lab: str) -> str:
         ),
         # An execute callback that awaits can be canceled with one thread.
         (
-            "lab_1_4",
+            "lab_1_4_robot",
             "**Common pitfall.** A cancel request works only with",
             "because it is `async` and awaits, can be canceled with one thread",
         ),
-        ("lab_1_4", "Pages about ROS 1 call", "Other texts say *preemptable*"),
+        ("lab_1_4_robot", "Pages about ROS 1 call", "Other texts say *preemptable*"),
         # Inside one program a second type is an error.
         (
             "inspecting_topics",
@@ -56,13 +56,13 @@ def test_what_was_untrue_is_said_as_it_is(lab: str, untrue: str, true: str) -> N
     [
         ("00_nervous_system", "inter-process communication*, IPC"),
         ("00_nervous_system", "`docs/learning-outcomes.md`"),
-        ("summary", "**inter-process communication (IPC)**"),
-        ("summary", "| | how many | preemptable | examples |"),
+        ("quiz", "**inter-process communication (IPC)**"),
+        ("quiz", "| | how many | preemptable | examples |"),
         ("summary", "`docs/learning-outcomes.md`"),
         ("summary", "*Bridging Python Agents to ROS 2*"),
         ("summary", 'check("summary.patrol", Patrol)'),
         ("exercise_1_1", 'check("exercise_1_1.package", "ros2_ws")'),
-        ("lab_1_4", "`rclpy.shutdown()` in `on_result`, the last callback of the chain"),
+        ("lab_1_4_robot", "`rclpy.shutdown()` in `on_result`, the last callback of the chain"),
         *((lab, "robot = start_robot()") for lab in ("exercise_1_1", "exercise_1_2", "exercise_1_3")),
     ],
 )

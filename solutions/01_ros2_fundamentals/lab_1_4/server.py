@@ -126,9 +126,7 @@ EXERCISE = server.exercise(
     remarks=(sends.remark,),
     text={
         "Reject a goal whose order is negative or greater than 46, and accept any other.": "refuse sequence",
-        "0 is a good order: its sequence is a single number.": "sequence",
         "Return one of two constants, `GoalResponse.ACCEPT` or `GoalResponse.REJECT`.": "refuse",
-        "Call exactly one of the last three:": "sequence cancel",
         "A canceled goal has a result, too: the numbers so far.": "cancel",
         "leave the loop if a cancel is requested": "cancel",
         "append the next number": "sequence",

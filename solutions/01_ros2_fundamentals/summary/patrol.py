@@ -28,7 +28,7 @@ def cancel(now: Moment) -> str:
 
 EXERCISE = Mission(
     "summary.patrol",
-    "The chapter in short · The patrol",
+    "A robot on patrol · The node",
     "Drive one round, switch the lamp on, then walk towards the door and cancel the walk in front of it.",
     roles=("publisher", "client", "action_client"),
     draws=lambda random: [World(start=Pose(random.uniform(0.8, 1.4), 2.0, AWAY))],
@@ -74,10 +74,10 @@ EXERCISE = Mission(
     text={
         "Publish a `Twist` with `linear.x = 0.4` and `angular.z = 1.0`": "round rate",
         "Twelve commands make one round.": "round",
-        "At the twelfth, cancel `self.timer`, and call the function `switch_lamp` of step 2": "round lamp",
-        "`switch_lamp` calls the service `lamp`, once, to switch the lamp on.": "lamp",
+        "At the twelfth, cancel `self.timer`, and call the service `lamp`, once, to switch the lamp on.": "round lamp",
+        "Let the future call `self.on_lamp`.": "",
         "When the lamp has answered, send the goal x = 4.0, y = 2.0, the door, to the action `walk_to`, once.": "door",
-        "Pass `patrol.on_feedback` for the feedback": "cancel",
+        "Pass `self.on_feedback` for the feedback": "cancel",
         "At the first feedback that says that less than 1 metre is left, ask once to cancel the goal.": "cancel",
     },
     counts={
