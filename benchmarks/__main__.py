@@ -15,7 +15,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from autograder import course
-from autograder.grading.running.execution_backends import cores
 from autograder.safe_files import fresh_folder
 from benchmarks import figures, results
 from benchmarks.box_start import measure_box_start
@@ -26,7 +25,6 @@ from benchmarks.interrupt import measure_interrupts
 from benchmarks.machine import Usage, Watch, machine
 from benchmarks.ours import OurRun, diagnosed, problems_of, run_ours
 from benchmarks.overload import differences, run_overloaded, verdicts_of
-from benchmarks.profiling import profile_grade
 from benchmarks.regrade import measure_regrade
 from benchmarks.stock import StockRun, run_stock
 
@@ -35,8 +33,6 @@ if TYPE_CHECKING:
 
 RESULTS = Path(__file__).with_name("results.json")
 PAGE = course.root() / "docs" / "performance.md"
-MOST_AT_ONCE = 12
-"""Notebooks of the floor for each core, which wait most of the time: about as many as a grading run lets in."""
 
 
 @dataclass(frozen=True)
@@ -48,7 +44,7 @@ class Form:
         students: In the class that is graded.
         assignments: Of the class; all where empty.
         sampled: Students that stock nbgrader grades, in as many runs.
-        floor_rounds: How often the floor is measured.
+        floor_rounds: How often the check cells are measured.
         regraded: Students in the class that is regraded.
         overloaded: Students in the class that is graded under load.
         turns: Of starting a box.
@@ -99,7 +95,7 @@ class _Run:
                 self.differences.append(f"{part.__name__} could not be measured: {reason}")
 
     def class_against_stock(self) -> None:
-        """Throughput, points, CPU against the floor, cores, memory, check cells."""
+        """Throughput, points, cores, memory, check cells."""
         form = self.form
         made = make_class(self.folder / "class", form.students, form.assignments)
         sampled = made.students[: form.sampled]
@@ -113,7 +109,7 @@ class _Run:
                     ours = run_ours(made, self.folder / "grade.log")
         assert ours is not None
         floor: list[Floor] = []
-        with _told("the floor"), Watch() as watch:
+        with _told("check cells"), Watch() as watch:
             for _ in range(form.floor_rounds):
                 floor += measure_floor(made, sampled)
         load = _load(watch)
@@ -122,25 +118,10 @@ class _Run:
         self.figures += [
             figures.throughput(stock, ours, form.students),
             figures.points(wrong, honest),
-            self.cpu_against(floor, made, ours),
             figures.busy(ours),
             *figures.memory(ours),
             *figures.checks(floor, load),
         ]
-
-    def cpu_against(self, floor: list[Floor], made: BenchmarkClass, ours: OurRun) -> results.Figure:
-        """CPU against the floor: of the notebooks without builds, graded alone if the others have builds."""
-        building = {one.notebook for one in floor if any(built for _, built in one.checks)}
-        others = tuple(name for name in made.assignments if name not in building)
-        if building and others:
-            with _told(f"autograder grade, {len(others)} assignments without builds"):
-                made = make_class(self.folder / "plain", self.form.students, others)
-                ours = run_ours(made, self.folder / "plain.log")
-        some = made.students[: max(1, len(made.students) // 2)]
-        at_once = min(MOST_AT_ONCE * cores(), len(some) * len(others))
-        with _told(f"the floor, {at_once} notebooks at once"), Watch() as watch:
-            crowded = measure_floor(made, some, at_once=at_once, building=False)
-        return figures.cpu(floor, crowded, ours, f"{figures.load_of(ours.usage)}; floor: {_load(watch)}")
 
     def small_costs(self) -> None:
         """What a box adds."""
@@ -214,7 +195,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
         "--short", action="store_true", help="a minute instead of half an hour; nothing is kept"
     )
     parser.add_argument("--students", type=int, help="students in the class that is graded")
-    parser.add_argument("--profile", action="store_true", help="only profile the grader's own process")
     parser.add_argument("--output", type=Path, help="keep the figures here; beside this program by default")
     chosen = parser.parse_args(arguments)
     form = SHORT if chosen.short else FULL
@@ -223,9 +203,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
     os.environ.setdefault("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
     folder = fresh_folder("benchmark-")
     try:
-        if chosen.profile:
-            profile_grade(folder / "class")
-            return 0
         found = measure(form, folder)
     finally:
         shutil.rmtree(folder, ignore_errors=True)
@@ -265,9 +242,6 @@ NOTES = (
     "leaves out the given cells that only demonstrate `ros2` (`c.WireExecute.demonstrations` has them run).",
     "Every fourth student has one wrong answer. Endless loops are left out: stock nbgrader would sit out each "
     "alone.",
-    "The floor runs the cells of a grading run and the judge's work in warm processes: no kernel, box, "
-    "gradebook or page, and no notebook that builds a workspace. Like the class, it runs many at once: a CPU "
-    "second of a busy core does less than one of an idle core.",
     "`autograder grade` builds the packages of the course's own solutions once, ahead of all classes, and "
     "these students hand in those; stock nbgrader builds at each check.",
 )

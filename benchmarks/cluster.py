@@ -28,6 +28,7 @@ from autograder.safe_files import fresh_folder
 from benchmarks.classes import make_class
 from benchmarks.machine import Machine, Watch, machine
 from benchmarks.ours import AUTOGRADER
+from benchmarks.results import replace_between
 from environment.python_child import installed_program
 
 if TYPE_CHECKING:
@@ -131,11 +132,7 @@ def put_into(page: Path, costs: Costs) -> None:
     Raises:
         ValueError: The page has no place for them.
     """
-    before, begin, rest = page.read_text(encoding="utf-8").partition(BEGIN)
-    _, end, after = rest.partition(END)
-    if not begin or not end:
-        raise ValueError(f"{page} has no place for the costs: {BEGIN} … {END}")
-    page.write_text(f"{before}{BEGIN}\n\n{markdown(costs)}\n{END}{after}", encoding="utf-8")
+    replace_between(page, BEGIN, END, markdown(costs))
 
 
 def measure(folder: Path) -> Costs:

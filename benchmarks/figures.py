@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from benchmarks.stock import StockRun
 
 MB = 1e6
-THROUGHPUT, CPU, BUSY, BOX_MB, BOX_MS = 30.0, 1.5, 0.85, 150.0, 150.0
+THROUGHPUT, BUSY, BOX_MB, BOX_MS = 30.0, 0.85, 150.0, 150.0
 CHECK_MEDIAN, CHECK_P95, REGRADE, EXECUTE_BEYOND, INTERRUPT = 0.5, 1.0, 2.0, 5.0, 3.0
 
 
@@ -43,34 +43,6 @@ def throughput(stock: Sequence[StockRun], ours: OurRun, students: int) -> Figure
         ratio >= THROUGHPUT,
         f"{load_of(ours.usage)}; stock: {load_of(stock[0].usage)}",
     )
-
-
-def cpu(alone: Sequence[Floor], crowded: Sequence[Floor], ours: OurRun, load: str) -> Figure:
-    """CPU time of a notebook against the floor, of notebooks that build nothing.
-
-    Args:
-        alone: The floor, one notebook after the other.
-        crowded: The floor with as many at once as a grading run has.
-        ours: The grading run.
-        load: The machine meanwhile.
-    """
-    aim = f"{CPU:g} times"
-    name = "CPU spent per notebook against the floor, notebooks that build no workspace"
-    if ours.usage.own_cpu is None or not _costs(crowded) or not _costs(alone):
-        return Figure(name, aim, "not counted on this system", None, load)
-    spent, least = ours.usage.own_cpu / ours.notebooks, statistics.fmean(_costs(crowded))
-    return Figure(
-        name,
-        aim,
-        f"{spent / least:.2f} times: {spent:.2f} s against {least:.2f} s "
-        f"({statistics.fmean(_costs(alone)):.2f} s on an idle machine, one after the other)",
-        spent / least <= CPU,
-        load,
-    )
-
-
-def _costs(floor: Sequence[Floor]) -> list[float]:
-    return [one.cpu for one in floor if one.cpu is not None and not any(built for _, built in one.checks)]
 
 
 def busy(ours: OurRun) -> Figure:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import subprocess
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -18,7 +17,6 @@ from environment.python_child import python_child
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from autograder.grading.grading_task import Task
     from benchmarks.classes import BenchmarkClass
 
 Cell = tuple[str, float, float, str]
@@ -52,17 +50,12 @@ def builds(exercise: str) -> bool:
     return bool(exercises.get(exercise).runner)
 
 
-def measure_floor(
-    made: BenchmarkClass, students: Sequence[str], *, at_once: int = 1, building: bool = True
-) -> list[Floor]:
-    """Run the notebooks of some students exactly as they are graded.
+def measure_floor(made: BenchmarkClass, students: Sequence[str]) -> list[Floor]:
+    """Run the notebooks of some students exactly as they are graded, one after the other.
 
     Args:
         made: The class; nothing is written into it.
         students: Whose notebooks.
-        at_once: How many run beside each other. A CPU second of a busy core does less than one of an idle core, so a
-            grader that keeps its cores busy is compared with a floor that does, too.
-        building: Also those that build a workspace.
     """
     directory = ClassDirectory(made.path)
     tasks = [
@@ -70,14 +63,7 @@ def measure_floor(
         for submission in directory.submissions()[0]
         if submission.student in students
         for task in tasks_of(directory, submission)
-        if building or not any(cell.check and builds(cell.check.exercise) for cell in task.cells)
     ]
-    with ThreadPoolExecutor(at_once) as pool:
-        return [one for part in pool.map(_run, (tasks[i::at_once] for i in range(at_once))) for one in part]
-
-
-def _run(tasks: Sequence[Task]) -> list[Floor]:
-    """In one warm process, one after the other."""
     done = subprocess.run(
         python_child("-m", "benchmarks.warm_notebook").command,
         input=b"".join(msgspec.json.encode(task) + b"\n" for task in tasks),

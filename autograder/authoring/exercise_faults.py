@@ -5,15 +5,19 @@ They include each house rule that the lab's master breaks, such as the limit on 
 
 from __future__ import annotations
 
+import contextlib
 import itertools
 import os
 import re  # noqa: TID251  (not what a student handed in)
 import subprocess
 from collections import Counter
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from autograder import course, exercises
+from autograder.judge import evidence_files
+from autograder.kit.evidence import Event, Evidence
 from autograder.masters.code_cells import find_region
 from autograder.masters.master_cells import COPY_LINE, CellRole, parse_master
 from autograder.masters.source_notebooks import named_cells
@@ -24,6 +28,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
     from autograder.authoring.answer_bank import Answer
+    from autograder.kit.evidence import Reference
     from autograder.kit.model import Exercise
     from autograder.masters.source_notebooks import NamedCell
 
@@ -32,6 +37,8 @@ _ENOUGH = {"right": 5, "wrong": 8}
 """The minimum numbers of right and wrong answers that an exercise needs in the bank. An exercise with fewer answers
 works, but its author cannot know whether its verdicts are fair.
 """
+_OUTPUTS = ("publisher", "service", "action_server")
+"""The roles of endpoints through which a node tells something. The others only let it know."""
 _MISTAKES_PAGE = "docs/mistakes.md"
 """The page that explains each diagnosis to students. The key of the diagnosis is the heading of its paragraph."""
 _PACKAGE = Path(course.__file__).resolve().parents[1]
@@ -50,10 +57,11 @@ def still_to_do(exercise_id: str, listed: Sequence[Answer]) -> Iterator[str]:
         autograder.exercises.BrokenExercise: The exercise's file is not a valid exercise.
         autograder.masters.master_files.MasterError: The lab's master cannot be used.
     """
+    yield from _of_endpoints(exercises.get(exercise_id))
     yield from _of_answers(listed)
     yield from _of_mistakes(exercise_id, listed)
     lab = exercises.path(exercise_id).parent
-    yield from _of_text(exercise_id, lab / course.LAB)
+    yield from to_do_in_text(exercise_id)
     yield from (f"{course.LAB}: {rule}" for rule in broken_rules(lab / course.LAB))
     yield from _of_linters(lab)
 
@@ -75,6 +83,51 @@ def _of_answers(listed: Sequence[Answer]) -> Iterator[str]:
             )
 
 
+def _of_endpoints(exercise: Exercise) -> Iterator[str]:
+    if exercises.reference_path(exercise.id).exists():
+        for name in unasked_outputs(exercise, evidence_files.load_reference(exercise.id)):
+            yield (
+                f"endpoints: no criterion asks for {name}, which your solution has. Add one; or write "
+                f'unasked=("{name}",) and record again, then students need not have it'
+            )
+
+
+def unasked_outputs(exercise: Exercise, recorded: Reference) -> list[str]:
+    """Return the names of the recorded solution's outputs without which all criteria would still be met."""
+    names = sorted({name for role in _OUTPUTS for name in recorded.interface.get(role, ())})
+    # A recording may lack what a criterion needs, such as the words of a program. Then nothing can be concluded.
+    if not _meets_all(exercise, _without(recorded, "")):
+        return []
+    return [name for name in names if _meets_all(exercise, _without(recorded, name))]
+
+
+def _meets_all(exercise: Exercise, evidence: Evidence) -> bool:
+    # A criterion that cannot decide at all without an endpoint depends on it.
+    with contextlib.suppress(Exception):
+        return all(criterion.judge(evidence).passed for criterion in exercise.criteria)
+    return False
+
+
+def _without(recorded: Reference, gone: str) -> Evidence:
+    """Return the recorded solution as evidence, as it would be without its endpoints of a name."""
+    ends = {
+        role: {name: of for name, of in ends.items() if name != gone}
+        for role, ends in recorded.interface.items()
+    }
+    there = Event(0.0, "interface", "graph", {"nodes": ["/solution"], **ends})
+    of_others = {name for ends in ends.values() for name in ends} if gone else None
+    parts = []
+    for part in recorded.parts:
+        # A note about no endpoint, such as the place at which a robot stood, may be a result of the missing one.
+        kept = [
+            event
+            for event in part.events
+            if event.name != gone and (of_others is None or event.kind != "noted" or event.name in of_others)
+        ]
+        parts.append(replace(part, events=[there, *kept]))
+    return Evidence(parts, recorded)
+
+
 def _of_mistakes(exercise_id: str, listed: Sequence[Answer]) -> Iterator[str]:
     page = course.root() / _MISTAKES_PAGE
     if page.is_file():
@@ -86,9 +139,9 @@ def _of_mistakes(exercise_id: str, listed: Sequence[Answer]) -> Iterator[str]:
         yield from (f"{_MISTAKES_PAGE}: no paragraph about `{key}` yet" for key in sorted(used - explained))
 
 
-def _of_text(exercise_id: str, master: Path) -> Iterator[str]:
+def to_do_in_text(exercise_id: str) -> Iterator[str]:
     """Yield a line for each fault in ``Exercise.text``, which maps sentences of the lab to criteria."""
-    exercise = exercises.get(exercise_id)
+    exercise, master = exercises.get(exercise_id), exercises.path(exercise_id).parent / course.LAB
     if not exercise.text:
         yield "text: map words of the task to the criteria that judge them (the argument text of the exercise)"
         return
@@ -105,6 +158,11 @@ def faults_of_text(exercise: Exercise, lab_text: str) -> Iterator[str]:
     words_of_lab = " ".join(lab_text.split())
     sentences = (" ".join(words.split()) for words in exercise.text)
     yield from (f"{course.LAB} does not say “{words}”" for words in sentences if words not in words_of_lab)
+    yield from (
+        f"“{words}” states a period, and no criterion judges it: a SameAsSolution takes rates={{topic: seconds}}"
+        for words, names in exercise.text.items()
+        if _PERIOD.search(words) and "rate" not in names
+    )
     judged = {name for names in exercise.text.values() for name in names.split()}
     known = {criterion.name for criterion in exercise.criteria}
     yield from (
@@ -117,6 +175,7 @@ def faults_of_text(exercise: Exercise, lab_text: str) -> Iterator[str]:
             yield f"counts has more than {_MAX_SENTENCES} sentences about {name or 'the exercise'}"
 
 
+_PERIOD = re.compile(r"(?i)\bevery [\d.]+ s\b")
 _MAX_SENTENCES = 2
 """The maximum number of sentences below a criterion, because a card must not read like a contract."""
 _SENTENCE = re.compile(r"[.!?](?= |$)")

@@ -11,7 +11,7 @@ from autograder import exercises
 from autograder.authoring import reference_files
 from autograder.authoring.answer_bank import Answer, Turn, answers, answers_folder, judge_all, warm_up
 from autograder.authoring.answer_tables import BadTable, CannotEdit
-from autograder.authoring.exercise_faults import still_to_do
+from autograder.authoring.exercise_faults import still_to_do, to_do_in_text
 from autograder.cards.text_rendering import card_text
 from autograder.command_name import COMMAND
 from autograder.safe_files import HeldFolder
@@ -33,6 +33,8 @@ waits.
 
 SLOW = 10.0
 """Seconds from which on a check is slow, so that its author is told which step took longest."""
+LONG = 3.0
+"""Seconds from which on a wait between two events is long enough to be named."""
 _SLOW_STEP = "the slowest step: "
 
 
@@ -76,17 +78,17 @@ class _Tried(Answer):
             file = self.folder / f"{self.short_name}.txt"
             file.parent.mkdir(parents=True, exist_ok=True)
             file.write_text("".join(_transcript(found.evidence)), encoding="utf-8")
-        if found is not None and verdict.seconds > SLOW:
-            step = slowest_step(found.evidence, verdict.seconds)
+        is_slow = verdict.seconds > SLOW
+        if found is not None and is_slow and (step := slowest_step(found.evidence, verdict.seconds)):
             verdict = replace(verdict, remarks=(*verdict.remarks, f"{_SLOW_STEP}{step}"))
         return to_json(verdict)
 
 
 def slowest_step(evidence: Evidence, seconds: float) -> str:
-    """Return in words between which two events of a check most time passed.
+    """Return in words between which two events of a check most time passed; empty if no wait between two was long.
 
     Args:
-        seconds: The duration of the check. What no events explain passed after the last ones.
+        seconds: The duration of the check, with the build and the start of the subject, of which there are no events.
     """
     waits = [(0.0, "")]
     looks = [evidence.before, evidence] if evidence.before is not None else [evidence]
@@ -96,9 +98,8 @@ def slowest_step(evidence: Evidence, seconds: float) -> str:
             between = f"between {one.kind} {one.name} and {other.kind} {other.name}"
             waits.append((other.t - one.t, f"{where}, {between}"))
         seconds -= part.events[-1].t if part.events else 0.0
-    waits.append((seconds, "after the last events, before the start of a run, or in the build"))
     longest, when = max(waits)
-    return f"{longest:.1f} s {when}"
+    return f"{longest:.1f} s {when}" if longest >= max(seconds, LONG) else ""
 
 
 def _transcript(evidence: Evidence) -> Iterator[str]:
@@ -166,9 +167,9 @@ def try_exercise(
     tell(f"\n{count}, {len(surprises) or 'none'} not as expected")
     for line in gifts:
         tell(f"the unsolved notebook earns points: {line}")
-    if not only:
-        for line in still_to_do(exercise_id, wanted):
-            tell(f"to do: {line}")
+    # With a part of the answers, what the bank lacks cannot be told.
+    for line in to_do_in_text(exercise_id) if only else still_to_do(exercise_id, wanted):
+        tell(f"to do: {line}")
     return not surprises and not gifts
 
 

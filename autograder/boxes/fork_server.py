@@ -24,7 +24,7 @@ import socket
 import subprocess
 import sys
 import traceback
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
@@ -246,7 +246,8 @@ class Addresses:
         supervisors: The address used by :class:`autograder.boxes.sandbox.Enclosure`; empty without a sandbox.
         kernels: The address used by :class:`autograder.execution.jupyter_kernel.Kernel`.
         judges: The address used to start judges.
-        programs: The address used by :meth:`autograder.boxes.sandbox.Enclosure.ros2`; empty without a sandbox.
+        programs: The address used by :meth:`autograder.boxes.sandbox.Enclosure.ros2`; empty without a sandbox, and
+            before :meth:`ForkServers.with_programs`.
     """
 
     supervisors: str
@@ -256,12 +257,12 @@ class Addresses:
 
 
 class ForkServers:
-    """The fork servers of a batch, which are started together.
+    """The fork servers of a batch, which are started together, except that for programs.
 
     Args:
         judge_module: The module that the judges' fork server serves. It is a parameter, because boxes do not import
             the judge.
-        boxed: True to start the fork servers for supervisors and programs, too.
+        boxed: True to start the fork server for supervisors, too.
         environment: More environment variables for all fork servers except that for supervisors. They are set here
             because libraries read some variables when they are loaded.
         of_judges: More environment variables for the judges only, such as the folder of the course.
@@ -279,26 +280,37 @@ class ForkServers:
         interfaces: Sequence[str] = (),
     ) -> None:
         of_judges = {**(environment or {}), **(of_judges or {})}
+        self._environment = environment
         self._servers: list[ForkServer] = []
-        with contextlib.ExitStack() as started:
+        with contextlib.ExitStack() as self._open:
             folder = HeldFolder(FOLDER_PREFIX)
-            started.callback(folder.remove)
+            self._open.callback(folder.remove)
             place = folder.path
-
-            def kept(server: ForkServer) -> str:
-                self._servers.append(server)
-                started.callback(server.stop)
-                return server.address
-
-            kernels = kept(ForkServer(INSIDE, KERNEL_MODULE, place / "kernels", environment, interfaces))
-            judges = kept(ForkServer(INSIDE, judge_module, place / "judges", of_judges))
-            supervisors = programs = ""
+            kernels = self._keep(
+                ForkServer(INSIDE, KERNEL_MODULE, place / "kernels", environment, interfaces)
+            )
+            judges = self._keep(ForkServer(INSIDE, judge_module, place / "judges", of_judges))
+            supervisors = ""
             if boxed:
-                programs = kept(_of_programs(place / "programs", environment))
-                # The supervisors are started last, so they are stopped first, and end their boxes in an orderly way.
-                supervisors = kept(ForkServer(BESIDE, SUPERVISOR_MODULE, place / "supervisors"))
-            self.addresses = Addresses(supervisors, kernels, judges, programs)
-            self._open = started.pop_all()
+                # The supervisors are started after kernels and judges, so they are stopped before these, and end their
+                # boxes in an orderly way.
+                supervisors = self._keep(ForkServer(BESIDE, SUPERVISOR_MODULE, place / "supervisors"))
+            self.addresses = Addresses(supervisors, kernels, judges)
+            self._open = self._open.pop_all()
+
+    def with_programs(self) -> Addresses:
+        """Start the fork server for programs unless it runs or there are no boxes, and return all addresses."""
+        if self.addresses.supervisors and not self.addresses.programs:
+            place = Path(self.addresses.kernels).with_name("programs")
+            self.addresses = replace(
+                self.addresses, programs=self._keep(_of_programs(place, self._environment))
+            )
+        return self.addresses
+
+    def _keep(self, server: ForkServer) -> str:
+        self._servers.append(server)
+        self._open.callback(server.stop)
+        return server.address
 
     @property
     def alive(self) -> bool:

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
 _SYMBOLS = {State.PASSED: "✓", State.FAILED: "✗", State.NOT_CHECKED: "?", State.CHECKING: "…"}
 
-# These colors are used only in an untrusted notebook, which has no style sheet. They are legible on white and on
+# The colors below are used only in an untrusted notebook, which has no style sheet. They are legible on white and on
 # black.
 _PLAIN_COLORS = {
     State.PASSED: "#2f8f57",

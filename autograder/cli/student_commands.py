@@ -78,6 +78,10 @@ def check(
     from autograder.judge.command_check import CommandNotFound, check_and_keep
     from autograder.standard_output import stray_lines_on_stderr
 
+    # Otherwise nothing is shown for up to half a minute, and in a pipe this looks like a program that hangs.
+    click.echo(
+        f"autograder: judging {exercise}: a right answer takes about 5 s, a wrong one up to 30 s", err=True
+    )
     try:
         with _box(wanted, command) if boxed else nullcontext() as box, stray_lines_on_stderr():
             verdict, _ = check_and_keep(exercise, command, seed=seed, box=box)

@@ -148,7 +148,7 @@ class _Run:
     def _what_led_to(self, check: int, runs: list[CellRun]) -> list[tuple[str, CellRun]]:
         """Return the code cells that may have kept a check from beginning, each with its title.
 
-        These are the cells since the previous check. If none of them failed, return all earlier cells, but of the
+        The cells are those since the previous check. If none of them failed, return all earlier cells, but of the
         checks only those in which the kernel ended.
         """
         usually_end_the_kernel = (Ended.KERNEL_DIED, *LIMITS)

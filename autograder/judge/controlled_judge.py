@@ -20,7 +20,7 @@ import msgspec
 
 from autograder import course, exercises
 from autograder.command_name import COMMAND
-from autograder.judge import ros_setup
+from autograder.judge import evidence_files, ros_setup
 from autograder.messages.json_lines import Hangup, Lines, Silent, listen
 from autograder.messages.judge_messages import Close, Open, Report
 from autograder.process_trees import signal_group
@@ -219,31 +219,40 @@ def readable() -> list[Path]:
 
 
 _INTERFACES = (
-    "std_msgs.msg",
-    "rcl_interfaces.msg",
-    "rcl_interfaces.srv",
-    "rosgraph_msgs.msg",
-    "action_msgs.msg",
-    "action_msgs.srv",
+    "rcl_interfaces/msg",
+    "rcl_interfaces/srv",
+    "rosgraph_msgs/msg",
+    "action_msgs/msg",
+    "action_msgs/srv",
     # Every node offers a service from this package. Loading its type costs 5 ms of processor time, so do it in advance.
-    "type_description_interfaces.msg",
-    "type_description_interfaces.srv",
+    "type_description_interfaces/msg",
+    "type_description_interfaces/srv",
 )
+"""The interfaces of the judge's own endpoints."""
 
 
 def import_judge() -> None:
-    """Import the judge, every exercise, the course's interfaces and their compiled type supports.
+    """Import the judge, every exercise, and the interfaces of their endpoints with their compiled type supports.
 
     A check that is forked later then needs no imports. Forking stays safe, because no node and no thread is created
     here.
     """
     importlib.import_module("autograder.judge.check_server")
     # Skip broken exercises: an unfinished exercise must not prevent checks of other exercises.
-    exercises.unbroken()
-    for name in (*_INTERFACES, *course.interface_modules()):
+    types = {name for exercise in exercises.unbroken() for name in _types_of_endpoints(exercise.id)}
+    for folder in {*_INTERFACES, *(name.rpartition("/")[0] for name in types)}:
         with contextlib.suppress(ImportError):
-            module = importlib.import_module(name)
+            module = importlib.import_module(folder.replace("/", "."))
             for kind in vars(module).values():
                 load = getattr(type(kind), "__import_type_support__", None)
                 if load is not None:
                     load()
+
+
+def _types_of_endpoints(exercise_id: str) -> list[str]:
+    """Return the types of the endpoints of a reference solution; none if it is not recorded yet."""
+    try:
+        interface = evidence_files.load_reference(exercise_id).interface
+    except evidence_files.NoReference:
+        return []
+    return [name for endpoints in interface.values() for name in endpoints.values()]

@@ -28,11 +28,12 @@ from autograder.judge.machine_fitness import (
 from autograder.judge.timeline import verdict_timeline
 from autograder.judge.timeline.growing_card import GrowingCard
 from autograder.judge.timeline.parting_point import claimed, own_lines_in_words, parting_point
+from autograder.kit.bench import Pace
 from autograder.kit.evidence import Evidence, Reference
 from autograder.kit.hunts.repairs import without_causes
 from autograder.kit.in_words import of_its_kind, shortened, visible
 from autograder.kit.mistakes.package_mistakes import changed_since_build
-from autograder.kit.model import Advice, Criterion, Exercise, Finding, Mistake, Pace
+from autograder.kit.model import Advice, Criterion, Exercise, Finding, Mistake
 from autograder.kit.runners import runner_trouble
 from autograder.verdict import CriterionResult, Diagnosis, State, Verdict, failed
 
@@ -54,6 +55,13 @@ minutes. The bank's answers have at most about a thousand in a part.
 """
 MAX_WORDS = 500
 """The maximum length of one sentence of a verdict, in characters; it may quote the subject's output."""
+
+
+CUT = (
+    "The machine is busy, so the judge did not look again. After you have corrected what the card names, more criteria "
+    "may be met than it seems now."
+)
+"""A remark on a check that a busy machine has cut after a look that proves a mistake."""
 
 
 class TooManyEvents(Exception):
@@ -187,6 +195,11 @@ def _check(
                 raise NotDelivered(NOT_DELIVERED)
     except TooManyEvents:
         verdict = _undecidable(exercise, seed)
+    except TooBusy:
+        # The machine left no time for a further look, but the last whole one may prove a mistake, such as a wrong name.
+        if verdict is None or not is_certain(exercise, evidence):
+            raise
+        verdict = replace(verdict, remarks=(*verdict.remarks, CUT))
     if crowded and not marks_crowded:
         raise _too_busy(verdict)
     return Checked(replace(verdict, seconds=round(time.monotonic() - began, 3)), evidence, crowded)
@@ -345,8 +358,8 @@ def diagnose(
 ) -> tuple[Diagnosis, str]:
     """Return the diagnosis of the first known mistake in the evidence, and the traceback that shows it, if any.
 
-    If no mistake is known, the diagnosis says where the run leaves the reference solution's. If that is not clear
-    either, it quotes the first criterion that is not met.
+    If no mistake is known, the diagnosis quotes the event at which the run leaves the reference solution's. If that is
+    not clear either, it quotes the first criterion that is not met.
 
     Another traceback is not returned. It may come from another run and from a correct line, but a student would take it
     for the mistake.

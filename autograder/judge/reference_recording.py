@@ -11,8 +11,8 @@ from autograder.judge.bench.bench import TestBench
 from autograder.judge.evidence_files import as_recorded
 from autograder.judge.one_check import is_certain, judge, look
 from autograder.judge.recording_differences import differences
+from autograder.kit.bench import Pace
 from autograder.kit.evidence import Evidence, Reference
-from autograder.kit.model import Exercise, Pace
 from autograder.kit.runners import RunsPrograms, all_are_there, processes, report_of
 
 if TYPE_CHECKING:
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
     from autograder.judge.subject import Subject
     from autograder.kit.evidence import Part
+    from autograder.kit.model import Exercise
 
 TOPIC_ROLES = ("publisher", "subscription")
 SEED = "reference"
@@ -144,7 +145,14 @@ def _endpoints_of_solution(exercise: Exercise, subject: Subject, domain_id: int)
         # exercise's roles are the same in each recording, so only they are recorded.
         if exercise.runner:
             found, qos = ({r: of[r] for r in exercise.roles if r in of} for of in (found, qos))
-        return Reference(exercise.id, found, qos=qos)
+        asked, asked_qos = (
+            {
+                role: {name: of for name, of in ends.items() if name not in exercise.unasked}
+                for role, ends in all_of.items()
+            }
+            for all_of in (found, qos)
+        )
+        return Reference(exercise.id, asked, qos=asked_qos)
     finally:
         bench.close()
 

@@ -10,18 +10,26 @@ the subject's view, and ``{}`` stands for the value that was found. If a text ne
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Generic, Protocol, TypeVar
 
 from autograder.kit.in_words import with_placeholders
 from autograder.kit.mistakes.runner_mistakes import with_those_of
 from autograder.kit.mistakes.unfinished import constructor_remark
-from autograder.kit.model import Advice, Bench, Criterion, Exercise, Finding, Mistake
+from autograder.kit.model import Advice, Criterion, Exercise, Finding, Mistake
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from autograder.kit.bench import Bench
     from autograder.kit.evidence import Evidence
 
+POINTS = 10.0
+"""The points of an exercise whose author does not say how many it is worth."""
+SHARE = 0.0
+"""In place of points: an equal share of those that are left."""
+PART = 0.5
+"""The points of which each share is a multiple, so that a card shows no thirds."""
 View = TypeVar("View")
 View_co = TypeVar("View_co", covariant=True)
 Judge = Callable[[View, View], Finding]
@@ -83,18 +91,23 @@ class Draft(Generic[View]):
         title: The title of the card; it names the lab and the subject.
         task: One sentence that states the task.
         recipe: The recipe for the kind of subject.
+        points: The points of the exercise. The criteria for which no points are given share the rest equally, in whole
+            and half points, the first ones more if it does not come out even.
 
     Example::
 
         heard = Hears()
         battery = Draft("lab_8_1.battery", "Lab 8.1 · The battery", "Publish the charge every 0.5 s.", heard)
-        battery.asks("topic", 3, "Publishes on the right topic", heard.on_topic)
-        battery.asks("charge", 7, "Counts down from 100", heard.counts("self.charge"))
+        battery.asks("topic", "Publishes on the right topic", heard.on_topic, points=3)
+        battery.asks("charge", "Counts down from 100", heard.counts("self.charge"), points=7)
         EXERCISE = battery.exercise(limit=120.0)
     """
 
-    def __init__(self, exercise_id: str, title: str, task: str, recipe: Recipe[View]) -> None:
+    def __init__(
+        self, exercise_id: str, title: str, task: str, recipe: Recipe[View], *, points: float = POINTS
+    ) -> None:
         self._id, self._title, self._task, self._recipe = exercise_id, title, task, recipe
+        self._points = points
         self._criteria: list[Criterion] = []
         self._own: dict[int, list[Mistake]] = {id(OWN): [], id(OWN_LATE): []}
         self._before: dict[str, list[Mistake]] = {}
@@ -102,10 +115,10 @@ class Draft(Generic[View]):
     def asks(
         self,
         name: str,
-        points: float,
         title: str,
         judge: Callable[[Evidence], Finding],
         *,
+        points: float = SHARE,
         uses: Sequence[str] = (),
     ) -> None:
         """Add a criterion that the recipe provides. The card shows the criteria in the order in which they were added.
@@ -114,28 +127,32 @@ class Draft(Generic[View]):
             name: A stable key for the criterion.
             title: The criterion in one line, as the card shows it.
             judge: The recipe's function that decides the criterion.
+            points: The points that the criterion is worth; by default an equal share.
             uses: As in :class:`autograder.kit.model.Criterion`.
 
         Example::
 
             heard = Hears()
             talker = Draft("lab_8_1.talker", "Lab 8.1 · The talker", "Publish a greeting every 0.5 s.", heard)
-            talker.asks("rate", 3, "Keeps the rate", heard.keeps_rate)
+            talker.asks("rate", "Keeps the rate", heard.keeps_rate, points=3)
         """
         self._criteria.append(Criterion(name, title, points, judge, uses))
 
-    def criterion(self, name: str, points: float, title: str) -> Callable[[Judge[View]], Judge[View]]:
+    def criterion(
+        self, name: str, title: str, *, points: float = SHARE
+    ) -> Callable[[Judge[View]], Judge[View]]:
         """Add a criterion of this exercise only. The card shows the criteria in the order in which they were added.
 
         Args:
             name: A stable key for the criterion.
             title: The criterion in one line, as the card shows it.
+            points: The points that the criterion is worth; by default an equal share.
 
         Example::
 
             door = Draft("lab_8_1.door", "Lab 8.1", "Count who comes.", Asks(lambda _: [{}] * 3, lambda _: {}))
 
-            @door.criterion("success", 2, "Answers that all went well")
+            @door.criterion("success", "Answers that all went well", points=2)
             def success(seen: ServerSeen, expected: ServerSeen) -> Finding:
                 said = [answer["success"] for answer in seen.answers.values()]
                 return Finding(bool(said) and all(said), "success is true", f"success was {said or 'never sent'}")
@@ -248,7 +265,8 @@ class Draft(Generic[View]):
             more: Other attributes of :class:`autograder.kit.model.Exercise`.
 
         Raises:
-            ValueError: ``before`` names a mistake that the recipe does not have.
+            ValueError: ``before`` names a mistake that the recipe does not have, or the criteria with points leave
+                none for the others.
         """
         before, mistakes = dict(self._before), list[Mistake]()
         for common in with_those_of(more.get("runner"), self._recipe.ladder):
@@ -263,12 +281,26 @@ class Draft(Generic[View]):
             title=self._title,
             task=self._task,
             scenario=self._recipe.scenario,
-            criteria=tuple(self._criteria),
+            criteria=self._with_points(),
             mistakes=tuple(mistakes),
             roles=self._recipe.roles,
             remarks=(*more.pop("remarks", ()), constructor_remark),
             **more,
         )
+
+    def _with_points(self) -> tuple[Criterion, ...]:
+        without = [one.name for one in self._criteria if one.points == SHARE]
+        given = sum(one.points for one in self._criteria if one.points != SHARE)
+        parts = (self._points - given) / PART
+        if parts < len(without):
+            raise ValueError(
+                f"{self._id}: the other criteria have {given:g} of {self._points:g} points already: write points=... "
+                f"for {' and '.join(without)}"
+            )
+        each, more = divmod(parts, max(1, len(without)))
+        # The first criteria get half a point more, as long as there is some; what is given may leave less than a half.
+        shares = {name: PART * (each + min(1.0, max(0.0, more - n))) for n, name in enumerate(without)}
+        return tuple(replace(one, points=shares.get(one.name, one.points)) for one in self._criteria)
 
     def _views(self, evidence: Evidence) -> tuple[View, View]:
         return self._recipe.seen(evidence), self._recipe.expected(evidence)

@@ -12,14 +12,15 @@ from typing import TYPE_CHECKING
 
 import re2
 
-from autograder.kit.model import Advice, Pace
+from autograder.kit.bench import Pace
+from autograder.kit.model import Advice
 from autograder.kit.outcomes import Outcome, all_lines
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
 
+    from autograder.kit.bench import Bench
     from autograder.kit.evidence import Evidence, Part
-    from autograder.kit.model import Bench
 
 PATIENCE = "patience_sec"
 """The name of the parameter that tells a notebook's function how long to wait, and of the same value in a part's

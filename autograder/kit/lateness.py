@@ -10,16 +10,18 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from autograder.kit.bench import Pace
 from autograder.kit.giving_up import CLOSELY, LATE_AT_FIRST, LATENESS, TOO_SHORT, patience, waited
-from autograder.kit.model import Pace, mistake
+from autograder.kit.model import mistake
 from autograder.kit.service_calls import HANGS_AFTER
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
 
+    from autograder.kit.bench import Bench
     from autograder.kit.counterparts import ActionCounterpart
     from autograder.kit.evidence import Event, Evidence, Part
-    from autograder.kit.model import Bench, Mistake
+    from autograder.kit.model import Mistake
 
 SOON = 0.3
 """Seconds after which the server starts in a repeated run, if the client ended shortly before its server was there."""

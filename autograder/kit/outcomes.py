@@ -11,6 +11,7 @@ report.
 
 from __future__ import annotations
 
+import functools
 import math
 from dataclasses import dataclass
 from itertools import pairwise
@@ -121,11 +122,6 @@ class SentGoal:
         return self.status is not None or self.accepted is False
 
     @property
-    def end(self) -> str:
-        """``"SUCCEEDED"``, ``"CANCELED"``, ``"ABORTED"`` or ``"REJECTED"``; ``"UNKNOWN"`` if no result came."""
-        return STATUS.get(self.status or 0, "UNKNOWN") if self.accepted else "REJECTED"
-
-    @property
     def is_quick(self) -> bool:
         """True if the server needed hardly any time for the goal."""
         return self.seconds is not None and self.seconds < IMMEDIATELY
@@ -182,6 +178,11 @@ def goal(part: Part, number: int) -> SentGoal:
         status=result.get("status"),
         result=result.get("fields", {}),
     )
+
+
+def end_of(sent: SentGoal) -> str:
+    """Return ``"SUCCEEDED"``, ``"CANCELED"``, ``"ABORTED"`` or ``"REJECTED"``; ``"UNKNOWN"`` if no result came."""
+    return STATUS.get(sent.status or 0, "UNKNOWN") if sent.accepted else "REJECTED"
 
 
 def all_goals(part: Part) -> list[SentGoal]:
@@ -286,6 +287,7 @@ def all_lines(part: Part) -> list[str]:
     return [line for line in (*part.said(), *raised) if line.strip()]
 
 
+@functools.lru_cache(maxsize=1024)
 def shape(line: str) -> str:
     """Return a line without its numbers, in lower case, so that lines about two different goals can be compared."""
     return " ".join(_NUMBERS.sub(" ", _with_status_names(line).lower()).split())
@@ -296,6 +298,7 @@ def _shapes(parts: Iterable[Part]) -> set[str]:
     return {shape(line) for part in parts for line in all_lines(part)}
 
 
+@functools.lru_cache(maxsize=1024)
 def _with_status_names(line: str) -> str:
     word = _STATUS_WORD.search(line)
     if word is None:

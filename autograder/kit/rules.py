@@ -12,7 +12,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from math import isclose, isnan
-from statistics import mean, median
+from statistics import mean, median, median_low
 from typing import TYPE_CHECKING, Any
 
 from autograder.kit.in_words import counted
@@ -76,18 +76,23 @@ def simulated_times(messages: Sequence[Event]) -> list[float]:
     return [event.sim for event in messages if event.sim is not None][1:] if follows else []
 
 
-def rate_of(messages: Sequence[Event], wanted: float, row: int = ROW) -> Rate | None:
+def rate_of(
+    messages: Sequence[Event], wanted: float, row: int = ROW, *, may_vary: bool = False
+) -> Rate | None:
     """Return the rate of a publisher's messages; None if there are too few messages.
 
     Args:
         messages: The messages that the judge received.
         wanted: The reference's interval, in seconds.
+        may_vary: True if the publisher may be silent for some time, or publish one message more at an input. In
+            simulated time, the usual interval counts then.
         row: Used only in real time, where messages may be late: the number of successive messages in a group. The
             result is the rate of the first group with the right rate; if no group has the right rate, the rate of the
             last group.
     """
     if times := simulated_times(messages):
-        return _exact_rate(times, wanted) if len(times) > 1 else None
+        measured = _usual_rate if may_vary else _exact_rate
+        return measured(times, wanted) if len(times) > 1 else None
     sent = sent_times(messages)
     rows = [sent[i : i + row] for i in range(max(1, len(sent) - row + 1))] if len(sent) > 1 else []
     rates = [_rate_in_real_time(times, wanted) for times in rows]
@@ -145,6 +150,15 @@ def _exact_rate(times: Sequence[float], wanted: float) -> Rate:
     return Rate(period, gaps, even, even and abs(period - wanted) <= SIMULATED_TOLERANCE * wanted)
 
 
+def _usual_rate(times: Sequence[float], wanted: float) -> Rate:
+    gaps = [later - earlier for earlier, later in pairwise(times)]
+    middle = median_low(gaps)
+    # The judge moves its clock in steps, so a period between two of them is only right on average.
+    on_average = mean(gap for gap in gaps if abs(gap - middle) <= SIMULATED_JITTER)
+    period = min(middle, on_average, key=lambda one: abs(one - wanted))
+    return Rate(period, gaps, True, abs(period - wanted) <= SIMULATED_TOLERANCE * wanted)
+
+
 def _rate_in_real_time(times: Sequence[float], wanted: float) -> Rate:
     gaps = [later - earlier for earlier, later in pairwise(times)]
     period, most = median(gaps), UNEVEN * wanted
@@ -184,7 +198,11 @@ def keeps_rate(seen: Part, expected: Part) -> Finding:
         ValueError: The reference has too few messages to measure a rate.
     """
     messages, wanted = seen.of("message"), _reference_period(expected)
-    rate = rate_of(messages, wanted)
+    return has_rate(messages, wanted, rate_of(messages, wanted))
+
+
+def has_rate(messages: Sequence[Event], wanted: float, rate: Rate | None) -> Finding:
+    """Return whether a publisher has the right rate, with the right rate and its own in words."""
     heard = f"one every {rate.period:.2g} s" if rate else f"{counted(len(messages), 'message')} in all"
     unevenly = " on average, but unevenly" if rate and not rate.even else ""
     return Finding(rate is not None and rate.kept, f"one every {wanted:.2g} s", heard + unevenly)

@@ -44,17 +44,21 @@ def start_ros() -> RosSession:
     return ros_session.start_ros()
 
 
-def start_robot() -> LiveRobot:
+def start_robot(*, stranger: bool = False) -> LiveRobot:
     """Start a small robot, and show it live below this cell.
 
     The robot is a node, ``/robot``, that subscribes to ``/cmd_vel``, publishes on ``/odom`` and ``/scan``, and offers
     the services ``/reset`` and ``/lamp`` and the action ``/walk_to``. It stops if no command arrives for a second.
     Running the cell again restarts the robot. ``.stop()`` or the end of the kernel ends it. The picture is kept up to
     date for half an hour; ``.show()`` shows a new picture.
+
+    Args:
+        stranger: True for a robot without a manual: each start draws what it is called, and the names of the topic,
+            the action and the lamp's service that it obeys. It says how many corners of the rooms it has visited.
     """
     # Import this here: it imports many message types, which only notebooks with the robot need.
     from autograder.notebook.live_robot import LiveRobot
 
-    robot = LiveRobot()
+    robot = LiveRobot(stranger=stranger)
     robot.show()
     return robot

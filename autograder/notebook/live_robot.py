@@ -14,8 +14,8 @@ from IPython.display import display
 from autograder.notebook.nodes.background_nodes import replace_named, spin_in_background
 from autograder.notebook.nodes.ros_session import start_ros
 from autograder.notebook.observing.live_picture import LivePicture, as_image, svg_page
-from autograder.notebook.robot_drivers import Spiral, Tour
-from autograder.notebook.robot_node import RobotNode
+from autograder.notebook.robot_drivers import CornerHunt, Spiral, Tour
+from autograder.notebook.robot_node import RobotNames, RobotNode
 from autograder.robot.motion import RADIUS, ROOM
 
 if TYPE_CHECKING:
@@ -52,12 +52,19 @@ to the start.
 
 
 class LiveRobot:
-    """A robot that runs in the background. ``start_robot`` returns this object."""
+    """A robot that runs in the background. ``start_robot`` returns this object.
 
-    def __init__(self) -> None:
+    Args:
+        stranger: True for a robot with names of its own, which says how many corners it has visited.
+    """
+
+    def __init__(self, *, stranger: bool = False) -> None:
         start_ros()
         replace_named(ROBOT_NAME, keep=())
-        self._node = RobotNode()
+        self._node = RobotNode(RobotNames.drawn() if stranger else RobotNames())
+        if stranger:
+            self._node.play(CornerHunt())
+        self._stranger = stranger
         self._background = spin_in_background(self._node, name=ROBOT_NAME)
         self._picture: LivePicture | None = None
 
@@ -77,7 +84,7 @@ class LiveRobot:
             self._picture.stop()
         self._picture = LivePicture(_RobotPictures(self._node), MINUTES)
         self._picture.start()
-        if self._picture.running:
+        if self._picture.running and not self._stranger:
             # The button is not a part of the picture, so that it is not redrawn while a student clicks it.
             display({"text/html": _BUTTON, "text/plain": ""}, raw=True)  # type: ignore[no-untyped-call]
 
@@ -104,7 +111,10 @@ class LiveRobot:
     def __repr__(self) -> str:
         """Return one line, shown if this is the last expression of a cell."""
         if self.running:
-            return "The robot runs in the background: it listens to /cmd_vel. .stop() ends it."
+            listens = (
+                "find out what it obeys" if self._stranger else f"it listens to {self._node.names.obeys}"
+            )
+            return f"The robot runs in the background: {listens}. .stop() ends it."
         return "The robot has stopped: run the cell again that started it."
 
 

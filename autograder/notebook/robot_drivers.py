@@ -6,6 +6,7 @@ The action and the scenes return a velocity for each simulation step. For the ar
 
 from __future__ import annotations
 
+import itertools
 import math
 import time
 from collections import deque
@@ -56,14 +57,14 @@ class _Walk:
 class WalkToServer:
     """Serves the action ``/walk_to``. The robot walks to one goal at a time: a new goal replaces the earlier one."""
 
-    def __init__(self, node: Node) -> None:
+    def __init__(self, node: Node, name: str) -> None:
         self._node = node
         self._walk: _Walk | None = None
         self._pose: Pose | None = None
         self._server = ActionServer(
             node,
             WalkTo,
-            "/walk_to",
+            name,
             execute_callback=self._execute,
             goal_callback=lambda goal: _answer(goal.x, goal.y),
             cancel_callback=lambda _: CancelResponse.ACCEPT,
@@ -230,7 +231,34 @@ def _quarter_circle(radius: float) -> tuple[Velocity, int]:
     return Velocity(turn * radius, turn), steps
 
 
-Scene = Tour | Spiral
+CORNERS = tuple(itertools.product((0.0, ROOM.door[0], ROOM.width), (0.0, ROOM.height)))
+"""The corners of the two rooms, in meters."""
+CORNERS_WANTED = 3
+IN_A_CORNER = 1.5
+"""The distance in meters from which a corner counts as visited."""
+
+
+class CornerHunt:
+    """A scene in which a student drives the robot, and it says how many corners it has visited."""
+
+    is_over = True
+
+    def __init__(self) -> None:
+        self._visited: set[tuple[float, float]] = set()
+        self.says = ""
+
+    def next(self, pose: Pose, bumped: bool) -> Velocity | None:
+        """Count the corner that the robot is in. Return None: the scene does not drive it."""
+        del bumped
+        self._visited |= {corner for corner in CORNERS if math.dist(pose.point, corner) < IN_A_CORNER}
+        count = len(self._visited)
+        self.says = (
+            f"{count} of {CORNERS_WANTED} corners" if count < CORNERS_WANTED else "I have seen 3 corners!"
+        )
+        return None
+
+
+Scene = Tour | Spiral | CornerHunt
 """A scene, which drives the robot step by step until the scene is over."""
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import random
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
@@ -43,23 +44,41 @@ class RobotState:
     says: str = ""
 
 
+@dataclass(frozen=True)
+class RobotNames:
+    """The name of the robot, and the full names of the topic, the action and the service that it obeys."""
+
+    robot: str = "robot"
+    obeys: str = "/cmd_vel"
+    walks: str = "/walk_to"
+    lamp: str = "/lamp"
+
+    @classmethod
+    def drawn(cls) -> RobotNames:
+        """Draw the names of a robot that the student has not seen."""
+        robot = random.choice(("bolt", "mango", "nova", "pixel"))
+        words = (("drive", "steer", "wheels"), ("go_to", "travel", "visit"), ("beam", "glow", "shine"))
+        return cls(robot, *(f"/{robot}/{random.choice(names)}" for names in words))
+
+
 class RobotNode(Node):
     """Simulates the robot. Any program on the same ROS domain may drive it: a node, a terminal, another notebook.
 
     The callbacks run one at a time, so they need no lock.
     """
 
-    def __init__(self) -> None:
-        super().__init__("robot")
+    def __init__(self, names: RobotNames = RobotNames()) -> None:
+        super().__init__(names.robot)
+        self.names = names
         self._state = RobotState(ranges=look_around(START, ROOM))
         self._told, self._told_at = STILL, -math.inf
         self._ticks = 0
         self._odometry = self.create_publisher(Odometry, "/odom", 10)
         self._scan = self.create_publisher(LaserScan, "/scan", 10)
-        self.create_subscription(Twist, "/cmd_vel", self._obey, 10)
+        self.create_subscription(Twist, names.obeys, self._obey, 10)
         self.create_service(Trigger, "/reset", self._reset)
-        self.create_service(SetBool, "/lamp", self._switch_lamp)
-        self._walking = WalkToServer(self)
+        self.create_service(SetBool, names.lamp, self._switch_lamp)
+        self._walking = WalkToServer(self, names.walks)
         self._scene: Scene | None = None
         self.create_timer(TICK, self._tick)
 

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import sys
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import pytest
 
 from autograder import course, exercises
 from autograder.authoring.answer_bank import answers
-from autograder.authoring.exercise_faults import still_to_do
+from autograder.authoring.exercise_faults import still_to_do, unasked_outputs
 from autograder.authoring.new_exercise import EXAMPLES, new_exercise, recipes
+from autograder.judge import evidence_files
 from environment import python_child
 
 if TYPE_CHECKING:
@@ -101,6 +103,12 @@ def test_folded_text_does_not_delay_the_first_task(lab: Path) -> None:
             "docs/mistakes.md: no paragraph about `counted_up`",
         ),
         ("battery.py", '        "every 0.5 s": "rate",\n', "", "text: the criterion rate is not mapped"),
+        (
+            "battery.py",
+            '": "rate"',
+            '": "charge"',
+            "text: “every 0.5 s” states a period, and no criterion judges it",
+        ),
         ("battery.py", '": "rate"', '": "rate volts"', "text: the criterion volts does not exist"),
         (
             "battery.py",
@@ -150,3 +158,12 @@ def test_a_difference_in_format_is_one_line(lab: Path) -> None:
 def test_what_is_not_installed_is_told(lab: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(python_child, "INTERPRETER", str(lab / "python3"))
     assert [line.partition(",")[0] for line in told()] == ["ruff: not installed", "mypy: not installed"]
+
+
+def test_an_output_that_no_criterion_asks_for_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv(course.VARIABLE, str(EXAMPLES))
+    careful = exercises.get("oracle.careful")
+    recorded = evidence_files.load_reference(careful.id)
+    assert unasked_outputs(careful, recorded) == []
+    (drives,) = (criterion for criterion in careful.criteria if criterion.name == "cmd_vel")
+    assert unasked_outputs(replace(careful, criteria=[drives]), recorded) == ["/state"]

@@ -18,14 +18,16 @@ if TYPE_CHECKING:
     from autograder.kit.model import Exercise
 
 REFERENCE = Reference("lab.relay", {})
+SLOW = Evidence([Part("met", {}, [Event(0.5, "sent", "/a"), Event(4.5, "message", "/b")])], REFERENCE)
 FAST = Evidence([Part("met", {}, [Event(0.5, "sent", "/a"), Event(1.5, "message", "/b")])], REFERENCE)
 
 
 @pytest.mark.parametrize(
     ("look", "seconds", "words"),
     [
-        (FAST, 2.0, "1.0 s in “met”, between sent /a and message /b"),
-        (FAST, 9.0, "7.5 s after the last events, before the start of a run, or in the build"),
+        (SLOW, 6.0, "4.0 s in “met”, between sent /a and message /b"),
+        (FAST, 2.0, ""),
+        (FAST, 9.0, ""),
         (
             Evidence(
                 [Part("met", {}, [Event(0.0, "sent", "/a"), Event(6.0, "sent", "/a")])], REFERENCE, True, FAST
@@ -34,7 +36,7 @@ FAST = Evidence([Part("met", {}, [Event(0.5, "sent", "/a"), Event(1.5, "message"
             "6.0 s in “met”, in real time, between sent /a and sent /a",
         ),
     ],
-    ids=["between events", "after them", "in the second look"],
+    ids=["between events", "in short steps", "without events", "in the second look"],
 )
 def test_the_slowest_step_is_named(look: Evidence, seconds: float, words: str) -> None:
     assert slowest_step(look, seconds) == words

@@ -43,7 +43,7 @@ def test_times_are_told_in_units_of_people(spent: float, words: str) -> None:
 def test_a_page_without_a_place_is_left_as_it_is(tmp_path: Path) -> None:
     page = tmp_path / "page.md"
     page.write_text("no place")
-    with pytest.raises(ValueError, match="no place for the costs"):
+    with pytest.raises(ValueError, match="no place for the figures"):
         put_into(page, COSTS)
     page.write_text(f"before {cluster.BEGIN} old {cluster.END} after")
     put_into(page, COSTS)

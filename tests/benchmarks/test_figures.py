@@ -53,7 +53,6 @@ def test_a_figure_says_whether_its_aim_is_reached() -> None:
     assert figures.overload(["one"], 9, "").measured == "8 of 9 the same"
     flat, box = figures.memory(ours())
     assert (flat.reached, box.reached) == (True, True)
-    assert figures.cpu([], [], ours(), "").reached is None
 
 
 def test_cores_count_from_the_first_notebook_to_the_last() -> None:

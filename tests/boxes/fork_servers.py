@@ -28,7 +28,7 @@ def boxed() -> Iterator[Addresses]:
     if why:
         pytest.skip(f"no sandbox is possible here: {why}")
     with ForkServers(NO_JUDGE, boxed=True) as warm:
-        yield warm.addresses
+        yield warm.with_programs()
 
 
 @pytest.fixture(scope="session")

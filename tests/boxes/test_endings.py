@@ -10,7 +10,7 @@ import sys
 import tempfile
 import time
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import psutil
 import pytest
@@ -160,11 +160,13 @@ def test_who_sends_descriptors_to_a_server_may_have_more_in_transit_than_a_box(t
 def test_fork_servers_of_which_one_cannot_start_leave_no_process_and_no_folder(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    def none_left(*_: object) -> None:
-        raise OSError("no process left")
+    def none_left(mode: str, *words: Any) -> ForkServer:
+        if mode == BESIDE:
+            raise OSError("no process left")
+        return ForkServer(mode, *words)
 
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
-    monkeypatch.setattr(fork_server, "_of_programs", none_left)
+    monkeypatch.setattr(fork_server, "ForkServer", none_left)
     before = psutil.Process().children()
     # The error is kept, because with it everything would go that was not stopped.
     with pytest.raises(OSError, match="no process left") as kept:
@@ -172,3 +174,19 @@ def test_fork_servers_of_which_one_cannot_start_leave_no_process_and_no_folder(
     assert psutil.Process().children() == before
     assert not list(tmp_path.iterdir())
     del kept
+
+
+def test_the_fork_server_of_programs_starts_when_it_is_first_needed() -> None:
+    with ForkServers(NO_JUDGE, boxed=True) as servers:
+        assert not servers.addresses.programs
+        before = len(psutil.Process().children())
+        address = servers.with_programs().programs
+        assert Path(address).is_socket()
+        assert servers.with_programs().programs == address
+        assert len(psutil.Process().children()) == before + 1
+    assert not Path(address).exists()
+
+
+def test_without_boxes_no_fork_server_of_programs_starts() -> None:
+    with ForkServers(NO_JUDGE, boxed=False) as servers:
+        assert not servers.with_programs().programs

@@ -8,8 +8,8 @@ from unittest.mock import MagicMock
 
 from lab_1_3.server import EXERCISE, ordinary, single_calls
 
+from autograder.kit.bench import Pace
 from autograder.kit.evidence import Event, Evidence, Part, Reference
-from autograder.kit.model import Pace
 from autograder.kit.recipes.servers import CALLS, CALLS_AT_ONCE, Asks
 
 SERVICE, TYPE = "/add_two_ints", "my_robot_interfaces/srv/AddTwoInts"

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from dataclasses import replace
 from typing import Any
+from unittest.mock import MagicMock
 
 import pytest
+from lab_1_4 import _goals
 from lab_1_4 import server as lab_1_4_server
 from lab_1_4._goals import (
     AGAIN,
@@ -71,6 +73,22 @@ def evidence(goals: list[Event], bad: list[Event] | None = None) -> Evidence:
     reference = Reference("lab_1_4.server", {"action_server": {ACTION: TYPE}}, [Part(GOALS, {}, RIGHT)])
     parts = [Part(GOALS, {}, [SURVEY, *goals]), Part(BAD_ORDERS, {}, bad if bad is not None else REFUSALS)]
     return Evidence(parts, reference)
+
+
+@pytest.mark.parametrize("answers", [True, False])
+def test_a_node_that_answers_no_more_gets_no_bad_goals(
+    answers: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    made: list[str] = []
+
+    def run(_: object, name: str, __: object) -> bool:
+        made.append(name)
+        return True
+
+    monkeypatch.setattr(_goals, "_run", run)
+    events = [] if answers else [Event(9.0, "unanswered", "/fibonacci_server")]
+    _goals.scenario(MagicMock(seen=lambda: Part(GOALS, {}, events)))
+    assert made == ([GOALS, BAD_ORDERS] if answers else [GOALS])
 
 
 def failed(seen: Evidence) -> set[str]:

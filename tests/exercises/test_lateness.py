@@ -9,6 +9,7 @@ from unittest.mock import MagicMock
 
 import pytest
 
+from autograder.kit.bench import Pace
 from autograder.kit.evidence import Event, Evidence, Part, Reference
 from autograder.kit.giving_up import (
     CLOSELY,
@@ -35,11 +36,10 @@ from autograder.kit.lateness import (
     was_patient,
     was_patient_with_an_answer,
 )
-from autograder.kit.model import Pace
 from autograder.kit.service_calls import HANGS_AFTER
 
 if TYPE_CHECKING:
-    from autograder.kit.model import Bench
+    from autograder.kit.bench import Bench
 
 CALLED = Event(0.5, "called", "a server")
 SERVING = Event(0.6, "serving", "/fibonacci")

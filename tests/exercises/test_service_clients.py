@@ -12,9 +12,9 @@ from exercise_1_2 import three_ints as exercise_1_2_three_ints
 from lab_1_3 import client as lab_1_3_client
 
 from autograder.judge import evidence_files, one_check
+from autograder.kit.bench import Pace
 from autograder.kit.evidence import Event, Evidence, Part, Reference
 from autograder.kit.lateness import ANSWERS_SOON
-from autograder.kit.model import Pace
 from autograder.kit.recipes import service_runs
 from autograder.kit.recipes.service_client import NOT_RETURNED
 from autograder.kit.recipes.service_runs import Run, answering, has_spoken, is_done

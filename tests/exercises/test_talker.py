@@ -8,7 +8,7 @@ import pytest
 from lab_1_2 import talker
 
 from autograder.kit.evidence import Event, Evidence, Part, Reference
-from autograder.kit.published_texts import template
+from autograder.kit.recipes.published_texts import template
 
 TOPIC, TYPE = "/chatter", "std_msgs/msg/String"
 

@@ -12,8 +12,9 @@ from autograder.cards.text_rendering import card_text
 from autograder.judge import evidence_files, machine_fitness, one_check
 from autograder.judge.machine_fitness import ANSWER_WITHIN, Crowding, NotDelivered, TooBusy
 from autograder.judge.one_check import WHAT_TO_DO, ExerciseFailed
+from autograder.kit.bench import Pace
 from autograder.kit.evidence import Event, Evidence, Part
-from autograder.kit.model import Advice, Criterion, Finding, Mistake, Pace
+from autograder.kit.model import Advice, Criterion, Finding, Mistake
 from autograder.kit.rules import value
 from autograder.verdict import State, not_checked
 
@@ -181,6 +182,22 @@ def test_who_waits_on_a_busy_machine_is_told_what_is_known(
         one_check.check(exercise(), cast("Any", subject), busy.stored, seed="s", domain_id=0)
     assert ("It says b." in str(raised.value)) is known
     assert ["It says b." in words for words in subject.told] == [False, True][: 1 + known]
+
+
+def test_a_mistake_that_a_whole_look_proves_ends_a_check_with_its_verdict_however_busy_the_machine_is(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    busy = BusyFor(5.0, ANSWER_WITHIN)
+    monkeypatch.setattr(one_check, "Hurry", busy.hurry)
+    monkeypatch.setattr(one_check, "look", busy.look)
+    # With the subject's own names, a second look would decide the criteria that a wrong name has spoiled.
+    monkeypatch.setattr(one_check, "misnamed", lambda *_: {"/a": {"real": "/b", "costs": "good"}})
+    verdict = one_check.check(
+        exercise(certain=True), cast("Any", Anybody()), busy.stored, seed="s", domain_id=0
+    ).verdict
+    assert verdict.diagnosis is not None
+    assert verdict.diagnosis.text == "It says b."
+    assert verdict.remarks == (one_check.CUT,)
 
 
 def test_a_grader_lets_a_check_take_its_time_and_a_submission_hears_nothing(

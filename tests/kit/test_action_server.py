@@ -8,8 +8,9 @@ from typing import Any
 import pytest
 
 from autograder.kit.evidence import Event, Evidence, Part, Reference
-from autograder.kit.oracle.action_server import ComparedGoal, GoalsSeen, SendsGoals
+from autograder.kit.oracle.action_server import SendsGoals
 from autograder.kit.oracle.goal_sender import GoalSender
+from autograder.kit.oracle.goals_seen import ComparedGoal, GoalsSeen
 from autograder.kit.oracle.same_as_solution import Goal, SameAsSolution
 from autograder.kit.outcomes import ABORTED, CANCELED, SUCCEEDED, SentGoal, goal
 

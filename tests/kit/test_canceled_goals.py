@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from random import Random
 from typing import TYPE_CHECKING, Any, cast
 from unittest.mock import MagicMock
@@ -9,15 +10,15 @@ from unittest.mock import MagicMock
 import pytest
 
 from autograder.judge import evidence_files
+from autograder.kit.bench import Pace
 from autograder.kit.evidence import Event, Evidence, Part
 from autograder.kit.giving_up import LATE_AT_FIRST, LATENESS
 from autograder.kit.goal_reports import REFUSED
 from autograder.kit.lateness import SOON
-from autograder.kit.model import Pace
 from autograder.kit.oracle import canceled_goals as cancel
 from autograder.kit.oracle.cancel_requests import AGREED, CANCEL_REFUSED, HONORED
 from autograder.kit.oracle.canceled_goals import CancelsGoal
-from autograder.kit.recipes.action_client import END_LIMIT
+from autograder.kit.recipes.one_goal import END_LIMIT
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -79,6 +80,11 @@ def runs_made(first: Part, *, before: Evidence | None = None, monkeypatch: pytes
     return list(dict.fromkeys(made))
 
 
+def answers_no_more(part: Part) -> Part:
+    """The same run of a client that answers nothing in the end."""
+    return replace(part, events=[*part.events, Event(9.0, "unanswered", "/client")])
+
+
 ALL = [HONORED, CANCEL_REFUSED, AGREED, REFUSED]
 REJECTED = Part(
     REFUSED,
@@ -99,8 +105,9 @@ REJECTED = Part(
         # It has lost the points for all ends of goals.
         (run(HONORED, says="it is over"), [HONORED, CANCEL_REFUSED, REFUSED]),
         (run(HONORED, cancels=0), [HONORED, REFUSED]),
+        (answers_no_more(run(HONORED, cancels=0)), [HONORED]),
     ],
-    ids=["right", "says no end", "never asks"],
+    ids=["right", "says no end", "never asks", "answers no more"],
 )
 def test_the_fast_look_leaves_out_runs_that_can_change_no_points(
     first: Part, made: list[str], monkeypatch: pytest.MonkeyPatch

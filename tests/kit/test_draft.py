@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import pytest
 
 from autograder.kit.draft import OWN, OWN_LATE, Draft
 from autograder.kit.evidence import Evidence, Part, Reference
-from autograder.kit.model import Advice, Bench, Mistake, mistake
+from autograder.kit.model import Advice, Finding, Mistake, mistake
+
+if TYPE_CHECKING:
+    from autograder.kit.bench import Bench
 
 
 class Recipe:
@@ -80,3 +85,30 @@ def test_a_text_that_cannot_be_filled_in_is_refused_when_the_exercise_is_made(te
         Draft("lab.it", "", "", Recipe()).knows("usual", lambda *_: True, *texts)
     with pytest.raises(ValueError, match=r"write {} for a value, and {{ and }} for braces"):
         mistake("usual", lambda _: True, *(["", text] if place else [text, ""]))
+
+
+def test_criteria_without_points_share_what_the_others_leave() -> None:
+    draft = Draft("lab.it", "", "", Recipe(), points=12.0)
+    for name in ("first", "second"):
+        draft.asks(name, "", lambda _: Finding(True, "", ""))
+    draft.criterion("third", "", points=4)(lambda *_: Finding(True, "", ""))
+    assert [one.points for one in draft.exercise().criteria] == [4.0, 4.0, 4.0]
+
+
+@pytest.mark.parametrize(
+    ("points", "shares"),
+    [(10.0, [3.5, 3.5, 3.0]), (6.0, [2.0, 2.0, 2.0]), (8.0, [3.0, 2.5, 2.5]), (1.75, [0.75, 0.5, 0.5])],
+)
+def test_shares_are_whole_or_half_points_and_sum_to_the_whole(points: float, shares: list[float]) -> None:
+    draft = Draft("lab.it", "", "", Recipe(), points=points)
+    for name in ("first", "second", "third"):
+        draft.criterion(name, "")(lambda *_: Finding(True, "", ""))
+    assert [one.points for one in draft.exercise().criteria] == shares
+
+
+def test_points_that_leave_nothing_to_share_are_an_error_that_says_what_to_write() -> None:
+    draft = Draft("lab.it", "", "", Recipe())
+    draft.asks("first", "", lambda _: Finding(True, "", ""), points=10)
+    draft.asks("second", "", lambda _: Finding(True, "", ""))
+    with pytest.raises(ValueError, match=r"10 of 10 points already: write points=\.\.\. for second"):
+        draft.exercise()

@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from autograder.kit.bench import Pace
 from autograder.kit.evidence import Event, Evidence, Part, Reference
+from autograder.kit.mission.course import NOTHING_REACHED
 from autograder.kit.mission.mission import Goal, Mission, Moment, Pose, To, Wall, Walls, World
-from autograder.kit.model import Pace
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -61,6 +62,9 @@ class Ros:
             self.record("sent", topic, fields=fields)
 
         return SimpleNamespace(send=send)
+
+    def part(self, _: str, **inputs: Any) -> None:
+        self.inputs = inputs
 
     def note(self, name: str, **data: Any) -> None:
         self.record("noted", name, **data)
@@ -118,7 +122,7 @@ def test_a_robot_that_stops_in_front_of_the_wall_gets_all_points() -> None:
 @pytest.mark.parametrize(
     ("answer", "lines"),
     [
-        (lambda ros: ros.command(0.5), {"stands": True, "touches_no_wall": False}),
+        (lambda ros: ros.command(0.5), {"stands": False, "touches_no_wall": False}),
         (brakes(1.5), {"stands": False, "touches_no_wall": False}),
         (lambda ros: None, {"stands": False, "touches_no_wall": False}),
     ],
@@ -134,7 +138,16 @@ def test_a_wall_that_is_hit_or_never_reached_costs_its_points(
 def test_a_robot_that_breaks_no_rule_because_it_does_nothing_gets_nothing_for_it() -> None:
     holds, bench = driven(mission(), lambda ros: None)
     assert not holds["touches_no_wall"]
-    assert noted(bench, "touches_no_wall") == "nothing was reached"
+    assert noted(bench, "touches_no_wall") == NOTHING_REACHED
+
+
+def test_only_a_mission_about_the_commands_compares_them_with_the_recorded_ones() -> None:
+    def inputs(**more: Any) -> list[Mapping[str, Any]]:
+        recorded = ((), (Part("mission"),))
+        return [driven(mission(**more), brakes(0.9), recorded=parts)[1].inputs for parts in recorded]
+
+    assert inputs(drives=("Drives ahead",)) == [{}, {}]
+    assert inputs() == [{}, {"goes": "its own way"}]
 
 
 def test_a_subject_that_hangs_ends_the_mission_and_keeps_what_it_has_reached() -> None:
@@ -219,7 +232,7 @@ def test_what_became_of_a_goal_is_read_from_the_answers() -> None:
         ("result_heard", "/dock", {"goal": 0, "status": 5, "fields": {"arrived": False}}),
     )
     run = now.goal(0)
-    assert (run.accepted, run.cancel_accepted, run.end, len(run.feedback)) == (True, True, "CANCELED", 1)
+    assert (run.accepted, run.cancel_accepted, now.ended(), len(run.feedback)) == (True, True, "CANCELED", 1)
     assert not now.goal(1).over
 
 

@@ -10,6 +10,7 @@ import pytest
 from autograder.kit.counterparts import Qos
 from autograder.kit.evidence import Event, Evidence, Part, Reference, Variant
 from autograder.kit.oracle.same_as_solution import SameAsSolution, Sets, To
+from autograder.kit.oracle.steps import Turn
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -137,6 +138,54 @@ def test_messages_of_a_list_before_the_judge_stepped_the_clock_are_not_too_many(
     assert ("beat" not in failed(run(RIGHT, ten_more, early=early, simulated=simulated))) == passes
 
 
+def rated(*moments: float, simulated: bool = True) -> tuple[bool, str]:
+    """Return whether beats at these moments keep a rate of one in a second, and what the card says came."""
+    exercise = SameAsSolution("a.b", "A", "B", gives=lambda _: [], rates={"/beat": 1.0}).exercise()
+    beats = [Event(at, "message", "/beat", {}, at if simulated else None) for at in moments]
+    evidence = Evidence([Part("drawing 0", {}, beats)], Reference("a.b", INTERFACE, [Part("drawing 0")]))
+    (criterion,) = exercise.criteria
+    mistake = next(one for one in exercise.mistakes if one.key == "wrong_rate")
+    finding = criterion.judge(evidence)
+    assert (mistake.recognize(evidence) is None) == (finding.passed or len(moments) < 3)
+    return finding.passed, finding.seen
+
+
+EVERY_SECOND = range(10)
+
+
+@pytest.mark.parametrize("simulated", [True, False])
+@pytest.mark.parametrize(
+    ("moments", "passes", "seen"),
+    [
+        (EVERY_SECOND, True, "one every 1 s"),
+        ([moment / 10 for moment in EVERY_SECOND], False, "one every 0.1 s"),
+        ([moment * 2 for moment in EVERY_SECOND], False, "one every 2 s"),
+        ([moment // 2 for moment in range(20)], False, "one every 0"),
+        ([1], False, "1 message in all"),
+    ],
+    ids=["right", "ten times as often", "half as often", "told twice", "too few"],
+)
+def test_a_rate_that_the_task_asks_for_is_kept(
+    moments: Sequence[float], passes: bool, seen: str, simulated: bool
+) -> None:
+    kept, came = rated(*moments, simulated=simulated)
+    assert kept == passes
+    assert seen in came
+
+
+@pytest.mark.parametrize(
+    "moments",
+    [
+        (0, 1, 2, 3, 7.5, 8.5, 9.5),
+        (0, 1, 1.3, 2, 3, 4, 5, 6, 7),
+        (0, 0.95, 2, 2.95, 4, 4.95, 6),
+    ],
+    ids=["a silence", "one more at an input", "a clock that moves in steps"],
+)
+def test_a_rate_is_kept_if_the_usual_interval_is_right(moments: Sequence[float]) -> None:
+    assert rated(*moments)[0]
+
+
 @pytest.mark.parametrize(
     ("speed", "seen"),
     [
@@ -166,6 +215,31 @@ def test_a_run_like_a_recorded_wrong_answer_is_named_for_certain_in_simulated_ti
     assert told(replace(run(ALWAYS_AHEAD), events=sorted(run(ALWAYS_AHEAD).events, key=lambda one: one.name)))
     assert told(run([[0.0, 0.0], [0.2005, 0.0], [0.2, 0.0]], [1, 2, 3, 4]))
     assert told(run(RIGHT)) == told(run(ALWAYS_AHEAD, drawing=0)) == told(run([[0.1, 0.0]] * 3)) == []
+
+
+def test_a_run_in_real_time_is_named_by_what_it_did_in_simulated_time() -> None:
+    once_more = evidence_of(run([*ALWAYS_AHEAD[:2], []], simulated=False))
+    (likely,) = [one for one in exercise().mistakes if one.key == "variant" and not one.certain]
+    assert not likely.recognize(once_more)
+    named = likely.recognize(replace(once_more, before=evidence_of(run(ALWAYS_AHEAD))))
+    assert named is not None
+    assert named.key == "always_ahead"
+    right = replace(evidence_of(run(RIGHT)), before=evidence_of(run(ALWAYS_AHEAD)))
+    assert not likely.recognize(right)
+
+
+def test_in_real_time_a_message_belongs_to_the_step_in_which_it_was_sent() -> None:
+    """The second message is sent 0.02 s before the next step begins, and arrives 0.03 s after that."""
+    arrived, sent = (10.1, 10.78), (10.09, 10.73)
+    events = [
+        Event(at - 10.0, "message", "/state", {"fields": {"data": at}, "arrived": at, "sent": before})
+        for at, before in zip(arrived, sent, strict=True)
+    ]
+    seen = Part("drawing 0", {}, events)
+    first, second = Turn(0, 0.75, 0, 0.0), Turn(1, To("/scan", 1), 1, 0.75)
+    assert first.events(seen, second, by_time=True) == events
+    assert not second.events(seen, None, by_time=True)
+    assert [turn.events(seen, None, by_time=False)[-1:] for turn in (first, second)] == [events[1:]] * 2
 
 
 def test_the_judge_s_endpoint_has_the_qos_of_the_solution_s_if_the_author_says_that_it_counts() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import TYPE_CHECKING
 from unittest.mock import MagicMock
 
 import pytest
@@ -11,9 +12,12 @@ from autograder.judge import one_check
 from autograder.kit.evidence import INTERRUPTED, Event, Evidence, Part, Reference
 from autograder.kit.mistakes import package_mistakes
 from autograder.kit.mistakes.package_mistakes import EntryPoint
-from autograder.kit.model import Advice, Bench, Criterion, Exercise, Finding, Mistake
+from autograder.kit.model import Advice, Criterion, Exercise, Finding, Mistake
 from autograder.kit.recipes.programs import LabProgram, Programs
 from autograder.kit.runners import PackageReport, WorkspaceReport, workspace_report_line
+
+if TYPE_CHECKING:
+    from autograder.kit.bench import Bench
 
 PACKAGE = "my_robot_pkg"
 TRACEBACK = ("Traceback (most recent call last):", '  File "a.py", line 1, in main', "KeyboardInterrupt")

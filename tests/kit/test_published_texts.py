@@ -36,9 +36,9 @@ def exercise() -> Exercise:
     """A publisher whose text and numbers are judged."""
     hears = Hears()
     draft = Draft("lab.it", "", "", hears)
-    draft.asks("text", 1, "", hears.says_text())
-    draft.asks("counts", 1, "", hears.counts("self.charge"))
-    draft.asks("rate", 1, "", hears.keeps_rate)
+    draft.asks("text", "", hears.says_text(), points=1)
+    draft.asks("counts", "", hears.counts("self.charge"), points=1)
+    draft.asks("rate", "", hears.keeps_rate, points=1)
     return draft.exercise()
 
 

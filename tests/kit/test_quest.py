@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
+from random import Random
 from typing import TYPE_CHECKING, Any
+from unittest.mock import MagicMock
 
 import pytest
 
 from autograder.judge import one_check
+from autograder.kit.bench import Pace
 from autograder.kit.draft import Draft
 from autograder.kit.evidence import Event, Evidence, Part, Reference
 from autograder.kit.quests.quest import Quest
 from autograder.kit.quests.robot import Robot, Search
 
 if TYPE_CHECKING:
-    from random import Random
-
     from autograder.kit.model import Exercise
 
 TWIST, POINT, TRIGGER = "geometry_msgs/msg/Twist", "geometry_msgs/msg/Point", "std_srvs/srv/Trigger"
@@ -41,8 +42,8 @@ def obeys() -> Exercise:
 
     quest = Quest(robots)
     draft = Draft("a.b", "A", "B", quest)
-    draft.asks("robot", 4, "Finds what it is called", quest.finds("robot"))
-    draft.asks("topic", 6, "Finds the topic that it obeys", quest.finds("topic"))
+    draft.asks("robot", "Finds what it is called", quest.finds("robot"), points=4)
+    draft.asks("topic", "Finds the topic that it obeys", quest.finds("topic"), points=6)
     return draft.exercise()
 
 
@@ -164,15 +165,25 @@ def test_a_subject_that_stays_without_an_answer_never_ended() -> None:
     assert _judged(obeys(), stays) == (0, "never_ended")
 
 
+@pytest.mark.parametrize(
+    ("said", "made"), [([SAID], 2), (["no idea"], 1)], ids=["an answer", "no answer, so no point is left"]
+)
+def test_a_subject_meets_further_robots_only_while_points_are_left(said: list[str], made: int) -> None:
+    seen = part(MIA, *said)
+    bench = MagicMock(pace=Pace.FAST, random=Random(0), seen=lambda: seen, keep=lambda _: False)
+    Quest(lambda _: {"one": MIA, "other": NOA}).scenario(bench)
+    assert bench.part.call_count == made
+
+
 def doors() -> Exercise:
     """A quest with a service that comes late, one that is there, and none."""
     quest = Quest(
         lambda _: {"late": late(), "there": OPEN, "none": Robot(services={"/z": TRIGGER})}, "service"
     )
     draft = Draft("a.b", "A", "B", quest)
-    draft.asks("late", 4, "Finds a late one", quest.finds(robot="late"))
-    draft.asks("there", 3, "Finds one", quest.finds(robot="there"))
-    draft.asks("none", 3, "Says so", quest.says_that_there_is_none)
+    draft.asks("late", "Finds a late one", quest.finds(robot="late"), points=4)
+    draft.asks("there", "Finds one", quest.finds(robot="there"), points=3)
+    draft.asks("none", "Says so", quest.says_that_there_is_none, points=3)
     return draft.exercise()
 
 

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from autograder.kit.mistakes.runner_mistakes import with_those_of
-from autograder.kit.oracle.action_server import GoalsSeen, SendsGoals
+from autograder.kit.oracle.action_server import SendsGoals
+from autograder.kit.oracle.goals_seen import GoalsSeen
 from autograder.kit.quests.quest import Quest
 from autograder.kit.recipes.action_client import ActionClient
 from autograder.kit.recipes.launch_file import LaunchFile

@@ -7,8 +7,8 @@ from typing import Any
 
 import pytest
 
+from autograder.kit.bench import Pace
 from autograder.kit.evidence import Event, Evidence, Part, Reference
-from autograder.kit.model import Pace
 from autograder.kit.recipes.subscriber import Speaks
 from autograder.kit.reported_texts import AT_PACE, PAIRS, TRIES, drawn_pairs, random_texts
 

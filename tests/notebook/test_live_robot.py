@@ -53,6 +53,17 @@ def test_the_picture_follows_the_robot_until_it_stops(run: Callable[..., list[An
     assert "It stands still." in words(outputs)
 
 
+def test_a_stranger_obeys_only_the_names_that_were_drawn_for_it(run: Callable[..., list[Any]]) -> None:
+    _, (found,) = run(
+        "robot = start_robot(stranger=True)\nlooking = Node('looking')",
+        "until(lambda: any('Twist' in str(kinds) for _, kinds in looking.get_topic_names_and_types()))\n"
+        "print([name for name, kinds in looking.get_topic_names_and_types() if 'Twist' in str(kinds)])\n"
+        "robot.stop()",
+    )
+    assert "/cmd_vel" not in found.text
+    assert found.text.count("/") == 2
+
+
 def test_a_second_run_of_the_cell_begins_anew_and_says_nothing_of_the_first(
     run: Callable[..., list[Any]],
 ) -> None:

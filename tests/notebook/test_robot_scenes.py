@@ -9,7 +9,7 @@ import pytest
 from my_robot_interfaces.action import Fibonacci
 from small_robot_interfaces.action import WalkTo
 
-from autograder.notebook.robot_drivers import SAYS_EVERY, Scene, Spiral, Tour
+from autograder.notebook.robot_drivers import SAYS_EVERY, CornerHunt, Scene, Spiral, Tour
 from autograder.robot.motion import ROOM, START, STILL, TICK, Moved, Pose, move
 
 if TYPE_CHECKING:
@@ -79,6 +79,14 @@ def test_it_walks_a_quarter_of_a_circle_for_each_number(node: FakeNode) -> None:
     # Left of the start by the diameter of two small quarters, and back by the difference of the radii.
     assert moved.pose.point == pytest.approx((START.x - 0.2, START.y), abs=0.01)
     assert moved.pose.heading == pytest.approx(-1.57, abs=0.01)
+
+
+def test_a_corner_counts_once_and_the_third_one_is_the_end_of_the_hunt() -> None:
+    hunt, said = CornerHunt(), []
+    for x, y in [(1.0, 2.0), (0.5, 0.5), (0.3, 0.4), (0.5, 3.5), (3.5, 3.5)]:
+        assert hunt.next(Pose(x, y, 0.0), bumped=False) is None
+        said.append(hunt.says)
+    assert said == [*(f"{count} of 3 corners" for count in (0, 1, 1, 2)), "I have seen 3 corners!"]
 
 
 def test_the_numbers_of_another_goal_begin_anew(node: FakeNode) -> None:

@@ -20,7 +20,7 @@ import msgspec
 from autograder import course
 from autograder.boxes.fork_server import ForkServers
 from autograder.grading.grading_task import Task
-from autograder.grading.running.task_execution import JudgeKind, execute
+from autograder.grading.running.task_execution import JudgeKind, execute, runners_of
 from autograder.grading.running.worker_messages import (
     ADDRESS,
     LARGEST_ANSWER,
@@ -113,9 +113,8 @@ class Executor:
                 running.end()
         try:
             judge = judge_kind(order.judge, boxed=task.boxed)
-            execution = execute(
-                task, self._scratch, judge, self.fork_servers(boxed=task.boxed), running.began
-            )
+            addresses = self.fork_servers(boxed=task.boxed, programs=bool(runners_of(task)))
+            execution = execute(task, self._scratch, judge, addresses, running.began)
             answer = msgspec.json.encode(execution)
         # Whatever failed concerns this order alone: the dispatcher decides whether it runs again.
         except Exception as error:
@@ -145,11 +144,12 @@ class Executor:
             for servers in self._fork_servers.values():
                 servers.stop()
 
-    def fork_servers(self, *, boxed: bool) -> Addresses:
+    def fork_servers(self, *, boxed: bool, programs: bool = False) -> Addresses:
         """Start the fork servers if they do not run, and return their addresses. Do not wait for their imports.
 
         Args:
             boxed: True to include the fork server for the supervisors of boxes.
+            programs: True to include the fork server for programs, which only some notebooks need.
         """
         with self._changing:
             servers = self._fork_servers.get(boxed)
@@ -163,7 +163,7 @@ class Executor:
                     of_judges=course.variables(),
                     interfaces=course.interface_modules(),
                 )
-            return servers.addresses
+            return servers.with_programs() if programs else servers.addresses
 
 
 class _Running:

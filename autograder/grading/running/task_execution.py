@@ -248,17 +248,19 @@ class _Paths:
         return {"PATH": path, students_builds.GRADERS: str(SHARED_FOLDER / _BUILDS)}
 
 
-def _make_paths(task: Task, folder: Path) -> _Paths:
-    """Make the folder for the judge's socket, and find the exercises whose subjects are programs.
+def runners_of(task: Task) -> frozenset[str]:
+    """Return the exercises of a task whose subjects the grader itself builds and starts, as programs."""
+    checks = {cell.check.exercise for cell in task.cells if cell.check and not cell.check.asserts}
+    return frozenset(name for name in checks & set(exercises.all_ids()) if exercises.get(name).runner)
 
-    Call this before the boxes of the notebook are made.
+
+def _make_paths(task: Task, folder: Path) -> _Paths:
+    """Make the folder for the judge's socket. Call this before the boxes of the notebook are made.
 
     Args:
         folder: A folder that only this notebook uses. Its path must be short, because it will contain a Unix socket.
     """
-    checks = [cell.check.exercise for cell in task.cells if cell.check and not cell.check.asserts]
-    runners = {name: exercises.get(name).runner for name in checks if name in exercises.all_ids()}
-    paths = _Paths(folder, task.boxed, frozenset(name for name, runner in runners.items() if runner))
+    paths = _Paths(folder, task.boxed, runners_of(task))
     paths.judges_folder.mkdir()
     return paths
 

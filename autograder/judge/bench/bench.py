@@ -21,10 +21,10 @@ from autograder.judge.bench.ros_interfaces import expected_hashes, served_hashes
 from autograder.judge.bench.subject_presence import GRAPH_POLL, MATCH, Presence
 from autograder.judge.bench.subject_time import SubjectTime, answers
 from autograder.judge.machine_fitness import JudgeFailed
+from autograder.kit.bench import STEP, Pace
 from autograder.kit.counterparts import Qos
 from autograder.kit.evidence import INTERRUPTED, Evidence, Part, Reference
 from autograder.kit.giving_up import patience
-from autograder.kit.model import STEP, Pace
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Container, Iterable, Mapping, Sequence
@@ -48,7 +48,7 @@ _Client = TypeVar("_Client", RecordedCaller, RecordedActionClient)
 
 
 class TestBench:
-    """Implements :class:`autograder.kit.model.Bench` on real ROS. Its methods are documented there.
+    """Implements :class:`autograder.kit.bench.Bench` on real ROS. Its methods are documented there.
 
     Attributes:
         in_a_cell: True if the subject runs in a notebook's kernel.

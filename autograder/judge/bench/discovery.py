@@ -90,13 +90,16 @@ def every_node(judge: Node, keeper: str) -> list[NodeName]:
     return others
 
 
-def survey(judge: Node) -> Interface:
+def survey(judge: Node, ends: list[TopicEnd] | None = None) -> Interface:
     """Return the endpoints of all of the subject's nodes, without those that every node has, such as ``/rosout``.
 
     The keeper (:func:`subject_nodes`) need not be left out, because it has only endpoints that every node has.
+
+    Args:
+        ends: The publishers and subscriptions, if they were queried a moment ago.
     """
     found: Interface = {role: {} for role in ROLES}
-    for end in topic_ends(judge):
+    for end in topic_ends(judge) if ends is None else ends:
         _add(found[end.role], end.topic, [end.type_name])
     for node in subject_nodes(judge, keeper=""):
         for role, query in _QUERIES.items():
@@ -107,7 +110,7 @@ def survey(judge: Node) -> Interface:
 
 
 @dataclass(frozen=True)
-class _TopicEnd:
+class TopicEnd:
     """A publisher or a subscription of the subject.
 
     Attributes:
@@ -125,7 +128,7 @@ class _TopicEnd:
     qos: Qos
 
 
-def topic_ends(judge: Node) -> list[_TopicEnd]:
+def topic_ends(judge: Node) -> list[TopicEnd]:
     """Return the subject's publishers and subscriptions.
 
     The query is by topic, not by node, for two reasons. If two nodes have the same name, a query by node returns the
@@ -133,17 +136,22 @@ def topic_ends(judge: Node) -> list[_TopicEnd]:
     separately.
     """
     own = judge.get_name()
-    return [
-        _TopicEnd(role, topic, info.topic_type, _process(bytes(info.endpoint_gid)), qos_of(info.qos_profile))
-        for topic, _ in judge.get_topic_names_and_types()
-        if _is_own_work("publisher", topic)
-        for role, infos in (
-            ("publisher", judge.get_publishers_info_by_topic(topic)),
-            ("subscription", judge.get_subscriptions_info_by_topic(topic)),
-        )
-        for info in infos
-        if info.node_name != own
-    ]
+    with judge.handle:
+        return [
+            TopicEnd(
+                role,
+                topic,
+                end["topic_type"],
+                _process(bytes(end["endpoint_gid"])),
+                qos_of(end["qos_profile"]),
+            )
+            for topic, _ in judge.get_topic_names_and_types()
+            if _is_own_work("publisher", topic)
+            # rclpy's own methods check the name again, and make objects of what is read here: four times the work.
+            for role, ends in _ENDS_OF_A_TOPIC.items()
+            for end in ends(judge.handle, topic, False)
+            if end["node_name"] != own
+        ]
 
 
 def _process(gid: bytes) -> int:
@@ -193,6 +201,12 @@ _QUERIES: dict[str, _Query] = {
     "client": Node.get_client_names_and_types_by_node,
     "action_server": get_action_server_names_and_types_by_node,
     "action_client": get_action_client_names_and_types_by_node,
+}
+
+
+_ENDS_OF_A_TOPIC = {
+    "publisher": rclpy_implementation.rclpy_get_publishers_info_by_topic,
+    "subscription": rclpy_implementation.rclpy_get_subscriptions_info_by_topic,
 }
 
 

@@ -2,9 +2,15 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 
 from autograder.kit.counterparts import Qos
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
 
 _POLICIES = {
     Qos.DEFAULT: (ReliabilityPolicy.RELIABLE, DurabilityPolicy.VOLATILE),
@@ -19,11 +25,11 @@ def profile(qos: Qos, depth: int = 10) -> QoSProfile:
     return QoSProfile(depth=depth, reliability=reliability, durability=durability)
 
 
-def qos_of(profile: QoSProfile) -> Qos:
-    """Return the name of an endpoint's profile, as the ROS graph shows it. The depth of the queue is not on the graph.
+def qos_of(policies: Mapping[str, int]) -> Qos:
+    """Return the name of an endpoint's policies, as the ROS graph shows them. The queue's depth is not on the graph.
 
     An endpoint that is both best effort and transient local counts as best effort, because most subscribers lose by it.
     """
-    if profile.reliability is ReliabilityPolicy.BEST_EFFORT:
+    if policies["reliability"] == ReliabilityPolicy.BEST_EFFORT:
         return Qos.SENSOR
-    return Qos.LATCHED if profile.durability is DurabilityPolicy.TRANSIENT_LOCAL else Qos.DEFAULT
+    return Qos.LATCHED if policies["durability"] == DurabilityPolicy.TRANSIENT_LOCAL else Qos.DEFAULT

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 from autograder.judge.bench import discovery
 from autograder.judge.machine_fitness import Patience
+from autograder.kit.bench import Pace
 from autograder.kit.counterparts import Qos
-from autograder.kit.model import Pace
 from autograder.kit.runners import BUILDING, report_of
 
 if TYPE_CHECKING:
@@ -248,7 +248,11 @@ class Presence:
         nodes = sorted(node.full for node in discovery.every_node(self._node, self._subject.keeper))
         topic_ends = discovery.topic_ends(self._node)
         ends = sorted([end.role, end.topic, end.process] for end in topic_ends)
-        seen: dict[str, Any] = {"nodes": nodes, "ends": ends, **(interface or discovery.survey(self._node))}
+        seen: dict[str, Any] = {
+            "nodes": nodes,
+            "ends": ends,
+            **(interface or discovery.survey(self._node, topic_ends)),
+        }
         if unusual := sorted(
             [end.role, end.topic, str(end.qos)] for end in topic_ends if end.qos is not Qos.DEFAULT
         ):

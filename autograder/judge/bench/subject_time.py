@@ -12,6 +12,7 @@ from __future__ import annotations
 import contextlib
 import threading
 import time
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
@@ -22,7 +23,7 @@ from rosgraph_msgs.msg import Clock
 from autograder.judge.bench import discovery
 from autograder.judge.bench.subject_presence import MATCH, Presence
 from autograder.judge.machine_fitness import Patience
-from autograder.kit.model import STEP, Pace
+from autograder.kit.bench import STEP, Pace
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -60,7 +61,8 @@ LENT_STEP = 0.1
 step, less often than in real time.
 """
 _SIM_TIME = "use_sim_time"
-_QUESTION = GetParameters.Request(names=[_SIM_TIME])
+_QUESTION = GetParameters.Request()
+"""The question for no parameter at all, which costs both sides least."""
 
 
 class NodeClock:
@@ -174,11 +176,15 @@ def _ask(wire: Wire, recorder: Recorder, client: Any, request: Any, limit: float
 
 def answers(wire: Wire, recorder: Recorder, node: NodeName, limit: float = PATIENT_ANSWER) -> bool:
     """Return True if a node answers a request for a parameter in time. Every node that is spun can answer."""
-    client = wire.node.create_client(GetParameters, f"{node.full}/get_parameters")
+    client = _new_client(wire, node)
     try:
         return _ask(wire, recorder, client, _QUESTION, limit) is not None
     finally:
         wire.node.destroy_client(client)
+
+
+def _new_client(wire: Wire, node: NodeName) -> Any:
+    return wire.node.create_client(GetParameters, f"{node.full}/get_parameters")
 
 
 class SimulatedClock(NodeClock):
@@ -277,6 +283,7 @@ class SubjectTime:
         self.is_lost = False
         """True if the subject's executor has stopped answering in simulated time. Then no more time passes for it."""
         self._deaf: set[str] = set()
+        self._clients: dict[NodeName, Any] = {}
 
     def run(
         self,
@@ -328,14 +335,21 @@ class SubjectTime:
         for node in self._presence.counterparts():
             if node.full in self._deaf or self._subject.ended:
                 continue
-            # The clock's own client is already connected, so its node is asked much faster.
             if self._clock is not None and node in self._clock.nodes:
                 has_settled = self._clock.keeps_up()
             else:
-                has_settled = all(answers(self._wire, self._recorder, node, limit) for _ in range(2))
+                ask = partial(_ask, self._wire, self._recorder, self._client_of(node), _QUESTION, limit)
+                has_settled = all(ask() is not None for _ in range(2))
             if not has_settled:
                 self._deaf.add(node.full)
         self._recorder.take_in()
+
+    def _client_of(self, node: NodeName) -> Any:
+        """Return a client that asks a node. It is kept for the part, because a new client is connected slowly."""
+        if node not in self._clients:
+            self._clients[node] = client = _new_client(self._wire, node)
+            self._open.callback(self._wire.node.destroy_client, client)
+        return self._clients[node]
 
     def await_attention(self) -> None:
         """Wait until each node that the judge is matched with has discovered the judge's publishers.

@@ -65,7 +65,7 @@ class GrowingCard:
     def __init__(
         self,
         exercise: Exercise,
-        decide: Callable[[Criterion, Evidence], CriterionResult],
+        decide: Callable[[Exercise, Criterion, Evidence], CriterionResult],
         tell: Callable[[Verdict, str], None],
     ) -> None:
         self._exercise, self._decide, self._tell = exercise, decide, tell
@@ -83,10 +83,10 @@ class GrowingCard:
         decides = ended.parts and not any(run.of("misnamed") for run in ended)
         for criterion in self._exercise.criteria if decides else ():
             with contextlib.suppress(StillToCome):
-                result = self._decide(criterion, evidence)
+                result = self._decide(self._exercise, criterion, evidence)
                 if result.passed:
                     self._met.setdefault(criterion.name, result)
-        criteria = tuple(self._met.get(one.name) or _to_come(one) for one in self._exercise.criteria)
+        criteria = tuple(self._met.get(one.name) or self._to_come(one) for one in self._exercise.criteria)
         self._tell(
             Verdict(
                 self._exercise.id,
@@ -100,9 +100,9 @@ class GrowingCard:
             self.words,
         )
 
-
-def _to_come(criterion: Criterion) -> CriterionResult:
-    return CriterionResult(criterion.name, criterion.title, criterion.points, None, "", "")
+    def _to_come(self, one: Criterion) -> CriterionResult:
+        counts = self._exercise.counts.get(one.name, "")
+        return CriterionResult(one.name, one.title, one.points, None, "", "", counts)
 
 
 def _words(evidence: Evidence) -> str:
@@ -110,14 +110,11 @@ def _words(evidence: Evidence) -> str:
     *runs, _ = evidence.parts
     left = [run.name for run in runs if isinstance(run, RunToCome)]
     ended = [run.name for run in runs if not isinstance(run, RunToCome)]
-    look = (
-        "Something was not as asked, so the judge looks again, in real time. " if evidence.real_time else ""
-    )
+    look = "Not all was as asked, so the judge looks again, in real time. " if evidence.real_time else ""
     if not ended:
         return f"{look}The judge watches your code."
-    return f"{look}Your code has run where {_listed(ended)}." + (
-        (left and f" Still to come: {_listed(left)}.") or ""
-    )
+    to_come = f" Still to come: {_listed(left)}." if left else ""
+    return f"{look}Runs that have ended: {_listed(ended)}.{to_come}"
 
 
 def _listed(names: Sequence[str]) -> str:

@@ -10,16 +10,16 @@ from dataclasses import dataclass
 from random import Random
 from typing import TYPE_CHECKING
 
-from autograder.kit.draft import OWN, Draft
+from autograder.kit.draft import OWN, Draft, SeenAsItIs
 from autograder.kit.mistakes.crashes import CRASHES, OTHER_CRASHES
 from autograder.kit.model import Advice, Finding
-from autograder.kit.recipes.own_scenario import OwnLadder
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
+    from autograder.kit.bench import Bench
     from autograder.kit.evidence import Evidence
-    from autograder.kit.model import Bench, Exercise
+    from autograder.kit.model import Exercise
 
 POINTS = 2.0
 """The points of a question whose author does not say how many it is worth."""
@@ -27,6 +27,15 @@ ANSWERED = 5.0
 """Time limit in seconds of wall time for the function to return."""
 
 _THINK = "Think of what you saw while you worked on this task, or try it once more, and then choose again."
+
+
+@dataclass(frozen=True)
+class _Asked(SeenAsItIs):
+    """The recipe for a subject without endpoints that is started once, by the scenario."""
+
+    scenario: Callable[[Bench], None]
+    roles = ()
+    ladder = (*CRASHES, *OTHER_CRASHES, OWN)
 
 
 @dataclass(frozen=True)
@@ -79,10 +88,9 @@ class Question:
             bench.await_end(ANSWERED)
             bench.stop()
 
-        subject = OwnLadder(scenario, *CRASHES, *OTHER_CRASHES, OWN)
-        draft = Draft(self.exercise_id, self.title, self.task, subject)
+        draft = Draft(self.exercise_id, self.title, self.task, _Asked(scenario), points=self.points)
 
-        @draft.criterion("right", self.points, "Names the right choice")
+        @draft.criterion("right", "Names the right choice")
         def right(seen: Evidence, _: Evidence) -> Finding:
             said = answer(seen)
             return Finding(_plain(said) == _plain(self.right), "the right choice", f"“{said or 'nothing'}”")

@@ -10,6 +10,7 @@ import importlib
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, cast
 
+from autograder.kit.draft import POINTS
 from autograder.kit.model import Advice, Criterion, Exercise, Finding, Mistake
 
 if TYPE_CHECKING:
@@ -17,8 +18,6 @@ if TYPE_CHECKING:
 
     from autograder.kit.evidence import Event, Evidence, Part
 
-POINTS = 10.0
-"""The points of a repair whose author does not say how many it is worth."""
 _NOTHING_CAME = {
     "publisher": ("message", "no message arrived on {}"),
     "service": ("answered", "no answer came from {}"),

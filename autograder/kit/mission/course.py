@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
+    from autograder.kit.bench import Bench
     from autograder.kit.mission.moment import Moment
     from autograder.kit.mission.robot import Robot
     from autograder.kit.mission.steps import Journey, Step
-    from autograder.kit.model import Bench
 
 AFTER = 1.0
 """Seconds of the subject's time for which the world goes on after everything was reached."""
@@ -47,6 +47,10 @@ class Lines:
     reaches: Sequence[Line]
     never: Sequence[Line]
     same: Sequence[Line]
+
+
+NOTHING_REACHED = "nothing yet: this counts once your robot has reached something"
+"""The words of the card for a line of ``never`` before a line of ``reaches`` was reached."""
 
 
 class Course:
@@ -115,7 +119,7 @@ class Course:
         for line in self._lines.never:
             # A robot that never leaves its place breaks no rule, and has done nothing for the points either.
             did = bool(self._reached) or not self._lines.reaches
-            broken = self._broken.get(line.name, "" if did else "nothing was reached")
+            broken = self._broken.get(line.name, "" if did else NOTHING_REACHED)
             self._bench.note(line.name, holds=not broken, text=broken or "never")
             holds.append(not broken)
         for line in self._lines.same:

@@ -14,33 +14,32 @@ from typing import TYPE_CHECKING, Any
 
 import re2
 
-from autograder.kit.draft import Draft, Judge
+from autograder.kit.draft import POINTS, Draft, Judge
 from autograder.kit.mission import driving
 from autograder.kit.mission.course import MISTAKE, Course, Line, Lines
 from autograder.kit.mission.moment import Moment, World
 from autograder.kit.mission.robot import Robot
 from autograder.kit.mission.steps import Goal, Journey, Step
+from autograder.kit.mistakes.common_mistakes import KEEP_THE_PERIOD
 from autograder.kit.model import Finding
 from autograder.kit.oracle.steps import To
-from autograder.robot.motion import Pose, Wall, Walls
+from autograder.robot.motion import ROOM, Pose, Wall, Walls
 
 if TYPE_CHECKING:
+    from autograder.kit.bench import Bench
     from autograder.kit.evidence import Part
-    from autograder.kit.model import Bench, Exercise
+    from autograder.kit.model import Exercise
 
-__all__ = ["Goal", "Mission", "Moment", "Pose", "To", "Wall", "Walls", "World"]
+__all__ = ["ROOM", "Goal", "Mission", "Moment", "Pose", "To", "Wall", "Walls", "World"]
 
 Row = Sequence[Any]
 """A line of the card: its text, a function of a :class:`Moment`, and perhaps a name without blanks and the points."""
-POINTS = 10.0
-"""The points of an exercise whose author does not say how many it is worth."""
 OTHER = "A command of yours says {0[0]}; the task asks for {0[1]}."
 MOVEMENT = (
     "linear.x points ahead, in metres per second, and angular turns the robot: make a new Twist() for each command, "
     "set what the task asks for before you publish it, and leave the other numbers alone."
 )
 WRONG_RATE = "Your commands come {}; the task asks for another rate."
-PERIOD = "Give create_timer the period in seconds, and leave time.sleep out of the callback."
 NOTHING: Mapping[str, Any] = MappingProxyType({})
 PART = "mission"
 RECORDED = (
@@ -123,8 +122,10 @@ class Mission:
         kinds = (("yes", reaches), ("never", never), ("", same))
         self._lines = Lines(*([_line(wants, *row) for row in rows] for wants, rows in kinds))
         self._knows = [found for _, found, *_ in knows]
+        self._is_compared = bool(drives or rate)
         self._within, self._until, self._quiet, self._threads = within, until, quiet, threads
-        self._draft = Draft(exercise_id, title, task, driving.Driving(self._scenario, *roles))
+        recipe = driving.Driving(self._scenario, *roles)
+        self._draft = Draft(exercise_id, title, task, recipe, points=points)
         rows: list[tuple[Line, Judge[Part]]] = []
         if drives:
             rows.append((_line("", drives[0], str, *drives[1:]), driving.drives))
@@ -132,24 +133,24 @@ class Mission:
         if rate:
             rows.append((_line("", rate[0], str, *rate[1:]), driving.keeps_rate))
         rows += [(line, partial(_as_noted, line)) for line in self._lines.never]
-        without = sum(not line.points for line, _ in rows)
-        share = (points - sum(line.points for line, _ in rows)) / max(1, without)
         for line, judge in rows:
-            self._draft.criterion(line.name, line.points or share, line.text)(judge)
+            self._draft.criterion(line.name, line.text, points=line.points)(judge)
         if drives:
             self._draft.knows("wrong_movement", driving.another_movement, OTHER, MOVEMENT, certain=True)
         for number, (key, _, says, next_step, *how) in enumerate(knows):
             shown = partial(_shown, number)
             self._draft.knows(key, shown, says, next_step, **(how[0] if how else {}))
         if rate:
-            self._draft.knows("wrong_rate", driving.another_rate, WRONG_RATE, PERIOD)
+            self._draft.knows("wrong_rate", driving.another_rate, WRONG_RATE, KEEP_THE_PERIOD)
 
     def exercise(self, **more: Any) -> Exercise:
         """Return the finished exercise. For ``more`` see :meth:`autograder.kit.draft.Draft.exercise`."""
         return self._draft.exercise(**{"recorded": RECORDED, **more})
 
     def _scenario(self, bench: Bench) -> None:
-        bench.part(PART)
+        # Each solution goes its own way, so a card must not ask for the messages of the recorded one.
+        is_free = bool(bench.reference.parts) and not self._is_compared
+        bench.part(PART, **({"goes": "its own way"} if is_free else {}))
         ends = bench.reference.interface
         for topic, kind in ends.get("publisher", {}).items():
             bench.listen(topic, kind)

@@ -49,9 +49,9 @@ class Moment:
         leg: The number of worlds in which the robot has been before this one.
         pose: The robot's pose.
         velocity: The robot's velocity; 0 forward if a wall is in its way.
-        bumped: True if a wall is in the robot's way.
+        bumped: True if the robot pushes against a wall at this moment.
         lamp: True if the robot's lamp is on.
-        stood: Seconds for which the robot has not moved.
+        stood: Seconds for which the robot has neither moved nor pushed against a wall.
         silent: Seconds since the subject's last command; since the beginning if no command has come.
         reached: The texts of the lines of ``reaches`` that have been reached.
         part: Everything that the judge has recorded so far.
@@ -114,6 +114,10 @@ class Moment:
     def goal(self, number: int) -> SentGoal:
         """Return what came of a goal that the judge sent to the subject's action, counted from 0."""
         return outcomes.goal(self.part, number)
+
+    def ended(self, number: int = 0) -> str:
+        """Return how such a goal ended, as :func:`autograder.kit.outcomes.end_of` names it."""
+        return outcomes.end_of(self.goal(number))
 
     def before(self, kind: str, name: str | None = None) -> Moment:
         """Return what the judge had recorded before the first event of a kind, such as ``"request"``, and a name.

@@ -5,17 +5,17 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
+from autograder.kit.bench import Pace
 from autograder.kit.mission.driving import drive_topic
 from autograder.kit.mission.moment import Moment, World, number_of
-from autograder.kit.model import Pace
 from autograder.robot.motion import STILL, TICK, Velocity, move, towards
 from autograder.robot.sensors import OBEYS_FOR, SCAN_EVERY, laser_scan, look_around, odometry
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
+    from autograder.kit.bench import Bench
     from autograder.kit.counterparts import ActionCounterpart, Speaker
-    from autograder.kit.model import Bench
 
 ARRIVED = 0.1
 """The distance in meters from a goal at which a walk has arrived."""
@@ -150,7 +150,8 @@ class Robot:
         walking = [velocity for walk in self._walks if (velocity := walk.next(now)) is not None]
         told = self._told if silent < OBEYS_FOR else STILL
         moved = move(now.pose, walking[0] if walking else told, seconds, now.world.walls)
-        stood = now.stood + seconds if moved.pose == now.pose else 0.0
+        stands = moved.pose == now.pose and not moved.bumped
+        stood = now.stood + seconds if stands else 0.0
         self.now = replace(
             now, pose=moved.pose, velocity=moved.velocity, bumped=moved.bumped, stood=stood, silent=silent,
             lamp=next((bool(one) for one in reversed(_switched(now))), False),

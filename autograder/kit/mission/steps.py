@@ -12,11 +12,11 @@ from autograder.kit.recipes.own_scenario import QUIET
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
+    from autograder.kit.bench import Bench
     from autograder.kit.counterparts import ActionCaller, Caller
     from autograder.kit.evidence import Evidence
     from autograder.kit.mission.moment import Moment
     from autograder.kit.mission.robot import Robot
-    from autograder.kit.model import Bench
 
 
 @dataclass(frozen=True)

@@ -114,6 +114,10 @@ def qos_mismatch(role: str) -> Mistake:
     return Mistake("qos_mismatch", recognize, certain=True)
 
 
+KEEP_THE_PERIOD = (
+    "Give create_timer the period in seconds, publish once in its callback, and leave time.sleep out of it."
+)
+"""The next step for a node that publishes at a wrong rate."""
 NOT_LATCHED = (
     "Your publisher does not store its last message, so a subscriber that joins later receives nothing.",
     "Pass QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL) to create_publisher instead of 10.",

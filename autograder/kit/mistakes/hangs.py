@@ -135,6 +135,8 @@ def _executes_a_goal(stack: Stack) -> bool:
 
 
 Recognize = Callable[[list[Stack]], bool]
+WAITS_FOR_ITSELF = ("nested_spin", "call_in_same_group")
+"""Hangs that no time can end. In the others, the subject may be busy with something that comes to an end."""
 
 _HANGS: tuple[tuple[str, Recognize, str, str], ...] = (
     (
@@ -224,7 +226,7 @@ def _mistake(key: str, fits: Recognize, text: str, next_step: str) -> Mistake:
         }
         return Advice(text.format(**words), next_step.format(**words))
 
-    return Mistake(key, recognize)
+    return Mistake(key, recognize, certain=key in WAITS_FOR_ITSELF)
 
 
 HANGS: tuple[Mistake, ...] = tuple(_mistake(*row) for row in _HANGS)

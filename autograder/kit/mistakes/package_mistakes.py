@@ -9,13 +9,14 @@ from typing import TYPE_CHECKING
 import re2
 
 from autograder import known_errors
+from autograder.kit.bench import Pace
 from autograder.kit.mistakes.traceback_lines import own_line
-from autograder.kit.model import Advice, Mistake, Pace, mistake
+from autograder.kit.model import Advice, Mistake, mistake
 from autograder.kit.runners import BUILDING, WorkspaceReport, report_of
 
 if TYPE_CHECKING:
+    from autograder.kit.bench import Bench
     from autograder.kit.evidence import Evidence, Part
-    from autograder.kit.model import Bench
     from autograder.kit.runners import PackageReport
 
 

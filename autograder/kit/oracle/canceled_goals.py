@@ -21,6 +21,7 @@ from collections.abc import Callable, Mapping
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
+from autograder.kit.bench import Bench, Pace
 from autograder.kit.goal_reports import REFUSED, refused_as_seen
 from autograder.kit.lateness import (
     SOON,
@@ -30,7 +31,6 @@ from autograder.kit.lateness import (
     meets_late_action,
     meets_present,
 )
-from autograder.kit.model import Bench, Pace
 from autograder.kit.oracle.cancel_requests import (
     AGREED,
     CANCEL_REFUSED,
@@ -39,11 +39,11 @@ from autograder.kit.oracle.cancel_requests import (
     after_result,
     cancel_request,
 )
-from autograder.kit.recipes.action_client import (
+from autograder.kit.recipes.action_client import ActionClient
+from autograder.kit.recipes.one_goal import (
     AFTERMATH,
     END_LIMIT,
     GOAL_LIMIT,
-    ActionClient,
     meets_server,
     needs_no_search,
     refuse,
@@ -133,7 +133,9 @@ class CancelsGoal(ActionClient):
             if tells_of_cancel(first):
                 self._run(bench, AGREED, first)
         before = bench.before
-        if not first.of("goal") or (before and not refused_as_seen(before) and bench.keep(REFUSED)):
+        if not first.of("goal") or first.of("unanswered"):
+            return  # a client that no longer answers at all has lost the next run, too
+        if before and not refused_as_seen(before) and bench.keep(REFUSED):
             return
         bench.part(REFUSED)
         prepared = needs_no_search(bench, first)

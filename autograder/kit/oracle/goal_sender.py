@@ -5,7 +5,7 @@ from __future__ import annotations
 from statistics import median
 from typing import TYPE_CHECKING, Any
 
-from autograder.kit.model import Bench, Pace
+from autograder.kit.bench import Bench, Pace
 from autograder.kit.outcomes import SUCCEEDED, SentGoal, all_goals, goal
 
 if TYPE_CHECKING:

@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING, Any
 
 from autograder.kit.in_words import counted
 from autograder.kit.model import Finding
-from autograder.kit.oracle.steps import parameter_in_words
-from autograder.kit.recipes.own_scenario import pick
-from autograder.kit.rules import in_words, same
+from autograder.kit.oracle.steps import parameter_in_words, pick
+from autograder.kit.rules import has_rate, in_words, rate_of, same
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from autograder.kit.evidence import Event, Part
+    from autograder.kit.rules import Rate
 
 ONE_MISSING_IN = 4
 """One more or one fewer of this many messages may come, because each node asks and tells at its own moments."""
@@ -27,6 +27,7 @@ class Kind(Enum):
     STEPS = "the outputs of each step"
     LIST = "all messages in order, however they are spread over the steps"
     PARAMETER = "the description of a parameter, and how new values of it are received"
+    RATE = "the time between two messages"
 
 
 @dataclass(frozen=True)
@@ -38,18 +39,27 @@ class Output:
         paths: The paths of the fields that are compared.
         kind: What is compared.
         tolerance: The tolerance for numbers, absolute or relative to the larger one.
+        period: For a rate, the seconds between two messages.
     """
 
     name: str
     paths: tuple[str, ...]
     kind: Kind
     tolerance: float
+    period: float = 0.0
+
+    @property
+    def key(self) -> str:
+        """The name of the criterion."""
+        return self.name.strip("/") + "_rate" * (self.kind is Kind.RATE)
 
     @property
     def title(self) -> str:
         """The line of the criterion on the card."""
         if self.kind is Kind.PARAMETER:
             return f"Describes the parameter {self.name}, takes the right values and refuses the others"
+        if self.kind is Kind.RATE:
+            return f"Keeps the rate on {self.name}"
         # Every message of std_msgs has a field named data, so this name says nothing on a card.
         what = " and ".join(path for path in self.paths if path != "data")
         return f"Says the right {what or 'value'} on {self.name}"
@@ -66,6 +76,8 @@ class Output:
             seen: The run of the subject.
             expected: The run of the solution, or of a recorded wrong answer.
         """
+        if self.kind is Kind.RATE:
+            return has_rate(seen.of("message", self.name), self.period, self._rate(seen))
         mine, theirs = self._rows(seen), self._rows(expected)
         both = min(len(mine), len(theirs))
         differs = next((n for n in range(both) if not same(mine[n][0], theirs[n][0], self.tolerance)), both)
@@ -83,7 +95,7 @@ class Output:
                 for rows in (theirs, mine)
             )
             return Finding(differs == both and missing <= 1 + len(theirs) // ONE_MISSING_IN, due, came)
-        if differs == len(theirs):
+        if theirs and differs == len(theirs):
             return Finding(True, right := f"the same as the solution in all {len(theirs)} steps", right)
         due, came = (
             f"{self._in_words(rows[differs][0])} {rows[differs][1]}" if differs < len(rows) else "nothing"
@@ -94,6 +106,14 @@ class Output:
     def is_undeclared(self, seen: Part, _: Part) -> bool:
         """Return True if the subject has no parameter of this name."""
         return any(event.data["values"] == [[0, []]] for event in seen.of("noted", self.name))
+
+    def another_rate(self, seen: Part, expected: Part) -> str:
+        """Return the subject's rate in words if it is wrong; empty if it is right, or there are too few messages."""
+        finding = self.compared(seen, expected)
+        return "" if finding.passed or self._rate(seen) is None else finding.seen
+
+    def _rate(self, seen: Part) -> Rate | None:
+        return rate_of(seen.of("message", self.name), self.period, may_vary=True)
 
     def _rows(self, part: Part) -> list[tuple[Any, str]]:
         """Return what is compared, in order: the values of each step with its words, or each message of a list."""

@@ -8,24 +8,30 @@ the solution.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from functools import partial
+from itertools import product
 from random import Random
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
+from autograder.kit.bench import Pace
 from autograder.kit.counterparts import Qos
-from autograder.kit.draft import Draft
+from autograder.kit.draft import POINTS, Draft
 from autograder.kit.mistakes import unfinished
-from autograder.kit.mistakes.common_mistakes import NOT_LATCHED, is_not_latched
-from autograder.kit.model import Advice, Finding, Mistake, Pace
+from autograder.kit.mistakes.common_mistakes import KEEP_THE_PERIOD, NOT_LATCHED, is_not_latched
+from autograder.kit.model import Advice, Finding, Mistake
 from autograder.kit.oracle.goal_sender import GoalSender
 from autograder.kit.oracle.outputs import Kind, Output
-from autograder.kit.oracle.steps import Goal, Serves, Sets, Step, To, parameter_value
+from autograder.kit.oracle.steps import Goal, Serves, Sets, Step, To, Turn, parameter_value
 from autograder.kit.recipes.own_scenario import ENDPOINTS, QUIET, Met, OwnScenario, meet
 
 if TYPE_CHECKING:
+    from collections.abc import Container
+
+    from autograder.kit.bench import Bench
     from autograder.kit.evidence import Evidence, Part, Reference
-    from autograder.kit.model import Bench, Exercise
+    from autograder.kit.model import Exercise
 
 __all__ = ["Goal", "SameAsSolution", "Serves", "Sets", "To"]
 
@@ -40,8 +46,6 @@ SET = ("set_parameters", "rcl_interfaces/srv/SetParameters")
 DESCRIBE = ("describe_parameters", "rcl_interfaces/srv/DescribeParameters")
 DESCRIBED = ("type", "ranges")
 NOT_DECLARED = {"type": 0, "floating_point_range": (), "integer_range": ()}
-POINTS = 10.0
-"""The points of an exercise whose author does not say how many it is worth."""
 
 
 class _Drawn(OwnScenario):
@@ -89,15 +93,19 @@ class _Drawn(OwnScenario):
             return None
         if self._agree(mine, self.expected(evidence)):
             return None
-        for variant in evidence.reference.variants:
-            part = next((part for part in variant.parts if part.name == mine.name), None)
-            if part and self._agree(mine, part) and self._agree(part, mine):
+        # In real time a node may say the same once more or less, so what it did in simulated time counts, too.
+        runs = [mine, *([evidence.before.main] if evidence.before else [])]
+        for run, variant in product(runs, evidence.reference.variants):
+            part = next((part for part in variant.parts if part.name == run.name), None)
+            if part and self._agree(run, part) and self._agree(part, run):
                 return Advice(variant.text, variant.next_step, key=variant.key)
         return None
 
     def _agree(self, seen: Part, expected: Part) -> bool:
         made, due = ([e.data["made"] for e in part.of("noted", ENDPOINTS)] for part in (seen, expected))
-        return made == due and all(output.compared(seen, expected).passed for output in self._outputs)
+        # The rate of a recorded answer is not known, because a recording keeps no messages.
+        compared = [output for output in self._outputs if output.kind is not Kind.RATE]
+        return made == due and all(output.compared(seen, expected).passed for output in compared)
 
 
 class SameAsSolution:
@@ -124,7 +132,11 @@ class SameAsSolution:
         late_after: Seconds of the subject's time after which the judge subscribes, and asks for the last message, too.
         qos: The topics on which the QoS counts: the judge's endpoint gets the QoS of the solution's, and an endpoint
             that does not match gets or tells nothing.
-        every: True to compare all messages of a step, not only the last: for a node that answers each input.
+        every: The topics of which all messages of a step are compared, not only the last one, because the task asks for
+            one message for each input; True for all of ``tells``.
+        rates: The topics for which the task asks for a period, with this period in seconds. A node that publishes more
+            often or less often fails; it may be silent for some time, or publish once more at an input. On other
+            topics, the period is the student's.
         pause: Seconds of the subject's time after each input.
         tolerance: The absolute or relative tolerance for numbers.
         roles: The roles of the subject's endpoints, the most telling first.
@@ -155,14 +167,16 @@ class SameAsSolution:
         waits: float = 0.0,
         late_after: float = 0.0,
         qos: Sequence[str] = (),
-        every: bool = False,
+        every: bool | Container[str] = False,
+        rates: Mapping[str, float] = NOTHING,
         pause: float = PAUSE,
         tolerance: float = TOLERANCE,
         roles: Sequence[str] = ("publisher", "subscription"),
         points: float = POINTS,
     ) -> None:
         self._id, self._gives, self._serves = exercise_id, gives, serves
-        self._every, self._pause, self._tolerance = every, pause, tolerance
+        self._every = tells if every is True else every or ()
+        self._pause, self._tolerance = pause, tolerance
         self._waits, self._late_after, self._qos = waits, late_after, qos
         kinds = {
             Kind.STEPS: tells,
@@ -174,9 +188,10 @@ class SameAsSolution:
             for kind, outputs in kinds.items()
             for name, paths in outputs.items()
         ]
+        self._outputs += [Output(name, (), Kind.RATE, tolerance, period) for name, period in rates.items()]
         is_timed = any(isinstance(step, (int, float)) for step in gives(Random(0)))
         drawn = _Drawn(self._scenario, self._outputs, roles, is_timed=is_timed)
-        self._draft = Draft(exercise_id, title, task, drawn)
+        self._draft = Draft(exercise_id, title, task, drawn, points=points)
         if late_after:
             self._draft.knows("not_latched", is_not_latched, *NOT_LATCHED, certain=True)
         for output in self._of(Kind.PARAMETER):
@@ -187,9 +202,13 @@ class SameAsSolution:
                 f'Declare it in __init__, with its default: self.declare_parameter("{output.name}", …).',
                 certain=True,
             )
+        for output in self._of(Kind.RATE):
+            says = (
+                f"On {output.name} your messages come {{}}; the task asks for one every {output.period:g} s."
+            )
+            self._draft.knows("wrong_rate", output.another_rate, says, KEEP_THE_PERIOD)
         for output in self._outputs:
-            name, each = output.name.strip("/"), points / len(self._outputs)
-            self._draft.criterion(name, each, output.title)(partial(_by_one_server, output))
+            self._draft.criterion(output.key, output.title)(partial(_by_one_server, output))
 
     def exercise(self, **more: Any) -> Exercise:
         """Return the finished exercise. For ``more`` see :meth:`autograder.kit.draft.Draft.exercise`."""
@@ -225,9 +244,17 @@ class SameAsSolution:
             for topic, kind in bench.reference.interface["publisher"].items():
                 bench.listen(topic, kind, qos=Qos.LATCHED)
             bench.wait_until(lambda e: bool(e.main.of("mismatch") or e.main.of("message")), QUIET[bench.pace])
+        turns: list[Turn] = []
         went_through = self._describe(bench) and all(
-            self._takes(met, number, step) for number, step in enumerate([self._pause, *steps])
+            self._takes(
+                met, Turn(number, step, 0 if number == 0 else len(bench.seen().events), bench.moment), turns
+            )
+            for number, step in enumerate([self._pause, *steps])
         )
+        if bench.pace is Pace.REAL_TIME:
+            bench.settle()
+            for turn, following in zip(turns, [*turns[1:], None], strict=True):
+                self._notes(bench, turn, following)
         for output in self._of(Kind.LIST):
             seen = bench.seen().of("message", output.name)
             stepped = sum(event.sim is not None for event in seen)
@@ -235,11 +262,10 @@ class SameAsSolution:
         # In real time nothing has proved so far that the subject's executor is alive.
         return went_through and bench.pace is Pace.FAST
 
-    def _takes(self, met: Met, number: int, step: Step) -> bool:
+    def _takes(self, met: Met, turn: Turn, turns: list[Turn]) -> bool:
         """Give the subject one step, and note its outputs. Return False if the subject does not answer."""
-        bench = met.bench
-        before = 0 if number == 0 else len(bench.seen().events)
-        if number == 0:
+        bench, step = met.bench, turn.step
+        if turn.number == 0:
             # A node that begins to count before the first input does so in real time.
             bench.wait_until(lambda evidence: bool(evidence.main.of("message")), self._waits)
         went_through = True
@@ -248,11 +274,24 @@ class SameAsSolution:
             # What is wrong with a goal that does not end is compared, too.
             if not (went_through or isinstance(step, Goal)):
                 return False
+        if bench.pace is Pace.FAST and not isinstance(step, (int, float)):
             bench.settle()
         if not bench.run_time(step if isinstance(step, (int, float)) else self._pause):
             return False
-        bench.settle()
-        events = bench.seen().events[before:]
+        turns.append(turn)
+        if bench.pace is Pace.FAST:
+            bench.settle()
+            self._notes(bench, turn)
+        return went_through
+
+    def _notes(self, bench: Bench, turn: Turn, following: Turn | None = None) -> None:
+        """Note the outputs of a step.
+
+        In real time this comes after the last step: to settle in between would take the longer, the busier the machine.
+        A message then belongs to the step in which it was sent.
+        """
+        seen, step = bench.seen(), turn.step
+        events = turn.events(seen, following, by_time=bench.pace is Pace.REAL_TIME)
         given = f"{step:g} s without an input" if isinstance(step, (int, float)) else step.name
         if isinstance(step, Goal):
             given = str(step)
@@ -261,15 +300,15 @@ class SameAsSolution:
             given = f"{step.parameter} = {step.value}"
             result = next(e.data["fields"]["results"][0] for e in events if e.kind == "answered")
             taken = [result["successful"], bool(result["reason"])]
-            bench.note(step.parameter, step=number, given=given, values=[taken])
+            bench.note(step.parameter, step=turn.number, given=given, values=[taken])
         for output in self._of(Kind.STEPS):
             values = output.values(events)
             if isinstance(step, Goal) and output.name == step.name:
-                values = step.outcomes(bench.seen(), output.paths)
-            elif not self._every:
+                until = following.first if following else None
+                values = step.outcomes(replace(seen, events=seen.events[:until]), output.paths)
+            elif output.name not in self._every:
                 values = values[-1:]
-            bench.note(output.name, step=number, given=given, values=values)
-        return went_through
+            bench.note(output.name, step=turn.number, given=given, values=values)
 
     def _given(self, met: Met, step: To | Sets | Goal) -> bool:
         """Give the subject an input. Return False if it should answer and does not."""

@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import reduce
+from math import inf
 from random import Random  # noqa: TC003  (an alias of types needs it)
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from autograder.kit.in_words import counted
-from autograder.kit.outcomes import all_goals
-from autograder.kit.recipes.own_scenario import pick
+from autograder.kit.outcomes import all_goals, end_of
+from autograder.kit.rules import sent_times
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Container, Mapping, Sequence
 
-    from autograder.kit.evidence import Part
+    from autograder.kit.evidence import Event, Part
     from autograder.kit.oracle.goal_sender import GoalSender
     from autograder.kit.outcomes import SentGoal
 
@@ -134,7 +136,7 @@ class Goal:
     def _outcome(self, sent: SentGoal, path: str) -> Any:
         part, _, field_path = path.partition(".")
         if part == "status":
-            return sent.end
+            return end_of(sent)
         if part == "feedback":
             return [pick(fields, field_path) for fields in sent.feedback[: self.cancel_after]]
         return None if self.cancel_after is not None or not sent.result else pick(sent.result, field_path)
@@ -142,6 +144,34 @@ class Goal:
 
 Step = To | Sets | Goal | float
 """A step of the judge: an input, a new value of a parameter, a goal, or a time to let pass, in seconds."""
+
+
+class Turn(NamedTuple):
+    """A step that the subject was given, with its number, and the event and the moment at which it begins."""
+
+    number: int
+    step: Step
+    first: int
+    began: float
+
+    def events(self, seen: Part, following: Turn | None, *, by_time: bool) -> list[Event]:
+        """Return the events from here to the following step; ``by_time``, messages by the time when they were sent."""
+        last, ended = (following.first, following.began) if following else (len(seen.events), inf)
+        began = self.began if self.number else -inf
+        return [
+            event
+            for place, event in enumerate(seen.events)
+            if (
+                began <= _sent_at(event) < ended
+                if by_time and event.kind == "message"
+                else self.first <= place < last
+            )
+        ]
+
+
+def _sent_at(message: Event) -> float:
+    """Return when a message was sent, in seconds of the run's real time."""
+    return message.t - (float(message.data.get("arrived", message.t)) - sent_times([message])[0])
 
 
 def parameter_in_words(noted: Sequence[Any]) -> str:
@@ -161,3 +191,14 @@ def parameter_value(value: float | str | bool) -> dict[str, Any]:
         number for number, python in ((1, bool), (2, int), (3, float), (4, str)) if isinstance(value, python)
     )
     return {"type": kind, f"{TYPES[kind]}_value": value}
+
+
+def pick(fields: Any, path: str) -> Any:
+    """Return the value of a field, given by its path, such as ``"pose.position.x"``.
+
+    A question mark at the end, as in ``"message?"``, asks only whether there is a value that is not empty, 0 or false.
+    """
+    if path.endswith("?"):
+        value = pick(fields, path[:-1])
+        return bool(value.strip() if isinstance(value, str) else value)
+    return reduce(lambda part, key: part[key], path.split("."), fields)

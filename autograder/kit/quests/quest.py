@@ -14,18 +14,19 @@ from typing import TYPE_CHECKING
 import re2
 
 from autograder.kit import giving_up
+from autograder.kit.bench import Pace
 from autograder.kit.draft import OWN, OWN_LATE
 from autograder.kit.evidence import Part
 from autograder.kit.giving_up import LATENESS, PATIENCE, PATIENCES
 from autograder.kit.lateness import SOON, was_patient
 from autograder.kit.mistakes import unfinished
 from autograder.kit.mistakes.crashes import CRASHES, OTHER_CRASHES, OTHER_SLIPS
-from autograder.kit.model import Advice, Finding, Mistake, Pace, mistake
+from autograder.kit.model import Advice, Finding, Mistake, mistake
 from autograder.kit.quests.robot import Robot, Search
 
 if TYPE_CHECKING:
+    from autograder.kit.bench import Bench
     from autograder.kit.evidence import Evidence
-    from autograder.kit.model import Bench
 
 Searches = Mapping[str, Search]
 """All runs of a subject, by the names of the robots."""
@@ -47,6 +48,8 @@ which. No usual constant from 2 seconds on lies in one of these.
 """
 LONGEST_QUOTE = 200
 """The most characters of a line that a card quotes."""
+UNKNOWN_NODE = "_NODE_NAME_UNKNOWN_"
+"""The node name that the graph gives for an endpoint before it has discovered the node (rmw_dds_common)."""
 _GAVE_UP = re2.compile(r"(?m)^TimeoutError(?:: .*)?$")
 
 _TEXTS = {
@@ -64,6 +67,11 @@ _TEXTS = {
         "Your function found the name, but what it returns is {0.part.returned}: code that calls it cannot go on with "
         "that.",
         "End your function with `return` and the name itself, as the graph gives it.",
+    ),
+    "wrong_node": (
+        "Your answer names {}, which the graph has, but which is not what you were asked for.",
+        "Ask each node for what it publishes or what it subscribes to, as the task needs it, and compare the whole "
+        "type. Leave out /rosout and /parameter_events: every node has these two.",
     ),
     "looked_once": (
         "You looked only once. A new node knows almost nothing of the graph, and what you look for may start later "
@@ -116,8 +124,8 @@ class Quest:
 
         quest = Quest(robots)
         obeys = Draft("lab_8_1.obeys", "Lab 8.1 · What it obeys", "Find what a robot obeys.", quest)
-        obeys.asks("robot", 4, "Finds what it is called", quest.finds("robot"))
-        obeys.asks("topic", 6, "Finds the topic that it obeys", quest.finds("topic"))
+        obeys.asks("robot", "Finds what it is called", quest.finds("robot"), points=4)
+        obeys.asks("topic", "Finds the topic that it obeys", quest.finds("topic"), points=6)
         EXERCISE = obeys.exercise()
     """
 
@@ -149,10 +157,10 @@ class Quest:
             if robot.late and not search.has() and was_patient(search.since_it_appeared):
                 bench.again()
                 self._meets(bench, robot, patience, SOON)
-            has_answered = Search(bench.seen()).has_answered
+            search = Search(bench.seen())
             bench.stop()
-            if not has_answered and not takes_patience:
-                return  # it hangs, and each criterion needs all robots
+            if not takes_patience and not (search.given and search.has_answered):
+                return  # each criterion needs all robots
 
     def _meets(self, bench: Bench, robot: Robot, patience: Mapping[str, float], lateness: float) -> None:
         _put(bench, robot, late=False)
@@ -216,6 +224,7 @@ class Quest:
             self._mistake("not_written", _is_silent, certain=True),
             *CRASHES,
             OWN,
+            self._mistake("wrong_node", _astray),
             self._mistake("not_returned", _not_returned, certain=True),
             self._mistake("invented_answer", _invented),
             *OTHER_SLIPS,
@@ -285,12 +294,17 @@ def _wrong(seen: Searches) -> list[Search]:
 
 def _asked_too_early(seen: Searches) -> bool:
     unmet = any("NodeNameNonExistentError" in search.part.traceback for search in seen.values())
+    unmet = unmet or any(UNKNOWN_NODE in search.given.values() for search in seen.values())
     return unmet or any(search.given and not any(search.given.values()) for search in _wrong(seen))
 
 
 def _is_silent(seen: Searches) -> bool:
-    parts = [search.part for search in seen.values()]
-    return all(part.ending and not part.said() and not part.traceback for part in parts)
+    parts = [search.part for search in seen.values() if search.part.events]
+    return bool(parts) and all(part.ending and not part.said() and not part.traceback for part in parts)
+
+
+def _astray(seen: Searches) -> str:
+    return next((" and ".join(search.astray) for search in seen.values() if search.astray), "")
 
 
 def _not_returned(seen: Searches) -> Search | None:
@@ -305,7 +319,8 @@ def _invented(seen: Searches) -> bool:
 def _gave_up(seen: Searches) -> object:
     waited = [_GAVE_UP.search(search.part.traceback) for search in _wrong(seen) if not search.given]
     words = [line[0] for line in waited if line]
-    return words and (len(words), len(seen), words[0])
+    made = sum(bool(search.part.events) for search in seen.values())
+    return words and (len(words), made, words[0])
 
 
 def _no_answer(seen: Searches) -> object:

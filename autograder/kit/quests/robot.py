@@ -40,7 +40,7 @@ class Robot:
             With a single key, the task asks for the name alone. Empty if there is nothing to find: then the subject has
             to say so.
         nodes: The nodes by name, such as ``"arm"`` or ``"/mia/arm"``. Each has the arguments of
-            :meth:`autograder.kit.model.Bench.plant` that it needs, such as ``{"publishes": {topic: type}}``. A node
+            :meth:`autograder.kit.bench.Bench.plant` that it needs, such as ``{"publishes": {topic: type}}``. A node
             that is made first comes first among the ends of a topic.
         services: The services with their types; the judge itself serves them.
         late: The names of nodes and services that come only when the subject is already looking.

@@ -12,11 +12,11 @@ from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
+from autograder.kit.bench import Bench, Pace
 from autograder.kit.draft import OWN, OWN_LATE
 from autograder.kit.evidence import Evidence
 from autograder.kit.mistakes import package_mistakes, runner_mistakes
 from autograder.kit.mistakes.crashes import CRASHES, OTHER_CRASHES
-from autograder.kit.model import Bench, Mistake, Pace
 from autograder.kit.runners import (
     ALONE,
     BUILDING,
@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from autograder.kit.evidence import Part
+    from autograder.kit.model import Mistake
 
 NODES = 2
 """The number of programs that the launch file should start, each with a remapping rule."""
@@ -235,7 +236,7 @@ class LaunchFile:
         recipe = LaunchFile("my_robot_pkg", "chatter")
         remap = Draft("lab_8_1.remap", "Lab 8.1 · Remapping", "Start both programs with another topic.", recipe)
 
-        @remap.criterion("talker", 10, "The talker publishes under the new name")
+        @remap.criterion("talker", "The talker publishes under the new name", points=10)
         def talker(seen: Launched, expected: Launched) -> Finding:
             return Finding(bool(seen.heard), f"messages on {seen.topic}", ", ".join(seen.heard) or "none")
 

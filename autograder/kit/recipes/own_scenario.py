@@ -3,23 +3,23 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import reduce
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
+from autograder.kit.bench import Pace
 from autograder.kit.counterparts import Qos
-from autograder.kit.draft import SeenAsItIs
 from autograder.kit.evidence import Event
 from autograder.kit.mistakes.role_mistakes import ladder
-from autograder.kit.model import Finding, Pace
+from autograder.kit.model import Finding
 from autograder.kit.runners import processes
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
+    from autograder.kit.bench import Bench
     from autograder.kit.counterparts import ActionCaller, Caller, Speaker
     from autograder.kit.evidence import Evidence, Part
-    from autograder.kit.model import Bench, Mistake
+    from autograder.kit.model import Mistake
 
 
 _NOUN = {"publisher": "a publisher on", "subscription": "a subscription to", "client": "a client of"}
@@ -166,20 +166,16 @@ class OwnScenario:
 
         recipe = OwnScenario(once_met(listening), "subscription")
         guard = Draft("lab_8_1.guard", "Lab 8.1 · The guard", "Warn of a charge below 20 percent.", recipe)
-        guard.asks("topic", 2, "Subscribes to the right topic and type", recipe.has("subscription"))
+        guard.asks("topic", "Subscribes to the right topic and type", recipe.has("subscription"), points=2)
     """
 
     def __init__(self, scenario: Callable[[Bench], None], *roles: str) -> None:
         self.roles = roles
         self.scenario = scenario
 
-    def view(self, part: Part) -> Part:
-        """Return the record of a part as the exercise's criteria see it."""
-        return part
-
     def seen(self, evidence: Evidence) -> Part:
         """Return the record of the subject in its first part."""
-        return self.view(evidence.main)
+        return evidence.main
 
     def expected(self, evidence: Evidence) -> Part:
         """Return the record of the reference solution, including its endpoints.
@@ -187,7 +183,7 @@ class OwnScenario:
         While the reference is being recorded, there is no earlier record, so the new one is returned.
         """
         if not evidence.reference.parts:
-            return self.view(evidence.main)
+            return evidence.main
         recorded, interface = evidence.reference.parts[0], evidence.reference.interface
         return replace(recorded, events=[Event(0.0, "interface", "graph", interface), *recorded.events])
 
@@ -214,33 +210,5 @@ def _endpoints(role: str, endpoints: Mapping[str, str]) -> str:
     return ", ".join(f"{_NOUN[role]} {name} ({kind})" for name, kind in sorted(endpoints.items()))
 
 
-class OwnLadder(SeenAsItIs):
-    """The recipe for a subject without endpoints, such as a function that only reads the ROS graph.
-
-    The views are the whole evidence, and the exercise itself lists the common mistakes.
-
-    Args:
-        scenario: The function that runs all parts of the exercise on a bench.
-        ladder: The common mistakes, most specific first, with placeholders for the exercise's mistakes.
-    """
-
-    roles = ()
-
-    def __init__(self, scenario: Callable[[Bench], None], *ladder: Mistake) -> None:
-        self.scenario = scenario
-        self.ladder = ladder
-
-
 QUIET = {Pace.FAST: 3.0, Pace.REAL_TIME: 6.0}
 """The judge stops waiting for an answer or a message if no event comes for this many seconds of wall time."""
-
-
-def pick(fields: Any, path: str) -> Any:
-    """Return the value of a field, given by its path, such as ``"pose.position.x"``.
-
-    A question mark at the end, as in ``"message?"``, asks only whether there is a value that is not empty, 0 or false.
-    """
-    if path.endswith("?"):
-        value = pick(fields, path[:-1])
-        return bool(value.strip() if isinstance(value, str) else value)
-    return reduce(lambda part, key: part[key], path.split("."), fields)

@@ -7,11 +7,12 @@ from typing import TYPE_CHECKING
 
 import re2
 
+from autograder.kit.bench import Bench, Pace
 from autograder.kit.draft import OWN, OWN_LATE
 from autograder.kit.in_words import first_difference
 from autograder.kit.mistakes import package_mistakes, unfinished
 from autograder.kit.mistakes.crashes import CRASHES, OTHER_CRASHES
-from autograder.kit.model import Bench, Finding, Mistake, Pace
+from autograder.kit.model import Finding, Mistake
 from autograder.kit.runners import RunsProgram
 
 if TYPE_CHECKING:
@@ -105,9 +106,9 @@ class Program:
 
         recipe = Program("my_robot_pkg", "simple_node", "saying hello")
         hello = Draft("lab_8_1.hello", "Lab 8.1 · The first node", "A package with a node that says hello.", recipe)
-        hello.asks("starts", 3, "Builds, and ros2 run starts it", recipe.starts)
-        hello.asks("node", 3, "Is a node on the graph", recipe.is_a_node)
-        hello.asks("line", 4, "Says the line", recipe.says_the_line)
+        hello.asks("starts", "Builds, and ros2 run starts it", recipe.starts, points=3)
+        hello.asks("node", "Is a node on the graph", recipe.is_a_node, points=3)
+        hello.asks("line", "Says the line", recipe.says_the_line, points=4)
         EXERCISE = hello.exercise(limit=400.0, runner=recipe.runner)
     """
 

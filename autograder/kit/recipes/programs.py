@@ -11,10 +11,11 @@ from typing import TYPE_CHECKING, Any, cast
 
 import re2
 
+from autograder.kit.bench import Bench, Pace
 from autograder.kit.evidence import INTERRUPTED, Evidence, Part
 from autograder.kit.mistakes import package_mistakes, unfinished
 from autograder.kit.mistakes.crashes import traceback_of
-from autograder.kit.model import Advice, Bench, Criterion, Exercise, Finding, Mistake, Pace
+from autograder.kit.model import Advice, Criterion, Exercise, Finding, Mistake
 from autograder.kit.runners import RunsPrograms, report_of
 
 if TYPE_CHECKING:

@@ -6,15 +6,16 @@ from itertools import pairwise
 from statistics import median
 from typing import TYPE_CHECKING
 
-from autograder.kit import published_texts
+from autograder.kit.bench import STEP, Bench, Pace
 from autograder.kit.draft import OWN, OWN_LATE
 from autograder.kit.in_words import counted
 from autograder.kit.mistakes import common_mistakes as common
 from autograder.kit.mistakes import unfinished
 from autograder.kit.mistakes.role_mistakes import ladder
 from autograder.kit.mistakes.silence import GO_ON, NO_MESSAGE, NO_MORE, PUBLISH
-from autograder.kit.model import STEP, Advice, Bench, Finding, Mistake, Pace, mistake
-from autograder.kit.published_texts import Counting, Publisher
+from autograder.kit.model import Advice, Finding, Mistake, mistake
+from autograder.kit.recipes import published_texts
+from autograder.kit.recipes.published_texts import Counting, Publisher
 from autograder.kit.rules import ROW, Rate, burst_at_the_start, confirmed, rate_of, simulated_times
 
 if TYPE_CHECKING:
@@ -62,10 +63,10 @@ class Hears:
 
         heard = Hears()
         talker = Draft("lab_8_1.talker", "Lab 8.1 · The talker", "Publish a counted greeting every 0.5 s.", heard)
-        talker.asks("topic", 2, "Publishes on the right topic", heard.on_topic)
-        talker.asks("text", 3, "Says the right string", heard.says_text())
-        talker.asks("counter", 2, "Counts up from the start", heard.counts("self.count"))
-        talker.asks("rate", 3, "Keeps the rate", heard.keeps_rate)
+        talker.asks("topic", "Publishes on the right topic", heard.on_topic, points=2)
+        talker.asks("text", "Says the right string", heard.says_text(), points=3)
+        talker.asks("counter", "Counts up from the start", heard.counts("self.count"), points=2)
+        talker.asks("rate", "Keeps the rate", heard.keeps_rate, points=3)
     """
 
     roles = ("publisher",)
@@ -73,19 +74,9 @@ class Hears:
     def __init__(self, messages: int = 8, long_run: int = 20) -> None:
         self._messages = messages
         self._long_run = long_run
-        self._text: Judge[Publisher] | None = None
-        self._course: Judge[Publisher] | None = None
+        self._text: Judge[Publisher] | None = None  # while it fails, a wrong rate is not diagnosed
+        self._course: Judge[Publisher] | None = None  # while it fails, the judge waits for more messages
         self._variable = "self.count"
-
-    def each_text(self, judge: Judge[Publisher]) -> Judge[Publisher]:
-        """Mark the criterion about the text of each message. While it fails, a wrong rate is not diagnosed."""
-        self._text = judge
-        return judge
-
-    def whole_course(self, judge: Judge[Publisher]) -> Judge[Publisher]:
-        """Mark the criterion about the series of messages. While it fails, the judge waits for more messages."""
-        self._course = judge
-        return judge
 
     # --- the bench -------------------------------------------------------------------------------------------
 

@@ -7,10 +7,11 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal
 
+from autograder.kit.bench import Bench, Pace
 from autograder.kit.draft import OWN
 from autograder.kit.mistakes import common_mistakes as common
 from autograder.kit.mistakes.role_mistakes import ladder
-from autograder.kit.model import Bench, Finding, Mistake, Pace
+from autograder.kit.model import Finding, Mistake
 from autograder.kit.recipes.own_scenario import meet
 
 if TYPE_CHECKING:
@@ -122,12 +123,12 @@ class Asks:
 
         asks = Asks(lambda random: [{"a": 2, "b": random.randint(10, 99)}] * 3, lambda random: {"a": 5, "b": 7})
         adder = Draft("lab_8_1.adder", "Lab 8.1 · The adder", "Answer each request with the sum.", asks)
-        adder.asks("service", 2, "Serves add_two_ints, with the right type", asks.serves)
+        adder.asks("service", "Serves add_two_ints, with the right type", asks.serves, points=2)
 
         def wrong(request: Fields, answer: Fields) -> str:
             return "" if answer["sum"] == request["a"] + request["b"] else "a wrong sum"
 
-        adder.asks("sums", 8, "Answers with the sum", asks.right("singly", wrong, "the sum, for every request"))
+        adder.asks("sums", "Answers with the sum", asks.right("singly", wrong, "the sum, for every request"), points=8)
     """
 
     roles = ("service",)

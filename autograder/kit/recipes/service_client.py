@@ -16,7 +16,7 @@ from autograder.kit.mistakes import unfinished
 from autograder.kit.mistakes.crashes import CRASHES, OTHER_CRASHES, OTHER_SLIPS
 from autograder.kit.mistakes.hangs import HANGS
 from autograder.kit.mistakes.role_mistakes import BY_ROLE, Stage
-from autograder.kit.model import Advice, Bench, Finding, Mistake, mistake
+from autograder.kit.model import Advice, Finding, Mistake, mistake
 from autograder.kit.recipes.service_runs import drawn_runs, extreme, negative, scenario
 from autograder.kit.reported_texts import mentions
 from autograder.kit.service_calls import (
@@ -37,6 +37,7 @@ from autograder.kit.service_calls import (
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
+    from autograder.kit.bench import Bench
     from autograder.kit.evidence import Evidence, Part
 
 

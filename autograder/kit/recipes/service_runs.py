@@ -24,6 +24,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from autograder.kit import giving_up
+from autograder.kit.bench import Bench, Pace
 from autograder.kit.giving_up import LATENESS, PATIENCE, drawn_patience, patience_without_a_server
 from autograder.kit.lateness import (
     ANSWERS_LATE,
@@ -41,7 +42,6 @@ from autograder.kit.lateness import (
     second_lateness,
     was_patient_with_an_answer,
 )
-from autograder.kit.model import Bench, Pace
 from autograder.kit.service_calls import (
     ABSENT,
     BIASED,

@@ -9,7 +9,7 @@ import re2
 from autograder.kit.draft import OWN, SeenAsItIs
 from autograder.kit.mistakes import package_mistakes
 from autograder.kit.mistakes.crashes import CRASHES, OTHER_CRASHES
-from autograder.kit.model import Advice, Bench, Finding, Mistake
+from autograder.kit.model import Advice, Finding, Mistake
 from autograder.kit.runners import (
     AMENT_PACKAGE,
     BUILDING,
@@ -22,6 +22,7 @@ from autograder.kit.runners import (
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from autograder.kit.bench import Bench
     from autograder.kit.evidence import Evidence
 
 GROUP = "rosidl_interface_packages"
@@ -50,9 +51,9 @@ class ServiceType(SeenAsItIs):
 
         recipe = ServiceType("AddTwoInts.srv", "my_robot_interfaces")
         interface = Draft("lab_8_1.interface", "Lab 8.1 · The interface", "A package with a service type.", recipe)
-        interface.asks("fields", 4, "Has the right fields", recipe.has_the_fields)
-        interface.asks("builds", 3, "Builds and generates the type", recipe.builds)
-        interface.asks("wire", 3, "Has the right type on the wire", recipe.is_on_the_wire)
+        interface.asks("fields", "Has the right fields", recipe.has_the_fields, points=4)
+        interface.asks("builds", "Builds and generates the type", recipe.builds, points=3)
+        interface.asks("wire", "Has the right type on the wire", recipe.is_on_the_wire, points=3)
         EXERCISE = interface.exercise(limit=400.0, runner=recipe.runner)
     """
 

@@ -5,10 +5,11 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING
 
+from autograder.kit.bench import Bench, Pace
 from autograder.kit.draft import OWN, OWN_LATE
 from autograder.kit.mistakes import unfinished
 from autograder.kit.mistakes.role_mistakes import ladder
-from autograder.kit.model import Advice, Bench, Finding, Mistake, Pace
+from autograder.kit.model import Advice, Finding, Mistake
 from autograder.kit.reported_texts import (
     AT_PACE,
     SINGLY,
@@ -66,9 +67,9 @@ class Speaks:
 
         recipe = Speaks(pace=0.5, paced_by="the lab's talker")
         listener = Draft("lab_8_1.listener", "Lab 8.1 · The listener", "Log every text that arrives.", recipe)
-        listener.asks("topic", 3, "Subscribes to the right topic and type", subscribes)
-        listener.asks("says", 5, "Logs every text that arrives", says_every_text)
-        listener.asks("honest", 2, "Logs only what arrived", says_nothing_else)
+        listener.asks("topic", "Subscribes to the right topic and type", subscribes, points=3)
+        listener.asks("says", "Logs every text that arrives", says_every_text, points=5)
+        listener.asks("honest", "Logs only what arrived", says_nothing_else, points=2)
     """
 
     roles = ("subscription",)

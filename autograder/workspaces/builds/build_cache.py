@@ -193,7 +193,7 @@ def await_turn(lock: int, cancelled: Callable[[], bool]) -> None:
         except BlockingIOError:
             # Try to lock again and again, because waiting inside flock could not be canceled.
             if cancelled():
-                raise GivenUp("nobody waits for the entry any more") from None
+                raise GivenUp("no process waits for the entry any more") from None
             time.sleep(ASK_EVERY)
         else:
             return

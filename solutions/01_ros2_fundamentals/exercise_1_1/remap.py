@@ -29,7 +29,7 @@ def names(endpoints: set[str]) -> str:
     return ", ".join(sorted(endpoints))
 
 
-@remap.criterion("talker", 3, "The talker speaks under the new name")
+@remap.criterion("talker", "The talker speaks under the new name", points=3)
 def talker(seen: Launched, _: Launched) -> Finding:
     """The talker's messages come under the new name."""
     found = f"“{seen.heard[0]}”" if seen.heard else f"publishers: {names(seen.publishers) or 'none'}"
@@ -38,7 +38,7 @@ def talker(seen: Launched, _: Launched) -> Finding:
     return Finding(right, f"the talker's messages on {seen.topic}", f"{found}{stranger}")
 
 
-@remap.criterion("listener", 4, "The listener hears under the new name")
+@remap.criterion("listener", "The listener hears under the new name", points=4)
 def listener(seen: Launched, _: Launched) -> Finding:
     """A text that is sent under the new name is said by the listener."""
     says, is_ours = seen.says_what_it_hears, seen.has_a_listener
@@ -47,7 +47,7 @@ def listener(seen: Launched, _: Launched) -> Finding:
     return Finding(says and is_ours, f"the listener says what is sent on {seen.topic}", words)
 
 
-@remap.criterion("nothing_left", 1, "No node uses the old name")
+@remap.criterion("nothing_left", "No node uses the old name", points=1)
 def nothing_left(seen: Launched, _: Launched) -> Finding:
     """No node of the subject's uses the old name, in whatever namespace; other topics are free."""
     found = (
@@ -59,7 +59,7 @@ def nothing_left(seen: Launched, _: Launched) -> Finding:
     return Finding(right, f"both nodes, and none on {OLD_NAME}", found or "nothing")
 
 
-@remap.criterion("launch", 2, "The launch file does it")
+@remap.criterion("launch", "The launch file does it", points=2)
 def by_the_launch(seen: Launched, _: Launched) -> Finding:
     """Both programs were given a rule for the name that moves them, and there is one talker."""
     expected = f"each program is given a remapping of {OLD_NAME} by the launch file"

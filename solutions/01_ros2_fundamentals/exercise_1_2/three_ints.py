@@ -21,17 +21,17 @@ adder = Draft(
 )
 
 
-@adder.criterion("calls", 2, "Calls exactly twice")
+@adder.criterion("calls", "Calls exactly twice", points=2)
 def calls(seen: ClientSeen, expected: ClientSeen) -> Finding:
     """In each run it calls as often as the reference solution."""
     found = ", ".join(f"{len(requests(part))} ({part.name})" for part in seen.served)
     return Finding(seen.called(expected.calls), f"{expected.calls} calls in each run", found)
 
 
-adder.asks("chain", 3, "Builds the second call on the first answer", recipe.calls_right)
-adder.asks("sum", 3, "Reports the final sum", service_calls.reports_the_sum)
-adder.asks("late", 1, "Waits for a service that comes late", recipe.waits)
-adder.asks("limit", 1, "Ends clearly when there is no service", service_calls.gives_up_in_time)
+adder.asks("chain", "Builds the second call on the first answer", recipe.calls_right, points=3)
+adder.asks("sum", "Reports the final sum", service_calls.reports_the_sum, points=3)
+adder.asks("late", "Waits for a service that comes late", recipe.waits, points=1)
+adder.asks("limit", "Ends clearly when there is no service", service_calls.gives_up_in_time, points=1)
 
 
 def called_less(seen: ClientSeen, expected: ClientSeen) -> str:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import sys
-from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -42,8 +41,6 @@ FIRST, LAST = 3, 5
 WINDOW = f"after {FIRST} to {LAST} feedback messages"
 AGAIN = "nothing more is asked for"
 ENDS = "says `canceled`, `succeeded` or `aborted`, or `status` and the number, as each goal ended"
-WAITS_FOR_ITSELF = ("nested_spin", "call_in_same_group")
-"""Hangs that no time can end. In the others the client may be busy with something that comes to an end."""
 
 
 def numbers(feedbacks: int) -> list[int]:
@@ -207,7 +204,7 @@ MISTAKES = (
         "Keep it alive until the result is there: rclpy.spin(your_node), or rclpy.spin_until_future_complete("
         "your_node, your_future, timeout_sec=30.0). A single spin_once takes in one thing only.",
     ),
-    *(replace(hang, certain=hang.key in WAITS_FOR_ITSELF) for hang in HANGS),
+    *HANGS,
     mistake(
         "gave_up_too_early",
         lost_goal,
@@ -278,16 +275,18 @@ cancel = Draft(
         *MISTAKES,
     ),
 )
-cancel.asks("goal", 2, "Sends one goal of the right order", unless("one goal of order 20", goal))
-cancel.asks("cancel", 3, "Asks to cancel at the right moment", unless(WINDOW, wrong_moment))
-cancel.asks("once", 1, "Sends one request at that moment", unless("one request at that moment", repeated))
+cancel.asks("goal", "Sends one goal of the right order", unless("one goal of order 20", goal), points=2)
+cancel.asks("cancel", "Asks to cancel at the right moment", unless(WINDOW, wrong_moment), points=3)
 cancel.asks(
-    "late_feedback", 1, "Sends no other request when later feedback arrives", unless(AGAIN, acts_again)
+    "once", "Sends one request at that moment", unless("one request at that moment", repeated), points=1
 )
 cancel.asks(
-    "status", 2, "Reports how the goal really ended", unless(ENDS, unsaid), uses=("get_result_async",)
+    "late_feedback", "Sends no other request when later feedback arrives", unless(AGAIN, acts_again), points=1
 )
-cancel.asks("refused", 1, "Says when the goal is rejected", tells_of_refusal)
+cancel.asks(
+    "status", "Reports how the goal really ended", unless(ENDS, unsaid), uses=("get_result_async",), points=2
+)
+cancel.asks("refused", "Says when the goal is rejected", tells_of_refusal, points=1)
 
 EXERCISE = cancel.exercise(
     limit=120.0,

@@ -82,9 +82,9 @@ question = Draft(
     "Find the service of a given type on the graph, and name it.",
     quest,
 )
-question.asks("late", 4, "Finds a service that comes late", quest.finds(robot=LATE))
-question.asks("other", 3, "Finds a service of another type", quest.finds(robot=OTHER))
-question.asks("none", 3, "Says so when there is none", quest.says_that_there_is_none)
+question.asks("late", "Finds a service that comes late", quest.finds(robot=LATE), points=4)
+question.asks("other", "Finds a service of another type", quest.finds(robot=OTHER), points=3)
+question.asks("none", "Says so when there is none", quest.says_that_there_is_none, points=3)
 
 
 def part_of_its_name(seen: Searches, _: Searches) -> str:

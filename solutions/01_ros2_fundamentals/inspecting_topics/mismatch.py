@@ -91,17 +91,10 @@ mismatched = Draft(
     "Find out which topic and type each of two nodes uses.",
     quest,
 )
-mismatched.asks("topic_published", 2.5, "Finds the talker's topic", quest.finds("topic_published"))
-mismatched.asks("topic_subscribed", 2.5, "Finds the listener's topic", quest.finds("topic_subscribed"))
-mismatched.asks("type_published", 2.5, "Finds the talker's type", quest.finds("type_published"))
-mismatched.asks("type_subscribed", 2.5, "Finds the listener's type", quest.finds("type_subscribed"))
-mismatched.knows(
-    "wrong_node",
-    lambda seen, _: next((" and ".join(search.astray) for search in seen.values() if search.astray), ""),
-    "Your answer names {}: every node has /rosout and /parameter_events, and a third node that has nothing to do with "
-    "it has others.",
-    "Ask for the topics of the two nodes you were given, and leave out those two.",
-)
+mismatched.asks("topic_published", "Finds the talker's topic", quest.finds("topic_published"))
+mismatched.asks("topic_subscribed", "Finds the listener's topic", quest.finds("topic_subscribed"))
+mismatched.asks("type_published", "Finds the talker's type", quest.finds("type_published"))
+mismatched.asks("type_subscribed", "Finds the listener's type", quest.finds("type_subscribed"))
 
 EXERCISE = mismatched.exercise(
     limit=120.0,

@@ -12,9 +12,9 @@ hello = Draft(
     "A package that builds, and a node in it that says hello.",
     recipe,
 )
-hello.asks("starts", 3, "Builds, and ros2 run starts it", recipe.starts)
-hello.asks("node", 3, "Is a node on the graph", recipe.is_a_node)
-hello.asks("line", 4, "Says the line", recipe.says_the_line)
+hello.asks("starts", "Builds, and ros2 run starts it", recipe.starts, points=3)
+hello.asks("node", "Is a node on the graph", recipe.is_a_node, points=3)
+hello.asks("line", "Says the line", recipe.says_the_line, points=4)
 
 
 hello.knows(

@@ -9,9 +9,9 @@ listener = Draft(
     "Say every string that arrives on the topic.",
     Speaks(pace=0.5, paced_by="the lab's talker"),
 )
-listener.asks("topic", 3, "Subscribes to the right topic and type", subscribes)
-listener.asks("says", 5, "Says every string it hears", says_every_text)
-listener.asks("honest", 2, "Says only what it heard", says_nothing_else)
+listener.asks("topic", "Subscribes to the right topic and type", subscribes, points=3)
+listener.asks("says", "Says every string it hears", says_every_text, points=5)
+listener.asks("honest", "Says only what it heard", says_nothing_else, points=2)
 
 EXERCISE = listener.exercise(
     limit=120.0,

@@ -12,11 +12,11 @@ talker = Draft(
     "Publish a counted greeting on the topic every half second.",
     heard,
 )
-talker.asks("topic", 2, "Publishes on the right topic", heard.on_topic)
-talker.asks("type", 1, "Publishes the right message type", heard.has_type)
-talker.asks("text", 2, "Says the right string", heard.says_text())
-talker.asks("counter", 2, "Counts up from the start", heard.counts("self.count"))
-talker.asks("rate", 3, "Keeps the rate", heard.keeps_rate)
+talker.asks("topic", "Publishes on the right topic", heard.on_topic, points=2)
+talker.asks("type", "Publishes the right message type", heard.has_type, points=1)
+talker.asks("text", "Says the right string", heard.says_text(), points=2)
+talker.asks("counter", "Counts up from the start", heard.counts("self.count"), points=2)
+talker.asks("rate", "Keeps the rate", heard.keeps_rate, points=3)
 
 EXERCISE = talker.exercise(
     text={

@@ -16,10 +16,10 @@ client = Draft(
     "Have the service add_two_ints add two numbers, and report its answer.",
     recipe,
 )
-client.asks("call", 4, "Calls once, with the two numbers", recipe.calls_right)
-client.asks("sum", 4, "Reports the sum that the service answered", service_calls.reports_the_sum)
-client.asks("late", 1, "Waits for a service that comes late", recipe.waits)
-client.asks("limit", 1, "Ends clearly when there is no service", service_calls.gives_up_in_time)
+client.asks("call", "Calls once, with the two numbers", recipe.calls_right, points=4)
+client.asks("sum", "Reports the sum that the service answered", service_calls.reports_the_sum, points=4)
+client.asks("late", "Waits for a service that comes late", recipe.waits, points=1)
+client.asks("limit", "Ends clearly when there is no service", service_calls.gives_up_in_time, points=1)
 
 EXERCISE = client.exercise(
     limit=150.0,

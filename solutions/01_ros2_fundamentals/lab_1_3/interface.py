@@ -12,10 +12,10 @@ interface = Draft(
     "A package of your own that generates the service type AddTwoInts.",
     recipe,
 )
-interface.asks("fields", 3, "Has the right fields", recipe.has_the_fields)
-interface.asks("declares", 1, "Names what it needs in package.xml", recipe.declares)
-interface.asks("builds", 3, "Builds and generates the type", recipe.builds)
-interface.asks("wire", 3, "Has the right type on the wire", recipe.is_on_the_wire)
+interface.asks("fields", "Has the right fields", recipe.has_the_fields, points=3)
+interface.asks("declares", "Names what it needs in package.xml", recipe.declares, points=1)
+interface.asks("builds", "Builds and generates the type", recipe.builds, points=3)
+interface.asks("wire", "Has the right type on the wire", recipe.is_on_the_wire, points=3)
 
 EXERCISE = interface.exercise(
     limit=400.0,

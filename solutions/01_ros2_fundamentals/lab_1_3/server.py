@@ -48,11 +48,15 @@ server = Draft(
     "Serve add_two_ints: answer each request with the sum of its two numbers.",
     asks := Asks(single_calls, ordinary),
 )
-server.asks("service", 2, "Serves add_two_ints, with the right type", asks.serves)
+server.asks("service", "Serves add_two_ints, with the right type", asks.serves, points=2)
 
-server.asks("sums", 4, "Answers with the sum", asks.right("singly", objection, "the sum, for every pair"))
-server.asks("together", 2, "Answers several calls at once", asks.right("together", objection, "each sum"))
-server.asks("alive", 2, "Stays alive", asks.right("last", lambda *_: "", "one more call is answered"))
+server.asks(
+    "sums", "Answers with the sum", asks.right("singly", objection, "the sum, for every pair"), points=4
+)
+server.asks(
+    "together", "Answers several calls at once", asks.right("together", objection, "each sum"), points=2
+)
+server.asks("alive", "Stays alive", asks.right("last", lambda *_: "", "one more call is answered"), points=2)
 
 
 def wrong_sum(seen: ServerSeen, _: ServerSeen) -> str:

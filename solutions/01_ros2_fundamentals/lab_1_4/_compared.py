@@ -22,7 +22,7 @@ from lab_1_4._goals import (
     ended_by_a_younger,
 )
 
-from autograder.kit.oracle.action_server import ROUNDS_LEFT, ComparedGoal, GoalsSeen
+from autograder.kit.oracle.goals_seen import ROUNDS_LEFT, ComparedGoal, GoalsSeen
 from autograder.kit.outcomes import SUCCEEDED, all_goals, goal
 
 if TYPE_CHECKING:

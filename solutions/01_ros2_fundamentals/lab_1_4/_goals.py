@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from autograder.kit.oracle.action_server import ROUNDS_LEFT
 from autograder.kit.oracle.goal_sender import AFTERMATH, QUIET, GoalSender
+from autograder.kit.oracle.goals_seen import ROUNDS_LEFT
 from autograder.kit.outcomes import ABORTED, CANCELED, SentGoal, goal
 from autograder.kit.recipes.own_scenario import meet
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from autograder.kit.bench import Bench
     from autograder.kit.evidence import Part
-    from autograder.kit.model import Bench
 
 GOALS, BAD_ORDERS, CANCELED_ALONE = "goals", "bad orders", "a goal alone is canceled"
 """The runs. The third one is made only if two goals at once end the server before it is asked to cancel one."""
@@ -65,9 +65,10 @@ def died_of_two(part: Part) -> bool:
 def scenario(bench: Bench) -> None:
     """One run with good goals, one of which is canceled; one run with bad ones.
 
-    If two goals at once are too much for the server, it gets a goal to cancel alone, in a run of its own.
+    If two goals at once are too much for the server, it gets a goal to cancel alone, in a run of its own. A node that
+    no longer answers at all, not even about its parameters, gets no bad goals: it would reject none.
     """
-    if _run(bench, GOALS, _send_good_goals):
+    if _run(bench, GOALS, _send_good_goals) and not bench.seen().of("unanswered"):
         if died_of_two(bench.seen()):
             _run(bench, CANCELED_ALONE, lambda sender: _cancel(sender, LONG_ALONE, after=CANCEL_AFTER))
         _run(bench, BAD_ORDERS, _send_bad_goals)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from autograder.kit import giving_up, goal_reports
 from autograder.kit.draft import Draft
-from autograder.kit.recipes.action_client import sends_goals
+from autograder.kit.recipes.one_goal import sends_goals
 
 client = Draft(
     "lab_1_4.client",
@@ -12,13 +12,17 @@ client = Draft(
     "Send a goal to the action fibonacci, show its feedback, report its result and how it ended.",
     sends_goals(),
 )
-client.asks("goal", 2, "Sends one goal of the given order", goal_reports.sends_the_goal)
-client.asks("feedback", 2, "Shows each feedback message", goal_reports.shows_feedback)
-client.asks("result", 2, "Reports the result", goal_reports.reports_the_result, uses=("get_result_async",))
-client.asks("refused", 1, "Says when the goal is rejected", goal_reports.returns_nothing_of_a_refused_goal)
-client.asks("aborted", 1, "Says when the goal is aborted", goal_reports.tells_of_abort)
-client.asks("late", 1, "Waits for a server that comes late", goal_reports.waits_for_the_server)
-client.asks("limit", 1, "Ends clearly when there is no server", goal_reports.ends_without_a_server)
+client.asks("goal", "Sends one goal of the given order", goal_reports.sends_the_goal, points=2)
+client.asks("feedback", "Shows each feedback message", goal_reports.shows_feedback, points=2)
+client.asks(
+    "result", "Reports the result", goal_reports.reports_the_result, uses=("get_result_async",), points=2
+)
+client.asks(
+    "refused", "Says when the goal is rejected", goal_reports.returns_nothing_of_a_refused_goal, points=1
+)
+client.asks("aborted", "Says when the goal is aborted", goal_reports.tells_of_abort, points=1)
+client.asks("late", "Waits for a server that comes late", goal_reports.waits_for_the_server, points=1)
+client.asks("limit", "Ends clearly when there is no server", goal_reports.ends_without_a_server, points=1)
 
 EXERCISE = client.exercise(
     limit=180.0,

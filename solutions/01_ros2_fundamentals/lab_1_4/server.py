@@ -39,10 +39,10 @@ server = Draft(
     "Serve the action fibonacci: feedback for each number, cancel at any time, bad orders rejected.",
     sends := SendsGoals(scenario, goals_seen),
 )
-server.asks("action", 1, "Serves fibonacci, with the right type", sends.serves)
+server.asks("action", "Serves fibonacci, with the right type", sends.serves, points=1)
 
 
-@server.criterion("sequence", 3, "Succeeds with the right numbers")
+@server.criterion("sequence", "Succeeds with the right numbers", points=3)
 def counts(seen: Goals, _: Goals) -> Finding:
     """Every good goal that has the server to itself succeeds with the reference's sequence.
 
@@ -53,7 +53,7 @@ def counts(seen: Goals, _: Goals) -> Finding:
     return seen.find((one.fault for one in goals), expected, "it does", reached=bool(goals))
 
 
-@server.criterion("feedback", 1, "Sends feedback that grows by one number")
+@server.criterion("feedback", "Sends feedback that grows by one number", points=1)
 def gives_feedback(seen: Goals, _: Goals) -> Finding:
     """The feedback of a goal that has the server to itself grows by one number, while the server works.
 
@@ -63,7 +63,7 @@ def gives_feedback(seen: Goals, _: Goals) -> Finding:
     return seen.find(seen.feedback_faults, expected, "it does", reached=bool(seen.sent(ALONE)))
 
 
-@server.criterion("two", 1, "Serves two goals at once")
+@server.criterion("two", "Serves two goals at once", points=1)
 def serves_two_at_once(seen: Goals, _: Goals) -> Finding:
     """Two equal goals at once are right, and so are those beside a goal that is canceled, which ends as it should."""
     older = seen.ended_for_another
@@ -78,8 +78,10 @@ def serves_two_at_once(seen: Goals, _: Goals) -> Finding:
     return seen.find(faults, expected, "both are right", reached=bool(seen.sent(BESIDE)))
 
 
-server.asks("cancel", 2, "Lets a goal be canceled", sends.cancels, uses=("is_cancel_requested", "canceled"))
-server.asks("refuse", 2, "Rejects bad orders and lives on", sends.refuses)
+server.asks(
+    "cancel", "Lets a goal be canceled", sends.cancels, uses=("is_cancel_requested", "canceled"), points=2
+)
+server.asks("refuse", "Rejects bad orders and lives on", sends.refuses, points=2)
 
 
 server.knows(

@@ -15,7 +15,7 @@ from rclpy.node import Node
 from autograder.judge import ros_setup
 from autograder.judge.bench.bench import TestBench
 from autograder.judge.subject import CommandSubject
-from autograder.kit.model import Pace
+from autograder.kit.bench import Pace
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator

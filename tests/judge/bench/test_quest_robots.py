@@ -64,8 +64,8 @@ def robots(random: Random) -> dict[str, Robot]:
 def test_a_program_finds_what_the_judge_drew(bench_of: BenchOf, program: str, points: float) -> None:
     quest = Quest(robots)
     draft = Draft("a.quest", "A", "B", quest)
-    draft.asks("robot", 4, "Finds what the robot is called", quest.finds("robot"))
-    draft.asks("topic", 6, "Finds the topic that it obeys", quest.finds("topic"))
+    draft.asks("robot", "Finds what the robot is called", quest.finds("robot"), points=4)
+    draft.asks("topic", "Finds the topic that it obeys", quest.finds("topic"), points=6)
     reference = Reference("a.quest", {})
     with bench_of(program, reference) as bench:
         quest.scenario(bench)

@@ -10,7 +10,7 @@ from autograder.judge.bench import discovery
 from autograder.judge.bench import subject_presence as presence_module
 from autograder.judge.bench.recorder import Recorder
 from autograder.judge.bench.subject_presence import GRAPH_POLL, MAX_RESTARTS, START_POLL, Presence
-from autograder.kit.model import Pace
+from autograder.kit.bench import Pace
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -34,7 +34,7 @@ def _presence(
     announced: bool = False,
 ) -> tuple[Presence, Recorder]:
     """A subject's presence on a graph that shows this, and where it is written down."""
-    monkeypatch.setattr(discovery, "survey", survey)
+    monkeypatch.setattr(discovery, "survey", lambda judge, _=None: survey(judge))
     monkeypatch.setattr(discovery, "every_node", lambda *_: nodes)
     monkeypatch.setattr(discovery, "topic_ends", lambda *_: [])
     recorder = Recorder()

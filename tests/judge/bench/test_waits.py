@@ -9,8 +9,8 @@ from unittest.mock import create_autospec
 from autograder.judge.bench.bench import TestBench
 from autograder.judge.bench.recorder import Recorder
 from autograder.judge.bench.subject_presence import Presence
+from autograder.kit.bench import Pace
 from autograder.kit.evidence import Evidence, Reference
-from autograder.kit.model import Pace
 
 if TYPE_CHECKING:
     import pytest

@@ -10,7 +10,7 @@ from autograder import exercises
 from autograder.judge import evidence_files
 from autograder.judge.timeline.growing_card import GrowingCard, RunToCome, StillToCome, so_far
 from autograder.kit.evidence import Event, Evidence, Part
-from autograder.kit.model import Criterion, Finding
+from autograder.kit.model import Criterion, Exercise, Finding
 from autograder.verdict import CriterionResult, State, Verdict
 
 STORED = evidence_files.load_reference("lab_1_3.client")
@@ -28,7 +28,7 @@ def says_good(*names: str) -> Criterion:
     return Criterion(" ".join(names) or "all", "Says good", 2, judge)
 
 
-def decided(criterion: Criterion, evidence: Evidence) -> CriterionResult:
+def decided(_: Exercise, criterion: Criterion, evidence: Evidence) -> CriterionResult:
     return CriterionResult(criterion.name, criterion.title, 2, criterion.judge(evidence).passed, "", "")
 
 
@@ -80,7 +80,7 @@ def test_a_card_says_which_runs_have_ended_and_which_are_still_to_come() -> None
     assert second.diagnosis is not None
     assert first.diagnosis.text == "The judge watches your code."
     assert second.diagnosis.text == (
-        f"Your code has run where “{LATE}”; “{ABSENT}”. Still to come: “{BIASED}”; “{EXTREME}”."
+        f"Runs that have ended: “{LATE}”; “{ABSENT}”. Still to come: “{BIASED}”; “{EXTREME}”."
     )
 
 

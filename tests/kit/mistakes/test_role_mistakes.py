@@ -9,7 +9,8 @@ import pytest
 from autograder.kit.draft import Draft
 from autograder.kit.evidence import Event, Evidence, Part, Reference
 from autograder.kit.mission.mission import Mission
-from autograder.kit.oracle.action_server import GoalsSeen, SendsGoals
+from autograder.kit.oracle.action_server import SendsGoals
+from autograder.kit.oracle.goals_seen import GoalsSeen
 from autograder.kit.oracle.same_as_solution import SameAsSolution
 from autograder.kit.recipes.action_client import ActionClient
 from autograder.kit.recipes.own_scenario import OwnScenario

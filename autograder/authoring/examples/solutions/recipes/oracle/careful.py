@@ -36,10 +36,11 @@ EXERCISE = SameAsSolution(
     "Drive while the front is free, turn while it is not, and stop while no scan comes.",
     gives=lambda random: [scan(each, random) if isinstance(each, str) else each for each in COURSE],
     tells={"/cmd_vel": ("linear.x", "angular.z"), "/state": "data"},
+    rates={"/cmd_vel": 0.2, "/state": 0.2},
 ).exercise(
     text={
-        "Every 0.2 s, publish a `Twist` on `cmd_vel`": "cmd_vel",
-        "and the state as `String` on `state`": "state",
+        "Every 0.2 s, publish a `Twist` on `cmd_vel`": "cmd_vel cmd_vel_rate",
+        "and the state as `String` on `state`": "state state_rate",
         "turn while it is nearer than 0.5 m": "cmd_vel state",
         "drive again when it is farther away than 0.8 m": "cmd_vel state",
         "stop while the last scan is older than 1 s": "cmd_vel state",

@@ -12,10 +12,10 @@ battery = Draft(
     "Publish the charge, 100 percent and one less each time, every 0.5 s.",
     heard,
 )
-battery.asks("topic", 2, "Publishes on the right topic", heard.on_topic)
-battery.asks("type", 1, "Publishes the right message type", heard.has_type)
-battery.asks("charge", 4, "Counts down from 100", heard.counts("self.charge"))
-battery.asks("rate", 3, "Keeps the rate", heard.keeps_rate)
+battery.asks("topic", "Publishes on the right topic", heard.on_topic, points=2)
+battery.asks("type", "Publishes the right message type", heard.has_type, points=1)
+battery.asks("charge", "Counts down from 100", heard.counts("self.charge"), points=4)
+battery.asks("rate", "Keeps the rate", heard.keeps_rate, points=3)
 
 EXERCISE = battery.exercise(
     text={

@@ -13,9 +13,9 @@ odometer = Draft(
     "Have the service add_distances add two distances, and report its answer.",
     recipe,
 )
-odometer.asks("call", 4, "Calls once, with the two distances", recipe.calls_right)
-odometer.asks("sum", 4, "Reports the sum that the service answered", service_calls.reports_the_sum)
-odometer.asks("limit", 2, "Ends clearly when there is no service", service_calls.gives_up_in_time)
+odometer.asks("call", "Calls once, with the two distances", recipe.calls_right, points=4)
+odometer.asks("sum", "Reports the sum that the service answered", service_calls.reports_the_sum, points=4)
+odometer.asks("limit", "Ends clearly when there is no service", service_calls.gives_up_in_time, points=2)
 
 EXERCISE = odometer.exercise(
     limit=150.0,

@@ -16,7 +16,7 @@ door = Draft(
     # The requests one by one, then each of the other requests: a Trigger has no fields.
     asks := Asks(lambda _: [{}] * SINGLE, lambda _: {}),
 )
-door.asks("service", 2, "Serves visit, with the right type", asks.serves)
+door.asks("service", "Serves visit, with the right type", asks.serves, points=2)
 
 
 def told(seen: ServerSeen) -> list[str]:
@@ -29,14 +29,14 @@ def due(number: int) -> list[str]:
     return [f"visitor {i}" for i in range(1, number + 1)]
 
 
-@door.criterion("counts", 4, "Counts who comes")
+@door.criterion("counts", "Counts who comes", points=4)
 def counts(seen: ServerSeen, _: ServerSeen) -> Finding:
     """The calls one by one are answered with 1, 2, 3."""
     first = told(seen)[:SINGLE]
     return Finding(first == due(SINGLE), ", ".join(due(SINGLE)), ", ".join(first) or "no answer")
 
 
-@door.criterion("together", 2, "Answers several calls at once, each with a number of its own")
+@door.criterion("together", "Answers several calls at once, each with a number of its own", points=2)
 def together(seen: ServerSeen, _: ServerSeen) -> Finding:
     """All calls together have all numbers, the simultaneous ones in any order."""
     wanted, rest = due(SINGLE + CALLS_AT_ONCE + 1), told(seen)[SINGLE:]
@@ -45,7 +45,7 @@ def together(seen: ServerSeen, _: ServerSeen) -> Finding:
     )
 
 
-@door.criterion("success", 2, "Says that all went well")
+@door.criterion("success", "Says that all went well", points=2)
 def success(seen: ServerSeen, _: ServerSeen) -> Finding:
     """The field success is true in each answer."""
     said = [answer["success"] for answer in seen.answers.values()]

@@ -6,8 +6,9 @@ from typing import TYPE_CHECKING
 
 import re2
 
+from autograder.kit.bench import Pace
 from autograder.kit.draft import Draft
-from autograder.kit.model import Finding, Pace
+from autograder.kit.model import Finding
 from autograder.kit.recipes.own_scenario import Met, OwnScenario, once_met
 
 if TYPE_CHECKING:
@@ -41,7 +42,9 @@ guard = Draft(
     "Warn of each charge below 20 percent, and of no other.",
     subject := OwnScenario(once_met(listening), "subscription"),
 )
-guard.asks("topic", 2, "Subscribes to the right topic, with the right type", subject.has("subscription"))
+guard.asks(
+    "topic", "Subscribes to the right topic, with the right type", subject.has("subscription"), points=2
+)
 
 
 def sent(seen: Part) -> list[int]:
@@ -65,14 +68,14 @@ def needless(seen: Part) -> list[int]:
     return [c for line in named(seen) for c in sorted(line) if min(line) >= LIMIT]
 
 
-@guard.criterion("warns", 4, "Warns of each low charge")
+@guard.criterion("warns", "Warns of each low charge", points=4)
 def warns(seen: Part, _: Part) -> Finding:
     """Each low charge is in something that was said."""
     silent = [f"no word of {charge}" for charge in missing(seen)]
     return Finding(bool(sent(seen)) and not silent, "a line for each", ", ".join(silent) or "a line for each")
 
 
-@guard.criterion("only", 4, "Says nothing of any other charge")
+@guard.criterion("only", "Says nothing of any other charge", points=4)
 def only(seen: Part, _: Part) -> Finding:
     """No other charge is in what was said, if anything was said."""
     told = ", ".join(map(str, needless(seen)))

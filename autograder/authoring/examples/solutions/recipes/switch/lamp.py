@@ -8,9 +8,11 @@ EXERCISE = SameAsSolution(
     "Publish only while the service lamp has switched it on.",
     gives=lambda _: [To("/lamp", {"data": is_on}) for is_on in (True, False, True)],
     tells={"/lamp": "success", "/blink": "data?"},
+    rates={"/blink": 0.2},
     roles=("publisher", "service"),
 ).exercise(
     text={
+        "Publish 1, 2, 3, … on `blink`, every 0.2 s": "blink blink_rate",
         "while the service `lamp` has switched the lamp on": "blink",
         "Let `success` be": "lamp",
     }

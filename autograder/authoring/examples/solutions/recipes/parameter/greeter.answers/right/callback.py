@@ -18,5 +18,5 @@ def changed(parameters):
 
 node.add_on_set_parameters_callback(changed)
 publisher = node.create_publisher(String, "greeting", 10)
-node.create_timer(0.4, lambda: publisher.publish(String(data=text)))
+node.create_timer(0.5, lambda: publisher.publish(String(data=text)))
 rclpy.spin(node)

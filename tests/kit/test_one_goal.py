@@ -8,11 +8,11 @@ from unittest.mock import MagicMock
 
 import pytest
 
+from autograder.kit.bench import Bench, Pace
 from autograder.kit.evidence import Event, Evidence, Part, Reference
 from autograder.kit.goal_reports import ABORTED, LATE, REFUSED
-from autograder.kit.model import Bench, Pace
-from autograder.kit.recipes import action_client
-from autograder.kit.recipes.action_client import (
+from autograder.kit.recipes import one_goal
+from autograder.kit.recipes.one_goal import (
     AFTERMATH,
     AT_PACE,
     aborted,
@@ -33,6 +33,7 @@ class PatientClient:
 
     pace = Pace.FAST
     in_a_cell = False
+    shows = False
     reference = Reference("lab_9_1.client", {"action_client": {"/fibonacci": "a_package/action/Fibonacci"}})
 
     def __init__(self) -> None:
@@ -53,6 +54,8 @@ class PatientClient:
 
     def send_feedback(self, **fields: Any) -> None:
         self.happens("feedback", fields=fields)
+        if self.shows:
+            self.happens("log", text=str(fields))
 
     def finish(self, status: str, **fields: Any) -> None:
         self.happens("result", status=status, fields=fields)
@@ -69,8 +72,8 @@ class PatientClient:
     def settle(self) -> None:
         pass
 
-    def run_time(self, seconds: float) -> bool:
-        return True
+    def run_time(self, seconds: float, until: Callable[[], bool]) -> bool:
+        return until()
 
     def pass_time(self, seconds: float, role: str, name: str) -> None:
         self.happens("time")
@@ -83,11 +86,14 @@ def test_feedback_begins_when_the_client_has_asked_for_the_result() -> None:
     assert kinds == ["goal_answered", "result_request", "feedback", "feedback", "result"]
 
 
-def test_the_last_feedback_comes_at_a_pace_whether_it_was_shown_or_not() -> None:
+@pytest.mark.parametrize("shows", [True, False], ids=["shows each message", "shows the newest from a timer"])
+def test_the_last_feedback_comes_at_a_pace_unless_the_client_has_shown_all_of_it(shows: bool) -> None:
     client = PatientClient()
+    client.shows = shows
     assert works_on_a_goal(cast("Bench", client), cast("ActionCounterpart", client), "succeeded", 5, 0.5)
     kinds = [event.kind for event in client.events if event.kind in ("feedback", "time")]
-    assert kinds == ["feedback"] * (5 - AT_PACE) + ["feedback", "time"] * (AT_PACE - 1) + ["feedback"]
+    paced = ["feedback"] if shows else ["feedback", "time"]
+    assert kinds == ["feedback"] * (5 - AT_PACE) + paced * (AT_PACE - 1) + ["feedback"]
 
 
 def test_a_result_has_one_number_more_than_its_order_says() -> None:
@@ -129,7 +135,7 @@ def test_the_second_look_does_not_repeat_a_run_in_which_nothing_was_wrong(
     made: bool,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr(action_client, "meets_present", lambda *_, **__: True)
+    monkeypatch.setattr(one_goal, "meets_present", lambda *_, **__: True)
     line = _said(word if says == "right" else "it is over")
     before = Evidence([FIRST, _looked(name, line, ENDED)], PatientClient.reference)
     bench = MagicMock(pace=Pace.REAL_TIME, before=before, random=random.Random(0), keep=lambda _: kept)
@@ -142,7 +148,7 @@ def test_a_client_that_may_stay_is_not_waited_for_once_it_has_said_rejected(
     may_stay: bool, waits: list[float], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     waited: list[float] = []
-    monkeypatch.setattr(action_client, "meets_present", lambda _, meet, *__, **___: meet())
+    monkeypatch.setattr(one_goal, "meets_present", lambda _, meet, *__, **___: meet())
     seen = Evidence([Part(REFUSED, ORDERED, [GOAL, _said("rejected")])], PatientClient.reference)
     bench = MagicMock(pace=Pace.FAST)
     bench.reference.only.return_value = ("/fibonacci", "a_package/action/Fibonacci")

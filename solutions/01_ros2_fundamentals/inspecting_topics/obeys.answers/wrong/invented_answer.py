@@ -1,0 +1,2 @@
+# Wrong: the robot of the course, each time.
+print({'robot': 'robot', 'topic': '/cmd_vel'})

@@ -1,0 +1,6 @@
+# Wrong: the stub.
+def find_robot():
+    raise NotImplementedError
+
+
+find_robot()
