@@ -173,8 +173,8 @@ class Bench(Protocol):
 
         Args:
             name: The name of the node.
-            publishes: The topics of its publishers, with their types.
-            subscribes: The topics of its subscriptions, with their types.
+            publishes: The topics of its publishers, with their types, and the actions of its servers, with theirs.
+            subscribes: The topics of its subscriptions, with their types, and the actions of its clients.
             qos: The QoS of all its endpoints.
         """
 

@@ -12,6 +12,7 @@ import threading
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from rclpy.action import ActionClient, ActionServer
 from rclpy.context import Context
 from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
 from rclpy.node import Node
@@ -162,6 +163,9 @@ class DecoyNodes:
             self._decoys.pop().close()
 
 
+_ACTION, _FEEDBACK = "/action/", "/_action/feedback"
+
+
 class _Decoy:
     """One DDS participant of the judge, with the decoy node that it currently shows on the graph."""
 
@@ -172,20 +176,28 @@ class _Decoy:
         self._ends = contextlib.ExitStack()
 
     def plant(
-        self, name: str, publishes: Mapping[str, str], subscribes: Mapping[str, str], qos: QoSProfile
+        self, called: str, publishes: Mapping[str, str], subscribes: Mapping[str, str], qos: QoSProfile
     ) -> set[Endpoint]:
         with receivers_wait() if self._node is None else contextlib.nullcontext():
-            space, _, own = name.rpartition("/")
+            space, _, own = called.rpartition("/")
             node = Node(own, namespace=space, context=self._context, use_global_arguments=False)
         self._destroy()
         self._node = node
-        for topic, type_name in publishes.items():
-            publisher = node.create_publisher(interface(type_name), topic, qos)
+        for name, type_name in publishes.items():
+            if _ACTION in type_name:
+                server = ActionServer(node, interface(type_name), name, lambda _: None)
+                self._ends.callback(server.destroy)
+                continue
+            publisher = node.create_publisher(interface(type_name), name, qos)
             self._ends.callback(node.destroy_publisher, publisher)
-        for topic, type_name in subscribes.items():
-            subscription = node.create_subscription(interface(type_name), topic, lambda _: None, qos)
+        for name, type_name in subscribes.items():
+            if _ACTION in type_name:
+                self._ends.callback(ActionClient(node, interface(type_name), name).destroy)
+                continue
+            subscription = node.create_subscription(interface(type_name), name, lambda _: None, qos)
             self._ends.callback(node.destroy_subscription, subscription)
-        return topic_endpoints(node, {*publishes, *subscribes})
+        ends = [*publishes.items(), *subscribes.items()]
+        return topic_endpoints(node, [f"{name}{_FEEDBACK * (_ACTION in kind)}" for name, kind in ends])
 
     def clear(self) -> None:
         self._ends.close()

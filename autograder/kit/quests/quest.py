@@ -50,6 +50,8 @@ LONGEST_QUOTE = 200
 """The most characters of a line that a card quotes."""
 UNKNOWN_NODE = "_NODE_NAME_UNKNOWN_"
 """The node name that the graph gives for an endpoint before it has discovered the node (rmw_dds_common)."""
+_NODE_NOT_MET = ("NodeNameNonExistentError", "Failed to get action server names and type")
+"""The words of rclpy's errors if a node is asked about that is not on the graph yet: also those for its actions."""
 _GAVE_UP = re2.compile(r"(?m)^TimeoutError(?:: .*)?$")
 
 _TEXTS = {
@@ -293,9 +295,11 @@ def _wrong(seen: Searches) -> list[Search]:
 
 
 def _asked_too_early(seen: Searches) -> bool:
-    unmet = any("NodeNameNonExistentError" in search.part.traceback for search in seen.values())
-    unmet = unmet or any(UNKNOWN_NODE in search.given.values() for search in seen.values())
-    return unmet or any(search.given and not any(search.given.values()) for search in _wrong(seen))
+    for search in seen.values():
+        unmet = any(words in search.part.traceback for words in _NODE_NOT_MET)
+        if unmet or UNKNOWN_NODE in search.given.values():
+            return True
+    return any(search.given and not any(search.given.values()) for search in _wrong(seen))
 
 
 def _is_silent(seen: Searches) -> bool:

@@ -133,7 +133,7 @@ class Search:
     @property
     def astray(self) -> list[str]:
         """The names in the answer that the robot has, or that every node has, but that are not asked for."""
-        told = {name for value in self.given.values() for name in value.split(", ")}
+        told = {f"/{name.lstrip('/')}" for value in self.given.values() for name in value.split(", ")}
         return sorted(told & {*self.names, *EVERY_NODE_HAS} - {*self.robot.answer.values()})
 
     @property
