@@ -217,6 +217,17 @@ def test_a_run_like_a_recorded_wrong_answer_is_named_for_certain_in_simulated_ti
     assert told(run(RIGHT)) == told(run(ALWAYS_AHEAD, drawing=0)) == told(run([[0.1, 0.0]] * 3)) == []
 
 
+def test_a_run_that_is_cut_short_like_a_wrong_answer_is_no_proof() -> None:
+    """A right server that sleeps in real time may be cut at the step at which a wrong answer was cut, too."""
+    cut = run(ALWAYS_AHEAD[:2])
+    evidence = evidence_of(cut)
+    reference = replace(evidence.reference, variants=[replace(VARIANT, parts=[cut])])
+    evidence = replace(evidence, reference=reference)
+    told = {one.certain: one.recognize(evidence) for one in exercise().mistakes if one.key == "variant"}
+    assert told[True] is None
+    assert told[False] is not None
+
+
 def test_a_run_in_real_time_is_named_by_what_it_did_in_simulated_time() -> None:
     once_more = evidence_of(run([*ALWAYS_AHEAD[:2], []], simulated=False))
     (likely,) = [one for one in exercise().mistakes if one.key == "variant" and not one.certain]

@@ -87,11 +87,13 @@ class _Drawn(OwnScenario):
         return (*ladder[:at], proven, likely, *ladder[at:])
 
     def _same_as_a_variant(self, evidence: Evidence, *, simulated: bool = False) -> Advice | None:
-        mine = evidence.main
+        mine, due = evidence.main, self.expected(evidence)
         noted = mine.of("noted")
-        if not noted or (simulated and (self._is_timed or any(event.sim is None for event in noted))):
+        # A right node that is slow in real time is cut short in simulated time, perhaps at the step of a wrong one.
+        is_cut = len(noted) < len(due.of("noted"))
+        if not noted or (simulated and (is_cut or self._is_timed or any(e.sim is None for e in noted))):
             return None
-        if self._agree(mine, self.expected(evidence)):
+        if self._agree(mine, due):
             return None
         # In real time a node may say the same once more or less, so what it did in simulated time counts, too.
         runs = [mine, *([evidence.before.main] if evidence.before else [])]
