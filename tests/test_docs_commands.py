@@ -86,6 +86,7 @@ RUN_BY = {
     "ros2 action list": f"{_GRAPH}test_an_action_is_found_and_described",
     "ros2 action send_goal": f"{_GRAPH}test_a_goal_with_feedback",
     "ros2 doctor": f"{_GRAPH}test_doctor_sees_both_sides_of_a_topic",
+    "ros2 interface packages": "environment/ros2_command/test_interface.py::test_packages_with_interfaces_are_listed_by_kind",
     "ros2 interface show": "environment/ros2_command/test_interface.py::test_show_indents_nested_types_by_tabs",
     "ros2 launch": "environment/ros2_command/test_launch_processes.py::test_a_launch_file_of_a_package",
     "ros2 node list": f"{_GRAPH}test_nodes",
