@@ -34,6 +34,7 @@ ADDING = "test_adding_an_exercise.py::test_the_page_does_what_it_says"
 TYPES_A_PAGE = {GUIDE: "docs/instructor/", ADDING: "docs/adding-an-exercise.md"}
 """The tests that read from these pages what they type: each command in a block."""
 _GRAPH = "environment/ros2_command/test_graph.py::"
+_INTERFACE = "environment/ros2_command/test_interface.py::"
 _SERVICES = f"{_GRAPH}test_a_service_is_found_and_called"
 _TOPICS = f"{_GRAPH}test_topics_of_a_talker"
 _PICTURES = "grading/day/test_pictures.py::"
@@ -86,8 +87,8 @@ RUN_BY = {
     "ros2 action list": f"{_GRAPH}test_an_action_is_found_and_described",
     "ros2 action send_goal": f"{_GRAPH}test_a_goal_with_feedback",
     "ros2 doctor": f"{_GRAPH}test_doctor_sees_both_sides_of_a_topic",
-    "ros2 interface packages": "environment/ros2_command/test_interface.py::test_packages_with_interfaces_are_listed_by_kind",
-    "ros2 interface show": "environment/ros2_command/test_interface.py::test_show_indents_nested_types_by_tabs",
+    "ros2 interface packages": f"{_INTERFACE}test_packages_with_interfaces_are_listed_by_kind",
+    "ros2 interface show": f"{_INTERFACE}test_show_indents_nested_types_by_tabs",
     "ros2 launch": "environment/ros2_command/test_launch_processes.py::test_a_launch_file_of_a_package",
     "ros2 node list": f"{_GRAPH}test_nodes",
     "ros2 pkg create": "environment/ros2_command/test_pkg_create.py::test_a_python_package",
