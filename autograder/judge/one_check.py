@@ -6,7 +6,6 @@ import contextlib
 import time
 import traceback
 from dataclasses import dataclass, replace
-from functools import partial
 from pathlib import Path
 from random import Random
 from typing import TYPE_CHECKING
@@ -137,7 +136,7 @@ def _check(
     # runs: the code of a submission must not learn the verdict.
     waited_for = subject.in_a_notebook and not marks_crowded
     hurry = Hurry(is_building=lambda: subject.is_building) if waited_for else _no_hurry
-    card = GrowingCard(exercise, partial(_result, exercise), subject.tell_so_far) if waited_for else None
+    card = GrowingCard(exercise, _result, subject.tell_so_far) if waited_for else None
     names: Mapping[str, Mapping[str, str]] = {}
     verdict: Verdict | None = None
 

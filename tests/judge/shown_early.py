@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import partial
 from itertools import combinations
 from typing import TYPE_CHECKING
 
@@ -33,7 +32,6 @@ def met_early(exercise_id: str, ended: Evidence) -> list[str]:
     """The criteria that a card shows as met after these runs."""
     shown: list[Verdict] = []
     exercise = exercises.get(exercise_id)
-    result = partial(one_check._result, exercise)
-    card = GrowingCard(exercise, result, lambda verdict, _: shown.append(verdict))
+    card = GrowingCard(exercise, one_check._result, lambda verdict, _: shown.append(verdict))
     card.begin(ended)
     return [one.name for one in shown[0].criteria if one.passed]

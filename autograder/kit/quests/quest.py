@@ -93,7 +93,7 @@ _TEXTS = {
         "Note the time at the start, give_up_at = time.monotonic() + patience_sec, and look until that moment.",
     ),
     "gave_up": (
-        "Your function gave up waiting in {0[0]} of the {0[1]} runs, although what it was to find was there: {0[2]}",
+        "Your function gave up waiting{0[0]}, although what it was to find was there: {0[1]}",
         "Look at what you leave out: of a node's topics only /rosout and /parameter_events are to be passed over. And "
         "do you ask for the publishers of a node that publishes, and for the subscriptions of one that subscribes?",
     ),
@@ -324,7 +324,8 @@ def _gave_up(seen: Searches) -> object:
     waited = [_GAVE_UP.search(search.part.traceback) for search in _wrong(seen) if not search.given]
     words = [line[0] for line in waited if line]
     made = sum(bool(search.part.events) for search in seen.values())
-    return words and (len(words), made, words[0])
+    # After a first run without any answer there is no other one.
+    return words and (f" in {len(words)} of the {made} runs" if made > 1 else "", words[0])
 
 
 def _no_answer(seen: Searches) -> object:
