@@ -107,7 +107,7 @@ def test_solutions_are_folded_or_absent(book: tuple[str, Path]) -> None:
     assert "Set the course up, outside of" not in text
     assert (SOLUTION_SUMMARY in text) == (edition == SELF_EDITION)
     assert ("create_timer(0.5, self.say_hello)" in text) == (edition == SELF_EDITION)
-    assert "TODO: make the publisher and the timer here" in text
+    assert "TODO: make the publisher and the timer" in text
     films = [page.name for page in folder.rglob("*") if "lab.gif" in page.name]
     assert bool(films) == (edition == SELF_EDITION), "README's film types a solution"
 

@@ -68,7 +68,7 @@ def test_the_chapter_as_it_is_handed_out_gets_none(
 ) -> None:
     execution = executions[NotebookKind.CHAPTER, HANDED_OUT]
     assert execution.trouble == ""
-    assert [verdict.score for verdict in execution.verdicts.values()] == [0]
+    assert {verdict.score for verdict in execution.verdicts.values()} == {0}
 
 
 @pytest.mark.parametrize("name", ANSWERS)
