@@ -4,7 +4,7 @@ from autograder.kit.mission.mission import Mission, Moment, Pose, World
 from autograder.kit.rules import value
 
 PLACES = ((0.6, 2.8), (3.1, 3.8), (5.2, 5.6), (4.2, 4.9), (0.6, 2.8), (3.1, 3.8))
-"""Where the robot is, one place after the other: x in metres, on both sides of the door."""
+"""The places of the robot, one after the other: x in metres, on both sides of the door."""
 CHANGES = 5
 """How often the lamp has to change there: on and off by turns."""
 
