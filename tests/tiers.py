@@ -115,7 +115,6 @@ _LIVE = "tests/judge/test_bank.py::test_answer_is_judged_right"
 BUILT = (
     "exercise_1_1.package",
     "exercise_1_1.remap",
-    "exercise_1_1.two_robots",
     "lab_1_1.hello",
     "lab_1_2.programs",
     "lab_1_3.interface",

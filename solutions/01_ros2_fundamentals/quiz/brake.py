@@ -17,6 +17,6 @@ EXERCISE = SameAsSolution(
         "publishes one `Bool` on `brake` for each message, which is true if the distance is less than 0.5": "brake",
     },
     counts={
-        "": "Any profile that hears a best-effort publisher counts, but *best available* may be chosen before it is known."
+        "": "Any profile that hears a best-effort publisher counts, but *best available* may be chosen too early."
     },
 )
