@@ -46,6 +46,8 @@ OFFER = (
     "solution. Your progress then says “with the worked solution”."
 )
 """What a card says beside the button that opens the worked solution."""
+OUR_CHANGE, OWN_CHANGE = "Our repair", "Your repair"
+"""The headings of two ways in which broken code was changed."""
 OTHER_WAY = "Another way"
 """The heading of an alternative to the reference solution."""
 

@@ -107,7 +107,7 @@ class Roster:
         self._unknown = unknown
 
     def has(self, student: str) -> bool:
-        """Return True if a student belongs to the class: ``students.csv`` lists this id, or lists nobody."""
+        """Return True if a student belongs to the class: ``students.csv`` lists this id, or lists no student."""
         return not self._is_whole or student in self.students
 
     def members(self, others: Iterable[str]) -> list[str]:

@@ -13,6 +13,7 @@ import os
 import threading
 import traceback
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -263,8 +264,23 @@ def own_lines_of(subject: object) -> OwnLines:
     return own_lines(_cells_of(subject))
 
 
+def own_text(given: str, subject: object) -> str:
+    """Return what a student has made of a given cell: the file that it writes, or the cell that defines the subject.
+
+    Args:
+        given: The text of the cell as it was given.
+        subject: The argument of the check cell.
+    """
+    magic = given.partition("\n")[0]
+    if not magic.startswith("%%"):
+        return "" if isinstance(subject, (str, Path)) else next(iter(_cells_of(subject).values()), "")
+    with suppress(OSError):
+        return f"{magic}\n{Path(magic.split()[-1]).read_text(encoding='utf-8', errors='replace')}".rstrip()
+    return ""
+
+
 def _cells_of(subject: object) -> dict[str, str]:
-    """Return the cells that define a class or function, and those of all that it refers to, by their places."""
+    """Return the texts of the cells with the subject and with all that it refers to, the subject's first."""
     sources: dict[str, str] = {}
     waiting, done, files = [subject], set[int](), set[str]()
     for one in waiting:
