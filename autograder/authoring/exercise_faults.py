@@ -25,7 +25,7 @@ from environment.installation import installing
 from environment.python_child import installed_program
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Sequence
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from autograder.authoring.answer_bank import Answer
     from autograder.kit.evidence import Reference
@@ -33,10 +33,6 @@ if TYPE_CHECKING:
     from autograder.masters.source_notebooks import NamedCell
 
 
-_ENOUGH = {"right": 5, "wrong": 8}
-"""The minimum numbers of right and wrong answers that an exercise needs in the bank. An exercise with fewer answers
-works, but its author cannot know whether its verdicts are fair.
-"""
 _OUTPUTS = ("publisher", "service", "action_server")
 """The roles of endpoints through which a node tells something. The others only let it know."""
 _MISTAKES_PAGE = "docs/mistakes.md"
@@ -58,7 +54,7 @@ def still_to_do(exercise_id: str, listed: Sequence[Answer]) -> Iterator[str]:
         autograder.masters.master_files.MasterError: The lab's master cannot be used.
     """
     yield from _of_endpoints(exercises.get(exercise_id))
-    yield from _of_answers(listed)
+    yield from _of_answers(listed, exercises.get(exercise_id).enough)
     yield from _of_mistakes(exercise_id, listed)
     lab = exercises.path(exercise_id).parent
     yield from to_do_in_text(exercise_id)
@@ -66,14 +62,13 @@ def still_to_do(exercise_id: str, listed: Sequence[Answer]) -> Iterator[str]:
     yield from _of_linters(lab)
 
 
-def _of_answers(listed: Sequence[Answer]) -> Iterator[str]:
+def _of_answers(listed: Sequence[Answer], enough: Mapping[str, int]) -> Iterator[str]:
     counts = Counter(answer.file.parent.name for answer in listed)
-    few = [f"{counts[kind]} {kind}" for kind, enough in _ENOUGH.items() if counts[kind] < enough]
+    few = [f"{counts[kind]} {kind}" for kind, least in enough.items() if counts[kind] < least]
     if few:
         yield (
             f"answers: the bank has only {' and '.join(few)} answers; before students get a new exercise, write at "
-            f"least {_ENOUGH['right']} right answers in different styles and {_ENOUGH['wrong']} wrong "
-            "answers"
+            f"least {enough['right']} right answers in different styles and {enough['wrong']} wrong answers"
         )
     for answer in listed:
         if answer.diagnoses and not answer.file.name.startswith(answer.diagnoses[0]):

@@ -154,7 +154,7 @@ def try_exercise(
     if not (only and exercises.reference_path(exercise_id).exists()) and not _is_recorded(exercise_id, tell):
         return False
     # `only` asks about single answers, so whatever concerns the whole exercise is left out.
-    gifts = [] if only else list(_points_of_unsolved(exercise_id))
+    gifts = [] if only else list(_of_unsolved(exercise_id, wanted))
     twice = {answer.name: not (fast and answer.diagnoses) for answer in wanted}
     wanted = [
         _Tried(**{**vars(answer), "looks_twice": twice[answer.name]}, folder=transcript) for answer in wanted
@@ -166,7 +166,7 @@ def try_exercise(
     count = f"{len(wanted)} answer{'s' * (len(wanted) != 1)}{times}"
     tell(f"\n{count}, {len(surprises) or 'none'} not as expected")
     for line in gifts:
-        tell(f"the unsolved notebook earns points: {line}")
+        tell(f"the unsolved notebook {line}")
     # With a part of the answers, what the bank lacks cannot be told.
     for line in to_do_in_text(exercise_id) if only else still_to_do(exercise_id, wanted):
         tell(f"to do: {line}")
@@ -184,13 +184,13 @@ def _chosen(exercise_id: str, only: Sequence[str] = ()) -> list[Answer]:
         NothingToTry: No answer has a name with one of these parts.
     """
     found = list(answers([exercise_id]))
-    if not found:
+    if not found and exercises.get(exercise_id).enough:
         raise NothingToTry(
             f"{exercise_id} has no answers yet: write some in the folders right and wrong of "
             f"{answers_folder(exercise_id)}, as docs/adding-an-exercise.md shows"
         )
     wanted = [answer for answer in found if not only or any(part in answer.short_name for part in only)]
-    if not wanted:
+    if found and not wanted:
         raise NothingToTry(
             f"no answer to {exercise_id} has {' or '.join(only)} in its name. The answers are: "
             + ", ".join(answer.short_name for answer in found)
@@ -263,15 +263,22 @@ def _refuse_edits_that_do_not_fit(wanted: Sequence[Answer]) -> None:
         raise BadTable("\n".join(troubles))
 
 
-def _points_of_unsolved(exercise_id: str) -> Iterator[str]:
-    """Yield a line for each criterion that a notebook meets as students get it, before they write anything."""
-    verdict = reference_files.unsolved(exercise_id)
+def _of_unsolved(exercise_id: str, listed: Sequence[Answer]) -> Iterator[str]:
+    """Yield what is wrong with a notebook as students get it: a criterion that it meets, or an unexpected failure."""
+    verdict, exercise = reference_files.unsolved(exercise_id), exercises.get(exercise_id)
     for one in verdict.criteria if verdict is not None else ():
         if one.passed:
             yield (
-                f"{one.points:g} for “{one.title}”. Give students less code, or change this criterion so that "
-                "the given code fails"
+                f"earns points: {one.points:g} for “{one.title}”. Give students less code, or change this criterion "
+                "so that the given code fails"
             )
+    key = verdict.diagnosis.key if verdict is not None and verdict.diagnosis is not None else "no diagnosis"
+    is_repair = exercise.hides_causes and exercise.enough
+    if is_repair and not any(key in answer.diagnoses for answer in listed):
+        yield (
+            f"fails with {key}, as no wrong answer does: write the broken code as a wrong answer, or change it so that "
+            "it fails for the reason that you mean"
+        )
 
 
 def _is_recorded(exercise_id: str, tell: Callable[[str], object]) -> bool:

@@ -137,13 +137,17 @@ def _write_sources(root: Path, folder: Path, edition: str, executed: Mapping[str
     if (folder / _FAIRNESS).is_file():
         _append(folder / _FAIRNESS, _task_by_task())
     outcomes = _outcomes(root)
+    hunts = {one.id.partition(".")[0] for one in exercises.unbroken() if one.hides_causes}
     for master in masters(root):
-        source = executed.get(lab_name(master)) or source_notebook(master)
+        # The outputs of a solved bug hunt tell the causes, so its page is that of a class, without outputs.
+        is_hunt = lab_name(master) in hunts
+        source = (None if is_hunt else executed.get(lab_name(master))) or source_notebook(master)
         file = folder / chapter_path(root, master).relative_to(root)
         file.parent.mkdir(parents=True, exist_ok=True)
         for figure in master.parents[1].glob("**/figures/*.svg"):
             shutil.copyfile(figure, file.with_name(figure.name))
-        notebook = book_page(source, edition, outcomes.get(lab_name(master), ()))
+        shown = CLASS_EDITION if is_hunt else edition
+        notebook = book_page(source, shown, outcomes.get(lab_name(master), ()))
         for cell in notebook.cells:
             cell.source = _ATTACHMENT.sub(r"(\1.svg)", cell.source)
             cell.pop("attachments", None)

@@ -29,6 +29,8 @@ _UNFOLDED = 16
 _SOLUTION_LINES = 120
 _SOLUTION_COLUMNS = 200
 """The maximum numbers of lines, and of characters in a line, of a cell of the reference solution."""
+_TODO = "# TODO: "
+"""The beginning of the line that asks for a solution. Whether a student leaves it there is not a change of the code."""
 
 
 @dataclass(frozen=True)
@@ -63,18 +65,37 @@ class Solution:
         why: One or two sentences about why the solution is written this way.
         other_way: The advantage of another way to write it; empty if no other way is worth showing.
         other_code: The code of that other way.
+        broken: If students repair code, the broken code for each solution cell; empty for a cell without broken code.
+        own: The student's own code for each of these cells.
     """
 
     code: tuple[str, ...]
-    why: str
+    why: str = ""
     other_way: str = ""
     other_code: str = ""
+    broken: tuple[str, ...] = ()
+    own: tuple[str, ...] = ()
 
     def readable(self) -> Solution:
         """Return the solution with all texts made safe to show."""
-        code = tuple(_code(cell) for cell in self.code)
+        code, broken, own = (tuple(map(_code, cells)) for cells in (self.code, self.broken, self.own))
         other_way, other_code = paragraph(self.other_way, 600), _code(self.other_code)
-        return Solution(code, paragraph(self.why, 600), other_way, other_code)
+        return Solution(code, paragraph(self.why, 600), other_way, other_code, broken, own)
+
+    @property
+    def changes(self) -> dict[str, list[str]]:
+        """How our solution and the student's own change the broken code: lines of a diff, by whose they are."""
+        found = {card_wording.OUR_CHANGE: self.code, card_wording.OWN_CHANGE: self.own}
+        told = {
+            whose: [
+                line
+                for broken, cell in zip(self.broken, cells, strict=False)
+                if broken and cell
+                for line in _changed_lines(broken, cell)
+            ]
+            for whose, cells in found.items()
+        }
+        return {whose: lines for whose, lines in told.items() if lines}
 
 
 class Choices(TypedDict, total=False):
@@ -238,6 +259,16 @@ def _readable(found: TracebackLine | None, mark: str) -> TracebackLine | None:
         return None
     texts = (found.where, 120), (found.quote, 200), (found.error, 300)
     return TracebackLine(*(one_line(text, limit, mark=mark) for text, limit in texts))
+
+
+def _changed_lines(broken: str, repaired: str) -> list[str]:
+    """Return the lines of a diff without its heading; ``…`` stands for equal lines that are left out."""
+    before, after = (
+        [line.rstrip() for line in text.strip().split("\n") if not line.lstrip().startswith(_TODO)]
+        for text in (broken, repaired)
+    )
+    lines = list(difflib.unified_diff(before, after, n=1, lineterm=""))[3:]
+    return ["…" if line.startswith("@@") else line for line in lines]
 
 
 def _code(text: str) -> str:

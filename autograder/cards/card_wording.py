@@ -41,6 +41,8 @@ COUNTS_BESIDES = "what else counts, and what does not"
 
 SOLUTION = "The reference solution, and why it is written so"
 """The heading of the folded reference solution."""
+OUR_CHANGE, OWN_CHANGE = "Our repair", "Your repair"
+"""The headings of two ways in which broken code was changed."""
 OTHER_WAY = "Another way"
 """The heading of an alternative to the reference solution."""
 

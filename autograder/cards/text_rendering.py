@@ -152,6 +152,12 @@ class _Writer:
                 yield f"            {_MARK} {part.gaps[index]} more left out here"
 
     def _solution(self, solution: Solution) -> Iterator[str]:
+        for whose, lines in solution.changes.items():
+            yield ""
+            yield self._heading(whose)
+            yield from _listing(lines)
+        if solution.changes:
+            return
         yield ""
         yield self._heading(card_wording.SOLUTION)
         yield from self._wrapped(solution.why, "  ")

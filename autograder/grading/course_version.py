@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from autograder import course
 from autograder.exercises import REFERENCE
+from autograder.kit.hunts.ticket import TICKET
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -19,8 +20,8 @@ _MADE_BY_COLCON = frozenset({"build", "install", "log"})
 """The folders that colcon makes next to a workspace's ``src``. They are not hashed, because they are made from the
 files in ``src``, which are hashed.
 """
-_OF_CHAPTERS = (f"*/{course.CHAPTER}", "*/*/*.py", f"*/*/*{REFERENCE}")
-"""Patterns for the chapters' files that the hash covers: ``chapter.toml``, exercises, and reference outputs."""
+_OF_CHAPTERS = (f"*/{course.CHAPTER}", "*/*/*.py", f"*/*/*{REFERENCE}", f"*/*/*{TICKET}")
+"""Patterns for the chapters' files that the hash covers: ``chapter.toml``, exercises, reference outputs and tickets."""
 
 
 @functools.cache

@@ -6,12 +6,14 @@ import contextlib
 import time
 import traceback
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from random import Random
 from typing import TYPE_CHECKING
 
 from autograder import exercises, kit
 from autograder.judge.bench.bench import TestBench
+from autograder.judge.bench.subject_time import Unanswered
 from autograder.judge.machine_fitness import (
     NOT_DELIVERED,
     SEEN_SO_FAR,
@@ -135,25 +137,17 @@ def _check(
     # Hurry, and tell what is known so far, only if a student may be waiting, that is, in a check cell that no grader
     # runs: the code of a submission must not learn the verdict.
     waited_for = subject.in_a_notebook and not marks_crowded
-    hurry = Hurry(is_building=lambda: subject.is_building) if waited_for else _no_hurry
+    hurry = Hurry(is_building=lambda: subject.is_building) if waited_for else lambda: None
     card = GrowingCard(exercise, _result, subject.tell_so_far) if waited_for else None
     names: Mapping[str, Mapping[str, str]] = {}
     verdict: Verdict | None = None
+    looks = partial(
+        look, exercise, subject, reference, seed=seed, domain_id=domain_id, hurry=hurry, card=card
+    )
 
     def next_look(pace: Pace, before: Evidence | None = None) -> Seen:
         try:
-            seen = look(
-                exercise,
-                subject,
-                reference,
-                pace,
-                seed=seed,
-                domain_id=domain_id,
-                before=before,
-                hurry=hurry,
-                names=names,
-                card=card,
-            )
+            seen = looks(pace, before=before, names=names)
         except OutOfTime:
             raise _too_busy(verdict) from None
         if trouble := runner_trouble(seen.evidence.parts):
@@ -237,10 +231,6 @@ def _is_explained(
     return is_certain(exercise, evidence) and not (names and failed > len(names))
 
 
-def _no_hurry() -> None:
-    """Do nothing, because no student waits for this check."""
-
-
 def _so_far(verdict: Verdict) -> str:
     """Return a sentence that quotes the diagnosis and says that it may be wrong; empty if the mistake is unknown."""
     known = verdict.diagnosis
@@ -273,7 +263,7 @@ def look(
     seed: str,
     domain_id: int,
     before: Evidence | None = None,
-    hurry: Callable[[], None] = _no_hurry,
+    hurry: Callable[[], None] = lambda: None,
     names: Mapping[str, Mapping[str, str]] | None = None,
     card: GrowingCard | None = None,
 ) -> Seen:
@@ -295,10 +285,8 @@ def look(
 
     bench = TestBench(subject, domain_id, reference, pace, Random(seed), before, hurry, names)
     bench.is_waited_for, bench.begin_run = card is not None, begin_run
-    try:
+    with contextlib.closing(bench), contextlib.suppress(Unanswered):
         exercise.scenario(bench)
-    finally:
-        bench.close()
     # Sort the parts: a scenario may shuffle them, but the verdict's text must not depend on the order.
     places = {part.name: place for place, part in enumerate(reference.parts)}
     parts = sorted(bench.parts, key=lambda part: places.get(part.name, len(places)))

@@ -143,14 +143,10 @@ def _endpoints_of_solution(exercise: Exercise, subject: Subject, domain_id: int)
                 named |= bench.seen().qos(role)
         # The programs of a workspace or launch file may run one after the other. In that case only the endpoints of the
         # exercise's roles are the same in each recording, so only they are recorded.
-        if exercise.runner:
-            found, qos = ({r: of[r] for r in exercise.roles if r in of} for of in (found, qos))
+        roles = exercise.roles if exercise.runner else tuple(found)
         asked, asked_qos = (
-            {
-                role: {name: of for name, of in ends.items() if name not in exercise.unasked}
-                for role, ends in all_of.items()
-            }
-            for all_of in (found, qos)
+            {r: {n: k for n, k in of[r].items() if n not in exercise.unasked} for r in roles if r in of}
+            for of in (found, qos)
         )
         return Reference(exercise.id, asked, qos=asked_qos)
     finally:

@@ -218,16 +218,15 @@ class CommandSubject(InOwnProcesses):
         del options  # only a notebook's function takes keyword arguments
         command = [*self._command, *map(str, arguments)]
         try:
-            self._process = self._spawn(
-                command, subject_environment(self._domain_id, boxed=self._box is not None)
-            )
+            self._process = self._spawn(command)
         except (OSError, ValueError) as error:
             raise CannotStart(f"cannot start {self._command[0]!r}: {error}") from error
         self._done, self._dying, self._last_words = threading.Event(), threading.Event(), []
         follow = (recorder.record, recorder.end, self._process, self._done)
         threading.Thread(target=self._follow, args=follow, daemon=True).start()
 
-    def _spawn(self, command: Sequence[str], environment: Mapping[str, str]) -> subprocess.Popen[bytes]:
+    def _spawn(self, command: Sequence[str]) -> subprocess.Popen[bytes]:
+        environment = subject_environment(self._domain_id, boxed=self._box is not None)
         descriptors: list[int] = []
         if self._box is not None:
             command, descriptors = self._box.start_of(command, environment)
@@ -306,7 +305,7 @@ class CommandSubject(InOwnProcesses):
             part for part in self._command if part.endswith(".py") or Path(self._cwd or ".", part).is_dir()
         ]
         reader = [*python_child("-m", "autograder.own_lines").command, *paths]
-        process = self._spawn(reader, subject_environment(self._domain_id, boxed=self._box is not None))
+        process = self._spawn(reader)
         try:
             output, _ = process.communicate(timeout=READ_LIMIT)
             return msgspec.json.decode(output[:MAX_OUTPUT], type=OwnLines).lines

@@ -217,6 +217,8 @@ class Bench(Protocol):
 
         A best-effort subscription loses messages until it has itself discovered the publisher. This may happen long
         after the publisher has discovered the subscription.
+
+        A fast look ends here if no node is spun: the look in real time follows.
         """
 
     def note_whether_it_spins(self) -> None:

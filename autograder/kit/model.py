@@ -15,6 +15,12 @@ if TYPE_CHECKING:
     from autograder.kit.runners import Runner
 
 
+ENOUGH: Mapping[str, int] = {"right": 5, "wrong": 8}
+"""The numbers of right and wrong answers that the bank needs. With fewer answers, an exercise works, but its author
+cannot know whether its verdicts are fair.
+"""
+
+
 @dataclass(frozen=True)
 class Finding:
     """The decision on a criterion, with the expected and the observed behavior in words for the card."""
@@ -157,7 +163,8 @@ class Exercise:
         counts: For criteria by their names, one or two short sentences about what else is accepted. The card shows them
             below the criterion. Under the name ``""``, the same about the exercise as a whole.
         hides_causes: True if finding the cause is the task. Then no look uses the subject's own names, and until the
-            pass the card tells no cause (:mod:`autograder.kit.hunts.repairs`).
+            pass the card tells no cause (:mod:`autograder.kit.hunts.repairs`). The site shows no solution.
+        enough: The numbers of right and wrong answers that the bank needs; no numbers if it needs none.
         remarks: Functions that return a sentence for the card that costs no points, or an empty text.
         roles: The roles of the subject's endpoints, such as ``("publisher",)``. `record` waits for one of them.
         unasked: The names of the solution's endpoints that the task does not ask for. The recording leaves them out, so
@@ -194,6 +201,7 @@ class Exercise:
     text: Mapping[str, str] = field(default_factory=dict)
     counts: Mapping[str, str] = field(default_factory=dict)
     hides_causes: bool = False
+    enough: Mapping[str, int] = field(default_factory=lambda: ENOUGH)
 
     @property
     def points(self) -> float:

@@ -34,7 +34,10 @@ TRIES = 3
 moment.
 """
 PAIRS = 3
-"""The number of texts in each series after which the next text is sent at once: a listener has to report both."""
+"""The number of texts in the first half of each series after which the next text is sent at once: a listener has to
+report both. Between the two, the judge waits until the first one is handled, so a listener that is too slow for the
+pace loses texts of the second half, in which the judge waits for none.
+"""
 GREETING = "Hello, world!"
 """The text with which many talkers begin their messages, and which some of the judge's texts contain."""
 _UNUSUAL = 6
@@ -78,8 +81,10 @@ def random_texts(random: Random) -> list[str]:
 
 def drawn_pairs(random: Random, texts: Sequence[str]) -> list[str]:
     """Draw the texts of :func:`random_texts` that the next text of their series follows at once."""
-    rows = (texts[1 + AT_PACE * i : AT_PACE * (i + 1)] for i in range(TRIES))
-    return [text for row in rows for text in random.sample(row, PAIRS)]
+    rows = [texts[1 + AT_PACE * i : 1 + AT_PACE * (i + 1)] for i in range(TRIES)]
+    middle = AT_PACE // 2
+    firsts = ([text for text in row[:middle] if text not in row[middle:]] for row in rows)
+    return [text for first in firsts for text in random.sample(first, PAIRS)]
 
 
 _QUOTED = re2.compile(r"[\"“«].*[\pL\pN_].*[\"”»]")

@@ -64,6 +64,11 @@ class Region:
     after: tuple[str, ...]
 
     @property
+    def is_repair(self) -> bool:
+        """True if students get broken code, not only comments about what to write."""
+        return any(line.strip() and not _words(line).startswith("#") for line in self.stub)
+
+    @property
     def unsolved(self) -> str:
         """Return the cell as the student gets it."""
         return "\n".join((*self.before, *self.stub, *self.after))

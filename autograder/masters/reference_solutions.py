@@ -2,7 +2,7 @@
 
 After full marks, students may read the code and the reasons for it. The reasons are in a file next to the exercise,
 such as ``talker.why.md``: one paragraph and, if another way is worth showing, the heading ``## Another way``, a
-paragraph and a block of code.
+paragraph and a block of code. A repair needs no such file: students see how it changes the broken code.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from autograder.masters.master_files import MasterError
 from autograder.masters.source_notebooks import Points, named_cells
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
     from pathlib import Path
 
     from autograder.masters.source_notebooks import NamedCell
@@ -123,24 +123,29 @@ def _is_constant(node: ast.stmt) -> bool:
 
 
 def solution_files(master: Path, cells: Sequence[NamedCell]) -> dict[Path, str]:
-    """Return the texts of a master's solution files, by path: one for each exercise that has a file with reasons.
+    """Return the texts of a master's solution files, by path: one for each repair and each exercise with reasons.
 
     Raises:
         MasterError: A file with reasons does not have the right form.
     """
     texts = {}
     code: list[str] = []
+    broken: list[str] = []
     for named in cells:
         # Leave out shell cells: commands that a student types in a terminal are not part of the checked code.
         if named.cell.kind is CellRole.SOLUTION and shell_script(named.cell.source) is None:
-            code.append(find_region(named.cell.source).solved.strip())
+            region = find_region(named.cell.source)
+            code.append(region.solved.strip())
+            broken.append(region.unsolved.strip() if region.is_repair else "")
         elif named.check is not None:
             exercise = named.check.exercise
             why = master.with_name(f"{exercise.partition('.')[2]}{WHY}")
+            file = why.with_name(why.name.removesuffix(WHY) + SOLUTION)
             if why.is_file():
-                file = why.with_name(why.name.removesuffix(WHY) + SOLUTION)
                 texts[file] = _solution_text(exercise, code, why)
-            code = []
+            elif any(broken):
+                texts[file] = _as_json({"exercise": exercise, "code": code, "broken": broken})
+            code, broken = [], []
     return texts
 
 
@@ -167,4 +172,8 @@ def _solution_text(exercise: str, code: list[str], why: Path) -> str:
         "other_way": " ".join(words.split()),
         "other_code": example.strip("\n"),
     }
+    return _as_json(fields)
+
+
+def _as_json(fields: Mapping[str, object]) -> str:
     return json.dumps(fields, indent=1, ensure_ascii=False) + "\n"

@@ -18,6 +18,7 @@ from autograder import course
 from autograder.command_name import COMMAND
 from autograder.course import HANDED_OUT
 from autograder.exercises import REFERENCE
+from autograder.kit.hunts.ticket import TICKET
 from autograder.masters.chapter_building import holds_work
 from autograder.masters.master_files import relinked
 from autograder.safe_files import write_whole
@@ -135,7 +136,7 @@ def hand_out(
         assignments: The names of the notebooks to hand out, graded or not; all if empty.
         as_zip: True to make a zip file.
         with_solutions: True to add the reference solutions and explanations that cards show with full marks. Students
-            can then also read them earlier, in the folder ``exercises``.
+            can then also read them earlier, in the folder ``exercises``, as those of a bug hunt always.
 
     Raises:
         CannotHandOut: The place is not empty, a name is not that of a notebook, a notebook of the chapters was
@@ -221,7 +222,9 @@ def _judges_part(chapter: course.Chapter, *, with_solutions: bool) -> Iterator[P
     for lab in chapter.labs:
         yield from sorted(lab.glob("*.py"))
         yield from sorted(lab.glob(f"*{REFERENCE}"))
-        if with_solutions:
+        yield from (tickets := sorted(lab.glob(f"*{TICKET}")))
+        # The card of a ticket shows our repair beside the student's; the cause stands in the ticket anyway.
+        if with_solutions or tickets:
             yield from sorted(lab.glob(f"*{course.SOLUTION}"))
     yield from _below(chapter.folder / course.INTERFACES, chapter.folder)
 

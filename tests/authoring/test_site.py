@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import base64
 import gzip
+import html
 import re
 import subprocess
 from functools import cache
 from pathlib import Path
 
+import msgspec
 import pytest
 from nbformat.v4 import new_code_cell, new_notebook, new_output
 
@@ -24,6 +26,7 @@ from autograder.authoring.site_building import (
     course_of,
 )
 from autograder.course import SOLUTION
+from autograder.kit.hunts.ticket import TICKET, Ticket
 from autograder.masters.master_files import masters
 from autograder.masters.source_notebooks import SET_UP_CELL as SET_UP_CELL
 from autograder.masters.source_notebooks import service_links, source_notebook
@@ -112,6 +115,19 @@ def test_solutions_are_folded_or_absent(book: tuple[str, Path]) -> None:
     assert bool(films) == (edition == SELF_EDITION), "README's film types a solution"
 
 
+def test_a_bug_hunt_has_no_solution_and_no_cause_in_any_edition(book: tuple[str, Path]) -> None:
+    for file in sorted(ROOT.glob(f"solutions/*/*/*{TICKET}")):
+        ticket = msgspec.toml.decode(file.read_bytes(), type=Ticket)
+        page = (book[1] / "chapters" / file.parents[1].name / f"{file.parent.name}.html").read_text(
+            encoding="utf-8"
+        )
+        text = html.unescape(re.sub(r"<[^>]*>", "", page))
+        assert ticket.task.replace("`", "") in " ".join(text.split())
+        assert [
+            words for words in (ticket.cause, ticket.sooner, ticket.seen, SOLUTION_SUMMARY) if words in text
+        ] == []
+
+
 def test_no_output_shows_a_class_what_a_solution_has_written() -> None:
     source = source_notebook(next(one for one in masters(ROOT) if one.parent.name == "lab_1_3"))
     solved = next(cell for cell in source.cells if "BEGIN SOLUTION" in cell.source)
@@ -138,7 +154,8 @@ def test_the_cards_of_a_classes_book_offer_no_solution(tmp_path: Path) -> None:
     assert course_of(SELF_EDITION, ROOT, tmp_path) == ROOT
     handed_out = course_of(CLASS_EDITION, ROOT, tmp_path)
     assert list(handed_out.rglob("*.reference.json"))
-    assert not list(handed_out.rglob(f"*{SOLUTION}"))
+    offered = {path.parent.name for path in handed_out.rglob(f"*{SOLUTION}")}
+    assert offered <= {one.id.partition(".")[0] for one in exercises.unbroken() if one.hides_causes}
 
 
 def test_a_line_that_was_printed_in_two_pieces_is_one_line_without_the_folder_of_the_run() -> None:

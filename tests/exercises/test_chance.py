@@ -11,6 +11,7 @@ import pytest
 from inspecting_services import question
 from inspecting_topics import mismatch
 from lab_1_2 import listener, talker
+from lab_1_3 import client as service_client
 from lab_1_4 import client as action_client
 
 from autograder.judge import evidence_files
@@ -22,7 +23,7 @@ from autograder.kit.mistakes.goal_mistakes import ENDED_TOO_EARLY, RESULT_NOT_RE
 from autograder.kit.quests.robot import Search
 from autograder.kit.recipes.service_client import ANSWER_NOT_AWAITED
 from autograder.kit.reported_texts import has_much_of
-from autograder.kit.service_calls import BIASED, EXTREME
+from autograder.kit.service_calls import BIASED, CALLED, EXTREME
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -311,3 +312,25 @@ def test_one_that_names_another_service_has_not_looked_only_once() -> None:
     named = [Event(0.2, "output", "stdout", {"text": other}), Event(0.4, "subject", "exited", {})]
     assert not Search(Part(question.LATE, vars(robot), named)).gave_up_at_once
     assert Search(Part(question.LATE, vars(robot), named[1:])).gave_up_at_once
+
+
+@pytest.mark.parametrize("arrived", [(), CALLED, (CALLED[0], EXTREME)])
+def test_a_client_that_stays_for_no_answer_gets_the_same_points_whether_its_requests_arrive(
+    arrived: tuple[str, ...],
+) -> None:
+    reference = evidence_files.load_reference("lab_1_3.client")
+    raised = Event(
+        1.0, "subject", "raised", {"traceback": "AttributeError: no attribute 'add_done_callback'"}
+    )
+    runs = []
+    for part in reference.parts:
+        events: list[Event] = [
+            Event(0.1, "serving", "/add_two_ints", {}),
+            Event(0.9, "called", "a server", {}),
+        ]
+        if part.name in arrived:
+            events.append(Event(0.95, "request", "/add_two_ints", {"fields": {"a": 1, "b": 2}}))
+        runs.append(Part(part.name, {"numbers": [1, 2]}, [*events, raised]))
+    criteria = service_client.EXERCISE.criteria
+    met = [one.name for one in criteria if one.judge(Evidence(runs, reference)).passed]
+    assert not {"call", "sum", "late"} & {*met}

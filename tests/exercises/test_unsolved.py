@@ -40,8 +40,12 @@ def test_of_a_subject_that_does_nothing_the_card_lists_what_is_asked(exercise_id
 
 
 @pytest.mark.parametrize("exercise_id", exercises.all_ids())
-def test_an_exercise_is_worth_ten_points(exercise_id: str) -> None:
-    assert exercises.get(exercise_id).points == 10
+def test_an_exercise_is_worth_ten_points_and_a_ticket_of_a_bug_hunt_five(exercise_id: str) -> None:
+    exercise = exercises.get(exercise_id)
+    if not exercise.hides_causes:
+        assert exercise.points == 10
+    elif not exercise_id.endswith("_why"):
+        assert exercise.points + exercises.get(f"{exercise_id}_why").points == 5
 
 
 @pytest.mark.parametrize("exercise_id", exercises.all_ids())

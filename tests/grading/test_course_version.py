@@ -21,6 +21,7 @@ PLACES = (
     "environment",
     ":(glob)solutions/*/*/*.py",
     ":(glob)solutions/*/*/*.reference.json",
+    ":(glob)solutions/*/*/*.ticket.toml",
     ":(glob)solutions/*/chapter.toml",
     "solutions/ros2_ws",
 )

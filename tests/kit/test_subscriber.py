@@ -78,6 +78,38 @@ def test_between_the_texts_of_a_pair_the_listener_handles_the_first_and_no_time_
     assert bench.done == ["one", "a pause", "two", "the listener has handled it", "three", "a pause"]
 
 
+class Hung(Bench):
+    """A bench with a listener that says the first text, and then no more."""
+
+    pace = Pace.REAL_TIME
+
+    def __init__(self, texts: list[str]) -> None:
+        super().__init__(texts, [])
+        self.events = [Event(0.0, "interface", "", dict(REFERENCE.interface))]
+
+    def seen(self) -> Part:
+        return Part("listening", self._part.inputs, self.events)
+
+    def send(self, data: str) -> None:
+        self.events.append(Event(1.0, "sent", "/chatter", {"fields": {"data": data}}))
+        if not self.done:
+            self.events.append(Event(1.1, "output", "stdout", {"text": data}))
+        self.done.append(data)
+
+    def run_time(self, *_: float, **__: Any) -> bool:
+        return True
+
+    def wait_until(self, condition: Any, *_: Any) -> bool:
+        return bool(condition(Evidence([self.seen()], REFERENCE, real_time=True)))
+
+
+def test_a_listener_that_says_nothing_in_a_whole_series_gets_no_other_one() -> None:
+    texts = random_texts(Random(0))
+    bench: Any = Hung(texts)
+    assert not Speaks(pace=0.5, paced_by="a talker")._all_are_said(bench, bench, texts)
+    assert bench.done == texts[: 1 + AT_PACE]
+
+
 @pytest.mark.parametrize("seed", range(20))
 def test_each_series_has_pairs_and_the_seed_decides_which(seed: int) -> None:
     random = Random(seed)
@@ -86,6 +118,35 @@ def test_each_series_has_pairs_and_the_seed_decides_which(seed: int) -> None:
     rows = [texts[1 + AT_PACE * i : 1 + AT_PACE * (i + 1)] for i in range(TRIES)]
     assert all(sum(text in pairs for text in row[:-1]) >= PAIRS - 1 for row in rows)
     assert pairs != drawn_pairs(Random(seed + 1), texts)
+
+
+def lost_in(row: list[str], pairs: list[str], work: float) -> list[str]:
+    """The texts that a listener with a queue for one text loses if each keeps it busy for so many seconds."""
+    now, free, waiting, lost = 0.0, 0.0, "", []
+    for text in row:
+        if waiting and free <= now:
+            free, waiting = free + work, ""
+        if free <= now:
+            free = now + work
+        else:
+            lost += [waiting] * bool(waiting)
+            waiting = text
+        if text in pairs:
+            now = free = max(now, free + work * bool(waiting))
+            waiting = ""
+        else:
+            now += 0.5
+    return lost
+
+
+@pytest.mark.parametrize("seed", range(50))
+def test_a_listener_that_is_too_slow_for_the_pace_loses_texts_in_each_series(seed: int) -> None:
+    random = Random(seed)
+    texts = random_texts(random)
+    pairs = drawn_pairs(random, texts)
+    rows = [texts[1 + AT_PACE * i : 1 + AT_PACE * (i + 1)] for i in range(TRIES)]
+    assert all(lost_in(row, pairs, work=1.0) for row in rows)
+    assert not any(lost_in(row, pairs, work=0.2) for row in rows)
 
 
 @pytest.mark.parametrize(

@@ -129,6 +129,23 @@ def test_it_has_the_cells_since_the_check_before_and_the_reason(tmp_path: Path) 
     }
 
 
+def test_a_repair_has_the_broken_code_and_needs_no_reason(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    todo = "    # TODO: return half the number."
+    assert todo in LAB
+    broken = f"{todo}\n    #- return 2 * number"
+    monkeypatch.setitem(globals(), "LAB", LAB.replace(todo, broken))
+    ((name, fields),) = made(tmp_path, None).items()
+    assert name == "half.solution.json"
+    head = 'def half(number: int) -> int:\n    """Half the number."""\n'
+    assert fields == {
+        "exercise": "lab_9_1.half",
+        "code": [f"{head}    return number // 2"],
+        "broken": [f"{head}{todo}\n    return 2 * number"],
+    }
+
+
 def test_an_exercise_without_a_reason_has_none(tmp_path: Path) -> None:
     assert made(tmp_path, None) == {}
 

@@ -62,7 +62,8 @@ def subjects() -> Iterator[Subject]:
     """Everything that is mutated, in the order of the course."""
     table = tomllib.loads(TABLE.read_text(encoding="utf-8"))
     bank = {answer.name: answer for answer in answers()}
-    for exercise_id in exercises.all_ids():
+    # The judge of a repair is another exercise's, whose answers are changed there.
+    for exercise_id in (one.id for one in exercises.unbroken() if not one.hides_causes):
         reference = _reference(exercise_id)
         if reference is not None:
             yield reference

@@ -114,7 +114,10 @@ def test_every_operator_makes_something() -> None:
 def test_ids_are_unique_and_every_exercise_has_its_mutants() -> None:
     found = everything()
     assert len({mutant.id for mutant in found}) == len(found)
-    assert {mutant.exercise for mutant in found} == set(exercises.all_ids())
+    # A repair is judged by another exercise, whose answers have the mutants.
+    assert {mutant.exercise for mutant in found} == {
+        one.id for one in exercises.unbroken() if not one.hides_causes
+    }
 
 
 def test_every_equivalent_is_still_made() -> None:
@@ -127,7 +130,7 @@ def test_a_sample_is_the_same_each_time_and_takes_from_every_exercise() -> None:
     found = list(everything())
     sample = sampled(found, 28, 0)
     assert sample == sampled(list(reversed(found)), 28, 0)[::-1]
-    assert len({mutant.exercise for mutant in sample}) == len(exercises.all_ids())
+    assert {mutant.exercise for mutant in sample} == {mutant.exercise for mutant in found}
     assert len(sampled(found, 28, 0) + sampled(found, 28, 1)) == 56
     assert sampled(found, 28, 1) != sample
     # Without one mutant most of the sample is as it was.

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from autograder import exercises
+from autograder import course, exercises
 from autograder.masters.master_files import lab_name, masters
 from autograder.student import handout
 from autograder.student.handout import CannotHandOut, hand_out
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 
 ROOT = Path(__file__).resolve().parents[2]
 SOLUTION = re.compile(r"### BEGIN SOLUTION\n(.*?)### END SOLUTION", re.DOTALL)
+BROKEN = re.compile(r"^ *#- (.*)$", re.MULTILINE)
 
 
 @pytest.fixture(scope="module")
@@ -44,9 +45,13 @@ def pairs(text: str) -> set[tuple[str, str]]:
 
 
 def solutions() -> dict[str, set[tuple[str, str]]]:
-    """By the lab."""
+    """By the lab. What a repair keeps of the broken code is no solution."""
     return {
-        lab_name(master): set().union(*map(pairs, SOLUTION.findall(master.read_text(encoding="utf-8"))))
+        lab_name(master): {
+            pair
+            for region in SOLUTION.findall(master.read_text(encoding="utf-8"))
+            for pair in pairs(region) - pairs("\n".join(BROKEN.findall(region)))
+        }
         for master in masters(ROOT)
     }
 
@@ -76,6 +81,14 @@ def test_no_two_lines_of_a_solution_are_in_it(handed_out: Path) -> None:
         for pair in pairs(text) & (by_lab[path.stem] if path.suffix == ".ipynb" else everything)
     ]
     assert not found
+
+
+def test_of_a_bug_hunt_it_has_the_tickets_and_what_their_cards_show_after_the_pass(handed_out: Path) -> None:
+    kept = {path.relative_to(handed_out / "exercises") for path in (handed_out / "exercises").rglob("*.*on")}
+    lab = Path("01_ros2_fundamentals/bugs_1")
+    assert lab / "dark_display.solution.json" in kept
+    assert (handed_out / "exercises" / lab / "dark_display.ticket.toml").is_file()
+    assert {path.parent.name for path in kept if path.name.endswith(course.SOLUTION)} <= {"bugs_1", "bugs_2"}
 
 
 def test_a_solution_that_slipped_in_would_be_found(tmp_path: Path) -> None:

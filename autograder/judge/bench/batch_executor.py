@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import contextlib
 import threading
+import warnings
 from collections import deque
 from functools import partial
 from typing import TYPE_CHECKING, Any
@@ -26,6 +27,10 @@ InvalidHandle = rclpy_implementation.InvalidHandle
 """The error that rclpy raises if an entity is destroyed while another thread uses it."""
 LONG_QUEUE = 1000
 """The depth of the judge's longest queues, so that nothing is lost while the judge is slow."""
+ATTEMPTS = 30
+"""The maximum number of attempts to send an answer. In each attempt the middleware waits about 0.1 s for the client's
+reader.
+"""
 
 
 class BatchExecutor:
@@ -33,6 +38,8 @@ class BatchExecutor:
 
     A round takes one message of each endpoint in turn, until none is left of those that had arrived before the round.
     After that, it does the tasks that were given before the round.
+
+    In place of an empty response, a service's callback gets a function that sends a response, and may call it later.
     """
 
     def __init__(self, node: Node) -> None:
@@ -89,24 +96,24 @@ class BatchExecutor:
         self._watched.close()
         self._take: dict[int, Callable[[], bool]] = {}
         self._events: list[Any] = []
-        kinds: tuple[tuple[list[Any], Callable[[Any], bool], str], ...] = (
-            (list(self._node.subscriptions), _take_message, "add_subscription"),
-            (list(self._node.clients), self._take_answer, "add_client"),
-            (list(self._node.services), _take_request, "add_service"),
-        )
+        kinds: dict[str, tuple[list[Any], Callable[[Any], bool]]] = {
+            "subscription": (list(self._node.subscriptions), _take_message),
+            "client": (list(self._node.clients), self._take_answer),
+            "service": (list(self._node.services), _take_request),
+        }
         events = list(self._node.waitables)
-        sizes = [len(endpoints) for endpoints, *_ in kinds]
+        sizes = [len(endpoints) for endpoints, _ in kinds.values()]
         context = self._node.context.handle
         self._ready = ready = rclpy_implementation.WaitSet(sizes[0], 1, 0, *sizes[1:], len(events), context)
         self._watched.enter_context(self._guard.handle)
         self._add = [partial(ready.add_guard_condition, self._guard.handle)]
-        for endpoints, take, add in kinds:
+        for kind, (endpoints, take) in kinds.items():
             for endpoint in endpoints:
                 # Suppress the error if another thread has destroyed the endpoint, and will call wake().
                 with contextlib.suppress(InvalidHandle):
                     self._watched.enter_context(endpoint.handle)
                     self._take[endpoint.handle.pointer] = partial(take, endpoint)
-                    self._add.append(partial(getattr(ready, add), endpoint.handle))
+                    self._add.append(partial(getattr(ready, f"add_{kind}"), endpoint.handle))
         for event in events:
             with contextlib.suppress(InvalidHandle):
                 self._watched.enter_context(event)
@@ -157,5 +164,29 @@ def _take_request(service: Any) -> bool:
     request, header = service.handle.service_take_request(service.srv_type.Request)
     if header is None:
         return False
-    service.send_response(service.callback(request, service.srv_type.Response()), header)
+    send = partial(send_until_received, service, header)
+    # Each rclpy node has a service of its own, whose callback returns its response.
+    if (response := service.callback(request, send)) is not None:
+        send(response)
     return True
+
+
+def send_until_received(service: Any, header: Any, response: Any) -> None:
+    """Send the answer to a request again and again until the client receives it, or the service is destroyed.
+
+    A new client can often send a request before it can receive an answer. The middleware waits 0.1 s for the client,
+    then drops the answer and warns ("client will not receive response", rmw_fastrtps_shared_cpp/rmw_response.cpp). On a
+    busy machine a correct client would then wait forever. So the answer is sent again until there is no warning.
+    """
+    with contextlib.suppress(InvalidHandle):
+        for _ in range(ATTEMPTS):
+            # The warning is recorded, not raised as an error, because rclpy's compiled code would raise a different
+            # error instead.
+            with _warnings_belong_to_all_threads, warnings.catch_warnings(record=True) as complaints:
+                warnings.simplefilter("always", RuntimeWarning)
+                service.send_response(response, header)
+            if not any(issubclass(complaint.category, RuntimeWarning) for complaint in complaints):
+                return
+
+
+_warnings_belong_to_all_threads = threading.Lock()

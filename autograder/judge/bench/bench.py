@@ -14,9 +14,9 @@ from autograder.judge.bench import discovery
 from autograder.judge.bench.discovery import Announcements, process_of
 from autograder.judge.bench.judge_nodes import DecoyNodes, Wire
 from autograder.judge.bench.recorded_actions import RecordedActionClient, ScriptedActionServer
-from autograder.judge.bench.recorded_services import NONE_LATE, Answer, RecordedCaller, RecordedServer
+from autograder.judge.bench.recorded_services import Answer, RecordedCaller, RecordedServer
 from autograder.judge.bench.recorded_topics import LogReader, RecordedPublisher, RecordedSubscription
-from autograder.judge.bench.recorder import Recorder
+from autograder.judge.bench.recorder import Place, Recorder
 from autograder.judge.bench.ros_interfaces import expected_hashes, served_hashes, service_fields
 from autograder.judge.bench.subject_presence import GRAPH_POLL, MATCH, Presence
 from autograder.judge.bench.subject_time import SubjectTime, answers
@@ -27,7 +27,7 @@ from autograder.kit.evidence import INTERRUPTED, Evidence, Part, Reference
 from autograder.kit.giving_up import patience
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Container, Iterable, Mapping, Sequence
+    from collections.abc import Callable, Iterable, Mapping, Sequence
     from random import Random
 
     from autograder.judge.subject import Subject
@@ -122,15 +122,7 @@ class TestBench:
         self._on_graph = Presence(
             self._participant.node, self._recorder, self._subject, self.pace, self._has_announced_itself
         )
-        self._time_of_part = SubjectTime(
-            self._participant,
-            self._recorder,
-            self._subject,
-            self._on_graph,
-            self._open,
-            self.pace,
-            self.doubt,
-        )
+        self._time_of_part = SubjectTime(self._participant, self._on_graph, self._open, self.doubt)
 
     def again(self, name: str = "") -> None:
         self.stop()
@@ -263,9 +255,8 @@ class TestBench:
         return Evidence([self._recorder.part()], self.reference, self.pace is Pace.REAL_TIME)
 
     def listen(self, topic: str, type_name: str, *, qos: Qos = Qos.DEFAULT) -> None:
-        at = self._real(topic)
-        subscription = RecordedSubscription(self._wire, self._recorder, topic, type_name, at=at, qos=qos)
-        self._presence.subscriptions[at] = subscription
+        place = self._place(topic, type_name)
+        self._presence.subscriptions[place.at] = subscription = RecordedSubscription(place, qos)
         self._open.callback(self._wire.node.destroy_subscription, subscription.subscription)
 
     def note(self, name: str, **data: Any) -> None:
@@ -278,9 +269,8 @@ class TestBench:
         return len(self._recorder.part().of("message", topic))
 
     def speak(self, topic: str, type_name: str, *, qos: Qos = Qos.DEFAULT) -> RecordedPublisher:
-        at = self._real(topic)
-        publisher = RecordedPublisher(self._wire, self._recorder, topic, type_name, at=at, qos=qos)
-        self._presence.publishers[at] = publisher
+        place = self._place(topic, type_name)
+        self._presence.publishers[place.at] = publisher = RecordedPublisher(place, qos)
         self._open.callback(self._wire.node.destroy_publisher, publisher.publisher)
         return publisher
 
@@ -295,32 +285,16 @@ class TestBench:
         assert self._decoys is not None
         self._there |= self._decoys.plant(name, publishes=publishes, subscribes=subscribes, qos=qos)
 
-    def serve(
-        self,
-        service: str,
-        type_name: str,
-        answer: Answer,
-        *,
-        hold: int = 0,
-        late: Mapping[int, float] = NONE_LATE,
-        never: Container[int] = (),
-    ) -> RecordedServer:
+    def serve(self, service: str, type_name: str, answer: Answer, **how: Any) -> RecordedServer:
         self._get_ready_to_serve(service)
-        server = RecordedServer(
-            self._wire,
-            self._recorder,
-            service,
-            type_name,
-            answer,
-            at=self._real(service),
-            hold=hold,
-            late=late,
-            never=never,
-        )
+        server = RecordedServer(self._place(service, type_name), answer, **how)
         self._servers.append(server)
         self._open.callback(server.close)
         self._announce(server.services)
         return server
+
+    def _place(self, name: str, type_name: str) -> Place:
+        return Place(self._wire, self._recorder, name, type_name, self._real(name))
 
     def call(self, service: str, type_name: str) -> RecordedCaller:
         return self._client(RecordedCaller, service, type_name)
@@ -329,28 +303,14 @@ class TestBench:
         return self._client(RecordedActionClient, action, type_name)
 
     def _client(self, kind: type[_Client], name: str, type_name: str) -> _Client:
-        client = kind(
-            self._wire,
-            self._recorder,
-            name,
-            type_name,
-            at=self._real(name),
-            server_is_gone=lambda: self._subject.ended,
-        )
+        client = kind(self._place(name, type_name), lambda: self._subject.ended)
         self._open.callback(client.close)
         return client
 
     def serve_action(self, action: str, type_name: str, **how: Any) -> ScriptedActionServer:
         self._get_ready_to_serve(action)
-        server = ScriptedActionServer(
-            self._wire,
-            self._recorder,
-            action,
-            type_name,
-            at=self._real(action),
-            client_is_gone=lambda: self._subject.ended,
-            **how,
-        )
+        place = self._place(action, type_name)
+        server = ScriptedActionServer(place, lambda: self._subject.ended, **how)
         self._open.callback(server.close)
         self._announce(server.services)
         return server

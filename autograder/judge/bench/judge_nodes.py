@@ -116,12 +116,6 @@ class Wire:
         self.context.try_shutdown()
         self.context.destroy()
 
-    def __enter__(self) -> Wire:
-        return self
-
-    def __exit__(self, *_: Any) -> None:
-        self.close()
-
 
 class DecoyNodes:
     """The judge's decoy nodes, each with its own DDS participant.
@@ -184,18 +178,18 @@ class _Decoy:
         self._destroy()
         self._node = node
         for name, type_name in publishes.items():
+            kind = interface(type_name)
             if _ACTION in type_name:
-                server = ActionServer(node, interface(type_name), name, lambda _: None)
-                self._ends.callback(server.destroy)
-                continue
-            publisher = node.create_publisher(interface(type_name), name, qos)
-            self._ends.callback(node.destroy_publisher, publisher)
+                self._ends.callback(ActionServer(node, kind, name, lambda _: None).destroy)
+            else:
+                self._ends.callback(node.destroy_publisher, node.create_publisher(kind, name, qos))
         for name, type_name in subscribes.items():
+            kind = interface(type_name)
             if _ACTION in type_name:
-                self._ends.callback(ActionClient(node, interface(type_name), name).destroy)
-                continue
-            subscription = node.create_subscription(interface(type_name), name, lambda _: None, qos)
-            self._ends.callback(node.destroy_subscription, subscription)
+                self._ends.callback(ActionClient(node, kind, name).destroy)
+            else:
+                subscription = node.create_subscription(kind, name, lambda _: None, qos)
+                self._ends.callback(node.destroy_subscription, subscription)
         ends = [*publishes.items(), *subscribes.items()]
         return topic_endpoints(node, [f"{name}{_FEEDBACK * (_ACTION in kind)}" for name, kind in ends])
 

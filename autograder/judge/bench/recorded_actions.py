@@ -19,14 +19,14 @@ from action_msgs.srv import CancelGoal
 from rclpy.qos import QoSProfile, qos_profile_action_status_default
 from unique_identifier_msgs.msg import UUID
 
-from autograder.judge.bench.recorded_services import Client, LateAnswers, once_it_is_set, patiently
+from autograder.judge.bench.recorded_services import Client
 from autograder.judge.bench.ros_interfaces import filled, interface, to_data
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from autograder.judge.bench.judge_nodes import Wire
-    from autograder.judge.bench.recorder import Recorder
+    from autograder.judge.bench.recorded_services import Send
+    from autograder.judge.bench.recorder import Place
 
 
 STATUS = {
@@ -53,69 +53,39 @@ class ScriptedActionServer:
 
     def __init__(
         self,
-        wire: Wire,
-        recorder: Recorder,
-        action: str,
-        type_name: str,
-        *,
-        at: str = "",
+        place: Place,
         client_is_gone: Callable[[], bool],
+        *,
         accept_goal: bool = True,
         accept_cancel: bool = True,
         goal_answer_takes: float = 0.0,
         cancel_answer_takes: float = 0.0,
     ) -> None:
-        self._wire = wire
-        self._recorder = recorder
-        self._name = action
-        parts_of = f"{at or action}/_action"
+        self._place, self._client_is_gone = place, client_is_gone
+        parts_of = f"{place.at}/_action"
         self.services = tuple(f"{parts_of}/{name}" for name in _SERVICES)
-        self._type = interface(type_name)
-        self._accept_goal = accept_goal
-        self._accept_cancel = accept_cancel
-        self._client_is_gone = client_is_gone
+        self._type = interface(place.type_name)
+        self._accept_goal, self._goal_answer_takes = accept_goal, goal_answer_takes
+        self._accept_cancel, self._cancel_answer_takes = accept_cancel, cancel_answer_takes
         self._goal_id: Any = None
         self._status = GoalStatus.STATUS_UNKNOWN
         self._lock = threading.Lock()
         self._result: Any = None
-        node, parts = wire.node, self._type.Impl
+        self._waiting: list[Send] = []
+        self._is_closed = False
+        node, parts = place.wire.node, self._type.Impl
         self._feedback = node.create_publisher(
             parts.FeedbackMessage, f"{parts_of}/feedback", QoSProfile(depth=10)
         )
         self._statuses = node.create_publisher(
             GoalStatusArray, f"{parts_of}/status", qos_profile_action_status_default
         )
-        self._waiting: list[Any] = []
-        made = threading.Event()
-        goals, cancels, results = self._services = [
-            node.create_service(kind, f"{parts_of}/{name}", once_it_is_set(made, take))
-            for name, kind, take in zip(
-                _SERVICES,
-                (parts.SendGoalService, CancelGoal, parts.GetResultService),
-                (self._take_goal, self._take_cancel, self._take_result_request),
-                strict=True,
-            )
+        kinds = (parts.SendGoalService, CancelGoal, parts.GetResultService)
+        takes = (self._take_goal, self._take_cancel, self._take_result_request)
+        self._services = [
+            node.create_service(kind, name, take)  # type: ignore[misc]
+            for kind, name, take in zip(kinds, self.services, takes, strict=True)
         ]
-        # By itself, rclpy answers a request as soon as its callback returns, so LateAnswers delays the answer.
-        self._late = [
-            LateAnswers(
-                goals,
-                goal_answer_takes,
-                sending=lambda answer: recorder.record(
-                    "goal_answered", action, accepted=bool(answer.accepted)
-                ),
-            ),
-            LateAnswers(
-                cancels,
-                cancel_answer_takes,
-                sending=lambda answer: recorder.record(
-                    "cancel_answered", action, accepted=bool(answer.goals_canceling)
-                ),
-            ),
-        ]
-        self._answer = patiently(results)
-        results.send_response = self._answer_or_wait  # type: ignore[method-assign]
-        made.set()
 
     def await_goal(self, within: float) -> bool:
         """Wait until a goal has arrived and was answered. Return False if no goal came within ``within`` seconds.
@@ -126,7 +96,7 @@ class ScriptedActionServer:
         if not self._await("goal", within):
             return False
         self._await("goal_answered", within)
-        self._recorder.wait(
+        self._place.recorder.wait(
             lambda: self._feedback.get_subscription_count() > 0 or self._client_is_gone(),
             FEEDBACK_MATCH,
             poll=0.005,
@@ -146,7 +116,7 @@ class ScriptedActionServer:
         message = self._type.Impl.FeedbackMessage()
         message.goal_id = self._goal_id
         filled(message.feedback, fields)
-        self._recorder.record("feedback", self._name, fields=dict(fields))
+        self._place.record("feedback", fields=dict(fields))
         self._feedback.publish(message)
 
     def finish(self, status: str, **fields: Any) -> None:
@@ -154,46 +124,61 @@ class ScriptedActionServer:
         response = self._type.Impl.GetResultService.Response()
         response.status = STATUS[status]
         filled(response.result, fields)
-        self._recorder.record("result", self._name, status=status, fields=dict(fields))
+        self._place.record("result", status=status, fields=dict(fields))
         self._set_status(STATUS[status])
         with self._lock:
             self._result = response
             waiting, self._waiting = self._waiting, []
-        for header in waiting:
-            self._answer(response, header)
+        for send in waiting:
+            send(response)
 
     def close(self) -> None:
-        for late in self._late:
-            late.close()
+        self._is_closed = True
         for service in self._services:
-            self._wire.node.destroy_service(service)
+            self._place.wire.node.destroy_service(service)
         for publisher in (self._feedback, self._statuses):
-            self._wire.node.destroy_publisher(publisher)
+            self._place.wire.node.destroy_publisher(publisher)
 
     def _await(self, kind: str, within: float, *, wall: bool = False) -> bool:
         def came() -> bool:
-            return self._recorder.part().first(kind, self._name) is not None
+            return self._place.recorder.part().first(kind, self._place.name) is not None
 
-        self._recorder.wait(lambda: came() or self._client_is_gone(), within, wall=wall)
+        self._place.recorder.wait(lambda: came() or self._client_is_gone(), within, wall=wall)
         return came()
 
-    def _take_goal(self, request: Any, response: Any) -> Any:
-        response.accepted = self._accept_goal
-        response.stamp = self._wire.node.get_clock().now().to_msg()
+    def _take_goal(self, request: Any, send: Send) -> None:
+        stamp = self._place.wire.node.get_clock().now().to_msg()
+        response = self._type.Impl.SendGoalService.Response(accepted=self._accept_goal, stamp=stamp)
         if self._accept_goal:
             self._goal_id = request.goal_id
             self._result = None
             self._status = GoalStatus.STATUS_EXECUTING
-        self._recorder.record("goal", self._name, fields=to_data(request.goal))
-        return response
+        self._place.record("goal", fields=to_data(request.goal))
+        self._answer("goal_answered", self._accept_goal, response, send, self._goal_answer_takes)
 
-    def _take_cancel(self, request: Any, response: Any) -> Any:
+    def _answer(self, kind: str, accepted: bool, response: Any, send: Send, seconds: float) -> None:
+        """Record and send an answer, after some seconds of wall time. Meanwhile, the server takes further requests."""
+
+        def answer() -> None:
+            if not self._is_closed:
+                self._place.record(kind, accepted=accepted)
+                send(response)
+
+        if seconds <= 0.0:
+            answer()
+            return
+        timer = threading.Timer(seconds, answer)
+        timer.daemon = True
+        timer.start()
+
+    def _take_cancel(self, request: Any, send: Send) -> None:
         # An all-zero id and stamp mean "cancel every goal" (action_msgs/srv/CancelGoal).
         asked = _goal_text(request.goal_info.goal_id)
         every = asked == str(uuid.UUID(int=0))
         known = self._goal_id is not None and (every or asked == _goal_text(self._goal_id))
         accepted = self._accept_cancel and known and self._status in (
             GoalStatus.STATUS_EXECUTING, GoalStatus.STATUS_CANCELING)  # fmt: skip
+        response = CancelGoal.Response()
         if accepted:
             self._set_status(GoalStatus.STATUS_CANCELING)
             response.goals_canceling = [GoalInfo(goal_id=self._goal_id)]
@@ -202,23 +187,20 @@ class ScriptedActionServer:
             response.return_code = (
                 CancelGoal.Response.ERROR_REJECTED if known else CancelGoal.Response.ERROR_UNKNOWN_GOAL_ID
             )
-        self._recorder.record("cancel", self._name, accepted=accepted, known=known, every=every)
-        return response
+        self._place.record("cancel", accepted=accepted, known=known, every=every)
+        self._answer("cancel_answered", accepted, response, send, self._cancel_answer_takes)
 
-    def _take_result_request(self, request: Any, response: Any) -> Any:
+    def _take_result_request(self, request: Any, send: Send) -> None:
         known = self._goal_id is not None and _goal_text(request.goal_id) == _goal_text(self._goal_id)
-        self._recorder.record("result_request", self._name, known=known)
+        self._place.record("result_request", known=known)
         if known:
             self.say_status()
-        response.status = GoalStatus.STATUS_UNKNOWN
-        return None if known else response
-
-    def _answer_or_wait(self, response: Any, header: Any) -> None:
         with self._lock:
-            if response is None and self._result is None:
-                self._waiting.append(header)
+            if known and self._result is None:
+                self._waiting.append(send)
                 return
-        self._answer(response or self._result, header)
+        unknown = self._type.Impl.GetResultService.Response(status=GoalStatus.STATUS_UNKNOWN)
+        send(self._result if known else unknown)
 
     def _set_status(self, status: int) -> None:
         self._status = status
@@ -243,21 +225,13 @@ def _goal_text(goal_id: Any) -> str:
 class RecordedActionClient(Client):
     """An action client that records events. It implements :class:`autograder.kit.counterparts.ActionCaller`."""
 
-    def __init__(
-        self,
-        wire: Wire,
-        recorder: Recorder,
-        action: str,
-        type_name: str,
-        *,
-        at: str = "",
-        server_is_gone: Callable[[], bool],
-    ) -> None:
-        self._parts_of = f"{at or action}/_action"
-        super().__init__(wire, recorder, action, f"{self._parts_of}/send_goal", server_is_gone)
+    def __init__(self, place: Place, server_is_gone: Callable[[], bool]) -> None:
+        self._parts_of = f"{place.at}/_action"
+        super().__init__(place, f"{self._parts_of}/send_goal", server_is_gone)
         self._goals: dict[int, UUID] = {}
+        self._numbers: dict[str, int] = {}
         self._ended: set[int] = set()
-        node, self._parts = wire.node, interface(type_name).Impl
+        node, self._parts = place.wire.node, interface(place.type_name).Impl
         # The feedback subscription is made before the clients. Endpoints are announced in order, so a server that has
         # discovered the clients has also discovered this subscription, and no feedback is lost.
         self._feedback = node.create_subscription(
@@ -279,35 +253,36 @@ class RecordedActionClient(Client):
     def send_goal(self, number: int | None = None, /, **fields: Any) -> int:
         """Send a goal with these fields. Return the goal's number, by default counted from 0."""
         number = len(self._goals) if number is None else number
-        self._goals[number] = UUID(uuid=list(uuid.uuid4().bytes))
-        request = self._parts.SendGoalService.Request(goal_id=self._goals[number])
+        self._goals[number] = goal_id = UUID(uuid=list(uuid.uuid4().bytes))
+        self._numbers[_goal_text(goal_id)] = number
+        request = self._parts.SendGoalService.Request(goal_id=goal_id)
         filled(request.goal, fields)
-        self._recorder.record("goal_sent", self._name, goal=number, fields=dict(fields))
-        self._wire.executor.ask(self._send, request, partial(self._take_answer, number))
+        self._place.record("goal_sent", goal=number, fields=dict(fields))
+        self._place.wire.executor.ask(self._send, request, partial(self._take_answer, number))
         return number
 
     def cancel(self, goal: int) -> None:
         """Request to cancel a goal."""
-        self._recorder.record("cancel_sent", self._name, goal=goal)
+        self._place.record("cancel_sent", goal=goal)
         request = CancelGoal.Request(goal_info=GoalInfo(goal_id=self._goals[goal]))
-        self._wire.executor.ask(self._cancel, request, partial(self._take_cancel_answer, goal))
+        self._place.wire.executor.ask(self._cancel, request, partial(self._take_cancel_answer, goal))
 
     def close(self) -> None:
         for client in (self._send, self._cancel, self._result):
-            self._wire.node.destroy_client(client)
+            self._place.wire.node.destroy_client(client)
         for subscription in (self._feedback, self._statuses):
-            self._wire.node.destroy_subscription(subscription)
+            self._place.wire.node.destroy_subscription(subscription)
 
     def _ready(self) -> bool:
         clients = (self._send, self._cancel, self._result)
-        talks = self._wire.node.count_publishers(f"{self._parts_of}/feedback") > 0
+        talks = self._place.wire.node.count_publishers(f"{self._parts_of}/feedback") > 0
         return talks and all(client.service_is_ready() for client in clients)
 
     def _take_answer(self, number: int, response: Any) -> None:
         self._note("goal_answer", number, accepted=bool(response.accepted))
         if response.accepted:
             request = self._parts.GetResultService.Request(goal_id=self._goals[number])
-            self._wire.executor.ask(self._result, request, partial(self._take_result, number))
+            self._place.wire.executor.ask(self._result, request, partial(self._take_result, number))
 
     def _take_result(self, number: int, response: Any) -> None:
         self._note_servers()
@@ -322,15 +297,13 @@ class RecordedActionClient(Client):
 
     def _note(self, kind: str, goal: int, **data: Any) -> None:
         """Record an answer of the server, with the time of its arrival."""
-        self._recorder.record(kind, self._name, goal=goal, arrived=time.time(), **data)
+        self._place.record(kind, goal=goal, arrived=time.time(), **data)
 
     def _hear(self, message: Any, info: Any) -> None:
         number = self._number_of(message.goal_id)
         # Record the time of sending (rmw_message_info_t), which does not depend on how busy the judge is.
         sent = info["source_timestamp"] / 1e9
-        self._recorder.record(
-            "feedback_heard", self._name, goal=number, fields=to_data(message.feedback), sent=sent
-        )
+        self._place.record("feedback_heard", goal=number, fields=to_data(message.feedback), sent=sent)
 
     def _hear_statuses(self, message: Any, info: Any) -> None:
         """Record, for each goal, when the server said for the first time that the goal has ended."""
@@ -339,9 +312,8 @@ class RecordedActionClient(Client):
             number, status = self._number_of(line.goal_info.goal_id), int(line.status)
             if status in _ENDED and number >= 0 and number not in self._ended:
                 self._ended.add(number)
-                self._recorder.record("goal_ended", self._name, goal=number, status=status, sent=sent)
+                self._place.record("goal_ended", goal=number, status=status, sent=sent)
 
     def _number_of(self, goal_id: Any) -> int:
         """Return the number of a goal; -1 if the goal is not the judge's."""
-        known = {_goal_text(goal): number for number, goal in self._goals.items()}
-        return known.get(_goal_text(goal_id), -1)
+        return self._numbers.get(_goal_text(goal_id), -1)

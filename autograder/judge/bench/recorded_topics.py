@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from autograder.judge.bench.judge_nodes import Wire
-    from autograder.judge.bench.recorder import Recorder
+    from autograder.judge.bench.recorder import Place, Recorder
 
 
 _LOG_HISTORY = QoSProfile(
@@ -41,67 +41,51 @@ class _RecordedEndpoint:
         type_name: The message type, such as ``"std_msgs/msg/String"``.
     """
 
-    def __init__(self, recorder: Recorder, topic: str, type_name: str, qos: Qos) -> None:
+    def __init__(self, place: Place, qos: Qos) -> None:
         self.matched = 0
-        self._qos = qos
-        self.type_name = type_name
-        self._recorder = recorder
-        self.topic = topic
+        self._place, self._qos = place, qos
+        self.topic, self.type_name = place.name, place.type_name
+
+    def _events_of(self, kind: Any) -> Any:
+        return kind(matched=self._match, incompatible_qos=self._mismatch, use_default_callbacks=False)
 
     def _match(self, info: Any) -> None:
         self.matched = info.current_count
         # An endpoint that exists only for a moment is reported once, when it is already gone. Then only the total count
         # shows that it existed.
-        self._recorder.record("matched", self.topic, count=info.total_count, now=info.current_count)
+        self._place.record("matched", count=info.total_count, now=info.current_count)
 
     def _mismatch(self, info: Any) -> None:
         policy = str(qos_policy_name_from_kind(info.last_policy_kind)).lower()
         own = {} if self._qos is Qos.DEFAULT else {"qos": str(self._qos)}
-        self._recorder.record("mismatch", self.topic, policy=policy, **own)
+        self._place.record("mismatch", policy=policy, **own)
 
 
 class RecordedSubscription(_RecordedEndpoint):
     """A subscription of the judge that records every message."""
 
-    def __init__(
-        self,
-        wire: Wire,
-        recorder: Recorder,
-        topic: str,
-        type_name: str,
-        *,
-        at: str = "",
-        qos: Qos = Qos.DEFAULT,
-    ) -> None:
+    def __init__(self, place: Place, qos: Qos) -> None:
         """Create the subscription.
 
         Args:
-            wire: The judge's participant.
-            recorder: Records messages and matches.
-            topic: The topic's name as the evidence shows it.
-            type_name: The message type, such as ``"std_msgs/msg/String"``.
-            at: The name that the subject uses for the topic, if this name is different.
             qos: The QoS of the subscription. By default it is like that of the course's listener, so the judge hears a
                 publisher only if the listener can hear the publisher.
         """
-        super().__init__(recorder, topic, type_name, qos)
-        self.subscription = wire.node.create_subscription(
-            interface(type_name),
-            at or topic,
+        super().__init__(place, qos)
+        self.subscription = place.wire.node.create_subscription(
+            interface(place.type_name),
+            place.at,
             self._hear,  # type: ignore[arg-type]  # a callback with two parameters also gets the message info
             profile(qos, LONG_QUEUE),
-            event_callbacks=SubscriptionEventCallbacks(
-                matched=self._match, incompatible_qos=self._mismatch, use_default_callbacks=False
-            ),
+            event_callbacks=self._events_of(SubscriptionEventCallbacks),
         )
 
     def _hear(self, message: Any, info: Any) -> None:
         # The publisher's sequence number shows how many messages were sent before this subscription could receive any.
         # The publisher's time stamp shows when a message was sent, however long its transport took. (rmw_fastrtps
         # provides both in rmw_message_info_t.)
-        self._recorder.record(
+        self._place.record(
             "message",
-            self.topic,
             fields=to_data(message),
             number=info["publication_sequence_number"],
             sent=info["source_timestamp"] / 1e9,
@@ -112,31 +96,19 @@ class RecordedSubscription(_RecordedEndpoint):
 class RecordedPublisher(_RecordedEndpoint):
     """A publisher that records what it sends; by default with the course's QoS (reliable, depth 10)."""
 
-    def __init__(
-        self,
-        wire: Wire,
-        recorder: Recorder,
-        topic: str,
-        type_name: str,
-        *,
-        at: str = "",
-        qos: Qos = Qos.DEFAULT,
-    ) -> None:
-        """Create the publisher. For the arguments see :class:`RecordedSubscription`."""
-        super().__init__(recorder, topic, type_name, qos)
-        self._type = interface(type_name)
-        self.publisher = wire.node.create_publisher(
+    def __init__(self, place: Place, qos: Qos) -> None:
+        super().__init__(place, qos)
+        self._type = interface(place.type_name)
+        self.publisher = place.wire.node.create_publisher(
             self._type,
-            at or topic,
+            place.at,
             profile(qos),
-            event_callbacks=PublisherEventCallbacks(
-                matched=self._match, incompatible_qos=self._mismatch, use_default_callbacks=False
-            ),
+            event_callbacks=self._events_of(PublisherEventCallbacks),
         )
 
     def send(self, **fields: Any) -> None:
         """Publish one message with these fields."""
-        self._recorder.record("sent", self.topic, fields=dict(fields))
+        self._place.record("sent", fields=dict(fields))
         self.publisher.publish(filled(self._type(), fields))
 
 

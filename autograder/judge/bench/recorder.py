@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 import time
+from dataclasses import dataclass
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
@@ -12,6 +13,8 @@ from autograder.kit.evidence import REPORTS, Event, Part
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
+
+    from autograder.judge.bench.judge_nodes import Wire
 
 MAX_EVENTS = 20_000
 """The maximum number of events in one part, so that a flood does not fill the memory."""
@@ -167,6 +170,29 @@ class Recorder:
             with self._changed:
                 if self._count == seen:
                     self._changed.wait(min(left, poll))
+
+
+@dataclass(frozen=True)
+class Place:
+    """The place of an endpoint of the judge, and the recorder of its events.
+
+    Attributes:
+        wire: The judge's participant.
+        recorder: The record of the part.
+        name: The full name of the topic, service or action as the evidence shows it.
+        type_name: The endpoint's type, such as ``"std_msgs/msg/String"``.
+        at: The name that the subject uses, which is different if the subject has misspelled it.
+    """
+
+    wire: Wire
+    recorder: Recorder
+    name: str
+    type_name: str
+    at: str
+
+    def record(self, kind: str, **data: Any) -> None:
+        """Record an event of the endpoint."""
+        self.recorder.record(kind, self.name, **data)
 
 
 def _is_speech(event: Event) -> bool:

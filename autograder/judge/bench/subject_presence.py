@@ -6,6 +6,7 @@ disappear when it ends.
 
 from __future__ import annotations
 
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from autograder.judge.bench import discovery
@@ -71,36 +72,31 @@ START_POLL = 0.02
 """Seconds between two queries while a process starts or a build runs, as long as no node was announced."""
 
 
+@dataclass
 class Presence:
     """The subject's nodes and endpoints on the graph, as the judge's node sees them.
 
     Attributes:
+        node: The judge's node.
+        recorder: The record of the part.
+        subject: The subject.
+        pace: The pace of the look.
+        announced: Returns True if a process of the subject is known to have made a node.
         subscriptions: The judge's subscriptions, by the names that the subject uses for their topics.
         publishers: The judge's publishers, by the names that the subject uses for their topics.
-
-    Args:
-        announced: Returns True if a process of the subject is known to have made a node.
     """
 
-    def __init__(
-        self,
-        node: Node,
-        recorder: Recorder,
-        subject: Subject,
-        pace: Pace,
-        announced: Callable[[], bool],
-    ) -> None:
-        self.subscriptions: dict[str, RecordedSubscription] = {}
-        self.publishers: dict[str, RecordedPublisher] = {}
-        self._node = node
-        self._recorder = recorder
-        self._subject = subject
-        self._pace = pace
-        self._announced = announced
-        self._again = MAX_RESTARTS
+    node: Node
+    recorder: Recorder
+    subject: Subject
+    pace: Pace
+    announced: Callable[[], bool]
+    subscriptions: dict[str, RecordedSubscription] = field(default_factory=dict)
+    publishers: dict[str, RecordedPublisher] = field(default_factory=dict)
+    _again: int = field(default=MAX_RESTARTS, init=False)
 
     def nodes(self) -> list[discovery.NodeName]:
-        return discovery.subject_nodes(self._node, self._subject.keeper)
+        return discovery.subject_nodes(self.node, self.subject.keeper)
 
     def counterparts(self) -> list[discovery.NodeName]:
         """Return the subject's nodes that use the judge's topics; all of the subject's nodes if the judge has no topic.
@@ -110,12 +106,12 @@ class Presence:
         found: list[discovery.NodeName] = []
 
         def named() -> bool:
-            found[:] = discovery.counterparts(self._node, list(self.subscriptions), list(self.publishers))
-            return bool(found) or self._subject.ended
+            found[:] = discovery.counterparts(self.node, list(self.subscriptions), list(self.publishers))
+            return bool(found) or self.subject.ended
 
         if not (self.subscriptions or self.publishers):
             return self.nodes()
-        self._recorder.wait(named, 1.0, poll=GRAPH_POLL)
+        self.recorder.wait(named, 1.0, poll=GRAPH_POLL)
         return found
 
     def await_endpoint(self, role: str, name: str) -> bool:
@@ -124,20 +120,20 @@ class Presence:
             lambda interface: name in interface.get(role, {}) or name in self._matched().get(role, {})
         )
         self._note_matched_endpoints()
-        if name not in self._recorder.part().endpoints(role):
+        if name not in self.recorder.part().endpoints(role):
             return False
         counterparts: dict[str, Counterparts] = {
             "publisher": self.subscriptions,
             "subscription": self.publishers,
         }
         counterpart = counterparts.get(role, {}).get(name)
-        if counterpart is None or counterpart.type_name != self._recorder.part().endpoints(role)[name]:
+        if counterpart is None or counterpart.type_name != self.recorder.part().endpoints(role)[name]:
             return True  # the judge has no endpoint that could match the subject's
-        return self._recorder.wait(
+        return self.recorder.wait(
             lambda: (
                 counterpart.matched > 0
-                or self._subject.ended
-                or self._recorder.part().first("mismatch", counterpart.topic) is not None
+                or self.subject.ended
+                or self.recorder.part().first("mismatch", counterpart.topic) is not None
             ),
             MATCH,
         )
@@ -150,7 +146,7 @@ class Presence:
             nodes[:] = self.nodes()
             return bool(nodes)
 
-        self._await_appearance(lambda: there() or self._subject.ended)
+        self._await_appearance(lambda: there() or self.subject.ended)
         self.note_interface()
         return bool(nodes) or self.note_short_life()
 
@@ -160,11 +156,11 @@ class Presence:
 
         def there() -> bool:
             nonlocal alive
-            seen = self._recorder.part()
+            seen = self.recorder.part()
             alive = bool(seen.of("output") or seen.of("log") or self.nodes())
             return alive
 
-        self._wait_on_graph(lambda: there() or self._subject.ended, within)
+        self._wait_on_graph(lambda: there() or self.subject.ended, within)
         return alive
 
     def await_interface(self, there: Callable[[discovery.Interface], bool]) -> discovery.Interface:
@@ -174,17 +170,17 @@ class Presence:
             The endpoints that the last query found. Exactly these are recorded, because a new query could find fewer:
                 the endpoints of a program disappear when it ends.
         """
-        settled = _Settling(SETTLED[self._pace])
+        settled = _Settling(SETTLED[self.pace])
         interface: discovery.Interface = {}
 
         def over() -> bool:
             nonlocal interface
-            marker = self._subject.marker
+            marker = self.subject.marker
             # Look for the marker topic (see discovery.shows) before the survey. The subject makes it last. So if it is
             # on the graph, the survey finds all endpoints.
-            all_made = marker is not None and discovery.shows(self._node, marker)
-            interface = discovery.survey(self._node)
-            if there(interface) or self._subject.ended or all_made:
+            all_made = marker is not None and discovery.shows(self.node, marker)
+            interface = discovery.survey(self.node)
+            if there(interface) or self.subject.ended or all_made:
                 return True
             return marker is None and settled.unchanged(interface, len(self.nodes()))
 
@@ -206,10 +202,10 @@ class Presence:
                 patience.restart()
                 return False
             if left <= APPEAR / 2 and earlier is None:
-                earlier = self._subject.processes()
+                earlier = self.subject.processes()
             if left > 0 or earlier is None:
                 return False
-            if not self._again or self._subject.processes() <= earlier:
+            if not self._again or self.subject.processes() <= earlier:
                 return True
             self._again -= 1
             patience.restart()
@@ -220,7 +216,7 @@ class Presence:
 
     def _is_building(self) -> bool:
         """Return True if a runner has reported the packages that it builds, and not yet the end of the build."""
-        part = self._recorder.part()
+        part = self.recorder.part()
         return report_of(part, "found") is not None and report_of(part) is None
 
     def _wait_on_graph(self, condition: Callable[[], bool], within: float) -> None:
@@ -233,11 +229,11 @@ class Presence:
             held = condition()
             return held
 
-        heard = self._subject.shares_participant or self._recorder.wait(
-            lambda: over() or self._announced(), within, poll=START_POLL
+        heard = self.subject.shares_participant or self.recorder.wait(
+            lambda: over() or self.announced(), within, poll=START_POLL
         )
         if heard and not held:
-            self._recorder.wait(over, patience.left, poll=GRAPH_POLL)
+            self.recorder.wait(over, patience.left, poll=GRAPH_POLL)
 
     def note_interface(self, interface: discovery.Interface | None = None) -> None:
         """Record the subject's endpoints if they have changed.
@@ -245,21 +241,21 @@ class Presence:
         Args:
             interface: The endpoints as seen a moment ago. If not given, they are queried now.
         """
-        nodes = sorted(node.full for node in discovery.every_node(self._node, self._subject.keeper))
-        topic_ends = discovery.topic_ends(self._node)
+        nodes = sorted(node.full for node in discovery.every_node(self.node, self.subject.keeper))
+        topic_ends = discovery.topic_ends(self.node)
         ends = sorted([end.role, end.topic, end.process] for end in topic_ends)
         seen: dict[str, Any] = {
             "nodes": nodes,
             "ends": ends,
-            **(interface or discovery.survey(self._node, topic_ends)),
+            **(interface or discovery.survey(self.node, topic_ends)),
         }
         if unusual := sorted(
             [end.role, end.topic, str(end.qos)] for end in topic_ends if end.qos is not Qos.DEFAULT
         ):
             seen["qos"] = unusual
-        surveys = self._recorder.part().of("interface", "graph")
+        surveys = self.recorder.part().of("interface", "graph")
         if not surveys or surveys[-1].data != seen:
-            self._recorder.record("interface", "graph", **seen)
+            self.recorder.record("interface", "graph", **seen)
 
     def note_last_state(self) -> None:
         """Record the subject's endpoints before its run ends. If a program is ending by itself, wait for its end.
@@ -268,10 +264,10 @@ class Presence:
         exit code and the last lines of output are recorded.
         """
         self.note_interface()
-        surveys = self._recorder.part().of("interface", "graph")
+        surveys = self.recorder.part().of("interface", "graph")
         had_endpoints = [any(survey.data[role] for role in discovery.ROLES) for survey in surveys]
-        if not self._subject.shares_participant and any(had_endpoints) and not had_endpoints[-1]:
-            self._recorder.wait(lambda: self._subject.ended, MATCH)
+        if not self.subject.shares_participant and any(had_endpoints) and not had_endpoints[-1]:
+            self.recorder.wait(lambda: self.subject.ended, MATCH)
         self._note_matched_endpoints()
 
     def note_short_life(self) -> bool:
@@ -280,24 +276,24 @@ class Presence:
         Returns:
             True if the subject has ended and had announced a node, no matter whether the judge discovered the node.
         """
-        if not self._subject.ended or not self._announced():
+        if not self.subject.ended or not self.announced():
             return False
-        part = self._recorder.part()
+        part = self.recorder.part()
         if not part.had_node:
-            self._recorder.record("announced", "a node")
+            self.recorder.record("announced", "a node")
         return True
 
     def _note_matched_endpoints(self) -> None:
         """Record the subject's endpoints that were matched with the judge's, even if the graph never showed them."""
-        known = self._recorder.part()
+        known = self.recorder.part()
         for role, ends in self._matched().items():
             for name, type_name in ends.items():
                 if name not in known.endpoints(role):
-                    self._recorder.record("interface", "topic", **{role: {name: type_name}})
+                    self.recorder.record("interface", "topic", **{role: {name: type_name}})
 
     def _matched(self) -> discovery.Interface:
         """Return the subject's endpoints that were matched with one of the judge's."""
-        part = self._recorder.part()
+        part = self.recorder.part()
         sides: tuple[tuple[str, Counterparts, Counterparts], ...] = (
             ("publisher", self.subscriptions, self.publishers),
             ("subscription", self.publishers, self.subscriptions),

@@ -31,7 +31,6 @@ if TYPE_CHECKING:
     from autograder.judge.bench.discovery import NodeName
     from autograder.judge.bench.judge_nodes import Wire
     from autograder.judge.bench.recorder import Recorder
-    from autograder.judge.subject import Subject
 
 ANSWER_LIMIT = 0.5
 """Time limit in seconds of wall time for a spinning node to answer. Simulated time is not used for a node that does not
@@ -63,6 +62,10 @@ step, less often than in real time.
 _SIM_TIME = "use_sim_time"
 _QUESTION = GetParameters.Request()
 """The question for no parameter at all, which costs both sides least."""
+
+
+class Unanswered(Exception):
+    """No node of the subject answers in a fast look. The look in real time has to tell whether they are only slow."""
 
 
 class NodeClock:
@@ -254,30 +257,16 @@ class SubjectTime:
 
     Args:
         wire: The judge's participant.
-        recorder: The record of the part. Each new event ends a wait.
         presence: Finds the subject's nodes on the graph.
         opened: The stack of everything that is closed at the end of the part. The clock is added to it.
-        pace: Decides whether simulated time is tried at all.
         doubt: Called if an observation must be confirmed in real time.
     """
 
     def __init__(
-        self,
-        wire: Wire,
-        recorder: Recorder,
-        subject: Subject,
-        presence: Presence,
-        opened: contextlib.ExitStack,
-        pace: Pace,
-        doubt: Callable[[], None],
+        self, wire: Wire, presence: Presence, opened: contextlib.ExitStack, doubt: Callable[[], None]
     ) -> None:
-        self._wire = wire
-        self._recorder = recorder
-        self._subject = subject
-        self._presence = presence
-        self._open = opened
-        self._pace = pace
-        self._doubt = doubt
+        self._wire, self._presence, self._open, self._doubt = wire, presence, opened, doubt
+        self._recorder, self._subject, self._pace = presence.recorder, presence.subject, presence.pace
         self._clock: SimulatedClock | None = None
         self._clock_refused = False
         self.is_lost = False
@@ -356,10 +345,18 @@ class SubjectTime:
 
         For this, the judge sends each node a request from a new client. The judge's announcements arrive in order
         (DDSI-RTPS, 8.5.4), so a node that can answer the new client has discovered the older publishers, too.
+
+        Raises:
+            Unanswered: This is a fast look, and no node answers.
         """
-        for node in self._presence.counterparts():
-            if not self._subject.ended:
-                answers(self._wire, self._recorder, node, MATCH)
+        is_fast = self._pace is Pace.FAST
+        limit = PATIENT_ANSWER if is_fast else MATCH
+        nodes = [] if self._subject.ended else self._presence.counterparts()
+        silent = [node for node in nodes if not answers(self._wire, self._recorder, node, limit)]
+        if is_fast and silent and len(silent) == len(nodes) and not self._subject.ended:
+            for node in silent:
+                self._recorder.record("unanswered", node.full)
+            raise Unanswered
 
     def _follow_clock(self) -> bool:
         """Make the subject follow the judge's simulated clock, if possible. Return True if it follows.

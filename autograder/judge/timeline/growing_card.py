@@ -12,12 +12,13 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from autograder.kit.evidence import Evidence, Part
-from autograder.verdict import CriterionResult, Diagnosis, State, Verdict
+from autograder.verdict import CriterionResult, Diagnosis, State, failed
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from autograder.kit.model import Criterion, Exercise
+    from autograder.verdict import Verdict
 
 
 class StillToCome(Exception):
@@ -87,18 +88,11 @@ class GrowingCard:
                 if result.passed:
                     self._met.setdefault(criterion.name, result)
         criteria = tuple(self._met.get(one.name) or self._to_come(one) for one in self._exercise.criteria)
-        self._tell(
-            Verdict(
-                self._exercise.id,
-                self._exercise.title,
-                State.CHECKING,
-                sum(one.points for one in self._met.values()),
-                float(self._exercise.points),
-                criteria,
-                Diagnosis("so_far", _words(evidence), hidden=True),
-            ),
-            self.words,
-        )
+        one = self._exercise
+        words = Diagnosis("so_far", _words(evidence), hidden=True)
+        score = sum(met.points for met in self._met.values())
+        verdict = failed(one.id, one.title, float(one.points), words)
+        self._tell(replace(verdict, state=State.CHECKING, score=score, criteria=criteria), self.words)
 
     def _to_come(self, one: Criterion) -> CriterionResult:
         counts = self._exercise.counts.get(one.name, "")

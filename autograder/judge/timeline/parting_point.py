@@ -123,14 +123,9 @@ def parting_point(evidence: Evidence) -> PartingPoint | None:
     known = [turn for part in evidence.reference.parts for turn in _turns(part)]
     for part in evidence:
         for turn in _turns(part):
-            alike = [
-                one
-                for one in known
-                if (one.part, one.lane, one.is_cut) == (turn.part, turn.lane, turn.is_cut)
-            ]
-            same = [
-                one for one in alike if turn.question and one.question == turn.question and not turn.is_cut
-            ]
+            place, question = (turn.part, turn.lane, turn.is_cut), "" if turn.is_cut else turn.question
+            alike = [one for one in known if (one.part, one.lane, one.is_cut) == place]
+            same = [one for one in alike if question and one.question == question]
             told = [_difference(turn, model, counted=bool(same)) for model in same or alike]
             if told and all(told):
                 return told[0]

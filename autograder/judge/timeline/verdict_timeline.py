@@ -39,14 +39,9 @@ ASKED = " (asked)"
 _INPUTS = ("sent", "asked")
 """The kinds of events that are inputs for the subject: the judge sent a message, or called the subject's service."""
 
-_ENDS = {
-    "publisher": "your publisher is here",
-    "subscription": "your subscription is here",
-    "service": "your service is here",
-    "client": "your client is here",
-    "action_server": "your action server is here",
-    "action_client": "your action client is here",
-}
+_ENDS = ("publisher", "subscription", "service", "client", "action_server", "action_client")
+_LANES = {"log": "log", "output": "printed", "subject": "your code"}
+"""The lanes of events that belong to no topic, service or action, by their kinds."""
 
 
 _Said = tuple[float, str]
@@ -188,15 +183,8 @@ def lane_names(events: Sequence[Event]) -> list[str]:
         numbers.append(own if isinstance(own, int) and own >= 0 else number.get(event.name, 0))
     several = {event.name for event, number in zip(events, numbers, strict=True) if number > 0}
     return [
-        "log"
-        if event.kind == "log"
-        else "printed"
-        if event.kind == "output"
-        else "your code"
-        if event.kind == "subject"
-        else f"{event.name}, goal {number + 1}"
-        if event.name in several
-        else event.name
+        _LANES.get(event.kind)
+        or (f"{event.name}, goal {number + 1}" if event.name in several else event.name)
         for event, number in zip(events, numbers, strict=True)
     ]
 
@@ -214,7 +202,8 @@ def _first_unlike(events: Sequence[Event], part: Part, reference: Reference) -> 
 
 def _astray(part: Part, reference: Reference, title: str, start: float | None) -> Iterator[Moment]:
     """Yield a moment for each missing endpoint, and for each unexpected endpoint with the role of a missing one."""
-    for role, words in _ENDS.items():
+    for role in _ENDS:
+        noun = role.replace("_", " ")
         expected = set(reference.interface.get(role, {}))
         missing = expected - set(part.endpoints(role))
         if not missing:
@@ -224,12 +213,13 @@ def _astray(part: Part, reference: Reference, title: str, start: float | None) -
             for name in sorted(set(survey.data.get(role, {})) - expected - seen):
                 seen.add(name)
                 t = _time(survey, start)
-                yield Moment(t, name, "note", words, title, start is not None, key=True, stray=True)
+                yield Moment(
+                    t, name, "note", f"your {noun} is here", title, start is not None, key=True, stray=True
+                )
         if seen:
             last = max(_time(event, start) for event in part.of("interface"))
             for name in sorted(missing):
-                none = words.replace("your", "no", 1).replace("is here", "of yours")
-                yield Moment(last, name, "note", none, title, start is not None, key=True)
+                yield Moment(last, name, "note", f"no {noun} of yours", title, start is not None, key=True)
 
 
 def _missed(part: Part, reference: Reference, title: str, start: float | None) -> Iterator[Moment]:

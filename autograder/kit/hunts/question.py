@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from autograder.kit.evidence import Evidence
     from autograder.kit.model import Exercise
 
-POINTS = 2.0
+POINTS = 1.0
 """The points of a question whose author does not say how many it is worth."""
 ANSWERED = 5.0
 """Time limit in seconds of wall time for the function to return."""
@@ -46,9 +46,9 @@ class Question:
     order that is different for each student and the same in each session. Case and spaces do not matter.
 
     Attributes:
-        exercise_id: The lab's folder and the file's name, such as ``"bugs_1.why_dark"``.
+        exercise_id: The lab's folder and the file's name, such as ``"bugs_1.dark_display_why"``.
         title: The title of the card.
-        task: One sentence that states the task.
+        task: The question, or one sentence that states the task, as the text of the lab does.
         right: The right choice.
         choices: All choices, or only the wrong ones.
         points: The points of the exercise.
@@ -56,9 +56,9 @@ class Question:
     Example::
 
         EXERCISE = Question(
-            "bugs_1.why_dark",
-            "Bug hunt · Why it stayed dark",
-            "Say what kept the numbers from the display.",
+            "bugs_1.dark_display_why",
+            "Bug hunt · The dark display · Why",
+            "What kept the numbers from the display?",
             right="the topic's name",
             choices=("the topic's name", "the message type", "the QoS", "nothing spun the node"),
         ).exercise()
@@ -83,7 +83,9 @@ class Question:
 
         def scenario(bench: Bench) -> None:
             order = Random(f"{_student()} {self.exercise_id}").sample(choices, len(choices))
-            bench.part("asked", choices="; ".join(f"“{choice}”" for choice in order))
+            bench.part("asked")
+            # The order is not stored as an input, since a recording on another computer has another one.
+            bench.note("choices", order=order)
             bench.start()
             bench.await_end(ANSWERED)
             bench.stop()
@@ -101,14 +103,18 @@ class Question:
                 return None
             return Advice(f"“{answer(seen)}” is not the right choice.", _THINK)
 
-        draft.knows(
-            "not_written",
-            lambda seen, _: not right(seen, seen).passed and f"“{answer(seen) or 'nothing'}”",
-            "Your answer is {}, which is not one of the choices.",
-            "Let your function return the text of one choice: {seen.main.inputs[choices]}.",
-            certain=True,
-        )
-        return draft.exercise(recorded=())
+        @draft.mistake("not_written", certain=True)
+        def not_written(seen: Evidence, _: Evidence) -> Advice | None:
+            if right(seen, seen).passed:
+                return None
+            noted = seen.main.first("noted")
+            listed = "; ".join(f"“{choice}”" for choice in (noted.data["order"] if noted else choices))
+            return Advice(
+                f"Your answer is “{answer(seen) or 'nothing'}”, which is not one of the choices.",
+                f"Let your function return the text of one choice: {listed}.",
+            )
+
+        return draft.exercise(recorded=(), text={self.task: "right"}, hides_causes=True, enough={})
 
 
 def answer(seen: Evidence) -> str:

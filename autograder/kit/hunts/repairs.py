@@ -10,18 +10,22 @@ import importlib
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, cast
 
-from autograder.kit.draft import POINTS
 from autograder.kit.model import Advice, Criterion, Exercise, Finding, Mistake
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator, Sequence
 
     from autograder.kit.evidence import Event, Evidence, Part
 
+POINTS = 4.0
+"""The points of a repair; with its question, a ticket has five."""
+_ENOUGH = {"right": 3, "wrong": 3}
+"""Our repair and two others that differ in mechanism; the broken program and two that only hide the mistake."""
 _NOTHING_CAME = {
     "publisher": ("message", "no message arrived on {}"),
     "service": ("answered", "no answer came from {}"),
     "client": ("request", "no call of {} arrived"),
+    "subscription": ("matched", "no message on {} reached the node"),
     "action_server": ("goal_answer", "no answer to a goal came from {}"),
     "action_client": ("goal", "no goal arrived at {}"),
 }
@@ -40,14 +44,15 @@ class Repairs:
     """An exercise in which a broken node is repaired, judged by the exercise about the right node.
 
     It is all or nothing, because a broken node often does half of the task. In the master, the broken code stands in
-    comments ``#- `` above the solution that replaces it.
+    comments ``#- `` above the solution that replaces it. A ticket of a bug hunt is a repair with a question
+    (:mod:`autograder.kit.hunts.ticket`).
 
     Attributes:
         exercise_id: The lab's folder and the file's name, such as ``"bugs_1.dark_display"``.
         title: The title of the card, which must not tell the cause.
-        task: One sentence that states the task.
+        task: One sentence that states the task, as the text of the lab does.
         judged_by: The id of the exercise that judges the repaired node. The broken node must fail it.
-        cause: The cause in two sentences, which the card shows after the pass.
+        after: Sentences about the cause, which the card shows after the pass.
         points: The points of the exercise.
 
     Example::
@@ -57,7 +62,7 @@ class Repairs:
             "Bug hunt · The dark display",
             "Repair the display, so that it shows the numbers of the sensor.",
             "lab_1_2.listener",
-            cause="The display subscribed to a topic with a misspelt name. ROS 2 does not report that.",
+            after=("The display subscribed to a topic with a misspelt name. ROS 2 does not report that.",),
         ).exercise()
     """
 
@@ -65,7 +70,7 @@ class Repairs:
     title: str
     task: str
     judged_by: str
-    cause: str
+    after: Sequence[str]
     points: float = POINTS
 
     def exercise(self) -> Exercise:
@@ -76,8 +81,8 @@ class Repairs:
             finding = judged.judge_as_one(evidence, "all that was asked for")
             return finding if finding.passed else _symptom(judged, evidence)
 
-        def cause(evidence: Evidence) -> str:
-            return self.cause if works(evidence).passed else ""
+        def told(text: str) -> Callable[[Evidence], str]:
+            return lambda evidence: text if works(evidence).passed else ""
 
         return replace(
             judged,
@@ -86,10 +91,11 @@ class Repairs:
             task=self.task,
             criteria=(Criterion("repaired", "Works again", self.points, works),),
             mistakes=[_without_diagnosis(judged, known) for known in (*judged.mistakes, _ANY_OTHER)],
-            remarks=(cause,),
-            text={},
+            remarks=[told(text) for text in self.after],
+            text={self.task: "repaired"},
             counts={},
             hides_causes=True,
+            enough=_ENOUGH,
         )
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import sys
 from collections import Counter
 from itertools import pairwise
 from typing import TYPE_CHECKING
@@ -15,7 +16,7 @@ from autograder.kit.model import Advice, Mistake, mistake
 from autograder.kit.reported_texts import said_first_after
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
 
     from autograder.kit.evidence import Event, Evidence, Part
 
@@ -165,6 +166,39 @@ def two_servers(role: str, comes_of_it: str, next_step: str) -> Mistake:
         next_step,
         certain=True,
     )
+
+
+def _int_as_float(evidence: Evidence) -> tuple[str, str, float] | None:
+    """Return the topic and path of a number that no calculation gives, and the number; None if there is none.
+
+    rclpy does not check the types of fields. It reads the first bytes of an int as if they were a float's: these are
+    the count of the int's digits (CPython's ``longintrepr.h``), and no float that a program means is so close to 0.
+    """
+    for part in evidence:
+        for event in part.of("message"):
+            for path, value in _floats(event.data["fields"]):
+                if 0.0 < abs(value) < sys.float_info.min:
+                    return event.name, path, value
+    return None
+
+
+def _floats(fields: Mapping[str, object], path: str = "") -> Iterator[tuple[str, float]]:
+    for name, value in fields.items():
+        if isinstance(value, dict):
+            yield from _floats(value, f"{path}{name}.")
+        elif isinstance(value, float):
+            yield f"{path}{name}", value
+
+
+INT_IN_A_FLOAT = mistake(
+    "field_type",
+    _int_as_float,
+    "On {0[0]}, your {0[1]} arrives as {0[2]:g}: your code sets it to a whole number (an int), and ROS reads the bytes "
+    "of this number as those of a float.",
+    "A field of the type float64 needs a number with a point: write 1.0 and not 1, or convert it with float(...).",
+    certain=True,
+)
+"""The mistake of a whole number in a field for numbers with a point, of which rclpy says nothing."""
 
 
 def everything_twice(role: str) -> Mistake:

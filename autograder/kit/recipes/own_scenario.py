@@ -119,8 +119,9 @@ def meet(
     met = _all_there(bench, [(role, name) for role, ends in roles.items() for name in ends])
     if met:
         bench.release()
-        # A subscription loses what is sent before it has discovered the judge's publisher.
-        if speakers:
+        # A subscription loses what is sent before it has discovered the judge's publisher. A fast look at a subject
+        # that hangs ends here.
+        if speakers or bench.pace is Pace.FAST:
             bench.await_attention()
         met = all(caller.await_server(SERVED) for caller in callers)
         met = met and all(caller.await_server(SERVED) for caller in action_callers)

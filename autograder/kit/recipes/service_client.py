@@ -75,8 +75,9 @@ class Calls:
         return ClientSeen(evidence.reference)
 
     def _is_right(self, part: Part) -> bool:
-        """Return True if a run has the right number of calls, each with the right numbers."""
-        return len(requests(part)) == self._calls and self._is_right_so_far(part)
+        """Return True if a run has the right number of calls, with the right numbers, and stays for the answers."""
+        as_many = len(requests(part)) == self._calls and not ended_before_its_answer(part)
+        return as_many and self._is_right_so_far(part)
 
     def _is_right_so_far(self, part: Part) -> bool:
         made = list(map(pair, requests(part)))
@@ -92,16 +93,24 @@ class Calls:
             return Finding(True, wanted, wanted)
         if not wrong.events and (hung := cut_short(seen)):
             return Finding(False, wanted, hung)
+        if ended_before_its_answer(wrong):
+            return Finding(False, wanted, f"it ended before its answer came ({wrong.name})")
         made = [f"{e.data['fields']['a']} + {e.data['fields']['b']}" for e in requests(wrong)[:3]]
         numbers = ", ".join(map(str, wrong.inputs.get("numbers", ())))
         given = f"for {numbers}: " if numbers else ""
         return Finding(False, wanted, given + (", then ".join(made) or "no call"))
 
     def waits(self, evidence: Evidence) -> Finding:
-        """Decide whether the client calls even if the service comes late; another criterion judges the result."""
-        late = self.seen(evidence).late
-        called = bool(requests(late))
-        return Finding(called, "waits, then calls", "it did" if called else how_it_went(late))
+        """Decide whether the client calls even if the service comes late; another criterion judges the result.
+
+        Of a client that stays for no answer, chance decides whether its request arrives.
+        """
+        seen = self.seen(evidence)
+        hasty = next(filter(ended_before_its_answer, seen.served), None)
+        if hasty and not any(map(reports, seen.served)):
+            return Finding(False, "waits, then calls", f"it ended before its answer came ({hasty.name})")
+        called = bool(requests(seen.late))
+        return Finding(called, "waits, then calls", "it did" if called else how_it_went(seen.late))
 
     def _too_many_calls(self, evidence: Evidence) -> int:
         """Return the number of calls in a run with more calls than the reference solution makes; 0 if there is none."""

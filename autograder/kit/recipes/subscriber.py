@@ -111,8 +111,11 @@ class Speaks:
         if simulated:
             return self._are_said_at_pace(bench, speaker, texts[1:SIMULATED])
         for row in _rows(texts):
+            last = bench.seen().events[-1]
             if self._are_said_at_pace(bench, speaker, row):
                 break
+            if not bench.seen().said(after=last):
+                return False  # it hangs
         # If the listener missed texts at the pace, texts of each kind show whether time was what it lacked.
         return all(self._is_answered(bench, speaker, text) for text in texts[-SINGLY:])
 

@@ -19,7 +19,7 @@ import sys
 import threading
 import time
 import weakref
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Self
 
 from autograder import course
@@ -29,6 +29,7 @@ from autograder.cards.card_wording import duration
 from autograder.cards.readable_text import one_line, paragraph, wrap
 from autograder.messages.judge_messages import SOCKET_VARIABLE
 from autograder.notebook.cell_output import notebook_shell
+from autograder.notebook.checking.subject_runs import own_text
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -190,7 +191,7 @@ class CardDisplay:
         shell = notebook_shell()
         earlier = _shown.get(self.exercise)
         before = earlier.verdict.score if earlier else None
-        card = _full_card(verdict, before)
+        card = _full_card(verdict, before, self.subject)
         if shell is None:
             print(card["text/plain"])
         elif self._handle is not None:
@@ -228,13 +229,15 @@ def renew_card(verdict: Verdict, subject: Any) -> None:
     shell, earlier = notebook_shell(), _shown.get(verdict.exercise)
     if shell is not None and earlier is not None:
         before = earlier.verdict.score
-        update_card(earlier.handle, _full_card(verdict, before))
+        update_card(earlier.handle, _full_card(verdict, before, subject))
         _remember(shell, verdict.exercise, subject, _Shown(verdict, before, earlier.handle, "", None))
 
 
-def _full_card(verdict: Verdict, before: float | None) -> dict[str, str]:
+def _full_card(verdict: Verdict, before: float | None, subject: Any) -> dict[str, str]:
     # Show no solution in a grader's kernel, because the solution would then be in the graded notebook.
     solution = solution_of(verdict.exercise) if verdict.passed and is_live() else None
+    if solution is not None:
+        solution = replace(solution, own=tuple(own_text(broken, subject) for broken in solution.broken))
     return html_rendering.card_bundle(verdict, before=before, solution=solution)
 
 
@@ -294,7 +297,8 @@ def solution_of(exercise: str) -> Solution | None:
             for lab in chapter.labs:
                 if file := chapter.exercises_of(lab).get(exercise):
                     said = json.loads(file.with_suffix(course.SOLUTION).read_text(encoding="utf-8"))
-                    return Solution(tuple(said["code"]), said["why"], said["other_way"], said["other_code"])
+                    fields = {name: said[name] for name in ("why", "other_way", "other_code") if name in said}
+                    return Solution(tuple(said["code"]), broken=tuple(said.get("broken", ())), **fields)
     except (OSError, ValueError, KeyError, TypeError, course.NoCourse, course.BrokenChapter):
         pass  # The solution is only an addition, so an error here must not break the check.
     return None

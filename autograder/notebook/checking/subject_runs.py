@@ -12,6 +12,7 @@ import os
 import threading
 import traceback
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -259,6 +260,26 @@ def own_lines_of(subject: object) -> OwnLines:
     """Return the lines of the student's code that a card may quote: of the subject and of all that it refers to."""
     if isinstance(subject, (str, Path)):
         return own_lines_of_files([Path(subject)] if Path(subject).is_dir() else [])
+    return own_lines(_cells_of(subject))
+
+
+def own_text(given: str, subject: object) -> str:
+    """Return what a student has made of a given cell: the file that it writes, or the cell that defines the subject.
+
+    Args:
+        given: The text of the cell as it was given.
+        subject: The argument of the check cell.
+    """
+    magic = given.partition("\n")[0]
+    if not magic.startswith("%%"):
+        return "" if isinstance(subject, (str, Path)) else next(iter(_cells_of(subject).values()), "")
+    with suppress(OSError):
+        return f"{magic}\n{Path(magic.split()[-1]).read_text(encoding='utf-8', errors='replace')}".rstrip()
+    return ""
+
+
+def _cells_of(subject: object) -> dict[str, str]:
+    """Return the texts of the cells with the subject and with all that it refers to, the subject's first."""
     sources: dict[str, str] = {}
     waiting, done, files = [subject], set[int](), set[str]()
     for one in waiting:
@@ -274,7 +295,7 @@ def own_lines_of(subject: object) -> OwnLines:
                 files.add(file)
             waiting += [function.__globals__.get(name) for name in sorted(names_read(function))]
         waiting += getattr(one, "__bases__", ()) if own else ()
-    return own_lines(sources)
+    return sources
 
 
 def send_sources(tell: Tell, subject: object) -> None:

@@ -28,22 +28,22 @@ if TYPE_CHECKING:
 
     SubjectNode = Callable[..., AbstractContextManager[Node]]
     Spun = Callable[[Executor, Node], AbstractContextManager[None]]
-    BenchOf = Callable[[str, Reference], AbstractContextManager[TestBench]]
+    BenchOf = Callable[..., AbstractContextManager[TestBench]]
 
 
 @pytest.fixture
 def bench_of(tmp_path: Path) -> BenchOf:
-    """Makes a bench, looking in real time, for a program of this text; leaving it closes it."""
+    """Makes a bench, by default looking in real time, for a program of this text; leaving it closes it."""
 
     @contextlib.contextmanager
-    def opened(text: str, reference: Reference) -> Iterator[TestBench]:
+    def opened(text: str, reference: Reference, pace: Pace = Pace.REAL_TIME) -> Iterator[TestBench]:
         program = tmp_path / "program.py"
         program.write_text(text)
         with ros_setup.lease_domain() as domain_id:
             subject = CommandSubject([sys.executable, str(program)])
             subject.begin(domain_id)
             with contextlib.closing(
-                TestBench(subject, domain_id, reference, Pace.REAL_TIME, Random("a seed"))
+                TestBench(subject, domain_id, reference, pace, Random("a seed"))
             ) as bench:
                 yield bench
 

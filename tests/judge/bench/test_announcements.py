@@ -42,7 +42,10 @@ def test_who_made_a_node_was_heard(domain_id: int, boxed: bool, program: str, pr
 
 def test_the_judge_s_own_node_is_known_from_a_subject_s(domain_id: int) -> None:
     recorder = Recorder()
-    with contextlib.closing(Announcements(domain_id)) as announcements, Wire(domain_id) as wire:
+    with (
+        contextlib.closing(Announcements(domain_id)) as announcements,
+        contextlib.closing(Wire(domain_id)) as wire,
+    ):
         LogReader(wire, lambda: recorder)
         run(MAKES_A_NODE, subject_environment(domain_id))
         own = process_of(wire.node)

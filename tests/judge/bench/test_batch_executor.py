@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import threading
 from typing import Any
 
@@ -17,7 +18,7 @@ pytestmark = pytest.mark.ros
 
 
 def test_one_round_takes_all_that_has_arrived_a_message_of_each_endpoint_in_turn() -> None:
-    with ros_setup.lease_domain() as domain_id, Wire(domain_id) as wire:
+    with ros_setup.lease_domain() as domain_id, contextlib.closing(Wire(domain_id)) as wire:
         heard: list[str] = []
 
         def hear(message: String) -> None:
@@ -45,7 +46,7 @@ def test_one_round_takes_all_that_has_arrived_a_message_of_each_endpoint_in_turn
 
 
 def test_a_flood_is_not_taken_in_for_ever() -> None:
-    with ros_setup.lease_domain() as domain_id, Wire(domain_id) as wire:
+    with ros_setup.lease_domain() as domain_id, contextlib.closing(Wire(domain_id)) as wire:
         heard = 0
         publisher = wire.node.create_publisher(String, "flood", 10)
 
@@ -65,11 +66,10 @@ def test_a_flood_is_not_taken_in_for_ever() -> None:
 
 @pytest.mark.parametrize("servers", [1, 2])
 def test_the_first_answer_of_servers_with_one_name_is_the_answer(servers: int) -> None:
-    with ros_setup.lease_domain() as domain_id, Wire(domain_id) as wire:
+    with ros_setup.lease_domain() as domain_id, contextlib.closing(Wire(domain_id)) as wire:
 
-        def answer(_: Any, response: Trigger.Response) -> Trigger.Response:
-            response.message = "hello"
-            return response
+        def answer(_: Any, send: Any) -> None:
+            send(Trigger.Response(message="hello"))
 
         for _ in range(servers):
             wire.node.create_service(Trigger, "asked", answer)

@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from autograder.judge.bench.subject_time import Unanswered
+from autograder.kit.bench import Pace
 from autograder.kit.evidence import Reference
 
 if TYPE_CHECKING:
@@ -50,3 +52,17 @@ def test_a_silent_subject_is_asked_at_the_end_of_its_run(
         (part,) = bench.parts
     assert bool(part.of("unanswered")) is unanswered
     assert bool(part.of("stack")) is unanswered
+
+
+def test_a_fast_look_at_a_node_that_nothing_spins_ends_at_once(bench_of: BenchOf) -> None:
+    with bench_of(NODE.format(does="None", spins="time.sleep(60)"), REFERENCE, Pace.FAST) as bench:
+        bench.part("heard")
+        bench.speak("/chatter", "std_msgs/msg/String")
+        bench.start()
+        assert bench.await_endpoint("subscription", "/chatter")
+        with pytest.raises(Unanswered):
+            bench.await_attention()
+        bench.stop()
+        (part,) = bench.parts
+    assert part.of("unanswered")
+    assert not part.of("stack")

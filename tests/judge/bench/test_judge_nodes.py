@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import threading
 from typing import Any
 
@@ -16,13 +17,13 @@ pytestmark = pytest.mark.ros
 
 
 def test_what_is_taken_away_while_it_is_used_ends_nothing() -> None:
-    with ros_setup.lease_domain() as domain_id, Wire(domain_id) as wire:
+    with ros_setup.lease_domain() as domain_id, contextlib.closing(Wire(domain_id)) as wire:
         is_gone, turned = threading.Event(), threading.Event()
 
-        def answer(_: Any, response: Any) -> Any:
+        def answer(_: Any, send: Any) -> None:
             wire.node.destroy_service(service)
             is_gone.set()
-            return response
+            send(GetParameters.Response())
 
         service = wire.node.create_service(GetParameters, "asked", answer)
         client = wire.node.create_client(GetParameters, "asked")
@@ -35,7 +36,7 @@ def test_what_is_taken_away_while_it_is_used_ends_nothing() -> None:
 
 
 def test_an_error_of_a_callback_is_the_judges_failure() -> None:
-    with ros_setup.lease_domain() as domain_id, Wire(domain_id) as wire:
+    with ros_setup.lease_domain() as domain_id, contextlib.closing(Wire(domain_id)) as wire:
 
         def fail(_: Any, __: Any) -> Any:
             raise ValueError("a bug")
@@ -49,7 +50,7 @@ def test_an_error_of_a_callback_is_the_judges_failure() -> None:
 
 
 def test_its_turns_wait_for_no_event_that_nobody_asked_for() -> None:
-    with ros_setup.lease_domain() as domain_id, Wire(domain_id) as wire:
+    with ros_setup.lease_domain() as domain_id, contextlib.closing(Wire(domain_id)) as wire:
         wire.node.create_publisher(String, "spoken", 10)
         wire.node.create_subscription(String, "heard", lambda _: None, 10)
         assert list(wire.node.waitables) == []
@@ -59,7 +60,11 @@ MESSAGES = 5
 
 
 def test_all_that_was_sent_is_taken_in_also_by_a_judge_that_was_busy_meanwhile() -> None:
-    with ros_setup.lease_domain() as domain_id, Wire(domain_id) as theirs, Wire(domain_id) as wire:
+    with (
+        ros_setup.lease_domain() as domain_id,
+        contextlib.closing(Wire(domain_id)) as theirs,
+        contextlib.closing(Wire(domain_id)) as wire,
+    ):
         heard: list[str] = []
         met, held, free = threading.Event(), threading.Event(), threading.Event()
 
@@ -92,13 +97,13 @@ def test_all_that_was_sent_is_taken_in_also_by_a_judge_that_was_busy_meanwhile()
 
 
 def test_a_judge_that_has_failed_takes_nothing_in() -> None:
-    with ros_setup.lease_domain() as domain_id, Wire(domain_id) as wire:
+    with ros_setup.lease_domain() as domain_id, contextlib.closing(Wire(domain_id)) as wire:
         wire.executor.do(lambda: 1 / 0)
         wire._thread.join(timeout=180)
         assert not wire.take_in()
 
 
 def test_a_wire_that_was_closed_takes_nothing_in() -> None:
-    with ros_setup.lease_domain() as domain_id, Wire(domain_id) as wire:
+    with ros_setup.lease_domain() as domain_id, contextlib.closing(Wire(domain_id)) as wire:
         pass
     assert not wire.take_in()

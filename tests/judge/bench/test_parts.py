@@ -22,5 +22,5 @@ def test_an_answer_that_arrives_after_its_part_is_not_one_of_the_next_part(bench
         bench.part("bad orders")
         # On a busy machine, the judge's thread has taken these before the end of the part, and records them after it.
         client._note("result_heard", 0, status=6, fields={})
-        listener._recorder.record("matched", "/chatter", count=1, now=1)
+        listener._place.record("matched", count=1, now=1)
         assert [event.kind for event in bench.seen().events] == []

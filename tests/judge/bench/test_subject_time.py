@@ -79,7 +79,11 @@ def test_the_timers_of_a_step_are_called_before_the_next_one_where_a_question_ov
 ) -> None:
     monkeypatch.setattr(subject_time, "ANSWER_LIMIT", 30.0)
     fired: list[float] = []
-    with ros_setup.lease_domain() as domain_id, Wire(domain_id) as wire, subject_node(domain_id) as node:
+    with (
+        ros_setup.lease_domain() as domain_id,
+        closing(Wire(domain_id)) as wire,
+        subject_node(domain_id) as node,
+    ):
         executor = QuestionFirst(context=node.context)
         executor.watch(node)
 
@@ -101,7 +105,11 @@ def test_timers_fire_as_they_would_later_on_and_the_clock_is_given_back(
     subject_node: SubjectNode, spun: Spun
 ) -> None:
     fired: list[float] = []
-    with ros_setup.lease_domain() as domain_id, Wire(domain_id) as wire, subject_node(domain_id) as node:
+    with (
+        ros_setup.lease_domain() as domain_id,
+        closing(Wire(domain_id)) as wire,
+        subject_node(domain_id) as node,
+    ):
         node.create_timer(20.0, lambda: fired.append(node.get_clock().now().nanoseconds / 1e9))
         with spun(SingleThreadedExecutor(context=node.context), node):
             began = time.time()
@@ -129,7 +137,11 @@ def test_a_node_s_own_callbacks_of_parameters_do_not_hear_of_the_judge_s_clock(
         heard.extend(one.name for one in parameters)
         return parameters
 
-    with ros_setup.lease_domain() as domain_id, Wire(domain_id) as wire, subject_node(domain_id) as node:
+    with (
+        ros_setup.lease_domain() as domain_id,
+        closing(Wire(domain_id)) as wire,
+        subject_node(domain_id) as node,
+    ):
         node.declare_parameter("speed", 0.5)
         node.add_pre_set_parameters_callback(keep)
         node.add_on_set_parameters_callback(refuse)
@@ -149,7 +161,7 @@ def test_a_scenario_says_how_much_time_passes_at_once(subject_node: SubjectNode,
     fired: list[float] = []
     with (
         ros_setup.lease_domain() as domain_id,
-        Wire(domain_id) as wire,
+        closing(Wire(domain_id)) as wire,
         subject_node(domain_id) as node,
         spun(SingleThreadedExecutor(context=node.context), node),
         closing(SimulatedClock(wire, Recorder(), NodeName("subject", "/"))) as clock,
@@ -164,7 +176,7 @@ def test_a_scenario_says_how_much_time_passes_at_once(subject_node: SubjectNode,
 def test_who_is_not_spun_does_not_go_along(subject_node: SubjectNode) -> None:
     with (
         ros_setup.lease_domain() as domain_id,
-        Wire(domain_id) as wire,
+        closing(Wire(domain_id)) as wire,
         subject_node(domain_id),
         closing(NodeClock(wire, Recorder(), NodeName("subject", "/"))) as borrowed,
     ):
@@ -173,7 +185,7 @@ def test_who_is_not_spun_does_not_go_along(subject_node: SubjectNode) -> None:
 
 def test_one_clock_steps_every_node_that_the_judge_meets(subject_node: SubjectNode, spun: Spun) -> None:
     fired: dict[str, list[float]] = {"left": [], "right": []}
-    with ros_setup.lease_domain() as domain_id, Wire(domain_id) as wire, ExitStack() as opened:
+    with ros_setup.lease_domain() as domain_id, closing(Wire(domain_id)) as wire, ExitStack() as opened:
         for space, ticks in fired.items():
             node = opened.enter_context(subject_node(domain_id, namespace=space))
             node.create_timer(0.5, lambda ticks=ticks, node=node: ticks.append(seconds(node)))

@@ -24,7 +24,7 @@ STRING = "std_msgs/msg/String"
 
 def repair() -> Exercise:
     """A talker to repair."""
-    return Repairs("lab_1_2.talker", "A silent talker", "Repair it.", JUDGED.id, cause=CAUSE).exercise()
+    return Repairs("lab_1_2.talker", "A silent talker", "Repair it.", JUDGED.id, after=[CAUSE]).exercise()
 
 
 def solved(change: Callable[[Event], Event] = lambda event: event) -> Evidence:
@@ -81,7 +81,22 @@ def _shouting(event: Event) -> Event:
     return replace(event, data={**event.data, "fields": {"data": event.data["fields"]["data"].upper()}})
 
 
+def test_what_a_subscriber_never_got_is_its_symptom() -> None:
+    judged = exercises.get("lab_1_2.listener")
+    reference = evidence_files.load_reference(judged.id)
+    exercise = Repairs(judged.id, "A deaf listener", "Repair it.", judged.id, after=[CAUSE]).exercise()
+    ends = {"nodes": ["/listener"], "subscription": {"/chater": STRING}}
+    events = [Event(0.1, "interface", "graph", ends)]
+    parts = [replace(part, events=events) for part in reference.parts]
+    verdict = one_check.judge(exercise, Evidence(parts, reference), "s")
+    assert verdict.criteria[0].seen == "no message on /chatter reached the node"
+    assert "chater" not in card_text(verdict)
+    met = [*events, Event(0.2, "matched", "/chatter", {"count": 1, "now": 1})]
+    parts = [replace(part, events=met) for part in reference.parts]
+    assert "reached" not in one_check.judge(exercise, Evidence(parts, reference), "s").criteria[0].seen
+
+
 def test_a_repair_has_one_criterion_because_a_broken_node_does_half_of_the_task() -> None:
-    assert [criterion.points for criterion in repair().criteria] == [10]
+    assert [criterion.points for criterion in repair().criteria] == [4]
     half = Part(REFERENCE.parts[0].name, {}, [])
     assert one_check.judge(repair(), Evidence([half], REFERENCE), "s").score == 0

@@ -209,3 +209,24 @@ def test_two_servers_never_pass_by_the_luck_of_the_right_one() -> None:
         finding = criterion.judge(Evidence([seen], reference))
         assert finding.passed is (count == 1)
         assert finding.passed or finding.seen == "2 servers of /serve"
+
+
+@pytest.mark.parametrize(
+    ("value", "words"),
+    [
+        (5e-324, "linear.x arrives as 4.94066e-324"),
+        (4e-323, "linear.x arrives as 3.95253e-323"),
+        (0.0, ""),
+        (1e-9, ""),
+    ],
+    ids=["an int, as CPython 3.11 writes it", "as 3.12 does", "standstill", "a tiny speed"],
+)
+def test_a_whole_number_in_a_field_for_floats_is_named_as_that(value: float, words: str) -> None:
+    reference = Reference("a.b", {"publisher": {"/cmd_vel": "geometry_msgs/msg/Twist"}})
+    fields = {"linear": {"x": value, "y": 0.0}, "angular": {"z": 0.0}}
+    evidence = Evidence(
+        [Part("mission", {}, [Event(0.0, "message", "/cmd_vel", {"fields": fields})])], reference
+    )
+    for kind, mistakes in declared("publisher").items():
+        told = [one.recognize(evidence) for one in mistakes if one.key == "field_type"]
+        assert [words in one.text for one in told if one] == [True] * bool(words), kind

@@ -8,9 +8,9 @@ from typing import Any
 import pytest
 
 from autograder import exercises
-from autograder.cards.card_wording import SOLUTION
+from autograder.cards.card_wording import OUR_CHANGE, OWN_CHANGE, SOLUTION
 from autograder.messages.judge_messages import SOCKET_VARIABLE
-from autograder.notebook.checking import card_display
+from autograder.notebook.checking import card_display, subject_runs
 from autograder.notebook.checking.card_display import solution_of
 from autograder.student.handout import hand_out
 from autograder.verdict import State, Verdict
@@ -43,12 +43,13 @@ def check(score: float) -> None:
         place.show(Verdict("lab_1_2.talker", "The talker", state, score, 10))
 
 
-@pytest.mark.parametrize("exercise", exercises.all_ids())
+@pytest.mark.parametrize("exercise", [one for one in exercises.all_ids() if exercises.get(one).enough])
 def test_every_exercise_has_one_and_its_other_way_is_python(exercise: str) -> None:
+    """A question has none: its right choice is all that there is to know."""
     solution = solution_of(exercise)
     assert solution is not None
     assert solution.code
-    assert solution.why
+    assert solution.why or any(solution.broken)
     assert bool(solution.other_way) == bool(solution.other_code)
     function = "\n".join(f"    {line}" for line in solution.other_code.splitlines())
     compile(f"def other_way():\n{function or '    pass'}", exercise, "exec")
@@ -87,6 +88,31 @@ def test_a_hand_out_has_them_only_where_asked_for(
     monkeypatch.setenv("AUTOGRADER_COURSE", str(place))
     assert (solution_of("lab_1_2.talker") is not None) == with_solutions
     assert not list(place.rglob("*.why.md"))
+
+
+def test_a_repaired_class_is_shown_beside_ours(
+    shown: list[dict[str, str]], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    exercise = next(one for one in exercises.all_ids() if (given := solution_of(one)) and any(given.broken))
+    solution = solution_of(exercise)
+    assert solution is not None
+    own = f"class Repaired:\n    def mine(self): pass\n{solution.code[0]}"
+    monkeypatch.setattr(subject_runs, "_cells_of", lambda subject: {"your cell": own} if subject else {})
+    with card_display.CardDisplay(exercise, object()) as place:
+        place.show(Verdict(exercise, "A repair", State.PASSED, 4, 4))
+    assert "+    def mine(self): pass" in shown[-1]["text/plain"]
+    assert (OUR_CHANGE in str(shown), OWN_CHANGE in str(shown), SOLUTION in str(shown)) == (True, True, False)
+
+
+def test_a_repaired_file_is_read_where_its_cell_has_written_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    given = "%%writefile setup.py\nbroken"
+    assert subject_runs.own_text(given, "ros2_ws") == ""
+    (tmp_path / "setup.py").write_text("repaired\n")
+    assert subject_runs.own_text(given, "ros2_ws") == "%%writefile setup.py\nrepaired"
+    assert subject_runs.own_text("class A: ...", "ros2_ws") == ""
 
 
 @pytest.mark.parametrize("text", ["", "[]", "{}"])

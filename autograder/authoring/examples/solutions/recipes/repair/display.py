@@ -1,11 +1,5 @@
-"""A display that stays dark, which students repair. `_display` judges it; an exercise that exists can do so, too."""
+"""A broken program that students repair. The words of this ticket are in the file next to this one."""
 
-from autograder.kit.hunts.repairs import Repairs
+from autograder.kit.hunts.ticket import repair
 
-EXERCISE = Repairs(
-    "repair.display",
-    "A repair · The dark display",
-    "Repair the display, so that it shows each number of the sensor.",
-    "repair._display",
-    cause="The display subscribed to a topic on which nothing is published. ROS 2 does not report a misspelt name.",
-).exercise()
+EXERCISE = repair(__file__)

@@ -1,11 +1,5 @@
-"""A question on the cause: the card lists the choices, for each student in another order."""
+"""The question on the cause of a ticket, whose words are in the file next to this one."""
 
-from autograder.kit.hunts.question import Question
+from autograder.kit.hunts.ticket import question
 
-EXERCISE = Question(
-    "repair.display_why",
-    "A repair · Why it stayed dark",
-    "Say what kept the numbers from the display.",
-    right="the name of the topic",
-    choices=("the message type", "the QoS settings", "the name of the topic", "nothing spun the node"),
-).exercise()
+EXERCISE = question(__file__)

@@ -1,3 +1,0 @@
-"""Right: as the card shows it."""
-
-print("the name of the topic")

@@ -1,0 +1,97 @@
+"""A ticket of a bug hunt: a data file beside two exercises of one line each, the repair and the question on the cause.
+
+The file ``dark_display.ticket.toml`` contains all words of the ticket. The exercises ``dark_display`` and
+``dark_display_why`` read it, so that a new ticket needs no code.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import msgspec
+
+from autograder.kit.hunts.question import Question
+from autograder.kit.hunts.repairs import Repairs
+
+if TYPE_CHECKING:
+    from autograder.kit.model import Exercise
+
+TICKET = ".ticket.toml"
+"""The suffix of the file with the words of a ticket."""
+_WHY = "_why"
+"""The end of the name of the exercise that asks for the cause."""
+
+
+class Ticket(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """The words of a ticket, none of which a student sees before the pass except title, task, question and choices.
+
+    Attributes:
+        title: The title of the card, such as ``"Bug hunt 1 · The dark display"``, which must not tell the cause.
+        task: What the repaired program does. The text of the lab contains this sentence.
+        judged_by: The id of the exercise that judges the repaired program. The broken one must fail it.
+        cause: The cause in two sentences.
+        sooner: How the student would have found it sooner, in a sentence.
+        seen: A sentence about a real project in which it happened, and the address of its public issue.
+        question: The question on the cause. The text of the lab contains it.
+        right: The right choice.
+        choices: All choices, or only the wrong ones.
+    """
+
+    title: str
+    task: str
+    judged_by: str
+    cause: str
+    sooner: str
+    seen: str
+    question: str
+    right: str
+    choices: tuple[str, ...]
+
+
+def repair(file: str) -> Exercise:
+    """Return the exercise in which the broken program of a ticket is repaired.
+
+    Args:
+        file: The path of the exercise's file, next to which the ticket is.
+
+    Raises:
+        ValueError: The ticket cannot be read, lacks a field, or has an unknown one.
+
+    Example::
+
+        EXERCISE = repair(__file__)
+    """
+    exercise_id, ticket = _ticket(file)
+    after = (ticket.cause, ticket.sooner, ticket.seen)
+    return Repairs(exercise_id, ticket.title, ticket.task, ticket.judged_by, after).exercise()
+
+
+def question(file: str) -> Exercise:
+    """Return the exercise that asks for the cause of a ticket. The name of its file ends in ``_why``.
+
+    Args:
+        file: The path of the exercise's file, next to which the ticket is.
+
+    Raises:
+        ValueError: The ticket cannot be read, lacks a field, or has an unknown one; or a choice is wrong.
+
+    Example::
+
+        EXERCISE = question(__file__)
+    """
+    exercise_id, ticket = _ticket(file)
+    title = f"{ticket.title} · Why"
+    return Question(exercise_id, title, ticket.question, ticket.right, ticket.choices).exercise()
+
+
+def _ticket(file: str) -> tuple[str, Ticket]:
+    """Return the id of the exercise in a file, and the ticket that it belongs to."""
+    exercise = Path(file)
+    words = exercise.with_name(f"{exercise.stem.removesuffix(_WHY)}{TICKET}")
+    try:
+        ticket = msgspec.toml.decode(words.read_bytes(), type=Ticket)
+    except (OSError, ValueError) as error:
+        fields = ", ".join(Ticket.__struct_fields__)
+        raise ValueError(f"{words.name}: {error}. A ticket has the fields {fields}") from error
+    return f"{exercise.parent.name}.{exercise.stem}", ticket
