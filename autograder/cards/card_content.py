@@ -58,7 +58,7 @@ IN_A_TERMINAL = Form("...", "-", moments=30, lines=60, columns=240)
 
 @dataclass(frozen=True)
 class Solution:
-    """The reference solution, which a card offers only with full marks.
+    """The reference solution, for a card with full marks, or of a student who has opened the worked solution.
 
     Attributes:
         code: The solution cells, in order.
@@ -104,13 +104,15 @@ class Choices(TypedDict, total=False):
     Attributes:
         before: The points of the previous check; None if there was none.
         notice: Why the card is out of date, in which case it is dimmed; empty if it is up to date.
-        solution: The reference solution, shown only with full marks.
+        solution: The reference solution, which the card shows; None to show none.
+        offers_solution: True to offer the worked solution by a button.
         short: True to show only the points, what happened and what to do next.
     """
 
     before: float | None
     notice: str
     solution: Solution | None
+    offers_solution: bool
     short: bool
 
 
@@ -172,6 +174,7 @@ class Card:
         unfolded: True if the detail is short enough to be shown unfolded.
         facts: The facts that a student should quote in a question.
         solution: The reference solution; None if it is not shown.
+        offers_solution: True if a button opens the solution.
     """
 
     state: State
@@ -197,6 +200,7 @@ class Card:
     unfolded: bool
     facts: tuple[str, ...]
     solution: Solution | None
+    offers_solution: bool
 
     @classmethod
     def of(
@@ -207,6 +211,7 @@ class Card:
         before: float | None = None,
         notice: str = "",
         solution: Solution | None = None,
+        offers_solution: bool = False,
         short: bool = False,
     ) -> Card:
         """Return the content of a verdict's card for one form. For the other arguments see :class:`Choices`."""
@@ -244,13 +249,23 @@ class Card:
             else (),
             unfolded=TRACEBACK in detail and detail.count("\n") < _UNFOLDED,
             facts=tuple(card_wording.fine_print(verdict)),
-            solution=solution.readable() if solution and verdict.passed else None,
+            # Until the pass of a bug hunt, nothing tells the cause.
+            solution=solution.readable() if solution and (verdict.passed or not solution.broken) else None,
+            offers_solution=offers_solution,
         )
         return card._shortened() if short else card
 
     def _shortened(self) -> Card:
         return replace(
-            self, criteria=(), counts="", remarks=(), traffic=Traffic(()), detail=(), facts=(), solution=None
+            self,
+            criteria=(),
+            counts="",
+            remarks=(),
+            traffic=Traffic(()),
+            detail=(),
+            facts=(),
+            solution=None,
+            offers_solution=False,
         )
 
 

@@ -41,6 +41,11 @@ COUNTS_BESIDES = "what else counts, and what does not"
 
 SOLUTION = "The reference solution, and why it is written so"
 """The heading of the folded reference solution."""
+OFFER = (
+    "You have tried this task in several ways. If its last hint does not help either, you can open the worked "
+    "solution. Your progress then says “with the worked solution”."
+)
+"""What a card says beside the button that opens the worked solution."""
 OUR_CHANGE, OWN_CHANGE = "Our repair", "Your repair"
 """The headings of two ways in which broken code was changed."""
 OTHER_WAY = "Another way"
@@ -125,6 +130,11 @@ def points_before(verdict: Verdict, before: float | None) -> str:
     if before is None or verdict.state is State.NOT_CHECKED or before == verdict.score:
         return ""
     return points(before)
+
+
+def with_solution(tasks: int) -> str:
+    """Return ``"2 tasks with the worked solution"``; empty for no task."""
+    return f"{tasks} task{'' if tasks == 1 else 's'} with the worked solution" if tasks else ""
 
 
 def tally(verdict: Verdict) -> str:

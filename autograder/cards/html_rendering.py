@@ -70,8 +70,8 @@ def card_html(verdict: Verdict, *, buttons: bool = False, **choices: Unpack[Choi
     """Return a verdict as HTML, with all texts escaped: for JupyterLab, nbgrader's feedback or any other page.
 
     Args:
-        buttons: True to add the buttons Check, Watch and Next, which appear only in JupyterLab with the course's
-            commands.
+        buttons: True to add the buttons, such as Check, Watch and Next, which appear only in JupyterLab with the
+            course's commands.
     """
     card = Card.of(verdict, ON_A_PAGE, **choices)
     width = WIDTH if len(card.traffic.parts) <= 2 else HALF_WIDTH
@@ -168,38 +168,35 @@ _TITLE_WIDTH = 42
 """The maximum length of a line of the title, in characters."""
 
 
-def certificate_svg(title: str, points: float, finished: float) -> str:
+def certificate_svg(title: str, points: float, finished: float, helped: int = 0) -> str:
     """Return the certificate as SVG, with all texts escaped.
 
     Args:
         finished: The Unix time in seconds at which the last point was reached.
+        helped: The number of tasks whose worked solution the student opened before solving them.
     """
     template = _templates().get_template("certificate.svg.j2")
     return template.render(
-        label=certificate_text(title, points, finished),
+        label=certificate_text(title, points, finished, helped),
         title=_lines(title),
         points=_points(points),
+        helped=card_wording.with_solution(helped),
         date=_date(finished),
         words=CERTIFICATE_WORDS,
     )
 
 
-def certificate_text(title: str, points: float, finished: float) -> str:
-    """Return the certificate in words.
-
-    Args:
-        finished: The Unix time in seconds at which the last point was reached.
-    """
-    return (
-        f"Chapter complete: {one_line(title, 160)}. {_points(points)}, {_date(finished)}. {CERTIFICATE_WORDS}"
-    )
+def certificate_text(title: str, points: float, finished: float, helped: int = 0) -> str:
+    """Return the certificate in words. For the arguments see :func:`certificate_svg`."""
+    reached = ", ".join(filter(None, (_points(points), card_wording.with_solution(helped), _date(finished))))
+    return f"Chapter complete: {one_line(title, 160)}. {reached}. {CERTIFICATE_WORDS}"
 
 
-def certificate_bundle(title: str, points: float, finished: float) -> dict[str, str]:
+def certificate_bundle(title: str, points: float, finished: float, helped: int = 0) -> dict[str, str]:
     """Return the certificate as ``display(..., raw=True)`` takes it. For the arguments see :func:`certificate_svg`."""
     return {
-        "text/html": f'<div class="agc-certificate">{certificate_svg(title, points, finished)}</div>',
-        "text/plain": certificate_text(title, points, finished),
+        "text/html": f'<div class="agc-certificate">{certificate_svg(title, points, finished, helped)}</div>',
+        "text/plain": certificate_text(title, points, finished, helped),
     }
 
 

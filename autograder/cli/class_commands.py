@@ -46,8 +46,8 @@ def _known_zone(_context: click.Context, _option: click.Parameter, name: str) ->
 @click.option(
     "--with-solutions",
     is_flag=True,
-    help="Show the reference solution on cards with full marks. Students could then also read it "
-    "earlier, in the folder exercises.",
+    help="Show the reference solution on cards with full marks, and offer it after the last hint and five failed "
+    "checks. Students could then also read it earlier, in the folder exercises.",
 )
 def hand_out(place: Path, assignments: tuple[str, ...], as_zip: bool, with_solutions: bool) -> None:
     """Make a hand-out for students in PLACE: notebooks and judge, without solutions, answers and grader."""

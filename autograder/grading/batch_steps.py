@@ -141,6 +141,13 @@ class Batch:
         self._entered = self._store.entered()
         for work in self._others:
             self._settle(work)
+        unlisted = [work for work in self._others if self._asked.has(*work.key) and not work.written]
+        if unlisted:
+            names = ", ".join("/".join(work.key) for work in unlisted)
+            self._notices.append(
+                f"students.csv does not list these students, so this work is not graded: {names}. To grade it anyway, "
+                f"add --student {unlisted[0].submission.student}"
+            )
         older = sum(
             work.key in self._entered and self._entered[work.key].course != course_version() for work in works
         )

@@ -101,7 +101,8 @@ class FoundWork:
     """The submissions of a class, with refused files and notices.
 
     Attributes:
-        others: The other submissions of the class.
+        works: The chosen submissions.
+        others: The other submissions of the class, and those of students whom ``students.csv`` does not list.
         refused: Files and folders that cannot be graded, each with the reason.
         notices: Sentences for the instructor.
     """
@@ -151,7 +152,9 @@ def find_work(
                 f"{course_command('collect', directory.path)}. Then write the time into the column handed_in of "
                 f"this submission's line in {NAME}, and type the same command again."
             )
-        (result.works if asked.has(*work.key) else result.others).append(work)
+        # Work of a student whom the list does not have is graded only if the instructor names the student.
+        is_chosen = roster.has(submission.student) or submission.student in asked.students
+        (result.works if is_chosen and asked.has(*work.key) else result.others).append(work)
     return result
 
 

@@ -190,7 +190,8 @@ class ClassStore:
             scores = _decoded(blobs[1], dict[str, dict[str, float]])
             rows = _decoded(blobs[2], tuple[Row, ...])
             if tasks is not None and scores is not None and rows is not None:
-                found[student, assignment] = Entered(fingerprint, tasks, scores, rows, course, shown)
+                own = tuple(replace(row, student=student) for row in rows)
+                found[student, assignment] = Entered(fingerprint, tasks, scores, own, course, shown)
         return found
 
     def attempts(self, student: str) -> list[Attempt]:
@@ -220,6 +221,8 @@ class ClassStore:
                     book.execute(f"UPDATE OR IGNORE {table} SET student = ? WHERE student = ?", pair)
                 for table in ("result", "evidence", "entered"):
                     book.execute(f"DELETE FROM {table} WHERE student = ?", pair[1:])
+                # The feedback pages name the student.
+                book.execute("UPDATE entered SET shown = '' WHERE student = ?", pair[:1])
             for name, report in book.execute("SELECT name, report FROM run").fetchall():
                 if rows := _decoded(report, tuple[Row, ...]):
                     own = [replace(row, student=ids.get(row.student, row.student)) for row in rows]

@@ -1,7 +1,8 @@
 """Keeps the journal of a student's checks, a small file next to the notebooks. Grades never depend on it.
 
-Each line is JSON: a check that ended, a notebook that was marked as read, or a notebook that was reset. The course page
-and ``./course progress`` read the journal. If the file cannot be written, checks still work. A damaged line is ignored.
+Each line is JSON: a check that ended, a worked solution that was opened, or a notebook that was marked as read or
+reset. The course page and ``./course progress`` read the journal, and a card does, to know whether it offers the worked
+solution. If the file cannot be written, checks still work. A damaged line is ignored.
 """
 
 from __future__ import annotations
@@ -11,7 +12,6 @@ import hashlib
 import os
 import stat
 import time
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
@@ -31,26 +31,35 @@ VARIABLE = "AUTOGRADER_JOURNAL"
 NAME = ".course-journal.jsonl"
 """The name of the journal in the folder of the notebooks."""
 MOST = 4_000_000
-"""The maximum number of bytes to read from the end of the file: about forty thousand checks."""
+"""The maximum number of bytes to read from the end of the file: about thirty thousand checks."""
+ATTEMPTS = 5
+"""The number of failed checks, each of other code, after which a student may open the worked solution."""
 
 
-@dataclass(frozen=True)
-class JournalEntry:
+class JournalEntry(msgspec.Struct, frozen=True, omit_defaults=True):
     """A line of the journal.
 
     Attributes:
-        kind: What happened: a check ended, or a notebook was marked as read, unmarked, or reset.
-        name: For a check, the exercise's id, such as ``"lab_1_2.talker"``; otherwise the name of the notebook.
+        kind: What happened: a check ended, its worked solution was opened, or a notebook was marked as read, unmarked,
+            or reset.
+        name: For a check or solution, the exercise's id, such as ``"lab_1_2.talker"``; otherwise the name of the
+            notebook.
         time: The Unix time in seconds.
         points: The points that the check earned.
         possible: The maximum points of the check.
+        code: A digest of the code that was checked; empty if it is not known, as for a program in a terminal.
+        nothing_seen: True if the check saw nothing of this code, as before its first line is written.
+        helped: True if the student had opened the worked solution before this check. Only :func:`best` sets it.
     """
 
-    kind: Literal["check", "read", "unread", "reset"]
+    kind: Literal["check", "solution", "read", "unread", "reset"]
     name: str
     time: Annotated[float, msgspec.Meta(ge=0, le=4e9)]
     points: Annotated[float, msgspec.Meta(ge=0)] = 0.0
     possible: Annotated[float, msgspec.Meta(ge=0)] = 0.0
+    code: str = ""
+    nothing_seen: bool = False
+    helped: bool = False
 
     @property
     def notebook(self) -> str:
@@ -90,15 +99,23 @@ def session_journal_path() -> Path | None:
     return None
 
 
-def note_check(verdict: Verdict, journal: Path | None = None) -> bool:
+def note_check(verdict: Verdict, journal: Path | None = None, *, code: str = "") -> bool:
     """Record a check that has ended, unless it could not be made. Return False if the journal cannot be written.
 
     Args:
         journal: The journal to write to; by default this session's.
+        code: A digest of the code that was checked; empty if it is not known.
     """
-    return verdict.state == "not_checked" or note(
-        JournalEntry("check", verdict.exercise, time.time(), verdict.score, verdict.max_score), journal
-    )
+    if verdict.state == "not_checked":
+        return True
+    name, points, possible = verdict.exercise, verdict.score, verdict.max_score
+    entry = JournalEntry("check", name, time.time(), points, possible, code, verdict.nothing_seen)
+    return note(entry, journal)
+
+
+def note_solution(exercise: str) -> bool:
+    """Record that the student opens an exercise's worked solution. Return False if the journal cannot be written."""
+    return note(JournalEntry("solution", exercise, time.time()))
 
 
 def note(entry: JournalEntry, journal: Path | None = None) -> bool:
@@ -142,15 +159,41 @@ def entries(journal: Path | None) -> list[JournalEntry]:
 
 def best(lines: Iterable[JournalEntry]) -> dict[str, JournalEntry]:
     """Return the best check of each exercise since its notebook was last reset; of equally good ones, the first."""
-    found: dict[str, dict[str, JournalEntry]] = {}
-    for entry in lines:
+    found: dict[str, JournalEntry] = {}
+    opened: set[str] = set()
+    for entry in _since_reset(lines):
+        if entry.kind == "solution":
+            opened.add(entry.name)
+        elif entry.kind == "check" and (entry.name not in found or found[entry.name].points < entry.points):
+            found[entry.name] = msgspec.structs.replace(entry, helped=entry.name in opened)
+    return found
+
+
+def has_opened_solution(exercise: str, lines: Iterable[JournalEntry]) -> bool:
+    """Return True if the student has opened an exercise's worked solution since its notebook was last reset."""
+    return any(entry.kind == "solution" and entry.name == exercise for entry in _since_reset(lines))
+
+
+def may_open_solution(exercise: str, lines: Iterable[JournalEntry]) -> bool:
+    """Return True if enough checks of an exercise failed, each of other code, since its notebook was last reset.
+
+    The cell as it was handed out is not one of them. If the checks of some code saw nothing, one of these codes is
+    taken for that cell.
+    """
+    checks = [entry for entry in _since_reset(lines) if entry.kind == "check" and entry.name == exercise]
+    failed = {entry.code for entry in checks if entry.code and not entry.full}
+    return len(failed) - any(entry.nothing_seen for entry in checks) >= ATTEMPTS
+
+
+def _since_reset(lines: Iterable[JournalEntry]) -> list[JournalEntry]:
+    """Return the lines about notebooks and their exercises that no later reset of the notebook has made obsolete."""
+    kept, reset = list[JournalEntry](), set[str]()
+    for entry in reversed(list(lines)):
         if entry.kind == "reset":
-            found.pop(entry.name, None)
-        elif entry.kind == "check":
-            of_notebook = found.setdefault(entry.notebook, {})
-            if entry.name not in of_notebook or of_notebook[entry.name].points < entry.points:
-                of_notebook[entry.name] = entry
-    return {name: entry for of_notebook in found.values() for name, entry in of_notebook.items()}
+            reset.add(entry.name)
+        elif entry.notebook not in reset:
+            kept.append(entry)
+    return kept[::-1]
 
 
 def finished(chapter: course.Chapter, reached: dict[str, JournalEntry]) -> float | None:

@@ -135,8 +135,9 @@ def hand_out(
         root: The top folder of the whole course.
         assignments: The names of the notebooks to hand out, graded or not; all if empty.
         as_zip: True to make a zip file.
-        with_solutions: True to add the reference solutions and explanations that cards show with full marks. Students
-            can then also read them earlier, in the folder ``exercises``, as those of a bug hunt always.
+        with_solutions: True to add the reference solutions and explanations that cards show with full marks, or offer
+            after enough failures. Students can then also read them earlier, in the folder ``exercises``, as those of a
+            bug hunt always.
 
     Raises:
         CannotHandOut: The place is not empty, a name is not that of a notebook, a notebook of the chapters was

@@ -144,7 +144,9 @@ class _Certificate(_CourseHandler):
             if chapter.name == name and chapter.finished is not None:
                 self.set_header("Content-Type", "image/svg+xml")
                 self.set_header("Content-Disposition", f'attachment; filename="certificate-{name}.svg"')
-                self.finish(certificate_svg(chapter.title, chapter.possible, chapter.finished))
+                self.finish(
+                    certificate_svg(chapter.title, chapter.possible, chapter.finished, chapter.helped)
+                )
                 return
         raise web.HTTPError(404, reason="this certificate does not exist yet")
 

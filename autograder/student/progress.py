@@ -15,7 +15,7 @@ from urllib.parse import quote
 import msgspec
 
 from autograder import course, exercises
-from autograder.cards.card_wording import points, points_of
+from autograder.cards.card_wording import points, points_of, with_solution
 from autograder.cards.html_rendering import certificate_svg, certificate_text
 from autograder.command_name import COMMAND
 from autograder.student import check_journal
@@ -42,12 +42,14 @@ class _ExerciseStanding:
         title: The title for people.
         points: The points of the best check.
         possible: The maximum points of the exercise.
+        helped: True if the student had opened the worked solution before this check.
     """
 
     id: str
     title: str
     points: float
     possible: float
+    helped: bool
 
 
 @dataclass(frozen=True)
@@ -85,6 +87,11 @@ class NotebookStanding:
         return sum(one.possible for one in self.exercises)
 
     @property
+    def helped(self) -> int:
+        """The number of exercises whose points were reached with the worked solution."""
+        return sum(one.helped for one in self.exercises)
+
+    @property
     def state(self) -> State:
         """The state. A notebook is done if it has all points or, if it has no exercises, is marked as read."""
         if self.possible == 0:
@@ -117,6 +124,11 @@ class ChapterStanding:
     def possible(self) -> float:
         """The maximum points."""
         return sum(one.possible for one in self.notebooks)
+
+    @property
+    def helped(self) -> int:
+        """The number of exercises whose points were reached with the worked solution."""
+        return sum(one.helped for one in self.notebooks)
 
     @property
     def done(self) -> int:
@@ -213,8 +225,11 @@ def notebook_path(chapter: course.Chapter, lab: Path, folder: Path) -> Path:
 
 def _exercise(exercise_id: str, reached: dict[str, JournalEntry]) -> _ExerciseStanding:
     exercise = exercises.get(exercise_id)
-    points = reached[exercise_id].points if exercise_id in reached else 0.0
-    return _ExerciseStanding(exercise_id, exercise.title, min(points, exercise.points), exercise.points)
+    best = reached.get(exercise_id)
+    points, helped = (best.points, best.helped) if best else (0.0, False)
+    return _ExerciseStanding(
+        exercise_id, exercise.title, min(points, exercise.points), exercise.points, helped and points > 0
+    )
 
 
 def _head(lab: Path) -> tuple[str, int]:
@@ -286,7 +301,9 @@ def _environment() -> Environment:
         return Markup(files("autograder.student").joinpath(name).read_text(encoding="utf-8"))
 
     def drawn(chapter: ChapterStanding) -> Markup:
-        return Markup(certificate_svg(chapter.title, chapter.possible, chapter.finished or 0.0))
+        return Markup(
+            certificate_svg(chapter.title, chapter.possible, chapter.finished or 0.0, chapter.helped)
+        )
 
     helpers: dict[str, Any] = {
         "certificate": drawn,
@@ -298,6 +315,7 @@ def _environment() -> Environment:
         "points_of": points_of,
         "quote": quote,
         "states": STATES,
+        "with_solution": with_solution,
     }
     environment.globals.update(helpers)
     return environment
@@ -321,10 +339,11 @@ def _chapter_text(chapter: ChapterStanding) -> list[str]:
     lines = [chapter.title, points_of(chapter.points, chapter.possible), ""]
     for one in chapter.notebooks:
         reached = points_of(one.points, one.possible) if one.possible else "to read"
+        reached = ", ".join(filter(None, (reached, with_solution(one.helped))))
         minutes = f"{one.minutes} min" if one.minutes else ""
         lines.append(f"  {MARKS[one.state]} {one.title:<{width}}  {minutes:>7}  {reached}".rstrip())
     if chapter.finished is not None:
-        lines += ["", certificate_text(chapter.title, chapter.possible, chapter.finished)]
+        lines += ["", certificate_text(chapter.title, chapter.possible, chapter.finished, chapter.helped)]
     elif chapter.minutes_left:
         lines += ["", f"About {hours(chapter.minutes_left)} to go."]
     return lines

@@ -40,12 +40,11 @@ from autograder.workspaces.program_preparation import COURSE
 from autograder.workspaces.sources import SourceTree
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable
     from pathlib import Path
 
     from autograder.workspaces.builds.colcon_build import Build
     from autograder.workspaces.jobs import BuildJob, Jobs
-    from autograder.workspaces.packages import Package
 
 
 ROOM = 32_000_000
@@ -60,7 +59,7 @@ class GradedBuilds(Builds):
     Args:
         folder: The folder for the builds of this execution. Only the grader can write to it.
         jobs: Runs colcon and the built programs.
-        ahead: The folder of builds made in advance; None if nothing is shared.
+        ahead: The folder of builds made in advance; None if nothing is shared. If it is ``folder``, they are made.
         room: The maximum size in bytes of all builds that the execution uses, including builds made in advance.
     """
 
@@ -69,21 +68,19 @@ class GradedBuilds(Builds):
         self._ahead = ahead
         self._paid: set[str] = set()
 
-    def _find_or_make(self, found: Build, chosen: Sequence[Package], job: BuildJob) -> Build:
+    def _keyed(self, job: BuildJob, *words: str) -> BuildJob:
         # If the packages define interfaces, hide the course's interfaces from the build.
-        hidden = course_interfaces() if any(package.interface_files for package in chosen) else ()
-        others = [f"{path} {file_state(str(path))}" for path in course_interfaces() if path not in hidden]
-        job = self._keyed(replace(job, hidden=hidden), *others)
-        wanted = [job]
-        if all(package.holds_only_interfaces for package in chosen):
-            wanted.append(self._keyed(replace(job, tree=simplified(job.tree)), *others))
-        for one in wanted:
-            if self._ahead and build_cache.is_complete(one.key, self._ahead):
-                return self._entry(found, one, self._ahead)
-        return self._entry(found, job)
+        hides = any(source.path.endswith(DEFINITIONS) for source in job.tree.sources)
+        found = [] if hides else [f"{path} {file_state(str(path))}" for path in course_interfaces()]
+        return super()._keyed(replace(job, hidden=course_interfaces() if hides else ()), *found, *words)
 
     def _entry(self, found: Build, job: BuildJob, folder: Path | None = None) -> Build:
         """Return the build, or a failed build if all builds, including those made in advance, exceed the size limit."""
+        names = {package.name for package in job.packages}
+        interfaces = all(p.holds_only_interfaces for p in found.packages if p.name in names)
+        shared = self._keyed(replace(job, tree=simplified(job.tree))) if interfaces else job
+        if self._ahead and (self._ahead == self._folder or build_cache.is_complete(shared.key, self._ahead)):
+            job, folder = shared, self._ahead
         made = super()._entry(found, job, folder)
         if made.install is None or job.key in self._paid:
             return made
@@ -121,7 +118,7 @@ def build_ahead(folder: Path, jobs: Jobs) -> None:
     """
     if folder in _done:
         return
-    builds = GradedBuilds(folder, jobs, room=_ROOM_AHEAD)
+    builds = GradedBuilds(folder, jobs, folder, room=_ROOM_AHEAD)
     every: list[Callable[[], object]] = [
         functools.partial(_build, builds, files) for files in packages_to_build_ahead(course.root())
     ]
@@ -137,20 +134,11 @@ def build_ahead(folder: Path, jobs: Jobs) -> None:
 
 
 def _build(builds: GradedBuilds, files: PackageFiles) -> object:
-    """Build packages that the course has recorded; from simplified sources if the packages only define interfaces."""
-    tree = SourceTree(
-        tuple(Source(path, None if text is None else text.encode()) for path, text in files.items())
-    )
+    """Build packages that the course has recorded."""
+    sources = (Source(path, None if text is None else text.encode()) for path, text in files.items())
     with HeldFolder("autograder-ahead-") as folder:
-        found = _written(tree, folder.path / "as-recorded")
-        if all(package.holds_only_interfaces for package in found.packages):
-            found = _written(simplified(tree), folder.path / "simplified")
-        return builds.build(found, None)
-
-
-def _written(tree: SourceTree, workspace: Path) -> Build:
-    tree.write(workspace / "src")
-    return describe_workspace(workspace)
+        SourceTree(tuple(sources)).write(folder.path / "src")
+        return builds.build(describe_workspace(folder.path), None)
 
 
 MAX_SIMPLIFIED = 50_000

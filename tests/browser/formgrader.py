@@ -53,7 +53,7 @@ class Formgrader:
         """Go by its links to the first submission of an assignment of one notebook."""
         self.open("gradebook")
         for link in (assignment, assignment, "Submission #1"):
-            self.page.get_by_role("link", name=link, exact=True).last.click()
+            self._follow(self.page.get_by_role("link", name=link, exact=True).last)
         self._ready()
 
     @property
@@ -80,10 +80,14 @@ class Formgrader:
 
     def next(self) -> None:
         """Press Next."""
-        before = self.page.url
-        self.page.locator("li.next a").click()
-        self.page.wait_for_url(lambda url: url != before)
+        self._follow(self.page.locator("li.next a"))
         self._ready()
+
+    def _follow(self, link: Locator) -> None:
+        # The old page stays for a moment, and has links of the same names.
+        before = self.page.url
+        link.click()
+        self.page.wait_for_url(lambda url: url != before)
 
     def _ready(self) -> None:
         self.page.wait_for_function(

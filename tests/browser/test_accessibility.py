@@ -78,6 +78,8 @@ def tab_to(page: Page, target: Locator) -> None:
 
 @light_and_dark
 def test_the_course_page(page: Page, lab: str, chapters: Path, scheme: str) -> None:
+    from playwright.sync_api import expect
+
     (chapters / check_journal.NAME).unlink(missing_ok=True)
     page.emulate_media(color_scheme="dark" if scheme == "dark" else "light")
     page.goto(lab.format("course"))
@@ -88,6 +90,7 @@ def test_the_course_page(page: Page, lab: str, chapters: Path, scheme: str) -> N
         assert grave_findings(page) == []
     page.locator(".reset").first.focus()
     page.keyboard.press("Enter")
+    expect(page.locator("#ask")).to_be_visible()
     look(page, f"course-{scheme}")
     assert grave_findings(page, "#ask") == []
 
@@ -112,6 +115,8 @@ def test_the_side_panel_and_a_card_in_jupyterlab_by_the_keyboard(
     panel = page.frame_locator("iframe[title=Course]")
     expect(panel.locator("#continue")).to_contain_text("Lab 1.2")
     if scheme == "dark":
+        # JupyterLab sets the attribute once its own theme is loaded, and would set it again.
+        expect(page.locator("body")).to_have_attribute("data-jp-theme-light", "true")
         page.evaluate("document.body.dataset.jpThemeLight = 'false'")
         expect(panel.locator("html")).to_have_attribute("data-theme", "dark")
     frame = next(one for one in page.frames if one.url.endswith("/course"))

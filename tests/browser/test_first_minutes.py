@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING
 import pytest
 
 sys.path.insert(0, str(Path(__file__).parent))
-from open_notebook import OpenNotebook, look
+from open_notebook import OpenNotebook, look, until
 
 if TYPE_CHECKING:
-    from playwright.sync_api import Page
+    from playwright.sync_api import Locator, Page
 
 pytestmark = [pytest.mark.browser, pytest.mark.ros, pytest.mark.slow]
 ROBOT = 'img[alt^="The robot is in"]'
@@ -41,12 +41,13 @@ def test_a_student_drives_the_robot_in_five_actions(page: Page, lab: str) -> Non
     look(page, "robot-stands")
 
     task = notebook.cell(r"^class Driver")
-    assert "# TODO" in task.locator(".cm-content").inner_text()
+    expect(task.locator(".cm-content")).to_contain_text("# TODO")
     expect(task.locator(".jp-InputArea-editor")).to_have_css("border-left-width", "4px")
     editor = first.locator(".jp-InputArea-editor")
     expect(editor).to_have_css("border-left-width", "1px")
     first.locator(".cm-content").click()
-    assert "cannot be changed" in editor.evaluate("one => getComputedStyle(one, '::after').content")
+    after = "one => getComputedStyle(one, '::after').content"
+    until(page, lambda: "cannot be changed" in editor.evaluate(after))
     notebook.write(r"^class Driver", driver())
     notebook.run(r"^class Driver")
     driven = notebook.run(r"^driving = ").locator(ROBOT)
@@ -56,8 +57,7 @@ def test_a_student_drives_the_robot_in_five_actions(page: Page, lab: str) -> Non
     checked = notebook.run(r'^check\("00_nervous_system')
     expect(checked.locator(".agc-passed")).to_contain_text("10 of 10 points")
     look(page, "first-green")
-    picture = base64.b64decode((driven.get_attribute("src") or "").partition("base64,")[2]).decode()
-    assert "trail" in picture
+    until(page, lambda: "trail" in picture_of(driven))
 
 
 def test_the_arrow_keys_drive_the_robot(page: Page, lab: str) -> None:
@@ -70,6 +70,7 @@ def test_the_arrow_keys_drive_the_robot(page: Page, lab: str) -> None:
     robot, button = first.locator(ROBOT), first.get_by_role("button", name="Drive with the arrow keys")
     expect(robot).to_have_attribute("alt", re.compile(r"x = 1\.00 m"))
     button.click()
+    expect(page.locator("body")).to_have_class(re.compile("ros2-course-drives"))
     page.keyboard.down("ArrowUp")
     expect(robot).to_have_attribute("alt", re.compile(r"in the right room"), timeout=60_000)
     look(page, "robot-driven-by-keys")
@@ -77,6 +78,11 @@ def test_the_arrow_keys_drive_the_robot(page: Page, lab: str) -> None:
     expect(robot).to_have_attribute("alt", re.compile(r"It stands still\."))
     page.keyboard.press("Escape")
     expect(page.locator("body")).not_to_have_class(re.compile("ros2-course-drives"))
+
+
+def picture_of(robot: Locator) -> str:
+    """The SVG of the robot's picture, as it is now."""
+    return base64.b64decode((robot.get_attribute("src") or "").partition("base64,")[2]).decode()
 
 
 def driver() -> str:

@@ -118,6 +118,7 @@ def test_validate_stays_in_reach_and_hints_open_by_the_keyboard(page: Page, lab:
 
     notebook.panel.locator("jp-button[title='More commands'], .jp-Toolbar-responsive-opener").first.click()
     validate = page.get_by_text("Validate", exact=True)
+    expect(validate).to_be_visible()
     look(page, "narrow-more")
     assert_in_sight(validate)
     validate.click()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -59,7 +60,9 @@ def test_each_block_of_commands_opens_its_own_terminal_and_the_student_presses_e
     page.goto(lab.format("lab/tree/01_ros2_fundamentals/terminals.ipynb"))
     notebook = OpenNotebook(page)
     expect(page.locator("#jp-main-statusbar")).to_contain_text("Python 3 (ipykernel) | Idle")
-    domain = notebook.run(r"^import os").locator(".jp-OutputArea-output").inner_text().split()[-1]
+    said = notebook.run(r"^import os").locator(".jp-OutputArea-output")
+    expect(said).to_have_text(re.compile(r"domain \d+\s*"))  # all of it: a kernel may send a line in pieces
+    domain = said.inner_text().split()[-1]
 
     expect(notebook.panel.locator(".jp-CodeCell", has_text="pass")).to_be_hidden()
     buttons = notebook.panel.get_by_role("button", name="Open in a terminal")

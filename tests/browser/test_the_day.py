@@ -23,6 +23,7 @@ import pytest
 from bs4 import BeautifulSoup
 from click.testing import CliRunner
 from nbgrader.api import Gradebook
+from playwright.sync_api import expect
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "grading"))
 sys.path.insert(0, str(Path(__file__).parents[1] / "grading" / "day"))
@@ -347,9 +348,9 @@ def test_the_whole_day(tiny: TinyClass, page: Page, tmp_path: Path) -> None:
     with server as address:
         formgrader = Formgrader(page, address, "teacher")
         line = formgrader.autograde(LAB, class_[4].id)
-        assert f"{sum(points(class_[4]))} / 25" in line.inner_text()
+        expect(line).to_contain_text(f"{sum(points(class_[4]))} / 25")
         line = formgrader.autograde(OWN, class_[4].id)
-        assert f"{ANSWERS[answer(class_[4])]:g} / 10" in line.inner_text()
+        expect(line).to_contain_text(f"{ANSWERS[answer(class_[4])]:g} / 10")
         entered = read_truth(tiny.path)
         assert sum(entered.totals.values()) == sum(points(class_[4])) + ANSWERS[answer(class_[4])]
 

@@ -9,6 +9,9 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from autograder.student import check_journal
+from autograder.student.check_journal import JournalEntry
+
 sys.path.insert(0, str(Path(__file__).parent))
 from open_notebook import OpenNotebook, look
 
@@ -88,3 +91,40 @@ def test_a_task_is_done_with_the_buttons_alone(page: Page, lab: str) -> None:
     expect(page.locator(".Toastify")).to_contain_text("TalkerNode is no longer checked automatically.")
     checked.locator(".agc-acts").get_by_role("button", name="Next task").click()
     expect(page.locator(".jp-Cell.jp-mod-active")).to_contain_text("class ListenerNode")
+
+
+def test_after_the_last_hint_and_enough_failures_a_button_opens_the_worked_solution(
+    page: Page, lab: str, chapters: Path
+) -> None:
+    from playwright.sync_api import expect
+
+    journal = chapters / check_journal.NAME
+    for code in "abcde":
+        check_journal.note(JournalEntry("check", "lab_1_2.talker", 1, 0, 10, code), journal)
+    notebook = with_a_wrong_talker(page, lab)
+    notebook.run(r"^class TalkerNode")
+    checked = notebook.run(r'^check\("lab_1_2.talker"')
+    opens = checked.get_by_role("button", name="Open the worked solution")
+    expect(opens).to_be_visible()
+    look(page, "worked-offered")
+    opens.click()
+    expect(page.locator(".Toastify")).to_contain_text("Open the last hint of this task first")
+    look(page, "worked-hints-first")
+    for number in (1, 2, 3):
+        notebook.panel.locator("summary", has_text=f"Hint {number} of 3.").click()
+    opens.click()
+    solution = checked.locator(".agc-solution[open]")
+    expect(solution).to_contain_text("self.create_timer(0.5, self.say_hello)")
+    expect(opens).to_have_count(0)
+    solution.scroll_into_view_if_needed()
+    look(page, "worked-opened")
+    assert check_journal.entries(journal)[-1].kind == "solution"
+
+    # It stays on the card while the student writes.
+    notebook.write(r"^class TalkerNode", answer("right/as_hinted.py"))
+    notebook.run(r"^class TalkerNode")
+    expect(checked.locator(".agc-passed")).to_contain_text("10 of 10 points")
+    expect(checked.locator(".agc-solution")).to_contain_text("self.create_timer(0.5, self.say_hello)")
+    panel = page.frame_locator("iframe[title=Course]")
+    expect(panel.locator('[data-notebook="lab_1_2"]')).to_contain_text("1 task with the worked solution")
+    look(page, "worked-passed")

@@ -1,4 +1,4 @@
-"""The reference solution, which a card offers with full marks, folded up."""
+"""The reference solution: folded up on a card with full marks, and offered after some failures."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from autograder.cards import html_rendering
 from autograder.cards.card_content import Solution
-from autograder.cards.card_wording import OTHER_WAY, OUR_CHANGE, OWN_CHANGE, SOLUTION
+from autograder.cards.card_wording import OFFER, OTHER_WAY, OUR_CHANGE, OWN_CHANGE, SOLUTION
 from autograder.verdict import State, Verdict
 
 FULL = Verdict("lab_9_1.battery", "The battery", State.PASSED, 10, 10)
@@ -26,13 +26,21 @@ def test_full_marks_offer_it_folded_up() -> None:
         assert words in card["text/plain"]
 
 
-def test_anything_less_does_not() -> None:
-    without = html_rendering.card_bundle(FULL)
-    assert SOLUTION not in str(without)
-    for state, score in ((State.FAILED, 9), (State.FAILED, 10), (State.NOT_CHECKED, 0)):
-        assert SOLUTION not in str(
-            html_rendering.card_bundle(replace(FULL, state=state, score=score), solution=REFERENCE)
-        )
+def test_no_card_has_it_by_itself() -> None:
+    assert SOLUTION not in str(html_rendering.card_bundle(FULL))
+
+
+def test_a_student_who_has_opened_it_sees_it_unfolded() -> None:
+    card = html_rendering.card_bundle(replace(FULL, state=State.FAILED, score=9), solution=REFERENCE)
+    assert f'<details class="agc-fold agc-solution" open="open">\n<summary>{SOLUTION}' in card["text/html"]
+
+
+def test_only_the_card_of_a_notebook_offers_it_and_a_short_one_does_not() -> None:
+    failed = replace(FULL, state=State.FAILED, score=9)
+    assert OFFER in html_rendering.card_bundle(failed, offers_solution=True)["text/html"]
+    assert OFFER not in html_rendering.card_bundle(failed)["text/html"]
+    assert OFFER not in html_rendering.card_bundle(failed, offers_solution=True, short=True)["text/html"]
+    assert OFFER not in html_rendering.card_html(failed, offers_solution=True)
 
 
 def test_where_there_is_no_other_way_none_is_mentioned() -> None:

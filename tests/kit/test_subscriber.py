@@ -145,7 +145,8 @@ def test_a_listener_that_is_too_slow_for_the_pace_loses_texts_in_each_series(see
     texts = random_texts(random)
     pairs = drawn_pairs(random, texts)
     rows = [texts[1 + AT_PACE * i : 1 + AT_PACE * (i + 1)] for i in range(TRIES)]
-    assert all(lost_in(row, pairs, work=1.0) for row in rows)
+    for row in rows:
+        assert [text for text in lost_in(row, pairs, work=1.0) if row.count(text) == 1]
     assert not any(lost_in(row, pairs, work=0.2) for row in rows)
 
 

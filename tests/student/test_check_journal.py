@@ -39,6 +39,38 @@ def test_a_check_is_a_line_and_the_best_one_counts(kept: Path) -> None:
     assert check_journal.best(lines)["lab.talker"] == lines[1]
 
 
+def test_a_task_that_was_solved_with_its_worked_solution_says_so_until_its_notebook_is_reset() -> None:
+    def helped(*lines: JournalEntry) -> bool:
+        return check_journal.best(lines)["lab.talker"].helped
+
+    half, full = (JournalEntry("check", "lab.talker", 1, points, 10) for points in (5, 10))
+    opened = JournalEntry("solution", "lab.talker", 2)
+    assert helped(half, opened, full)
+    assert not helped(full, opened, full)
+    assert not helped(half, opened, half)
+    assert not helped(half, JournalEntry("solution", "lab.listener", 2), full)
+    assert not helped(half, opened, JournalEntry("reset", "lab", 3), full)
+
+
+def test_five_failures_each_of_other_code_open_the_worked_solution() -> None:
+    def failed(code: str, points: float = 0, *, nothing_seen: bool = False) -> JournalEntry:
+        return JournalEntry("check", "lab.talker", 1, points, 10, code, nothing_seen)
+
+    def may(*lines: JournalEntry) -> bool:
+        return check_journal.may_open_solution("lab.talker", lines)
+
+    empty, own = failed("0", nothing_seen=True), [failed(code) for code in "abcde"]
+    assert may(*own)
+    assert may(empty, *own)
+    assert not may(empty, *own[1:])
+    assert not may(*[own[0]] * 9)
+    assert not may(*[empty] * 9)
+    assert not may(*own[1:], failed("f", 10))
+    assert not may(*own[1:], failed(""))
+    assert not may(*own, JournalEntry("reset", "lab", 3))
+    assert not check_journal.may_open_solution("lab.listener", own)
+
+
 def test_a_link_in_anothers_folder_has_no_line_written_elsewhere(kept: Path, tmp_path: Path) -> None:
     own = tmp_path / ".bashrc"
     own.write_text("export A=1\n")

@@ -14,7 +14,7 @@ from autograder.cards.html_rendering import CERTIFICATE_WORDS, certificate_svg
 from autograder.cli import cli
 from autograder.student import check_journal
 from autograder.student.check_journal import JournalEntry
-from autograder.student.progress import hours, page_html, standing, trouble_html
+from autograder.student.progress import hours, page_html, standing, standing_text, trouble_html
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -54,6 +54,18 @@ def test_a_certificate_comes_with_the_last_point_and_says_what_it_is_worth() -> 
     svg = certificate_svg("Nodes & <Topics>", 130, 86_400)
     assert "Nodes &amp; &lt;Topics&gt;" in svg
     assert ("All 130 points" in svg, "1970" in svg, "not a grade" in svg) == (True, True, True)
+
+
+def test_a_task_with_the_worked_solution_says_so_on_the_page_and_on_the_certificate() -> None:
+    words = "1 task with the worked solution"
+    opened = JournalEntry("solution", TALKER.name, 0)
+    everything = [JournalEntry("check", exercise, 86_400, 10, 10) for exercise in exercises.all_ids()]
+    row = page(opened, TALKER).partition('data-notebook="lab_1_2"')[2].partition("</li>")[0]
+    assert words in row
+    assert words not in page(TALKER, opened)
+    certificate = page(opened, *everything).partition("<figure")[2].partition("</figure>")[0]
+    assert certificate.count(words) == 3, "in the picture, its label, and the words below it"
+    assert words in standing_text(standing(ROOT, ROOT / course.CHAPTERS, (opened, TALKER)))
 
 
 def test_the_terminal_says_the_same(tmp_path: Path) -> None:

@@ -61,6 +61,19 @@ def built(builds: GradedBuilds, workspace: Path) -> Build:
     return made
 
 
+def publish(packages: Path, root: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Have the course record the packages in a folder."""
+    files = {
+        str(path.relative_to(packages)): path.read_text() if path.is_file() else None
+        for path in sorted(packages.rglob("*"))
+    }
+    chapter = root / "solutions" / "01_chapter"
+    chapter.mkdir(parents=True)
+    (chapter / BUILT_AHEAD).write_text(json.dumps([files]))
+    monkeypatch.setattr(course, "root", lambda: root)
+    monkeypatch.setattr(graded_builds, "_done", set())
+
+
 @pytest.mark.parametrize("make", [python_package, interface_package])
 def test_the_same_sources_are_built_again_for_a_classmate_and_for_a_second_execution(
     execution: Callable[[], tuple[GradedBuilds, FakeJobs]],
@@ -83,14 +96,7 @@ def test_a_package_of_the_course_is_built_ahead_whatever_its_comments_say(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     interface_package(tmp_path / "course" / "my_robot_interfaces", comment="# the course's\n")
-    files: dict[str, str | None] = {}
-    for path in sorted((tmp_path / "course").rglob("*")):
-        files[str(path.relative_to(tmp_path / "course"))] = path.read_text() if path.is_file() else None
-    chapter = tmp_path / "solutions" / "01_chapter"
-    chapter.mkdir(parents=True)
-    (chapter / BUILT_AHEAD).write_text(json.dumps([files]))
-    monkeypatch.setattr(course, "root", lambda: tmp_path)
-    monkeypatch.setattr(graded_builds, "_done", set())
+    publish(tmp_path / "course", tmp_path, monkeypatch)
     jobs = FakeJobs()
     build_ahead(ahead, jobs)
     build_ahead(ahead, jobs)
@@ -105,6 +111,33 @@ def test_a_package_of_the_course_is_built_ahead_whatever_its_comments_say(
     (other / "srv" / "AddTwoInts.srv").write_text("int32 a\n---\n")
     built(builds, tmp_path / "other")
     assert len(jobs.builds) == 1
+
+
+def test_the_course_s_packages_with_other_comments_and_texts_are_put_together_without_a_build(
+    execution: Callable[[], tuple[GradedBuilds, FakeJobs]],
+    ahead: Path,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    interface_package(tmp_path / "course" / "my_robot_interfaces", comment="# the course's\n")
+    python_package(tmp_path / "course")
+    publish(tmp_path / "course", tmp_path, monkeypatch)
+    jobs = FakeJobs()
+    build_ahead(ahead, jobs)
+    assert jobs.builds == [["my_robot_interfaces"], ["tiny_pkg"]]
+    assert "from the workspace" not in jobs.sources[1]
+
+    interface_package(tmp_path / "ros2_ws" / "src" / "my_robot_interfaces", comment="# a student's\n")
+    package = python_package(tmp_path / "ros2_ws" / "src")
+    (package / "tiny_pkg" / "hello.py").write_text("# a student's\n")
+    builds, jobs = execution()
+    built(builds, tmp_path / "ros2_ws")
+    assert not jobs.builds
+    (package / "setup.py").write_text((package / "setup.py").read_text().replace("hello =", "hi ="))
+    for _ in range(2):  # a classmate's setup.py, or that of an earlier execution, is not shared
+        builds, jobs = execution()
+        built(builds, tmp_path / "ros2_ws")
+        assert jobs.builds == [["tiny_pkg"]]
 
 
 def test_what_the_labs_write_is_recorded() -> None:

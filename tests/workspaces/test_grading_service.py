@@ -213,7 +213,7 @@ def test_what_fails_and_is_only_depended_on_takes_nothing_away(
     judge = FakeJudge(sockets)
     judge.check(lab)
     assert reports(judge.run())[-1]["built"]
-    assert jobs.builds == [["my_robot_interfaces", "my_robot_pkg"], ["my_robot_pkg"]]
+    assert jobs.builds == [["my_robot_interfaces"], ["my_robot_pkg"]]
 
 
 def test_what_a_failed_build_has_left_is_not_taken(
@@ -262,11 +262,13 @@ def test_the_same_sources_are_built_once_for_all(sockets: ServiceSockets, jobs: 
         judge.lines.close()
     assert jobs.builds == [["my_robot_pkg"]]
     file = lab / "src" / "my_robot_pkg" / "my_robot_pkg" / "hello.py"
-    file.write_text(file.read_text() + "\n")
-    judge = FakeJudge(sockets)
-    judge.check(lab)
-    judge.run()
-    assert len(jobs.builds) == 2
+    for change, runs in ((lambda: file.write_text("\n"), 1), (file.with_name("other.py").touch, 2)):
+        change()
+        judge = FakeJudge(sockets)
+        judge.check(lab)
+        judge.run()
+        judge.lines.close()
+        assert len(jobs.builds) == runs
 
 
 PACKAGE = "ros2_ws/src/my_robot_pkg"

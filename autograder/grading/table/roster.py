@@ -106,13 +106,17 @@ class Roster:
         self._former = tuple(former)
         self._unknown = unknown
 
+    def has(self, student: str) -> bool:
+        """Return True if a student belongs to the class: ``students.csv`` lists this id, or lists no student."""
+        return not self._is_whole or student in self.students
+
     def members(self, others: Iterable[str]) -> list[str]:
         """Return the ids of the students of the class, sorted.
 
         Args:
             others: The ids under which work was handed in. They are left out if ``students.csv`` does not list them.
         """
-        return sorted(self.students if self._is_whole else {*self.students, *others})
+        return sorted({*self.students, *filter(self.has, others)})
 
     def notices(self, assignments: Sequence[str], entries: Entries, students: Iterable[str]) -> list[str]:
         """Return sentences about probable mistakes in ``students.csv``, and about points of students it does not list.
@@ -124,7 +128,7 @@ class Roster:
         """
         others: dict[str, list[str]] = {}
         for (student, assignment), entry in sorted(entries.items()):
-            if self._is_whole and student not in self.students:
+            if not self.has(student):
                 others.setdefault(student, []).append(f"{assignment} {entry.points:g}")
         found = self._excused_from_nothing(assignments, students)
         if self._unknown:

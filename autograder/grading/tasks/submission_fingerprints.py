@@ -29,14 +29,16 @@ class Fingerprints:
         self._directory = directory
 
     def of(self, submission: Submission) -> str:
-        """Return a hash of all files that influence the grade and the feedback of a submission."""
+        """Return a hash of all files that influence the grade and the feedback of a submission.
+
+        The student's id is not part of it, so that a student who gets another id keeps the result.
+        """
         files = [submission.folder / f"{name}{SUFFIX}" for name in self._notebooks(submission.assignment)]
         return _digest(
             [
                 self.of_sources(submission.assignment),
                 self._directory.secret.hex(),
                 str(self._directory.is_sandbox_off),
-                submission.student,
                 *(_content(file) for file in (*files, submission.folder / TIMESTAMP)),
             ]
         )

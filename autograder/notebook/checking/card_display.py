@@ -30,6 +30,7 @@ from autograder.cards.readable_text import one_line, paragraph, wrap
 from autograder.messages.judge_messages import SOCKET_VARIABLE
 from autograder.notebook.cell_output import notebook_shell
 from autograder.notebook.checking.subject_runs import own_text
+from autograder.student import check_journal
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -221,7 +222,7 @@ class CardDisplay:
 
 def _dated(shown: _Shown, notice: str) -> dict[str, str]:
     """Return the HTML and text of a shown card, with a notice that the card is out of date."""
-    return html_rendering.card_bundle(shown.verdict, before=shown.before, notice=notice)
+    return _full_card(shown.verdict, shown.before, notice)
 
 
 def renew_card(verdict: Verdict, subject: Any) -> None:
@@ -233,12 +234,43 @@ def renew_card(verdict: Verdict, subject: Any) -> None:
         _remember(shell, verdict.exercise, subject, _Shown(verdict, before, earlier.handle, "", None))
 
 
-def _full_card(verdict: Verdict, before: float | None, subject: Any) -> dict[str, str]:
+def _full_card(
+    verdict: Verdict, before: float | None, subject: Any = None, notice: str = ""
+) -> dict[str, str]:
     # Show no solution in a grader's kernel, because the solution would then be in the graded notebook.
-    solution = solution_of(verdict.exercise) if verdict.passed and is_live() else None
-    if solution is not None:
+    solution = solution_of(verdict.exercise) if is_live() else None
+    if solution is not None and subject is not None:
         solution = replace(solution, own=tuple(own_text(broken, subject) for broken in solution.broken))
-    return html_rendering.card_bundle(verdict, before=before, solution=solution)
+    journal = check_journal.entries(check_journal.session_journal_path()) if solution else []
+    is_shown = verdict.passed or check_journal.has_opened_solution(verdict.exercise, journal)
+    # Until the pass of a bug hunt, nothing tells the cause.
+    is_offered = not (is_shown or (solution and solution.broken))
+    return html_rendering.card_bundle(
+        verdict,
+        before=before,
+        notice=notice,
+        solution=solution if is_shown else None,
+        offers_solution=is_offered and check_journal.may_open_solution(verdict.exercise, journal),
+    )
+
+
+def open_solution(exercise: str) -> str:
+    """Show the worked solution on the exercise's card, and record this in the journal. The card's button calls this.
+
+    Args:
+        exercise: The exercise's id.
+
+    Returns:
+        A sentence for the student.
+    """
+    shown = _shown.get(exercise)
+    journal = check_journal.entries(check_journal.session_journal_path())
+    if shown is None or not check_journal.may_open_solution(exercise, journal):
+        return "Run the check again first: this card is from an earlier session, or from before a reset."
+    if not check_journal.note_solution(exercise):
+        return "The worked solution stays closed, because your progress cannot be written: is the disk full?"
+    update_card(shown.handle, _full_card(shown.verdict, shown.before))
+    return "The worked solution is at the end of the card. If you do not see it there, check again."
 
 
 def is_live() -> bool:
@@ -287,7 +319,7 @@ def update_card(handle: Any, card: dict[str, str]) -> None:
 
 
 def solution_of(exercise: str) -> Solution | None:
-    """Return the reference solution, to show after full marks; None if there is none, as in a grader's sandbox.
+    """Return the reference solution; None if there is none, as in a hand-out and in a grader's sandbox.
 
     Args:
         exercise: The exercise's id.

@@ -26,6 +26,7 @@ from autograder.notebook.checking.subject_runs import (
     PathRun,
     SubjectRun,
     Tell,
+    code_digest,
     is_path,
     own_lines_of,
     send_sources,
@@ -89,9 +90,9 @@ def check(exercise: str, subject: Any) -> float:
         verdict = _ask(exercise, subject, card.progress)
         if verdict is None:
             return Score(0.0)
-        card.show(verdict)
-    # Record the check first, because validation may end the cell with an error.
-    record_check(verdict)
+        # Record the check first: the card reads the journal, and validation may end the cell with an error.
+        with recorded(verdict, subject):
+            card.show(verdict)
     if is_validating():
         raise_unless_full(verdict)
     for then in _after_a_check:
@@ -201,27 +202,31 @@ def converse(link: JudgeLink, exercise: str, subject: Any, progress: Progress) -
                 run.stop()
 
 
-def record_check(verdict: Verdict) -> None:
-    """Record a check in the journal. If it completes a chapter, show the certificate.
+@contextlib.contextmanager
+def recorded(verdict: Verdict, subject: Any) -> Iterator[None]:
+    """Record a check in the journal, then let the caller show its card.
 
-    A grader's kernel has no journal. Files that cannot be read or written are skipped, so that they do not break a
-    check.
+    If the check completes a chapter, show the certificate below the card. A grader's kernel has no journal. Files that
+    cannot be read or written are skipped, so that they do not break a check.
     """
-    if notebook_shell() is None or os.environ.get(messages.SOCKET_VARIABLE):
-        return
-    try:
-        ended = _chapter_ended_by(verdict)
-    except (OSError, course.NoCourse, course.BrokenChapter):
-        ended = None
+    ended = None
+    if notebook_shell() is not None and not os.environ.get(messages.SOCKET_VARIABLE):
+        with contextlib.suppress(OSError, course.NoCourse, course.BrokenChapter):
+            ended = _chapter_ended_by(verdict, code_digest(subject))
+    yield
     if ended is not None and is_live():
         _show_certificate(*ended)
 
 
-def _chapter_ended_by(verdict: Verdict) -> tuple[str, float, float] | None:
-    """Return the title, points and completion time of the chapter that this check completed; None if there is none."""
+def _chapter_ended_by(verdict: Verdict, code: str) -> tuple[str, float, float, int] | None:
+    """Return what the certificate says of the chapter that this check completed; None if it completed none.
+
+    Returns:
+        The title, the points, the completion time, and the number of tasks with the worked solution.
+    """
     journal = check_journal.session_journal_path()
     before = check_journal.best(check_journal.entries(journal))
-    if not check_journal.note_check(verdict, journal) and journal is not None:
+    if not check_journal.note_check(verdict, journal, code=code) and journal is not None:
         say(f"This check is not in your progress, because {journal} cannot be written: is the disk full?")
     if journal is None or not verdict.passed:
         return None
@@ -229,17 +234,17 @@ def _chapter_ended_by(verdict: Verdict) -> tuple[str, float, float] | None:
     for chapter in course.chapters(course.root()):
         finished = check_journal.finished(chapter, after)
         if finished is not None and check_journal.finished(chapter, before) is None:
-            wanted = [name for lab in chapter.labs for name in chapter.exercises_of(lab)]
-            return chapter.title, sum(after[name].possible for name in wanted), finished
+            tasks = [after[name] for lab in chapter.labs for name in chapter.exercises_of(lab)]
+            points, helped = sum(task.possible for task in tasks), sum(task.helped for task in tasks)
+            return chapter.title, points, finished, helped
     return None
 
 
-def _show_certificate(title: str, points: float, finished: float) -> None:
+def _show_certificate(title: str, points: float, finished: float, helped: int) -> None:
     from IPython.display import display
 
-    from autograder.cards import html_rendering
-
-    display(html_rendering.certificate_bundle(title, points, finished), raw=True)  # type: ignore[no-untyped-call]
+    bundle = html_rendering.certificate_bundle(title, points, finished, helped)
+    display(bundle, raw=True)  # type: ignore[no-untyped-call]
 
 
 def _kind(subject: Any) -> str:

@@ -6,6 +6,7 @@ file is launched.
 
 from __future__ import annotations
 
+import hashlib
 import inspect
 import linecache
 import os
@@ -298,6 +299,32 @@ def _cells_of(subject: object) -> dict[str, str]:
     return sources
 
 
+def code_digest(subject: object) -> str:
+    """Return a digest of the code that is checked, white space aside; empty if the code cannot be read."""
+    if isinstance(subject, (str, Path)):
+        try:
+            texts = [source.data or b"" for source in _collected(subject)[1]]
+        except (BadSources, OSError):
+            return ""
+    else:
+        texts = [text.encode() for text in _cells_of(subject).values()]
+    code = b"".join(b"".join(text.split()) for text in texts)
+    return hashlib.sha256(code).hexdigest()[:16] if code else ""
+
+
+def _collected(path: str | Path) -> tuple[str, list[Source]]:
+    """Return all source files that a check of a workspace or launch file may need, and the path of this among them.
+
+    Raises:
+        BadSources: The sources are too large.
+        OSError: The sources cannot be read.
+    """
+    file = Path(path)
+    if file.suffix and not file.is_dir():
+        return collect_launch(file, workspace_of(file, (file.resolve().parent, Path.cwd())))
+    return file.resolve().name or "nothing", collect_workspace(file)
+
+
 def send_sources(tell: Tell, subject: object) -> None:
     """Send the grader's judge all source files that a check of this workspace or launch file may need.
 
@@ -311,11 +338,7 @@ def send_sources(tell: Tell, subject: object) -> None:
             raise BadSources(
                 f"check(...) takes the path of a workspace or launch file here, not a {type(subject).__name__}"
             )
-        file = Path(subject)
-        if file.suffix and not file.is_dir():
-            path, sent = collect_launch(file, workspace_of(file, (file.resolve().parent, Path.cwd())))
-        else:
-            path, sent = file.resolve().name or "nothing", collect_workspace(file)
+        path, sent = _collected(subject)
     except (BadSources, OSError) as error:
         trouble = str(error)
     for source in sent:

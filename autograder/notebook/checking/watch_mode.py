@@ -26,7 +26,7 @@ from autograder.notebook.checking.card_display import (
     renew_card,
     update_card,
 )
-from autograder.notebook.checking.check import after_each_check, converse, record_check, what_to_pass
+from autograder.notebook.checking.check import after_each_check, converse, recorded, what_to_pass
 from autograder.notebook.checking.judge_link import JudgeLink, JudgeUnreachable
 from autograder.verdict import State, not_checked
 
@@ -74,8 +74,11 @@ class WatchedExercise:
     def show(self, verdict: Verdict) -> None:
         """Show the verdict on this card and on the card of the check cell."""
         self.settle(verdict)
-        self._here.run(renew_card, verdict, self.subject)
-        self._here.run(record_check, verdict)
+        self._here.run(self._record, verdict)
+
+    def _record(self, verdict: Verdict) -> None:
+        with recorded(verdict, self.subject):
+            renew_card(verdict, self.subject)
 
     def settle(self, verdict: Verdict) -> None:
         """Show the verdict on this card, and record that the subject has been checked."""

@@ -26,7 +26,8 @@ from autograder.workspaces.builds.colcon_build import (
     moved_packages,
     packages_to_build,
 )
-from autograder.workspaces.builds.install_folder import merge_prefixes
+from autograder.workspaces.builds.install_folder import merge_prefixes, rename_paths
+from autograder.workspaces.builds.plain_packages import put_texts, split
 from autograder.workspaces.jobs import BuildJob
 from autograder.workspaces.packages import WORKSPACE, sources_of
 from autograder.workspaces.sources import BadSources
@@ -203,6 +204,22 @@ class Builds:
             return made
 
     def _make(self, found: Build, job: BuildJob, entry: build_cache.CachedBuild) -> Build:
+        parts = split(job)
+        if parts == [job]:
+            return self._run_colcon(found, job, entry)
+        install = entry.folder / "install"
+        for part in parts:
+            made = self._entry(found, self._keyed(part))
+            if made.install is None:
+                return made
+            ignored = shutil.ignore_patterns("__pycache__")
+            shutil.copytree(made.install, install, symlinks=True, ignore=ignored, dirs_exist_ok=True)
+            old, new = (self.jobs.place(job.name, folder) for folder in (made.install.parent, entry.folder))
+            rename_paths(install, str(old), str(new))
+        put_texts(job.tree, install)
+        return replace(found, ok=True, install=install)
+
+    def _run_colcon(self, found: Build, job: BuildJob, entry: build_cache.CachedBuild) -> Build:
         place, install = self.jobs.place(job.name, entry.folder), entry.folder / "install"
         job.tree.write(entry.folder / "src")
         words = colcon_command(moved_packages(job.packages, Path("src"), place / "src"), place, job.cmake)

@@ -215,8 +215,16 @@ def _changed(workspace: Path, package: Package) -> Iterator[Path]:
 
 
 def _left_over(workspace: Path, package: Package) -> Iterator[Path]:
-    """Yield the installed files that the package's sources do not contain, or that the last build did not install."""
+    """Yield the installed files that the sources do not contain, or that the last build did not install as they are."""
     build, prefix = _folders(workspace, package)
+    ended = (build / _RESULT).stat().st_mtime_ns
+    for file in prefix.rglob("*"):
+        if (
+            file.lstat().st_ctime_ns > ended
+            and not file.is_dir()
+            and is_source(str(file.relative_to(prefix)))
+        ):
+            yield file
     recorded = {path for record in _RECORDS for path in _text(build / record).splitlines()}
     launches = [prefix / file for file in launch_files(prefix)]
     yield from (file for file in launches if str(file) not in recorded)

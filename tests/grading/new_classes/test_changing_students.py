@@ -102,6 +102,7 @@ NEW_BEN = BEN.replace("ben,", "bb99,").replace("ben@", "new@")
 def test_a_new_id_with_the_same_number_is_a_rename_that_nothing_does_by_itself(term: TinyClass) -> None:
     before = exported(term)[0]
     assert before == {"101": "14", "102": "15", "104": "19"}
+    term.grade(feedback=True)
     listed(term, ADA, NEW_BEN, EVE)
     for use in (term.grade, lambda: export(term.path, "canvas"), lambda: collect(term.path)):
         with pytest.raises(GradingError, match=r"ben → bb99.*course students"):
@@ -115,7 +116,11 @@ def test_a_new_id_with_the_same_number_is_a_rename_that_nothing_does_by_itself(t
     assert students(term, "--yes")[0] == 0
     assert ids(term) == everywhere("ada", "bb99", "eve")
     assert exported(term)[0] == before
-    term.grade()
+    again = term.grade(feedback=True)
+    assert again.executed == 0
+    assert {row.student for row in again.rows} == {"ada", "bb99", "eve"}
+    (page,) = (term.path / "feedback" / "bb99").rglob("*.html")
+    assert "Ben Bär (bb99)" in page.read_text("utf-8")
     after, said = exported(term)
     assert (after, "does not list" in said) == (before, False), said
     with ClassStore(ClassDirectory(term.path)) as store:
@@ -153,6 +158,19 @@ def test_who_was_dropped_keeps_the_points_and_comes_back_with_them(term: TinyCla
     assert "rename    ben → bb99" in students(term)[1], "also after a while, by the number"
     students(term, "--yes")
     assert exported(term)[0] == {"101": "14", "102": "15", "104": "19"}
+
+
+def test_new_work_of_a_student_who_was_dropped_is_graded_only_by_name(term: TinyClass) -> None:
+    listed(term, ADA, EVE)
+    assert not [one for one in term.grade().notices if "not graded" in one], "it has its points"
+    term.submit("ben", 8)
+    report = term.grade()
+    (said,) = [one for one in report.notices if "not graded" in one]
+    assert "this work is not graded: ben/lab_1_2. To grade it anyway, add --student ben" in said
+    assert (report.executed, report.exit_code) == (0, 0)
+    assert term.grade(students=["ben"]).executed == 1
+    listed(term, ADA, BEN, EVE)
+    assert (term.grade().executed, exported(term)[0]["102"]) == (0, "15")
 
 
 def test_a_list_that_is_given_is_only_used_with_yes(term: TinyClass, tmp_path: Path) -> None:

@@ -29,6 +29,11 @@ def passed(exercise: str) -> Verdict:
     return Verdict(exercise, "An exercise", State.PASSED, 10.0, 10.0)
 
 
+def record(verdict: Verdict) -> None:
+    with check_cell.recorded(verdict, "a path"):
+        pass
+
+
 @pytest.fixture
 def shown(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
     """The certificates that a notebook has shown."""
@@ -50,30 +55,32 @@ def kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 def test_the_check_that_ends_the_chapter_shows_the_certificate_once(shown: list[Any], kept: Path) -> None:
     chapter = course.chapters(course.root())[0]
     *others, last = [name for lab in chapter.labs for name in chapter.exercises_of(lab)]
+    check_journal.note_solution(others[0])
     for name in others:
-        check_cell.record_check(passed(name))
+        record(passed(name))
     assert shown == []
-    check_cell.record_check(passed(last))
-    check_cell.record_check(passed(last))
+    record(passed(last))
+    record(passed(last))
     (words,) = shown
-    assert words[:2] == (chapter.title, 10.0 * (len(others) + 1))
-    assert len(check_journal.entries(kept)) == len(others) + 2
+    assert (*words[:2], words[3]) == (chapter.title, 10.0 * (len(others) + 1), 1)
+    assert len(check_journal.entries(kept)) == len(others) + 3
 
 
 def test_the_certificate_is_a_card_of_its_own(monkeypatch: pytest.MonkeyPatch) -> None:
     display = importlib.import_module("IPython.display")
     cards: list[dict[str, str]] = []
     monkeypatch.setattr(display, "display", lambda card, raw: cards.append(card))
-    check_cell._show_certificate("Nodes", 130.0, 0.0)
+    check_cell._show_certificate("Nodes", 130.0, 0.0, 2)
     assert "<svg" in cards[0]["text/html"]
     assert cards[0]["text/plain"].startswith("Chapter complete: Nodes.")
+    assert "2 tasks with the worked solution" in cards[0]["text/html"].rpartition("<text")[0]
 
 
 def test_a_graders_kernel_keeps_nothing(
     shown: list[Any], kept: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv(SOCKET_VARIABLE, "/somewhere/judge.socket")
-    check_cell.record_check(passed("lab_1_2.talker"))
+    record(passed("lab_1_2.talker"))
     assert not kept.exists()
 
 
@@ -86,14 +93,14 @@ def test_no_trouble_of_the_journal_breaks_a_check(
     else:
         monkeypatch.delenv(check_journal.VARIABLE)
         monkeypatch.setenv("AUTOGRADER_COURSE", str(kept))
-    check_cell.record_check(passed("lab_1_2.talker"))
+    record(passed("lab_1_2.talker"))
     assert shown == []
 
 
 def test_what_ended_before_is_not_shown_again(shown: list[Any], kept: Path) -> None:
     for name in exercises.all_ids():
         check_journal.note(JournalEntry("check", name, 1, 10, 10))
-    check_cell.record_check(passed(exercises.all_ids()[0]))
+    record(passed(exercises.all_ids()[0]))
     assert shown == []
 
 
@@ -112,7 +119,7 @@ def test_a_class_whose_name_was_given_to_its_object_is_told_so(monkeypatch: pyte
 @pytest.mark.usefixtures("shown")
 def test_a_check_that_cannot_be_kept_says_so(kept: Path, capsys: pytest.CaptureFixture[str]) -> None:
     kept.mkdir()  # as on a full disk, nothing can be written there
-    check_cell.record_check(passed("lab_1_2.talker"))
+    record(passed("lab_1_2.talker"))
     assert f"This check is not in your progress, because {kept} cannot be written" in capsys.readouterr().out
 
 

@@ -1,4 +1,4 @@
-"""Who is offered a reference solution: a student with full marks, where the course has it to read."""
+"""Who is shown a reference solution: a student with full marks, or one who has tried enough and then opens it."""
 
 from __future__ import annotations
 
@@ -8,10 +8,12 @@ from typing import Any
 import pytest
 
 from autograder import exercises
-from autograder.cards.card_wording import OUR_CHANGE, OWN_CHANGE, SOLUTION
+from autograder.cards.card_wording import OFFER, OUR_CHANGE, OWN_CHANGE, SOLUTION
 from autograder.messages.judge_messages import SOCKET_VARIABLE
 from autograder.notebook.checking import card_display, subject_runs
 from autograder.notebook.checking.card_display import solution_of
+from autograder.student import check_journal
+from autograder.student.check_journal import JournalEntry
 from autograder.student.handout import hand_out
 from autograder.verdict import State, Verdict
 
@@ -19,9 +21,10 @@ ROOT = Path(__file__).resolve().parents[3]
 
 
 @pytest.fixture
-def shown(monkeypatch: pytest.MonkeyPatch) -> list[dict[str, str]]:
-    """The cards that a notebook of a student's own has displayed."""
+def shown(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> list[dict[str, str]]:
+    """The cards that a notebook of a student's own has displayed or changed."""
     cards: list[dict[str, str]] = []
+    monkeypatch.setenv(check_journal.VARIABLE, str(tmp_path / check_journal.NAME))
 
     class Shell:
         class events:  # noqa: N801
@@ -32,9 +35,15 @@ def shown(monkeypatch: pytest.MonkeyPatch) -> list[dict[str, str]]:
     monkeypatch.delenv(card_display.VALIDATING, raising=False)
     monkeypatch.setattr(card_display, "notebook_shell", lambda: Shell)
     monkeypatch.setattr(card_display, "display_card", cards.append)
+    monkeypatch.setattr(card_display, "update_card", lambda handle, card: cards.append(card))
     monkeypatch.setattr(card_display, "_shown", {})
     monkeypatch.setattr(card_display, "_watching", [])
     return cards
+
+
+def fail(*codes: str) -> None:
+    for code in codes:
+        check_journal.note(JournalEntry("check", "lab_1_2.talker", 1, 0, 10, code))
 
 
 def check(score: float) -> None:
@@ -65,6 +74,48 @@ def test_full_marks_in_ones_own_notebook_offer_it(shown: list[dict[str, str]]) -
 def test_less_does_not(shown: list[dict[str, str]], score: float) -> None:
     check(score)
     assert SOLUTION not in str(shown)
+
+
+def test_after_five_attempts_a_button_opens_it_and_the_journal_says_so(shown: list[dict[str, str]]) -> None:
+    fail(*"abcd")
+    check(0)
+    assert OFFER not in shown[-1]["text/html"]
+    assert "Run the check again first" in card_display.open_solution("lab_1_2.talker")
+    assert SOLUTION not in str(shown)
+    fail("e")
+    check(0)
+    assert OFFER in shown[-1]["text/html"]
+    assert SOLUTION not in str(shown)
+    assert "at the end of the card" in card_display.open_solution("lab_1_2.talker")
+    assert OFFER not in shown[-1]["text/html"]
+    assert SOLUTION in shown[-1]["text/html"]
+    entry = check_journal.entries(check_journal.session_journal_path())[-1]
+    assert (entry.kind, entry.name) == ("solution", "lab_1_2.talker")
+    # It stays while the student writes, and with the next check.
+    dated = card_display._dated(card_display._shown["lab_1_2.talker"], "TalkerNode has changed")
+    check(5)
+    assert SOLUTION in dated["text/html"]
+    assert SOLUTION in shown[-1]["text/html"]
+
+
+def test_without_a_journal_it_stays_closed(
+    shown: list[dict[str, str]], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    fail(*"abcde")
+    check(0)
+    monkeypatch.setattr(check_journal, "note", lambda entry, journal=None: False)
+    assert "cannot be written" in card_display.open_solution("lab_1_2.talker")
+    assert SOLUTION not in str(shown)
+
+
+def test_a_hand_out_offers_none(
+    shown: list[dict[str, str]], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    hand_out(tmp_path / "course", ROOT)
+    monkeypatch.setenv("AUTOGRADER_COURSE", str(tmp_path / "course"))
+    fail(*"abcde")
+    check(0)
+    assert OFFER not in str(shown)
 
 
 @pytest.mark.parametrize(

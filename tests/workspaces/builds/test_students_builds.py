@@ -64,15 +64,16 @@ def built(built_once: Path, tmp_path: Path) -> Path:
 
 
 def as_if_built_now(workspace: Path) -> None:
-    """Have the last build begin after the last change of all sources."""
-    last = max((workspace / "src").rglob("*"), key=lambda file: file.stat().st_ctime_ns)
-    for mark in workspace.glob("build/*/colcon_command_prefix_*.sh"):
-        touch_later(mark, last)
+    """Have the last build begin after the last change of all sources, and end after that of all that it made."""
+    for folder, mark in (("src", "colcon_command_prefix_*.sh"), ("install", "colcon_build.rc")):
+        last = max((workspace / folder).rglob("*"), key=lambda file: file.lstat().st_ctime_ns)
+        for file in workspace.glob(f"build/*/{mark}"):
+            touch_later(file, last)
 
 
 def touch_later(file: Path, than: Path) -> None:
     """Touch a file until it is newer than another one: a file system's clock has ticks."""
-    while not file.exists() or file.stat().st_mtime_ns <= than.stat().st_ctime_ns:
+    while not file.exists() or file.stat().st_mtime_ns <= than.lstat().st_ctime_ns:
         file.touch()
 
 
@@ -195,6 +196,13 @@ def test_what_colcon_has_left_of_a_launch_file_that_is_installed_elsewhere_now_i
     assert made.launch_files("tiny_pkg") == (Path("share/tiny_pkg/launch/a.launch.py"),)
 
 
+def test_an_installed_file_that_was_changed_since_the_build_is_not_used(built: Path) -> None:
+    assert is_current(built, describe_workspace(built).packages)
+    program = built / "install" / "tiny_pkg" / "lib" / "tiny_pkg" / "hello"
+    program.write_text(f"#!{sys.executable}\nprint('by hand')\n")
+    assert not is_current(built, describe_workspace(built).packages)
+
+
 def test_a_build_that_failed_is_not_used(built: Path) -> None:
     (built / "build" / "tiny_pkg" / "colcon_build.rc").write_text("1\n")
     assert not is_current(built, describe_workspace(built).packages)
@@ -233,11 +241,11 @@ def test_interfaces_are_used_if_they_are_built_as_in_a_class(
         folder.mkdir(parents=True)
     (workspace / "install" / ".colcon_install_layout").write_text("isolated\n")
     touch_later(build / "colcon_command_prefix_build.sh", source / "LICENSE")
-    (build / "colcon_build.rc").write_text("0\n")
     if cached is not None:
         (build / "CMakeCache.txt").write_text(cached)
     definition = Path("srv", "AddTwoInts.srv")
     shutil.copy(source / definition, prefix / "share" / name / definition)
+    (build / "colcon_build.rc").write_text("0\n")
     assert is_current(workspace, describe_workspace(workspace).packages) is current
     touch_later(tmp_path / "later", build / "colcon_command_prefix_build.sh")
     (source / definition).write_text("int64 a\n---\nint64 sum\n")

@@ -1,5 +1,5 @@
-// Check, Watch and Next: three commands of JupyterLab, as buttons on a student's cell and on the card of a check; and
-// Drive, below the picture of the robot. The buttons of a card and of the robot are in their HTML (card.html.j2,
+// Check, Watch and Next: three commands of JupyterLab, as buttons on a student's cell and on the card of a check, which
+// after some failures has another one for the worked solution; and Drive, below the picture of the robot. The buttons of a card and of the robot are in their HTML (card.html.j2,
 // notebook/live_robot.py); they are shown only where these commands are. Written as JupyterLab loads it (a container of
 // webpack's module federation: init, then get), so that nothing has to be built.
 "use strict";
@@ -13,6 +13,7 @@ window._JUPYTERLAB["ros2-course-buttons"] = (() => {
   const CRASHED = ["autorestarting", "dead"]; // states of a kernel that nobody has ended
   const ENDED = ["restarting", "terminating", ...CRASHED];
   const NAME = /^[A-Za-z_]\w*$/;
+  const LAST_HINT = /Hint (\d+) of \1\./g;
 
   // For each key, metres a second ahead and radians a second to the left.
   const KEYS = { ArrowUp: [0.5, 0], ArrowDown: [-0.5, 0], ArrowLeft: [0, 1.5], ArrowRight: [0, -1.5] };
@@ -46,11 +47,21 @@ window._JUPYTERLAB["ros2-course-buttons"] = (() => {
     return { at, exercise, subject };
   }
 
-  // The student's own cells that a check is about: those between the check before it and itself.
-  function cellsOf(panel, at) {
+  // The places of the cells that a check is about: those between the check before it and itself.
+  function taskOf(panel, at) {
     const { widgets } = panel.content;
     const before = widgets.slice(0, at).findLastIndex(isCheck);
-    return widgets.map((cell, place) => place).filter(place => place > before && place < at && isStudents(widgets[place]));
+    return widgets.map((cell, place) => place).filter(place => place > before && place < at);
+  }
+
+  const cellsOf = (panel, at) => taskOf(panel, at).filter(place => isStudents(panel.content.widgets[place]));
+
+  // True if a text cell has a last hint that the student has not opened since the page was loaded. A cell that was never
+  // seen is not drawn yet.
+  function hasClosedHint(cell) {
+    const hints = cell.model.type === "markdown" ? text(cell).match(LAST_HINT) ?? [] : [];
+    const opened = [...cell.node.querySelectorAll("details[open] > summary")].filter(one => one.textContent.match(LAST_HINT));
+    return opened.length < hints.length;
   }
 
   async function goTo(panel, place) {
@@ -179,6 +190,21 @@ window._JUPYTERLAB["ros2-course-buttons"] = (() => {
         say(said ?? `Run the cell with ${found.subject} first.`);
       }
 
+      // The worked solution is the last rung of the ladder of hints: it comes after them.
+      async function openSolution(app) {
+        const panel = notebook(app);
+        const found = panel && check(panel);
+        const kernel = panel?.sessionContext.session?.kernel;
+        if (!found || !kernel) return say("There is no check below this cell, or no kernel.");
+        const hint = taskOf(panel, found.at).find(place => hasClosedHint(panel.content.widgets[place]));
+        if (hint !== undefined) {
+          await goTo(panel, hint);
+          return say("Open the last hint of this task first, and try it. Then the worked solution opens.");
+        }
+        const call = `open_solution(${JSON.stringify(found.exercise)})`;
+        say(await ask(kernel, "autograder.notebook.checking.card_display", call) ?? "Run the check again first.");
+      }
+
       async function next(app) {
         const panel = notebook(app);
         if (!panel) return;
@@ -272,6 +298,7 @@ window._JUPYTERLAB["ros2-course-buttons"] = (() => {
             app.commands.addCommand(`ros2-course:${name}`, { label, caption, execute: () => execute(app) });
           add("check", "Check", "Run the cells of this task, and then its check", checkNow);
           add("watch", "Watch", "Check again whenever the cell is run, or end that", watchOrNot);
+          add("solution", "Open the worked solution", "Show the worked solution on the card of this task", openSolution);
           add("drive", "Drive the robot", "Send the arrow keys to the robot, or end that", driveOrNot);
           add("next", "Next task", "Go to the next task, here or in the next notebook", next);
         },
