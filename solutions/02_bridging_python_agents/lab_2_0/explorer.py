@@ -1,0 +1,25 @@
+"""Lab 2.0, both brains together: a robot that turns away in front of walls."""
+
+from autograder.kit.mission.mission import Mission, Pose, World
+
+EXERCISE = Mission(
+    "lab_2_0.explorer",
+    "Lab 2.0 · The exploring robot",
+    "Let your agent drive the robot: ahead, and away from walls.",
+    roles=("publisher", "subscription"),
+    draws=lambda random: [
+        World(start=Pose(random.uniform(1.5, 2.5), random.uniform(0.8, 1.4), 0.0)),
+        10.0,
+        World(start=Pose(random.uniform(1.5, 2.5), random.uniform(2.6, 3.2), 0.0)),
+    ],
+    reaches=[
+        ("Turns to the left where there is more room", lambda now: now.leg == 0 and now.pose.heading > 0.7),
+        ("Turns to the right where there is more room", lambda now: now.leg == 1 and now.pose.heading < -0.7),
+        (
+            "Drives on after the turn",
+            lambda now: now.leg == 1 and now.pose.heading < -0.7 and now.velocity.forward,
+        ),
+    ],
+    never=[("Touches no wall", lambda now: now.bumped)],
+    within=40.0,
+).exercise(text={"The class attribute `agent_class` says which agent a bridge makes": ""})
