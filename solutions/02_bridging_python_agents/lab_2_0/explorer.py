@@ -1,6 +1,12 @@
 """Lab 2.0, both brains together: a robot that turns away in front of walls."""
 
-from autograder.kit.mission.mission import Mission, Pose, World
+from autograder.kit.mission.mission import Mission, Moment, Pose, World
+
+
+def turned(now: Moment) -> float:
+    """Return by how many radians the robot has turned to the left; 0.0 once it has turned too far to say."""
+    return now.pose.heading if abs(now.pose.heading) < 2.4 else 0.0
+
 
 EXERCISE = Mission(
     "lab_2_0.explorer",
@@ -13,13 +19,26 @@ EXERCISE = Mission(
         World(start=Pose(random.uniform(1.5, 2.5), random.uniform(2.6, 3.2), 0.0)),
     ],
     reaches=[
-        ("Turns to the left where there is more room", lambda now: now.leg == 0 and now.pose.heading > 0.7),
-        ("Turns to the right where there is more room", lambda now: now.leg == 1 and now.pose.heading < -0.7),
+        (
+            "Turns to the left where there is more room",
+            lambda now: now.leg == 0 and now.pose.x > 3 and turned(now) > 0.7,
+            "left",
+        ),
+        (
+            "Turns to the right where there is more room",
+            lambda now: now.leg == 1 and now.pose.x > 3 and turned(now) < -0.7,
+            "right",
+        ),
         (
             "Drives on after the turn",
-            lambda now: now.leg == 1 and now.pose.heading < -0.7 and now.velocity.forward,
+            lambda now: now.leg == 1 and turned(now) < -0.7 and now.velocity.forward,
+            "on",
         ),
     ],
-    never=[("Touches no wall", lambda now: now.bumped)],
-    within=40.0,
-).exercise(text={"The class attribute `agent_class` says which agent a bridge makes": ""})
+    never=[("Touches no wall", lambda now: now.bumped, "walls")],
+    within=17.0,
+).exercise(
+    text={
+        "The class attribute `agent_class` says which agent a bridge makes": "left right on walls",
+    }
+)
