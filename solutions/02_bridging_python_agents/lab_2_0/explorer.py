@@ -14,9 +14,9 @@ EXERCISE = Mission(
     "Let your agent drive the robot: ahead, and away from walls.",
     roles=("publisher", "subscription"),
     draws=lambda random: [
-        World(start=Pose(random.uniform(1.5, 2.5), random.uniform(0.8, 1.4), 0.0)),
+        World(start=Pose(random.uniform(1.5, 2.5), random.uniform(0.8, 1.2), 0.0)),
         10.0,
-        World(start=Pose(random.uniform(1.5, 2.5), random.uniform(2.6, 3.2), 0.0)),
+        World(start=Pose(random.uniform(1.5, 2.5), random.uniform(2.8, 3.2), 0.0)),
     ],
     reaches=[
         (

@@ -14,7 +14,7 @@ def robots(random: Random) -> dict[str, Robot]:
     """Draw three robots with a sensor, two nodes that hear it, and one that cannot."""
     drawn = {}
     for number in (1, 2, 3):
-        topic, names = f"/laser{number}/scan", [f"{name}{number}" for name in random.sample(NAMES, 4)]
+        topic, names = f"/laser{number}/scan", [f"/{name}{number}" for name in random.sample(NAMES, 4)]
         sensor, deaf = names[:2]
         ends = {"subscribes": {topic: KIND}}
         nodes = {sensor: {"publishes": {topic: KIND}, "qos": Qos.SENSOR}}

@@ -17,14 +17,18 @@ def fast(random: Random) -> To:
     )
 
 
+def steps(random: Random) -> list[To | Sets]:
+    """Return changes before the button is pressed, while it is pressed, and after that."""
+    pressed, released = (To("/stop", {"data": data}) for data in (True, False))
+    during: list[To | Sets] = [pressed, *limits(random), released, fast(random)]
+    return [*limits(random), fast(random), *during, *limits(random), fast(random)]
+
+
 EXERCISE = SameAsSolution(
     "lab_2_2.refuses",
     "Lab 2.2 · A bad moment",
     "Refuse each change of a limit while the stop holds, and say why.",
-    gives=lambda random: [
-        *(*limits(random), fast(random), To("/stop", {"data": True}), *limits(random)),
-        *(To("/stop", {"data": False}), fast(random), *limits(random), fast(random)),
-    ],
+    gives=steps,
     tells={"/cmd_vel": ("linear.x", "angular.z"), "/stop": "success"},
     parameters=["max_forward", "max_turn"],
     pause=0.3,

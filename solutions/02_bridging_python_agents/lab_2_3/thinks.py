@@ -10,25 +10,17 @@ def decision(random: Random) -> dict[str, object]:
     return {"success": True, "message": f"{random.choice(('left', 'right'))} {random.randrange(1000)}"}
 
 
-def seen(random: Random) -> list[To]:
-    """Return six observations with growing numbers."""
-    return [To("/seen", number) for number in sorted(random.sample(range(1, 100), 6))]
+def steps(random: Random) -> list[To | float]:
+    """Return observations with growing numbers: one alone, three in a row, and two of which the first is old."""
+    first, *row, fifth, sixth = (To("/seen", number) for number in sorted(random.sample(range(1, 100), 6)))
+    return [first, 1.6, *row, 2.1, fifth, 0.6, sixth, 1.6]
 
 
 EXERCISE = SameAsSolution(
     "lab_2_3.thinks",
     "Lab 2.3 · An agent that thinks long",
     "Let the agent think in a thread of its own, and throw decisions about old observations away.",
-    gives=lambda random: [
-        (all_seen := seen(random))[0],
-        1.6,
-        *all_seen[1:4],
-        2.1,
-        all_seen[4],
-        0.6,
-        all_seen[5],
-        1.6,
-    ],
+    gives=steps,
     tells={"/told": "data"},
     lists={"/beat": "data"},
     serves={"/oracle": Serves(decision, late={1: 1.0, 2: 1.5, 3: 0.5, 5: 1.0})},

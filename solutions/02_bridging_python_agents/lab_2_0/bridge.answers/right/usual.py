@@ -7,7 +7,7 @@ from sensor_msgs.msg import LaserScan
 
 def observe(scan):
     ahead = [*scan.ranges[-3:], *scan.ranges[:4]]
-    return min(ahead), min(scan.ranges[4:14]), min(scan.ranges[23:33])
+    return min(ahead), min(scan.ranges[7:12]), min(scan.ranges[25:30])
 
 
 class Echo:
