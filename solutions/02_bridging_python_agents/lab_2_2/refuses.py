@@ -33,4 +33,4 @@ EXERCISE = SameAsSolution(
     parameters=["max_forward", "max_turn"],
     pause=0.3,
     roles=("service", "publisher", "subscription"),
-).exercise(text={"So no limit may change then": "max_forward max_turn"})
+).exercise(text={"So no limit may change then": "max_forward max_turn cmd_vel stop"})

@@ -9,10 +9,9 @@ EXERCISE = SameAsSolution(
     "Lab 2.3 · Call me when you know",
     "Ask without waiting, and say each answer with the number of its question.",
     gives=lambda random: [*questions(random, 3), 2.1, *questions(random, 2), 1.6],
-    tells={"/told": "data"},
-    lists={"/beat": "data"},
+    tells={"/told": "data", "/beat": "data"},
     serves={"/where": Serves(place, late={1: 2.0, 4: 1.0})},
-    every=True,
+    every=("/told",),
     pause=0.3,
     roles=("publisher", "subscription", "client"),
 ).exercise(

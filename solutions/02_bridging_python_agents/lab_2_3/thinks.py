@@ -21,10 +21,9 @@ EXERCISE = SameAsSolution(
     "Lab 2.3 · An agent that thinks long",
     "Let the agent think in a thread of its own, and throw decisions about old observations away.",
     gives=steps,
-    tells={"/told": "data"},
-    lists={"/beat": "data"},
+    tells={"/told": "data", "/beat": "data"},
     serves={"/oracle": Serves(decision, late={1: 1.0, 2: 1.5, 3: 0.5, 5: 1.0})},
-    every=True,
+    every=("/told",),
     pause=0.3,
     roles=("publisher", "subscription", "client"),
 ).exercise(

@@ -14,7 +14,8 @@ def find_deaf(topic: str) -> str:
     try:
         while time.monotonic() < give_up_at:
             publishers = scout.get_publishers_info_by_topic(topic)
-            subscribers = scout.get_subscriptions_info_by_topic(topic)
+            found = scout.get_subscriptions_info_by_topic(topic)
+            subscribers = [end for end in found if "UNKNOWN" not in end.node_name]
             for talks, hears in itertools.product(publishers, subscribers):
                 fits = qos_check_compatible(talks.qos_profile, hears.qos_profile)[0]
                 if fits == QoSCompatibility.ERROR:

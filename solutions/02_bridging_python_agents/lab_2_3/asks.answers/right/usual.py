@@ -4,35 +4,42 @@ from functools import partial
 import rclpy
 from rclpy.node import Node
 from rclpy.task import Future
-from std_msgs.msg import Int32, String
+from std_msgs.msg import Bool, Int32, String
 from std_srvs.srv import Trigger
 
 
 class Heart(Node):
-    """Counts its own heartbeats, and is asked questions."""
+    """Beats, and says what it is asked."""
 
     def __init__(self) -> None:
         super().__init__("asker")
         self.beats = 0
-        self.beat = self.create_publisher(Int32, "beat", 10)
+        self.beat = self.create_publisher(Bool, "beat", 10)
         self.told = self.create_publisher(String, "told", 10)
-        self.where = self.create_client(Trigger, "where")
-        self.create_timer(0.25, self.on_beat)
-        self.create_subscription(Int32, "ask", self.on_ask, 10)
+        self.create_timer(0.1, self.on_beat)
 
     def on_beat(self) -> None:
         self.beats += 1
-        self.beat.publish(Int32(data=self.beats))
-
-    def on_ask(self, number: Int32) -> None:
-        """Answer a question."""
+        self.beat.publish(Bool(data=True))
 
     def tell(self, number: int, answer: str) -> None:
         """Say the answer to a question."""
         self.told.publish(String(data=f"{number}: {answer}"))
 
 
-class Asker(Heart):
+class Guided(Heart):
+    """Can ask where the door is."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.where = self.create_client(Trigger, "where")
+        self.create_subscription(Int32, "ask", self.on_ask, 10)
+
+    def on_ask(self, number: Int32) -> None:
+        """Answer a question: a subclass does it."""
+
+
+class Asker(Guided):
     """Asks without waiting."""
 
     def on_ask(self, number: Int32) -> None:
