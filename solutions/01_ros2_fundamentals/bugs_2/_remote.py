@@ -8,7 +8,9 @@ SECONDS, SILENCE = 2.5, 3.5
 
 def held(speed: float) -> list[To | float]:
     """Return the steps of a remote control that speaks ten times a second."""
-    return [step for _ in range(round(10 * SECONDS)) for step in (To("/remote", {"linear": {"x": speed}}), 0.1)]
+    return [
+        step for _ in range(round(10 * SECONDS)) for step in (To("/remote", {"linear": {"x": speed}}), 0.1)
+    ]
 
 
 EXERCISE = Mission(
