@@ -205,7 +205,7 @@ def _of_linters(lab: Path) -> Iterator[str]:
                 yield from (f"{name}: {line}" for line in (done.stdout + done.stderr).splitlines())
 
 
-_MAX_HEAD_WORDS, _MAX_WORDS_BEFORE_A_TASK, _MAX_SOLUTION_LINES = 150, 400, 8
+_MAX_HEAD_WORDS, _MAX_WORDS_BEFORE_A_TASK, _MAX_SOLUTION_LINES = 150, 400, 12
 """Three limits of a master: the words before the first code cell, the words before the first task, and the lines that
 a student writes in one cell.
 """
@@ -272,7 +272,7 @@ def _solutions(cells: Iterable[NamedCell]) -> Iterator[str]:
             region = find_region(one.cell.source)
             # A repair keeps most lines of the broken code, which students get.
             written = sum(bool(line.strip()) for line in region.answer if line not in region.stub)
-            if not 1 <= written <= _MAX_SOLUTION_LINES:
+            if not (region.is_repair or written) or written > _MAX_SOLUTION_LINES:
                 yield (
                     f"a task is small: the cell {one.name} (line {one.cell.line}) asks for {written} lines; at most "
                     f"{_MAX_SOLUTION_LINES} are allowed: give students the other lines, or split the cell in two"

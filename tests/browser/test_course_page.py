@@ -82,7 +82,7 @@ def test_page_notebook_check_tick_reset_end(page: Page, lab: str, chapters: Path
     page.keyboard.press("Enter")
     expect(page.locator("#jp-main-statusbar")).to_contain_text("Python 3 (ipykernel) | Idle")
     panel = page.frame_locator("iframe[title=Course]")
-    expect(row(panel, "lab_1_2")).to_contain_text("0 of 30 points")
+    expect(row(panel, "lab_1_2")).to_contain_text("0 of 50 points")
     for begin, bank in (
         (r"^class TalkerNode", "lab_1_2.talker"),
         (r"^class ListenerNode", "lab_1_2.listener"),
@@ -97,7 +97,7 @@ def test_page_notebook_check_tick_reset_end(page: Page, lab: str, chapters: Path
             look(page, "course-panel")
             all_but(("lab_1_2.talker", "lab_1_2.listener"), chapters)
     expect(row(panel, "lab_1_2")).to_have_class(re.compile("done"))
-    expect(row(panel, "lab_1_2")).to_contain_text("30 of 30 points")
+    expect(row(panel, "lab_1_2")).to_contain_text("50 of 50 points")
     # The last check of the chapter: the certificate stands below its card and on the page.
     expect(card.locator(".agc-certificate svg")).to_be_visible()
     expect(panel.locator(".certificate").first).to_contain_text("It is not a grade.")
@@ -117,7 +117,7 @@ def test_page_notebook_check_tick_reset_end(page: Page, lab: str, chapters: Path
     expect(panel.get_by_role("button", name="Reset", exact=True)).to_be_focused()
     page.keyboard.press("Enter")
     expect(panel.locator("#said")).to_contain_text("Yours is kept: lab_1_2 (your copy, ")
-    expect(row(panel, "lab_1_2")).to_contain_text("0 of 30 points")
+    expect(row(panel, "lab_1_2")).to_contain_text("0 of 50 points")
     expect(cell(page, r"^class TalkerNode")).to_contain_text("TODO")
     (copy,) = (chapters / NOTEBOOK).parent.glob("lab_1_2 (your copy*")
     assert "Hello, world!" in copy.read_text()

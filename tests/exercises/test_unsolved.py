@@ -39,6 +39,19 @@ def test_of_a_subject_that_does_nothing_the_card_lists_what_is_asked(exercise_id
     assert not one_check.judge(exercise, loud, "").nothing_seen
 
 
+def test_of_a_launch_file_that_returns_nothing_the_card_lists_what_is_asked() -> None:
+    stored = evidence_files.load_reference("exercise_1_1.remap")
+    words = (
+        " - Error: 'generate_launch_description()' in 'remap.launch.py' must return a LaunchDescription, not "
+    )
+    for returned, is_unwritten in (("None", True), ("[]", False)):
+        lines = ("[ERROR] [launch]: Caught exception in launch", f"{words}{returned}")
+        said = [Event(0.5, "output", "stderr", {"text": line}) for line in lines]
+        evidence = Evidence([Part(part.name, part.inputs, said) for part in stored.parts], stored)
+        verdict = one_check.judge(exercises.get("exercise_1_1.remap"), evidence, "")
+        assert verdict.nothing_seen is is_unwritten
+
+
 @pytest.mark.parametrize("exercise_id", exercises.all_ids())
 def test_an_exercise_is_worth_ten_points_and_a_ticket_of_a_bug_hunt_five(exercise_id: str) -> None:
     exercise = exercises.get(exercise_id)

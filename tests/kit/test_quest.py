@@ -40,11 +40,17 @@ def obeys() -> Exercise:
             drawn[f"robot {number}"] = Robot(answer={"robot": called, "topic": topic}, nodes=nodes)
         return drawn
 
-    quest = Quest(robots)
-    draft = Draft("a.b", "A", "B", quest)
-    draft.asks("robot", "Finds what it is called", quest.finds("robot"), points=4)
-    draft.asks("topic", "Finds the topic that it obeys", quest.finds("topic"), points=6)
-    return draft.exercise()
+    finds = {"robot": "Finds what it is called", "topic": "Finds the topic that it obeys"}
+    return Quest(robots).exercise("a.b", "A", "B", finds=finds)
+
+
+def test_each_key_of_the_answer_is_a_criterion_and_a_printed_dictionary_counts() -> None:
+    exercise = obeys()
+    assert [(one.name, one.title, one.points) for one in exercise.criteria] == [
+        ("robot", "Finds what it is called", 5),
+        ("topic", "Finds the topic that it obeys", 5),
+    ]
+    assert exercise.counts_as_a_whole == "You may print the dictionary instead."
 
 
 def part(robot: Robot, *said: str, name: str = "", at: float = 5.0, ending: str = "exited") -> Part:
@@ -144,8 +150,8 @@ NOA_SAID = "{'robot': 'noa', 'topic': '/noa/drive'}"
         ([SAID], [NOA_SAID], 10, ""),
         ([SAID], None, 0, ""),
         ([SAID], [SAID], 0, "invented_answer"),
-        ([SAID], [NOA_SAID.replace("'noa'", "'/rosout'")], 6, ""),
-        ([SAID], [NOA_SAID.replace("'topic'", "'name'")], 4, "no_answer"),
+        ([SAID], [NOA_SAID.replace("'noa'", "'/rosout'")], 5, ""),
+        ([SAID], [NOA_SAID.replace("'topic'", "'name'")], 5, "no_answer"),
         ([], [], 0, "not_written"),
         ([SAID], ["no idea"], 0, "no_answer"),
     ],

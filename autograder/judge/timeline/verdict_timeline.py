@@ -385,13 +385,17 @@ KINDS = {
 }
 
 
+_UNWRITTEN = "must return a LaunchDescription, not None"
+"""What `ros2 launch` says of a launch file whose function returns nothing. Then each line is from the launch."""
+
+
 def shows_nothing(evidence: Evidence) -> bool:
     """Return True if the subject sent, said and returned nothing, raised no error, and made no unexpected endpoint."""
     sent = {kind for kind, shown in KINDS.items() if shown.direction == _HEARD} - {"log", "output"}
     asked = evidence.reference.interface
     return not any(
         part.traceback
-        or set(part.said()) - {"None"}
+        or (set(part.said()) - {"None"} and not any(line.endswith(_UNWRITTEN) for line in part.said()))
         or any(map(part.of, sent))
         or any(part.endpoints(role).items() - asked.get(role, {}).items() for role in _ENDS)
         for part in evidence

@@ -25,6 +25,7 @@ class Kind(Enum):
     """What is compared of an output."""
 
     STEPS = "the outputs of each step"
+    RETURNED = "the items of the list that a function returned, each as a step"
     LIST = "all messages in order, however they are spread over the steps"
     PARAMETER = "the description of a parameter, and how new values of it are received"
     RATE = "the time between two messages"
@@ -60,6 +61,8 @@ class Output:
             return f"Describes the parameter {self.name}, takes the right values and refuses the others"
         if self.kind is Kind.RATE:
             return f"Keeps the rate on {self.name}"
+        if self.kind is Kind.RETURNED:
+            return "Returns the right values"
         # Every message of std_msgs has a field named data, so this name says nothing on a card.
         what = " and ".join(path for path in self.paths if path != "data")
         return f"Says the right {what or 'value'} on {self.name}"
@@ -101,7 +104,7 @@ class Output:
             f"{self._in_words(rows[differs][0])} {rows[differs][1]}" if differs < len(rows) else "nothing"
             for rows in (theirs, mine)
         )
-        return Finding(False, due, came if differs < both else f"{came}: your node did not get that far")
+        return Finding(False, due, came if differs < both else f"{came}: your code did not get that far")
 
     def is_undeclared(self, seen: Part, _: Part) -> bool:
         """Return True if the subject has no parameter of this name."""

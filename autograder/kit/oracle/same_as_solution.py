@@ -17,9 +17,10 @@ from typing import TYPE_CHECKING, Any
 
 from autograder.kit.bench import Pace
 from autograder.kit.counterparts import Qos
-from autograder.kit.draft import POINTS, Draft
+from autograder.kit.draft import OWN, POINTS, Draft
 from autograder.kit.mistakes import unfinished
 from autograder.kit.mistakes.common_mistakes import KEEP_THE_PERIOD, NOT_LATCHED, is_not_latched
+from autograder.kit.mistakes.crashes import CRASHES, OTHER_CRASHES
 from autograder.kit.model import Advice, Finding, Mistake
 from autograder.kit.oracle.goal_sender import GoalSender
 from autograder.kit.oracle.outputs import Kind, Output
@@ -82,6 +83,8 @@ class _Drawn(OwnScenario):
             "variant", lambda evidence: self._same_as_a_variant(evidence, simulated=True), certain=True
         )
         likely = Mistake("variant", self._same_as_a_variant)
+        if not self.roles:  # plain Python, which has no node
+            return (*CRASHES, *OTHER_CRASHES, OWN, proven, likely)
         ladder = super().ladder
         at = ladder.index(unfinished.NEVER_CONSTRUCTED)
         return (*ladder[:at], proven, likely, *ladder[at:])
@@ -155,6 +158,8 @@ class SameAsSolution:
         ).exercise()
     """
 
+    _told = Kind.STEPS
+
     def __init__(
         self,
         exercise_id: str,
@@ -181,7 +186,7 @@ class SameAsSolution:
         self._pause, self._tolerance = pause, tolerance
         self._waits, self._late_after, self._qos = waits, late_after, qos
         kinds = {
-            Kind.STEPS: tells,
+            self._told: tells,
             Kind.LIST: lists,
             Kind.PARAMETER: dict.fromkeys(parameters, DESCRIBED),
         }
@@ -221,11 +226,13 @@ class SameAsSolution:
         is_recording = not bench.reference.parts
         for drawing in drawings if is_recording else [bench.random.choice(drawings)]:
             drawn = Random(f"{self._id} {drawing}")
-            steps = self._gives(drawn)
-            serve = partial(self._serve, bench, drawn)
-            plays = partial(self._plays, steps)
-            part = f"drawing {drawing}"
-            meet(bench, part, plays, serve, listens=not self._late_after, qos=self._matching(bench.reference))
+            self._gives_to(bench, f"drawing {drawing}", self._gives(drawn), drawn)
+
+    def _gives_to(self, bench: Bench, part: str, steps: Sequence[Step], drawn: Random) -> None:
+        """Run the subject once, and give it all steps of one drawing."""
+        serve = partial(self._serve, bench, drawn)
+        plays = partial(self._plays, steps)
+        meet(bench, part, plays, serve, listens=not self._late_after, qos=self._matching(bench.reference))
 
     def _matching(self, reference: Reference) -> dict[str, Qos]:
         """Return the QoS of the judge's endpoints on the topics on which it counts."""

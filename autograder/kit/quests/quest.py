@@ -9,13 +9,13 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict
 from random import Random
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import re2
 
 from autograder.kit import giving_up
 from autograder.kit.bench import Pace
-from autograder.kit.draft import OWN, OWN_LATE
+from autograder.kit.draft import OWN, OWN_LATE, Draft
 from autograder.kit.evidence import Part
 from autograder.kit.giving_up import LATENESS, PATIENCE, PATIENCES
 from autograder.kit.lateness import SOON, was_patient
@@ -27,6 +27,7 @@ from autograder.kit.quests.robot import Robot, Search
 if TYPE_CHECKING:
     from autograder.kit.bench import Bench
     from autograder.kit.evidence import Evidence
+    from autograder.kit.model import Exercise
 
 Searches = Mapping[str, Search]
 """All runs of a subject, by the names of the robots."""
@@ -124,11 +125,12 @@ class Quest:
             nodes = {f"/{called}/motors": {"subscribes": {f"/{called}/{obeys}": "geometry_msgs/msg/Twist"}}}
             return {"a robot": Robot(answer={"robot": called, "topic": f"/{called}/{obeys}"}, nodes=nodes)}
 
-        quest = Quest(robots)
-        obeys = Draft("lab_8_1.obeys", "Lab 8.1 · What it obeys", "Find what a robot obeys.", quest)
-        obeys.asks("robot", "Finds what it is called", quest.finds("robot"), points=4)
-        obeys.asks("topic", "Finds the topic that it obeys", quest.finds("topic"), points=6)
-        EXERCISE = obeys.exercise()
+        EXERCISE = Quest(robots).exercise(
+            "lab_8_1.obeys",
+            "Lab 8.1 · What it obeys",
+            "Find what a robot obeys.",
+            finds={"robot": "Finds what it is called", "topic": "Finds the topic that it obeys"},
+        )
     """
 
     roles = ()
@@ -141,6 +143,23 @@ class Quest:
         return {name: Search(evidence.part(name)) for name in self._names}
 
     expected = seen  # each robot says what is right
+
+    def exercise(
+        self, exercise_id: str, title: str, task: str, *, finds: Mapping[str, str], **more: Any
+    ) -> Exercise:
+        """Return the exercise about an answer with several keys, each of which is a criterion.
+
+        Args:
+            exercise_id: The lab's folder and the file's name, as in :class:`autograder.kit.draft.Draft`.
+            title: The title of the card.
+            task: One sentence that states the task.
+            finds: The line of the card for each key of the answer.
+            more: See :meth:`autograder.kit.draft.Draft.exercise`.
+        """
+        draft = Draft(exercise_id, title, task, self)
+        for key, line in finds.items():
+            draft.asks(key, line, self.finds(key))
+        return draft.exercise(**{"counts": {"": "You may print the dictionary instead."}, **more})
 
     # --- the scenario --------------------------------------------------------------------------------------------
 

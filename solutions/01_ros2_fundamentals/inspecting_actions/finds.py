@@ -2,7 +2,6 @@
 
 from random import Random
 
-from autograder.kit.draft import Draft
 from autograder.kit.quests.quest import Quest
 from autograder.kit.quests.robot import Robot
 
@@ -10,31 +9,24 @@ TYPES = ("small_robot_interfaces/action/WalkTo", "my_robot_interfaces/action/Fib
 NAMES, WORDS = ("kit", "mia", "noa", "pip", "zoe"), ("dock", "go", "move", "roll", "travel")
 
 
-def robot(n: int, name: str, action: str, types: tuple[str, str]) -> Robot:
-    """Return a robot beside a client of its action, and beside a lift with an action of the other type."""
-    nodes = {
-        f"/boss{n}": {"subscribes": {action: types[0]}},
-        f"/{name}": {"publishes": {action: types[0]}},
-        f"/lift{n}": {"publishes": {f"/lift{n}/move": types[1]}, "subscribes": {action: types[0]}},
-    }
-    return Robot(asked=(action,), answer={"node": f"/{name}", "type": types[0]}, nodes=nodes)
-
-
 def robots(random: Random) -> dict[str, Robot]:
-    """Draw three robots that share no name. The name of an action does not tell which node serves it."""
-    drawn = zip(random.sample(NAMES, 3), random.sample(WORDS, 3), (TYPES, TYPES[::-1], TYPES), strict=True)
-    return {f"robot {n}": robot(n, name, f"/{word}", types) for n, (name, word, types) in enumerate(drawn, 1)}
+    """Draw three robots, each beside a client of its action, and a lift with an action of the other type."""
+    drawn = {}
+    for n, name, word in zip("123", random.sample(NAMES, 3), random.sample(WORDS, 3), strict=True):
+        action, other = {f"/{word}": TYPES[n == "2"]}, {f"/lift{n}/move": TYPES[n != "2"]}
+        lift = {"publishes": other, "subscribes": action}
+        nodes = {f"/boss{n}": {"subscribes": action}, f"/{name}": {"publishes": action}, f"/lift{n}": lift}
+        answer = {"node": f"/{name}", "type": action[f"/{word}"]}
+        drawn[f"robot {n}"] = Robot(asked=(f"/{word}",), answer=answer, nodes=nodes)
+    return drawn
 
 
-quest = Quest(robots)
-finds = Draft(
-    "inspecting_actions.finds", "Inspecting actions · Who serves it", "Find who serves an action.", quest
-)
-finds.asks("node", "Finds the node that serves the action", quest.finds("node"))
-finds.asks("type", "Finds the type of the action", quest.finds("type"))
-EXERCISE = finds.exercise(
+EXERCISE = Quest(robots).exercise(
+    "inspecting_actions.finds",
+    "Inspecting actions · Who serves it",
+    "Find who serves an action.",
+    finds={"node": "Finds the node that serves the action", "type": "Finds the type of the action"},
     arguments="the full name of an action",
     sample_arguments=("/nothing",),
     text={"`node`, the name of the node that serves it": "node", "`type`, its type": "type"},
-    counts={"": "You may print the dictionary instead."},
 )

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from autograder.kit.draft import Draft
 from autograder.kit.quests.quest import Quest
 from autograder.kit.quests.robot import Robot
 
@@ -84,19 +83,16 @@ def robots(random: Random) -> dict[str, Robot]:
     return drawn
 
 
-quest = Quest(robots)
-mismatched = Draft(
+EXERCISE = Quest(robots).exercise(
     "inspecting_topics.mismatch",
     "Inspecting topics · Why they do not meet",
     "Find out which topic and type each of two nodes uses.",
-    quest,
-)
-mismatched.asks("topic_published", "Finds the talker's topic", quest.finds("topic_published"))
-mismatched.asks("topic_subscribed", "Finds the listener's topic", quest.finds("topic_subscribed"))
-mismatched.asks("type_published", "Finds the talker's type", quest.finds("type_published"))
-mismatched.asks("type_subscribed", "Finds the listener's type", quest.finds("type_subscribed"))
-
-EXERCISE = mismatched.exercise(
+    finds={
+        "topic_published": "Finds the talker's topic",
+        "topic_subscribed": "Finds the listener's topic",
+        "type_published": "Finds the talker's type",
+        "type_subscribed": "Finds the listener's type",
+    },
     limit=120.0,
     arguments="the full names of the talker and of the listener",
     sample_arguments=("/nobody", "/nobody_else"),
@@ -106,8 +102,5 @@ EXERCISE = mismatched.exercise(
         "Ask about each node separately, because topic and type can both be wrong.": (
             "topic_published type_published topic_subscribed type_subscribed"
         ),
-    },
-    counts={
-        "": "You may print the dictionary instead.",
     },
 )

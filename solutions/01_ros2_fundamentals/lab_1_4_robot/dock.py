@@ -25,7 +25,7 @@ EXERCISE = SameAsSolution(
     roles=("action_server", "publisher", "subscription"),
 ).exercise(
     text={
-        "If the goal is farther than that, abort it, and send no command.": "dock cmd_vel",
+        "If the goal is farther than `self.ahead`, abort it, and send no command.": "dock cmd_vel",
         "as long as `left` is more than 0: `self.forward()` drives ahead for half a second": "cmd_vel",
         "Subtract them from `left`, and send `left` as the `distance` of the feedback.": "dock",
         "At the end publish a `Twist()`, which stops the robot, and say that the goal has succeeded.": "dock cmd_vel",

@@ -1,0 +1,5 @@
+"""The lost guide, which students repair. Its words are in lost_guide.ticket.toml."""
+
+from autograder.kit.hunts.ticket import repair
+
+EXERCISE = repair(__file__)

@@ -1,0 +1,23 @@
+"""Right: the commands are of the type that the robot takes."""
+import rclpy
+from geometry_msgs.msg import Twist
+from rclpy.node import Node
+from sensor_msgs.msg import LaserScan
+
+
+class Careful(Node):
+    def __init__(self):
+        super().__init__("careful")
+        self.command = self.create_publisher(Twist, "/cmd_vel", 10)
+        self.create_subscription(LaserScan, "/scan", self.on_scan, 10)
+
+    def on_scan(self, scan):
+        command = Twist()
+        if scan.ranges[0] > 0.8:
+            command.linear.x = 0.5
+        self.command.publish(command)
+        self.get_logger().info(f"I drive with {command.linear.x} m/s")
+
+
+rclpy.init()
+rclpy.spin(Careful())

@@ -1,0 +1,44 @@
+"""Lab 2.0, both brains together: a robot that turns away in front of walls."""
+
+from autograder.kit.mission.mission import Mission, Moment, Pose, World
+
+
+def turned(now: Moment) -> float:
+    """Return by how many radians the robot has turned to the left; 0.0 once it has turned too far to say."""
+    return now.pose.heading if abs(now.pose.heading) < 2.4 else 0.0
+
+
+EXERCISE = Mission(
+    "lab_2_0.explorer",
+    "Lab 2.0 · The exploring robot",
+    "Let your agent drive the robot: ahead, and away from walls.",
+    roles=("publisher", "subscription"),
+    draws=lambda random: [
+        World(start=Pose(random.uniform(1.5, 2.5), random.uniform(0.8, 1.2), 0.0)),
+        10.0,
+        World(start=Pose(random.uniform(1.5, 2.5), random.uniform(2.8, 3.2), 0.0)),
+    ],
+    reaches=[
+        (
+            "Turns to the left where there is more room",
+            lambda now: now.leg == 0 and now.pose.x > 3 and turned(now) > 0.7,
+            "left",
+        ),
+        (
+            "Turns to the right where there is more room",
+            lambda now: now.leg == 1 and now.pose.x > 3 and turned(now) < -0.7,
+            "right",
+        ),
+        (
+            "Drives on after the turn",
+            lambda now: now.leg == 1 and turned(now) < -0.7 and now.velocity.forward,
+            "on",
+        ),
+    ],
+    never=[("Touches no wall", lambda now: now.bumped, "walls")],
+    within=17.0,
+).exercise(
+    text={
+        "The class attribute `agent_class` says which agent a bridge makes": "left right on walls",
+    }
+)

@@ -1,0 +1,40 @@
+"""Lab 2.2, a red button: nothing moves while it is pressed, and only a new command moves the robot after that."""
+
+from random import Random
+
+from autograder.kit.oracle.same_as_solution import SameAsSolution, To
+
+
+def command(random: Random) -> To:
+    """Return a command below the limits."""
+    return To(
+        "/agent_vel", {"linear": {"x": random.uniform(0.1, 0.4)}, "angular": {"z": random.uniform(0.1, 0.9)}}
+    )
+
+
+def button(pressed: bool) -> To:
+    """Return a press of the button, or its release."""
+    return To("/stop", {"data": pressed})
+
+
+EXERCISE = SameAsSolution(
+    "lab_2_2.stop",
+    "Lab 2.2 · The red button",
+    "Stop the robot when the button is pressed, and hold it until it is released.",
+    gives=lambda random: [
+        *(command(random), command(random), button(True), command(random), 0.9, command(random)),
+        *(button(False), 0.9, command(random), button(True), button(True), command(random), button(False)),
+        *(button(False), command(random), 0.9),
+    ],
+    tells={"/cmd_vel": ("linear.x", "angular.z"), "/stop": ("success", "message")},
+    every=True,
+    pause=0.3,
+    roles=("service", "publisher", "subscription"),
+).exercise(
+    text={
+        "stop the robot at once with one `Twist()`": "cmd_vel",
+        "While the stop holds, publish nothing, whatever the agent says.": "cmd_vel",
+        "answer with `success` true and the `message` `released`": "stop",
+        "Only a *new* command moves the robot again": "cmd_vel",
+    }
+)
