@@ -45,12 +45,13 @@ def pairs(text: str) -> set[tuple[str, str]]:
 
 
 def solutions() -> dict[str, set[tuple[str, str]]]:
-    """By the lab. What a repair keeps of the broken code is no solution."""
+    """By the lab. A repair is no solution: its lines are those of the broken code, or of another ticket."""
     return {
         lab_name(master): {
             pair
             for region in SOLUTION.findall(master.read_text(encoding="utf-8"))
-            for pair in pairs(region) - pairs("\n".join(BROKEN.findall(region)))
+            if not BROKEN.search(region)
+            for pair in pairs(region)
         }
         for master in masters(ROOT)
     }
