@@ -260,6 +260,7 @@ def _definitions(cell: MasterCell) -> dict[str, str]:
 
 _HINT_OPENING = re.compile(r":::\{hint\}\s*(?P<question>.*?)\s*")
 _HINT_CLOSING = ":::"
+_CODE = re.compile(r"`([^`]+)`")
 
 
 @dataclass(frozen=True)
@@ -319,8 +320,9 @@ def _nested(hints: list[_Hint]) -> str:
     text = ""
     for number, hint in reversed(list(enumerate(hints, 1))):
         inner = f"{hint.answer}\n\n{text}" if text else f"{hint.answer}\n"
+        question = _CODE.sub(r"<code>\1</code>", hint.question)  # no Markdown is read in a line of HTML
         text = (
-            f"<details>\n<summary><b>Hint {number} of {len(hints)}.</b> {hint.question}</summary>\n"
+            f"<details>\n<summary><b>Hint {number} of {len(hints)}.</b> {question}</summary>\n"
             # The blank lines make JupyterLab read the content as Markdown.
             f"<blockquote>\n\n{inner}\n</blockquote>\n</details>\n"
         )

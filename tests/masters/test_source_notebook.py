@@ -96,6 +96,15 @@ def test_hints_open_one_at_a_time(course: Path, ten_points: Points) -> None:
     assert ":::" not in text
 
 
+def test_code_in_the_question_of_a_hint_is_shown_as_code(
+    write_master: Callable[[str], Path], ten_points: Points
+) -> None:
+    """In a line of HTML no Markdown is read."""
+    master = write_master(":::{hint} What goes into `__init__`?\nTwo lines.\n:::\n")
+    (cell,) = [one for one in source_notebook(master, points=ten_points).cells if "Hint" in one.source]
+    assert "What goes into <code>__init__</code>?</summary>" in cell.source
+
+
 def test_text_between_two_hints_ends_their_run(
     write_master: Callable[[str], Path], ten_points: Points
 ) -> None:

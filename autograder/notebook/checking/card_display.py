@@ -222,7 +222,7 @@ class CardDisplay:
 
 def _dated(shown: _Shown, notice: str) -> dict[str, str]:
     """Return the HTML and text of a shown card, with a notice that the card is out of date."""
-    return _full_card(shown.verdict, shown.before, notice)
+    return _full_card(shown.verdict, shown.before, notice=notice)
 
 
 def renew_card(verdict: Verdict, subject: Any) -> None:

@@ -24,7 +24,9 @@ window._JUPYTERLAB["ros2-course-buttons"] = (() => {
     .jp-Notebook .agc .agc-acts { display: flex !important; }
     .jp-Notebook .ros2-course-drive { display: inline-block !important; margin: 4px 0; padding: 4px 12px; cursor: pointer; }
     .ros2-course-drives .ros2-course-drive { outline: 3px solid var(--jp-brand-color1); }
-    .jp-Notebook .ros2-course-not-here { display: none !important; }`;
+    .jp-Notebook .ros2-course-not-here { display: none !important; }
+    .jp-MarkdownCell .jp-RenderedMarkdown > details + :not(details) { margin-top: 1em; }
+    .jp-MarkdownCell .jp-RenderedMarkdown details > pre + :not(.ros2-course-terminal) { margin-top: 1em; }`;
   const NOT_HERE = "given-set-up"; // the grade_id of the cell that sets the course up outside of `./course lab`
 
   const text = cell => cell.model.sharedModel.getSource();

@@ -16,6 +16,7 @@ window._JUPYTERLAB["ros2-course-terminals"] = (() => {
     .ros2-course-terminal { display: block; margin: -4px 0 12px 26px; padding: 3px 12px; cursor: pointer; font-size: 0.9em;
       color: var(--jp-ui-font-color1); background: var(--jp-layout-color1); border: 1px solid var(--jp-border-color1);
       border-radius: 3px; }
+    details > .ros2-course-terminal { margin: 6px 0 12px; }
     .ros2-course-terminal:hover { background: var(--jp-layout-color2); }`;
 
   // The lines of a block as one line: a line's end would run it, and the student presses Enter.
