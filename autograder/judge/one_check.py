@@ -167,7 +167,9 @@ def _check(
             seen = next_look(Pace.FAST)
             evidence = seen.evidence
             verdict = judge(exercise, evidence, seed)
-        again = exercise.second_look and (seen.doubtful or not verdict.passed)
+        # A look ends early if no node answers. What came until then may be right, as of a loop that ends soon.
+        doubtful = seen.doubtful or any(part.of("unanswered") for part in evidence)
+        again = exercise.second_look and (doubtful or not verdict.passed)
         again = again and not _is_explained(exercise, evidence, verdict, names)
         if again:
             if card is not None:

@@ -63,6 +63,9 @@ def exercise(*, certain: bool = False, second_look: bool = True) -> Exercise:
         pytest.param(exercise(second_look=False), ["bad"], [FAST], False, id="nor where nobody looks twice"),
         pytest.param(exercise(), ["doubtful", "good"], [FAST, REAL], True, id="a doubtful pass is confirmed"),
         pytest.param(exercise(), ["doubtful", "bad"], [FAST, REAL], False, id="or not"),
+        pytest.param(
+            exercise(), ["unanswered", "bad"], [FAST, REAL], False, id="so is one that was cut short"
+        ),
     ],
 )
 def test_the_last_look_that_is_needed_decides(
@@ -74,7 +77,8 @@ def test_the_last_look_that_is_needed_decides(
     def look(*words: Any, **_: object) -> one_check.Seen:
         name = seen[len(made)]
         made.append(words[3])
-        part = Part("good" if name == "doubtful" else name)
+        silent = [Event(0.1, "unanswered", "/node", {"text": ""})] if name == "unanswered" else []
+        part = Part("good" if name in ("doubtful", "unanswered") else name, {}, silent)
         return one_check.Seen(Evidence([part], stored), doubtful=name == "doubtful")
 
     monkeypatch.setattr(one_check, "look", look)

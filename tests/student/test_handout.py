@@ -45,16 +45,13 @@ def pairs(text: str) -> set[tuple[str, str]]:
 
 
 def solutions() -> dict[str, set[tuple[str, str]]]:
-    """By the lab. A repair is no solution: its lines are those of the broken code, or of another ticket."""
-    return {
-        lab_name(master): {
-            pair
-            for region in SOLUTION.findall(master.read_text(encoding="utf-8"))
-            if not BROKEN.search(region)
-            for pair in pairs(region)
-        }
-        for master in masters(ROOT)
-    }
+    """By the lab. What is in the broken code of a lab, which students get to repair it, is no solution."""
+    found = {}
+    for master in masters(ROOT):
+        regions = SOLUTION.findall(master.read_text(encoding="utf-8"))
+        broken = ("\n".join(BROKEN.findall(region)) for region in regions)
+        found[lab_name(master)] = set().union(*map(pairs, regions)) - set().union(*map(pairs, broken))
+    return found
 
 
 def texts(folder: Path) -> Iterator[tuple[Path, str]]:

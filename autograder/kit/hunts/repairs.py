@@ -116,11 +116,15 @@ def _without_diagnosis(judged: Exercise, known: Mistake) -> Mistake:
 
 def _symptom(judged: Exercise, evidence: Evidence) -> Finding:
     """Return what a user notices of a node that does not work: what never came, or else the first failed criterion."""
+    asked = "the node works as its task says"
+    # Chance decides what the judge hears of a node that ends soon.
+    if any(part.ending is not None and part.traceback for part in evidence):
+        return Finding(False, asked, "the program ended with an error")
     for role, names in evidence.reference.interface.items():
         kind, words = _NOTHING_CAME.get(role, ("", ""))
         for name in names if kind else ():
             if not any(part.of(kind, name) for part in evidence):
-                return Finding(False, "the node works as its task says", words.format(name))
+                return Finding(False, asked, words.format(name))
     return replace(judged.judge_as_one(without_causes(evidence), "not what was asked for"), passed=False)
 
 

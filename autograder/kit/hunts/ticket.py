@@ -63,7 +63,11 @@ def repair(file: str) -> Exercise:
         EXERCISE = repair(__file__)
     """
     exercise_id, ticket = _ticket(file)
-    after = (ticket.cause, ticket.sooner, ticket.seen)
+    after = (
+        f"The cause: {ticket.cause}",
+        f"Sooner next time: {ticket.sooner}",
+        f"In real projects: {ticket.seen}",
+    )
     return Repairs(exercise_id, ticket.title, ticket.task, ticket.judged_by, after).exercise()
 
 

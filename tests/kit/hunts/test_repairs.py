@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+import pytest
+
 from autograder import exercises
 from autograder.cards.text_rendering import card_text
 from autograder.judge import evidence_files, one_check
@@ -94,6 +96,17 @@ def test_what_a_subscriber_never_got_is_its_symptom() -> None:
     met = [*events, Event(0.2, "matched", "/chatter", {"count": 1, "now": 1})]
     parts = [replace(part, events=met) for part in reference.parts]
     assert "reached" not in one_check.judge(exercise, Evidence(parts, reference), "s").criteria[0].seen
+
+
+@pytest.mark.parametrize("came", [True, False])
+def test_the_symptom_of_a_node_that_ends_with_an_error_does_not_depend_on_what_came_before(
+    came: bool,
+) -> None:
+    sent = [Event(0.1, "message", "/chatter", {"fields": {"data": "Hello, world! 0"}, "number": 1})]
+    raised = Event(0.5, "subject", "raised", {"traceback": "TypeError: 'NoneType' object is not callable"})
+    parts = [replace(part, events=[*sent * came, raised]) for part in REFERENCE.parts]
+    verdict = one_check.judge(repair(), Evidence(parts, REFERENCE), "s")
+    assert verdict.criteria[0].seen == "the program ended with an error"
 
 
 def test_a_repair_has_one_criterion_because_a_broken_node_does_half_of_the_task() -> None:

@@ -54,9 +54,9 @@ def test_after_the_pass_the_card_tells_the_cause_how_to_see_it_sooner_and_where_
     solved = Evidence(parts, reference)
     remarks = repair(str(lab / "silent.py")).remarks
     assert [remark(solved) for remark in remarks] == [
-        "The topic was misspelt. ROS 2 does not report that.",
-        "The list of topics shows it.",
-        "It happens: https://example.org/1",
+        "The cause: The topic was misspelt. ROS 2 does not report that.",
+        "Sooner next time: The list of topics shows it.",
+        "In real projects: It happens: https://example.org/1",
     ]
     assert [remark(Evidence([], reference)) for remark in remarks] == ["", "", ""]
 
