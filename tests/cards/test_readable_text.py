@@ -98,8 +98,8 @@ def test_printed_json_moves_no_cursor_and_reads_back_the_same() -> None:
 @pytest.mark.parametrize(
     ("text", "shown"),
     [
-        ("[1.1795533, 2.0, 0.5]", "[1.18, 2.0, 0.5]"),
-        ("[1.1795533, 1.99869, 3.0, 2.38654, 0.94]", "[1.18, …, 0.94]"),
+        ("[1.1795533, 2.0, 0.51234]", "[1.18, 2.0, 0.51]"),
+        ("[1.1795533, 1.99869, 3.0, 2.38654, 0.94]", "[1.18, 2.00, …, 0.94]"),
         ("linear.x=0.5, linear.y=0.0, angular.z=1.57", "linear.x=0.5, …, angular.z=1.57"),
         ("Hello, " + "a" * 40, "Hello, aaaaaaaa…aaaaaaaaaaaaaaa"),
     ],

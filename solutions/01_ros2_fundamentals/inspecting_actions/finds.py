@@ -10,7 +10,7 @@ NAMES, WORDS = ("kit", "mia", "noa", "pip", "zoe"), ("dock", "go", "move", "roll
 
 
 def robots(random: Random) -> dict[str, Robot]:
-    """Draw three robots, each beside a client of its action, between a crane and a lift with actions of the other type.
+    """Draw three robots, each with a client, between a crane and a lift with actions of another type.
 
     The graph lists nodes in the order in which they are made. So a subject that takes the first action that is served,
     or the last one, is wrong.
