@@ -10,7 +10,7 @@ NAMES, WORDS = ("kit", "mia", "noa", "pip", "zoe"), ("drive", "go", "move", "rol
 
 
 def robots(random: Random) -> dict[str, Robot]:
-    """Draw three robots. Each is between two nodes that obey another type, a lift and a crane; a joystick obeys nothing.
+    """Draw three robots. Each is between a lift and a crane, which obey another type; a joystick obeys nothing.
 
     The graph lists nodes in the order in which they are made. So a subject that takes the first topic with a
     subscription, or the last one, is wrong.
