@@ -72,7 +72,10 @@ class Waited:
 
 
 def subjects(exercise_id: str) -> Iterator[Subject]:
-    """The solution of an exercise, then each wrong answer of the bank that defines what the notebook checks."""
+    """The solution of an exercise, then one wrong answer of the bank for each diagnosis.
+
+    An answer that does not define what the notebook checks, such as a program without a function, is left out.
+    """
     reference = exercises.reference_path(exercise_id)
     master = (reference.parent / "lab.md").read_text(encoding="utf-8")
     found = re.search(_CHECK.format(exercise=re.escape(exercise_id)), master, re.MULTILINE)
@@ -80,10 +83,12 @@ def subjects(exercise_id: str) -> Iterator[Subject]:
         return
     given = (_START, *(definitions(cell) for cell in _CODE_CELL.findall(master[: found.start()])))
     yield Subject(exercise_id, True, given, found[0])
-    for answer in answers():
-        if answer.exercise == exercise_id and answer.file.parent.name == "wrong":
+    diagnosed: set[tuple[str, ...]] = {()}
+    for answer in answers([exercise_id]):
+        if answer.diagnoses[:1] not in diagnosed:
             cell = definitions(answer.text, ast.Assign)
             if re.search(rf"^(class|def|async def) {found[1]}\b", cell, re.MULTILINE):
+                diagnosed.add(answer.diagnoses[:1])
                 yield Subject(answer.name, False, (*given, cell), found[0])
 
 
@@ -150,14 +155,14 @@ def _cards(client: BlockingKernelClient, cell: str) -> list[tuple[float, str]]:
             return cards
 
 
-def main(chosen: Sequence[str], *, wrong: str | None) -> None:
+def main(chosen: Sequence[str], *, wrong: bool) -> None:
     """Print a table of the waits, and their medians and maxima."""
     join_domain()
     waits: dict[bool, list[Waited]] = {True: [], False: []}
     print("| check | first card | a run has ended | complete |\n| --- | ---: | ---: | ---: |")
     for exercise_id in chosen or exercises.all_ids():
         for subject in subjects(exercise_id):
-            if not subject.is_right and (wrong is None or not re.search(wrong, subject.name)):
+            if not (subject.is_right or wrong):
                 continue
             try:
                 waited = wait_for(subject)
@@ -190,8 +195,6 @@ if __name__ == "__main__":
     options.add_argument(
         "exercises", nargs="*", metavar="EXERCISE", help="only these, such as lab_1_2.talker"
     )
-    options.add_argument(
-        "--wrong", metavar="PATTERN", help="also wrong answers whose names contain this pattern"
-    )
+    options.add_argument("--wrong", action="store_true", help="also a wrong answer of each diagnosis")
     said = options.parse_args()
     main(said.exercises, wrong=said.wrong)
