@@ -93,7 +93,7 @@ def subjects(exercise_id: str) -> Iterator[Subject]:
 
 
 def definitions(program: str, *also: type[ast.stmt]) -> str:
-    """What a program or cell defines: its imports, functions and classes, and ``also``; empty if it is no Python."""
+    """What a program or cell defines: its imports, functions, classes and constants, and ``also``; empty if it is no Python."""
     try:
         tree = ast.parse(program)
     except SyntaxError:
@@ -104,9 +104,8 @@ def definitions(program: str, *also: type[ast.stmt]) -> str:
 
 
 def _is_constant(node: ast.stmt) -> bool:
-    """Whether a line gives a name to a number or text."""
     return isinstance(node, ast.Assign) and all(
-        isinstance(part, (ast.Name, ast.Constant)) for part in (*node.targets, node.value)
+        isinstance(target, ast.Name) and target.id.isupper() for target in node.targets
     )
 
 
