@@ -218,7 +218,7 @@ def cut_short(client: ClientSeen) -> str:
 
 
 def ended_before_its_answer(part: Part) -> bool:
-    """Return True if the subject ended while one of its calls was unanswered, or without having made a call."""
+    """Return True if the subject ended while one of its calls was unanswered."""
     if part.ending is None:
         return False
     asked = max(len(requests(part)), len(part.of("called")))
