@@ -93,7 +93,7 @@ def subjects(exercise_id: str) -> Iterator[Subject]:
 
 
 def definitions(program: str, *also: type[ast.stmt]) -> str:
-    """What a program or cell defines: its imports, functions, classes and constants, and ``also``; empty if it is no Python."""
+    """What a program or cell defines: imports, functions, classes and constants, and ``also``; empty if no Python."""
     try:
         tree = ast.parse(program)
     except SyntaxError:
