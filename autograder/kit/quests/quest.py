@@ -52,7 +52,7 @@ LONGEST_QUOTE = 200
 UNKNOWN_NODE = "_NODE_NAME_UNKNOWN_"
 """The node name that the graph gives for an endpoint before it has discovered the node (rmw_dds_common)."""
 ACCEPTED = "You may print the dictionary instead. A value may be a list of one name or type."
-"""What else counts as an answer with several keys. A list of several is a guess."""
+"""The other forms of an answer with several keys that count. A list of several is a guess."""
 _NODE_NOT_MET = ("NodeNameNonExistentError", "Failed to get action server names and type")
 """The words of rclpy's errors if a node is asked about that is not on the graph yet: also those for its actions."""
 _GAVE_UP = re2.compile(r"(?m)^TimeoutError(?:: .*)?$")
