@@ -23,12 +23,13 @@ from autograder.kit.mission.steps import Goal, Journey, Step
 from autograder.kit.mistakes.common_mistakes import KEEP_THE_PERIOD
 from autograder.kit.model import Finding
 from autograder.kit.oracle.steps import To
-from autograder.kit.recipes.own_scenario import await_launch
+from autograder.kit.recipes.own_scenario import QUIET
+from autograder.kit.runners import processes
 from autograder.robot.motion import ROOM, Pose, Wall, Walls
 
 if TYPE_CHECKING:
     from autograder.kit.bench import Bench
-    from autograder.kit.evidence import Part
+    from autograder.kit.evidence import Evidence, Part
     from autograder.kit.model import Exercise
 
 __all__ = ["ROOM", "Goal", "Mission", "Moment", "Pose", "To", "Wall", "Walls", "World"]
@@ -167,7 +168,9 @@ class Mission:
         bench.start(threads=self._threads)
         named = [(role, name) for role, names in ends.items() for name in names]
         there = [bench.await_endpoint(*end) for end in named[:1]]
-        await_launch(bench, named, True)
+        if processes(bench.seen()):
+            # The programs of a launch start one after the other, so the endpoints of the first are not all.
+            bench.watch_graph(partial(_has_all, named), QUIET[bench.pace])
         there += [bench.await_endpoint(*end) for end in named[1:]]
         bench.release()
         if any(there):
@@ -177,6 +180,11 @@ class Mission:
             if not (course.note(self._knows if answered else ()) and answered):
                 bench.note_whether_it_spins()
         bench.stop()
+
+
+def _has_all(ends: Sequence[tuple[str, str]], evidence: Evidence) -> bool:
+    """Return True if the subject has made all endpoints, given by role and name."""
+    return all(name in evidence.main.endpoints(role) for role, name in ends)
 
 
 def _line(wants: str, text: str, holds: Callable[[Moment], Any], name: str = "", points: float = 0.0) -> Line:

@@ -134,25 +134,16 @@ def meet(
     return met
 
 
-def await_launch(bench: Bench, ends: Sequence[tuple[str, str]], there: bool) -> bool:
-    """Wait for the endpoints of all programs of a launch, which start one after the other.
-
-    Args:
-        ends: The endpoints as pairs of a role and a name.
-        there: The result for a subject that is not a launch.
-    """
-    if not processes(bench.seen()):
-        return there
-    return bench.watch_graph(
-        lambda evidence: all(name in evidence.main.endpoints(role) for role, name in ends),
-        QUIET[bench.pace],
-    )
-
-
 def _all_there(bench: Bench, ends: Sequence[tuple[str, str]]) -> bool:
     """Wait for all endpoints of the reference solution, given as (role, name)."""
     there = not ends or bench.await_endpoint(*ends[0])
-    there = await_launch(bench, ends, there) and all(bench.await_endpoint(role, name) for role, name in ends)
+    # The programs of a launch start one after the other, so the endpoints of the first are not all.
+    if processes(bench.seen()):
+        there = bench.watch_graph(
+            lambda evidence: all(name in evidence.main.endpoints(role) for role, name in ends),
+            QUIET[bench.pace],
+        )
+    there = there and all(bench.await_endpoint(role, name) for role, name in ends)
     if not there:
         bench.note(ENDPOINTS, made={role: bench.seen().endpoints(role) for role, _ in ends})
     return there
