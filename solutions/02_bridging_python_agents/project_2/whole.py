@@ -104,6 +104,9 @@ EXERCISE = Mission(
     runner=LaunchesFromPackage("lamp_robot", "lamp.launch"),
     unasked=("/agent_vel",),
     text={
+        "while `self.lamp` is `None`, call the service": "waits out",
+        "Otherwise the robot knows too little: both numbers are 0.": "old",
+        "It starts both programs, and gives `safe_hands` the limits of this mission": "out limits",
         "has to send commands while it waits for the answer": "waits out",
         "has to stand while its position is old": "old",
         "come to the lamp": "lamp",
