@@ -5,9 +5,9 @@ from __future__ import annotations
 import contextlib
 import functools
 import time
+from collections import Counter
 from typing import TYPE_CHECKING
 
-from autograder.command_name import COMMAND
 from autograder.grading.batch_work import Work, due_dates, find_work, without_grade, would_change
 from autograder.grading.class_checks import changed_master_warnings, limits_of
 from autograder.grading.classes import gradebook_reading
@@ -21,8 +21,8 @@ from autograder.grading.running.batch_progress import BatchProgress, Timings, pl
 from autograder.grading.table.rows import rows_of, write_csv
 from autograder.grading.table.student_list import enter_roster
 from autograder.grading.table.weighted_rows import read_what_counts, true_rows
+from autograder.grading.tasks.result_keys import ResultKeys
 from autograder.grading.tasks.source_points import check_release, read_released
-from autograder.grading.tasks.submission_fingerprints import Fingerprints
 from autograder.grading.tasks.submission_times import handed_in_at
 
 # Some modules are imported inside functions, because they import nbgrader, which takes a second.
@@ -86,9 +86,9 @@ class Batch:
         self._directory = directory
         self._store = store
         self._console = console
-        self._fingerprints = Fingerprints(directory)
+        self._keys = ResultKeys(directory)
         # Read before any step, so that a class without a usable source is refused while it is unchanged.
-        self._released = released = read_released(directory, store, self._fingerprints)
+        self._released = released = read_released(directory, store, self._keys)
         self._cells = released.cells
         self._what_counts = read_what_counts(directory, released.cells)
         if not released.cells and released.unusable:
@@ -97,6 +97,7 @@ class Batch:
         self._notices: list[str] = []
         self._timings = Timings()
         self._feedback = feedback
+        self._run_again: Counter[str] = Counter()
         self._executed = 0
         self._reused = 0
         self._written = 0
@@ -128,9 +129,7 @@ class Batch:
         for text in changed_master_warnings(self._directory, self._store, assignments or self._cells):
             self._notices.append(text)
             plain_line(self._console, f"note: {text}")
-        work = find_work(
-            self._directory, self._asked, self._released, self._roster, self._fingerprints, beside
-        )
+        work = find_work(self._directory, self._asked, self._released, self._roster, self._keys, beside)
         self._works, self._others, self._refused = work.works, work.others, work.refused
         self._notices += work.notices
         return work.works
@@ -147,14 +146,6 @@ class Batch:
             self._notices.append(
                 f"students.csv does not list these students, so this work is not graded: {names}. To grade it anyway, "
                 f"add --student {unlisted[0].submission.student}"
-            )
-        older = sum(
-            work.key in self._entered and self._entered[work.key].course != course_version() for work in works
-        )
-        if older:
-            self._notices.append(
-                f"{older} submissions had been graded with another version of the course. To see whose points have "
-                f"changed, type `{COMMAND} compare` after the run, or `{COMMAND} grade --dry-run` before a run."
             )
         if self._again:
             self._store.forget_results(work.submission for work in works)
@@ -224,6 +215,7 @@ class Batch:
         for done in results:
             work, task = works[done.task.student, done.task.assignment], done.task
             self._executed += 1
+            self._run_again[self._why_again(work)] += 1
             self._timings.count(task.cells, done.execution)
             execution = self._store.keep(task, done.execution)
             if execution.trouble:
@@ -302,6 +294,7 @@ class Batch:
             notices=tuple(self._notices),
             would_change=tuple(changes) if self._dry_run else None,
             executed=self._executed,
+            run_again={why: count for why, count in self._run_again.items() if why},
             reused=self._reused,
             written=self._written,
             seconds=time.monotonic() - self._began,
@@ -322,15 +315,27 @@ class Batch:
             handed_in_at(work.submission.folder, believed=entry.handed_in)
         except ValueError:
             return  # the timestamp file is invalid; the writer will reject the submission, with the reason
-        if entered.fingerprint != work.fingerprint:
-            # The files have changed, but perhaps no cell has: for example, the student saved the notebook again, or
-            # another part of the course changed.
+        if entered.made_from != work.made_from:
+            # The grader writes cards and grades, so that a changed grader writes them again.
+            if entered.made_from.grader != work.made_from.grader:
+                return
+            # The files have changed, but perhaps no cell has: for example, the student saved the notebook again.
             if entered.tasks != {task.notebook: task.key() for task in self._tasks_of(work.submission)}:
                 return
-            self._store.note_fingerprint(work.submission, work.fingerprint)
+            self._store.note_made_from(work.submission, work.made_from)
         work.rows = entered.rows
         work.shown = entered.shown
         work.written = True
+
+    def _why_again(self, work: Work) -> str:
+        """Return why a notebook of a submission is executed again; empty if it is executed for the first time."""
+        attempts = [
+            one for one in self._store.attempts(work.submission.student) if one.assignment == work.key[1]
+        ]
+        if not attempts:
+            return ""
+        changed = work.made_from.changes_since(attempts[-1].made_from)
+        return changed or ("--again was given" if self._again else "its result was not kept")
 
     def _take_stored_results(self, work: Work) -> None:
         stored = self._store.results(*work.key)
@@ -351,12 +356,11 @@ class Batch:
 
         try:
             with self._timings.measure("gradebook"):
-                if self._fingerprints.of(work.submission) != work.fingerprint:
-                    # The files changed during the run, so the tasks may have been made from files with another
-                    # fingerprint.
+                if self._keys.of(work.submission) != work.made_from:
+                    # The files changed during the run, so the tasks may have been made from other files.
                     name = f"{work.submission.student}/{work.submission.assignment}"
                     raise NotWritten(f"{name} was changed while it was graded: grade it again")
-                self._writer.write(work.submission, work.fingerprint, work.pairs, rows)
+                self._writer.write(work.submission, work.made_from, work.pairs, rows)
         except NotWritten as error:
             if is_disk_full(error):
                 raise

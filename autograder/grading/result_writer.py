@@ -46,6 +46,7 @@ if TYPE_CHECKING:
     from nbformat import NotebookNode
 
     from autograder.boxes.run_limits import Limits
+    from autograder.grading.class_records import ResultKey
     from autograder.grading.class_store import ClassStore
     from autograder.grading.classes.class_directory import ClassDirectory, Submission
     from autograder.grading.classes.gradebook_reading import SubmissionEntry
@@ -83,7 +84,7 @@ class Writer:
     def write(
         self,
         submission: Submission,
-        fingerprint: str,
+        made_from: ResultKey,
         results: Sequence[tuple[Task, Execution]],
         rows: tuple[Row, ...],
     ) -> None:
@@ -91,7 +92,7 @@ class Writer:
 
         Args:
             submission: The submission that was executed.
-            fingerprint: The hash of all files that influence the results, from :class:`Fingerprints`.
+            made_from: The key of the results.
             results: Pairs of a task and its result, one for each notebook of the assignment.
             rows: The results as rows of the report.
 
@@ -112,13 +113,13 @@ class Writer:
             raise NotWritten(f"{submission.student}/{submission.assignment}: {error}") from error
         course = results[0][0].course
         entered = Entered(
-            fingerprint=fingerprint,
+            made_from=made_from,
             tasks={task.notebook: task.key() for task, _ in results},
             scores={task.notebook: scores_of(task, execution) for task, execution in results},
             rows=rows,
             course=course,
         )
-        attempt = Attempt(datetime.now(tz=UTC), submission.assignment, fingerprint, course, rows)
+        attempt = Attempt(datetime.now(tz=UTC), submission.assignment, made_from, course, rows)
         # If the grader itself failed, the attempt is kept, but the submission is not entered as done: it runs again.
         is_final = not any(execution.trouble for _, execution in results)
         self._store.enter(submission, attempt, entered if is_final else None)
