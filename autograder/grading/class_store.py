@@ -189,8 +189,9 @@ class ClassStore:
         found = {}
         forms: tuple[Any, ...] = (ResultKey, dict[str, str], dict[str, dict[str, float]], tuple[Row, ...])
         for student, assignment, *blobs, course, shown in self._rows("SELECT * FROM entered"):
-            made_from, tasks, scores, rows = map(_decoded, blobs, forms)
-            if None not in (made_from, tasks, scores, rows):
+            fields: list[Any] = list(map(_decoded, blobs, forms))
+            if None not in fields:
+                made_from, tasks, scores, rows = fields
                 own = tuple(replace(row, student=student) for row in rows)
                 found[student, assignment] = Entered(made_from, tasks, scores, own, course, shown)
         return found
