@@ -30,11 +30,12 @@ from autograder.grading.tasks.submission_times import handed_in_at
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
+    from nbformat import NotebookNode
     from rich.console import Console
 
     from autograder.grading.batch_work import AskedFor
     from autograder.grading.class_store import ClassStore
-    from autograder.grading.classes.class_directory import ClassDirectory, Submission
+    from autograder.grading.classes.class_directory import ClassDirectory
     from autograder.grading.grading_task import Task
     from autograder.grading.reporting.class_table import Difference
     from autograder.grading.result_writer import Writer
@@ -176,10 +177,11 @@ class Batch:
         for work in works:
             if work.rows is not None:
                 continue
-            for task in self._tasks_of(work.submission):
+            for task, rebuilt in self._tasks_of(work):
+                work.rebuilt[task.notebook] = rebuilt
                 if task.problem:
                     work.results[task.notebook] = task, task.without_execution()
-                elif task.notebook not in work.results:
+                else:
                     yield task
 
     def execute(self, tasks: Iterable[Task]) -> Iterator[Done]:
@@ -242,6 +244,7 @@ class Batch:
             elif self._write(work, rows):
                 yield work, gradebook_reading.read_entry(self._directory.gradebook_url, *work.key)
             work.results.clear()
+            work.rebuilt.clear()
 
     def show(self, entered: Iterable[tuple[Work, SubmissionEntry]]) -> Iterator[Work]:
         """Make the feedback pages of submissions, except of those whose pages show what the gradebook contains."""
@@ -307,7 +310,7 @@ class Batch:
     def _settle(self, work: Work) -> None:
         """Mark a submission as written if the gradebook contains the grades of its present files."""
         entered, entry = self._entered.get(work.key), self._entries.get(work.key, SubmissionEntry())
-        if entered is None or not entered.is_in(entry):
+        if entered is None or entered.made_from != work.made_from or not entered.is_in(entry):
             return
         if not self._directory.has_converted(work.submission, entered.tasks):
             return
@@ -315,14 +318,6 @@ class Batch:
             handed_in_at(work.submission.folder, believed=entry.handed_in)
         except ValueError:
             return  # the timestamp file is invalid; the writer will reject the submission, with the reason
-        if entered.made_from != work.made_from:
-            # The grader writes cards and grades, so that a changed grader writes them again.
-            if entered.made_from.grader != work.made_from.grader:
-                return
-            # The files have changed, but perhaps no cell has: for example, the student saved the notebook again.
-            if entered.tasks != {task.notebook: task.key() for task in self._tasks_of(work.submission)}:
-                return
-            self._store.note_made_from(work.submission, work.made_from)
         work.rows = entered.rows
         work.shown = entered.shown
         work.written = True
@@ -339,16 +334,21 @@ class Batch:
 
     def _take_stored_results(self, work: Work) -> None:
         stored = self._store.results(*work.key)
-        for task in self._tasks_of(work.submission) if stored else ():
+        for task, rebuilt in self._tasks_of(work) if stored else ():
             if (key := task.key()) in stored:
                 self._reused += 1
                 work.results[task.notebook] = task, stored[key]
+                work.rebuilt[task.notebook] = rebuilt
 
-    def _tasks_of(self, submission: Submission) -> list[Task]:
-        from autograder.grading.tasks.task_making import tasks_of
+    def _tasks_of(self, work: Work) -> Iterator[tuple[Task, NotebookNode]]:
+        """Yield a task for each notebook that has no result yet, with the rebuilt notebook."""
+        from autograder.grading.tasks.task_making import task_of
 
-        with self._timings.measure("rebuild"):
-            return tasks_of(self._directory, submission)
+        for notebook in work.notebooks:
+            if notebook not in work.results:
+                with self._timings.measure("rebuild"):
+                    made = task_of(self._directory, work.submission, notebook)
+                yield made
 
     def _write(self, work: Work, rows: tuple[Row, ...]) -> bool:
         """Write the results of a submission. Return False if the gradebook now has zero points for it."""
@@ -360,7 +360,7 @@ class Batch:
                     # The files changed during the run, so the tasks may have been made from other files.
                     name = f"{work.submission.student}/{work.submission.assignment}"
                     raise NotWritten(f"{name} was changed while it was graded: grade it again")
-                self._writer.write(work.submission, work.made_from, work.pairs, rows)
+                self._writer.write(work.submission, work.made_from, work.pairs, work.rebuilt, rows)
         except NotWritten as error:
             if is_disk_full(error):
                 raise

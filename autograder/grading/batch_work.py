@@ -21,6 +21,8 @@ if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
     from datetime import datetime
 
+    from nbformat import NotebookNode
+
     from autograder.execution.executed_cells import Execution
     from autograder.grading.class_records import ResultKey
     from autograder.grading.classes.class_directory import ClassDirectory, Submission
@@ -68,6 +70,7 @@ class Work:
         made_from: The key that its result has if it is made from the files at the beginning of the run.
         notebooks: The names of the assignment's notebooks.
         results: The results by notebook, until they are entered into the gradebook.
+        rebuilt: The rebuilt notebooks that are executed or have results, until the results are entered.
         rows: The results as rows of the report; None if the submission has not been graded yet.
         written: True if the gradebook contains these results.
         shown: The hash of the gradebook's entry from which the feedback pages were made; empty without pages.
@@ -77,6 +80,7 @@ class Work:
     made_from: ResultKey
     notebooks: Sequence[str]
     results: dict[str, tuple[Task, Execution]] = field(default_factory=dict)
+    rebuilt: dict[str, NotebookNode] = field(default_factory=dict)
     rows: tuple[Row, ...] | None = None
     written: bool = False
     shown: str = ""

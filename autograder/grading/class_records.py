@@ -104,7 +104,6 @@ class Entered:
         tasks: The hash of each notebook's task, from :meth:`autograder.grading.grading_task.Task.key`.
         scores: The points of each check cell, by notebook and grade_id.
         rows: The results as rows of the report, with the recognized mistakes.
-        course: The version of the course that judged the submission.
         shown: The hash of the gradebook's entry from which the feedback pages were made; empty without pages.
     """
 
@@ -112,7 +111,6 @@ class Entered:
     tasks: dict[str, str]
     scores: dict[str, dict[str, float]]
     rows: tuple[Row, ...]
-    course: str
     shown: str = ""
 
     def is_in(self, entry: SubmissionEntry) -> bool:

@@ -155,14 +155,13 @@ class ClassStore:
             )
             if entered is not None:
                 book.execute(
-                    "REPLACE INTO entered VALUES (?, ?, ?, ?, ?, ?, ?, ?)",
+                    "REPLACE INTO entered VALUES (?, ?, ?, ?, ?, ?, ?)",
                     (
                         *names,
                         *map(
                             msgspec.json.encode,
                             (entered.made_from, entered.tasks, entered.scores, entered.rows),
                         ),
-                        entered.course,
                         entered.shown,
                     ),
                 )
@@ -170,13 +169,13 @@ class ClassStore:
                     f"DELETE FROM evidence WHERE (student, assignment) = (?, ?) AND {_NOT_ENTERED}", names
                 )
 
-    def note_made_from(self, submission: Submission, made_from: ResultKey) -> None:
-        """Replace the key of an entered submission, because its files have changed but its tasks have not."""
-        self._note(submission, "made_from", msgspec.json.encode(made_from))
-
     def note_shown(self, submission: Submission, shown: str) -> None:
         """Record the hash of the gradebook's entry from which the feedback pages of a submission were made."""
-        self._note(submission, "shown", shown)
+        with self._step() as book:
+            book.execute(
+                "UPDATE entered SET shown = ? WHERE (student, assignment) = (?, ?)",
+                (shown, submission.student, submission.assignment),
+            )
 
     def forget_entered(self, submissions: Iterable[Submission]) -> None:
         """Delete the records of submissions' grades. Call this before setting the grades in the gradebook to zero."""
@@ -188,12 +187,12 @@ class ClassStore:
         """Return the results that were last entered into the gradebook, by student and assignment."""
         found = {}
         forms: tuple[Any, ...] = (ResultKey, dict[str, str], dict[str, dict[str, float]], tuple[Row, ...])
-        for student, assignment, *blobs, course, shown in self._rows("SELECT * FROM entered"):
+        for student, assignment, *blobs, shown in self._rows("SELECT * FROM entered"):
             fields: list[Any] = list(map(_decoded, blobs, forms))
             if None not in fields:
                 made_from, tasks, scores, rows = fields
                 own = tuple(replace(row, student=student) for row in rows)
-                found[student, assignment] = Entered(made_from, tasks, scores, own, course, shown)
+                found[student, assignment] = Entered(made_from, tasks, scores, own, shown)
         return found
 
     def attempts(self, student: str) -> list[Attempt]:
@@ -280,13 +279,6 @@ class ClassStore:
         return rows[0][0] if rows else b""
 
     # -- the file
-
-    def _note(self, submission: Submission, column: str, value: str | bytes) -> None:
-        with self._step() as book:
-            book.execute(
-                f"UPDATE entered SET {column} = ? WHERE (student, assignment) = (?, ?)",
-                (value, submission.student, submission.assignment),
-            )
 
     def _rows(self, question: str, *names: str) -> list[tuple[Any, ...]]:
         with self._said_clearly():

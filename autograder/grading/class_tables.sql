@@ -13,7 +13,7 @@ CREATE TABLE IF NOT EXISTS evidence (
 -- The results that were entered into the gradebook; see the class Entered.
 CREATE TABLE IF NOT EXISTS entered (
     student TEXT, assignment TEXT, made_from TEXT NOT NULL, tasks BLOB NOT NULL, scores BLOB NOT NULL,
-    report BLOB NOT NULL, course TEXT NOT NULL, shown TEXT NOT NULL,
+    report BLOB NOT NULL, shown TEXT NOT NULL,
     PRIMARY KEY (student, assignment)
 );
 -- Each grading of a submission; see the class Attempt. Attempts are only added, never changed or removed;

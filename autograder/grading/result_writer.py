@@ -36,7 +36,7 @@ from autograder.grading.returning.sanitize import harmless_output, make_harmless
 from autograder.grading.running import execution_backends
 from autograder.grading.table.late_policy import penalties
 from autograder.grading.tasks.submission_times import companions, handed_in_at
-from autograder.grading.tasks.task_making import LEFT_OUT, task_of
+from autograder.grading.tasks.task_making import LEFT_OUT
 from autograder.safe_files import write_whole
 
 if TYPE_CHECKING:
@@ -86,6 +86,7 @@ class Writer:
         submission: Submission,
         made_from: ResultKey,
         results: Sequence[tuple[Task, Execution]],
+        rebuilt: Mapping[str, NotebookNode],
         rows: tuple[Row, ...],
     ) -> None:
         """Convert the submission and enter its grades.
@@ -94,6 +95,7 @@ class Writer:
             submission: The submission that was executed.
             made_from: The key of the results.
             results: Pairs of a task and its result, one for each notebook of the assignment.
+            rebuilt: The rebuilt notebooks that were executed, by name. They get the results as outputs.
             rows: The results as rows of the report.
 
         Raises:
@@ -102,7 +104,7 @@ class Writer:
         """
         try:
             with quiet(self._directory.state):
-                self._convert_and_enter(submission, results)
+                self._convert_and_enter(submission, results, rebuilt)
             # Read the points back, because a wrong grade is worse than none.
             self._verify(submission, results)
         except NotWritten:
@@ -111,20 +113,23 @@ class Writer:
         except Exception as error:
             self.take_back([submission])
             raise NotWritten(f"{submission.student}/{submission.assignment}: {error}") from error
-        course = results[0][0].course
         entered = Entered(
             made_from=made_from,
             tasks={task.notebook: task.key() for task, _ in results},
             scores={task.notebook: scores_of(task, execution) for task, execution in results},
             rows=rows,
-            course=course,
         )
-        attempt = Attempt(datetime.now(tz=UTC), submission.assignment, made_from, course, rows)
+        attempt = Attempt(datetime.now(tz=UTC), submission.assignment, made_from, results[0][0].course, rows)
         # If the grader itself failed, the attempt is kept, but the submission is not entered as done: it runs again.
         is_final = not any(execution.trouble for _, execution in results)
         self._store.enter(submission, attempt, entered if is_final else None)
 
-    def _convert_and_enter(self, submission: Submission, results: Sequence[tuple[Task, Execution]]) -> None:
+    def _convert_and_enter(
+        self,
+        submission: Submission,
+        results: Sequence[tuple[Task, Execution]],
+        rebuilt: Mapping[str, NotebookNode],
+    ) -> None:
         """Write the notebooks, then enter the grades.
 
         The notebooks come first because notebooks without grades do no harm, if the grader is interrupted between the
@@ -132,7 +137,7 @@ class Writer:
         """
         folder = self._folder("autograded", submission)
         _remove(folder)
-        entries = _convert(self._directory, submission, results, folder)
+        entries = _convert(self._directory, submission, results, rebuilt, folder)
         url = self._directory.gradebook_url
         has_due_date = gradebook_writing.enter(
             url, submission.assignment, submission.student, entries, handed_in_at(submission.folder)
@@ -234,6 +239,7 @@ def _convert(
     directory: ClassDirectory,
     submission: Submission,
     results: Sequence[tuple[Task, Execution]],
+    rebuilt: Mapping[str, NotebookNode],
     folder: Path,
 ) -> dict[str, NotebookEntry]:
     """Write the notebooks of a submission with their results, and return the entries for the gradebook.
@@ -241,13 +247,13 @@ def _convert(
     Args:
         submission: The submission that was executed.
         results: Pairs of a task and its result, one for each notebook of the assignment.
+        rebuilt: The rebuilt notebooks that were executed, by name.
         folder: The folder to create for the notebooks. It must not exist yet.
 
     Returns:
         The entries by notebook.
 
     Raises:
-        RuntimeError: A notebook in ``submitted`` changed while it was executed.
         OSError: A file could not be written.
     """
     folder.mkdir(parents=True)
@@ -256,7 +262,7 @@ def _convert(
     _write_companions(submission, folder)
     entries = {}
     for task, execution in results:
-        notebook = _graded_notebook(directory, submission, task, execution)
+        notebook = _with_results(rebuilt[task.notebook], task, execution)
         # Before the entry is made, because nbgrader, too, cuts outputs before it computes points from them.
         LimitOutput(config=directory.config).preprocess(notebook, {})
         entries[task.notebook] = replace(_notebook_entry(notebook), unchecked=unchecked(task, execution))
@@ -272,17 +278,6 @@ def _write_companions(submission: Submission, folder: Path) -> None:
     """
     for name, data in companions(submission.folder).items():
         _write_read_only(folder / name, data)
-
-
-def _graded_notebook(
-    directory: ClassDirectory, submission: Submission, task: Task, execution: Execution
-) -> NotebookNode:
-    now, rebuilt = task_of(directory, submission, task.notebook)
-    if now.key() != task.key():
-        raise RuntimeError(
-            f"{task.label} was changed while it was graded: grade it again to use the new file"
-        )
-    return _with_results(rebuilt, task, execution)
 
 
 def _notebook_text(notebook: NotebookNode) -> bytes:

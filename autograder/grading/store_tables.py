@@ -29,6 +29,7 @@ _STEPS = {
         " BEGIN SELECT RAISE(ABORT, 'attempts stay'); END",
         "ALTER TABLE entered RENAME COLUMN fingerprint TO made_from",
         "UPDATE entered SET made_from = json_object('handed_in', made_from)",
+        "ALTER TABLE entered DROP COLUMN course",
     ),
 }
 """For each earlier version, the statements that make the next version's tables from its tables."""

@@ -62,7 +62,7 @@ def submission(student: str = "ada", assignment: str = "lab") -> Submission:
 def entered(student: str = "ada", assignment: str = "lab") -> Entered:
     rows = (Row(student, assignment, "lab.one", 2, 4, "failed"),)
     task = replace(TASK, student=student, assignment=assignment)
-    return Entered(ResultKey(f"of {student}"), {"lab": task.key()}, {"lab": {"lab-one": 2.0}}, rows, "v1")
+    return Entered(ResultKey(f"of {student}"), {"lab": task.key()}, {"lab": {"lab-one": 2.0}}, rows)
 
 
 def attempt(number: int = 0, assignment: str = "lab") -> Attempt:
@@ -163,9 +163,8 @@ def test_what_was_entered_is_known_with_its_attempt_until_it_is_taken_back(store
     store.enter(submission(), attempt(1), entered())
     store.enter(submission(), attempt(2), None)  # to be tried again
     assert store.entered() == {("ada", "lab"): entered()}
-    store.note_made_from(submission(), ResultKey("other bytes"))
     store.note_shown(submission(), "pages")
-    noted = replace(entered(), made_from=ResultKey("other bytes"), shown="pages")
+    noted = replace(entered(), shown="pages")
     assert store.entered() == {("ada", "lab"): noted}
     store.enter(submission(), attempt(3), entered())
     assert store.entered()["ada", "lab"].shown == "", "its pages say something else"

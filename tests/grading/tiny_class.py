@@ -181,6 +181,15 @@ def make_version_3(store: Path) -> None:
                 BEGIN SELECT RAISE(ABORT, 'attempts stay'); END;
             ALTER TABLE entered RENAME COLUMN made_from TO fingerprint;
             UPDATE entered SET fingerprint = json_extract(fingerprint, '$.handed_in');
+            CREATE TABLE earlier (
+                student TEXT, assignment TEXT, fingerprint TEXT NOT NULL, tasks BLOB NOT NULL, scores BLOB NOT NULL,
+                report BLOB NOT NULL, course TEXT NOT NULL, shown TEXT NOT NULL,
+                PRIMARY KEY (student, assignment)
+            );
+            INSERT INTO earlier
+                SELECT student, assignment, fingerprint, tasks, scores, report, 'v1', shown FROM entered;
+            DROP TABLE entered;
+            ALTER TABLE earlier RENAME TO entered;
             PRAGMA user_version = 3;
             """
         )

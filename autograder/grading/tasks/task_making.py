@@ -38,16 +38,6 @@ if TYPE_CHECKING:
 LEFT_OUT = "[a demonstration of the notebook: left out while grading]"
 
 
-def tasks_of(directory: ClassDirectory, submission: Submission) -> list[Task]:
-    """Return the tasks of a submission, one for each notebook of the assignment.
-
-    Raises:
-        MasterUnusable: A source notebook cannot be used for grading.
-    """
-    notebooks = directory.notebooks(submission.assignment)
-    return [task_of(directory, submission, notebook)[0] for notebook in notebooks]
-
-
 def task_of(directory: ClassDirectory, submission: Submission, notebook: str) -> tuple[Task, NotebookNode]:
     """Return the task for one notebook of a submission, and the rebuilt notebook.
 
