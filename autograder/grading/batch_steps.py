@@ -23,7 +23,6 @@ from autograder.grading.table.student_list import enter_roster
 from autograder.grading.table.weighted_rows import read_what_counts, true_rows
 from autograder.grading.tasks.result_keys import ResultKeys
 from autograder.grading.tasks.source_points import check_release, read_released
-from autograder.grading.tasks.submission_times import handed_in_at
 
 # Some modules are imported inside functions, because they import nbgrader, which takes a second.
 
@@ -236,7 +235,7 @@ class Batch:
         for work in works:
             if work.written:
                 if not self._dry_run:
-                    yield work, self._keep_time(work)
+                    yield work, self._penalized(work)
                 continue
             rows = tuple(row for pair in work.pairs for row in rows_of(*pair))
             if self._dry_run:
@@ -312,25 +311,18 @@ class Batch:
         entered, entry = self._entered.get(work.key), self._entries.get(work.key, SubmissionEntry())
         if entered is None or entered.made_from != work.made_from or not entered.is_in(entry):
             return
-        if not self._directory.has_converted(work.submission, entered.tasks):
-            return
-        try:
-            handed_in_at(work.submission.folder, believed=entry.handed_in)
-        except ValueError:
-            return  # the timestamp file is invalid; the writer will reject the submission, with the reason
-        work.rows = entered.rows
-        work.shown = entered.shown
-        work.written = True
+        if self._directory.has_converted(work.submission, entered.tasks):
+            work.rows, work.shown, work.written = entered.rows, entered.shown, True
 
     def _why_again(self, work: Work) -> str:
         """Return why a notebook of a submission is executed again; empty if it is executed for the first time."""
-        attempts = [
-            one for one in self._store.attempts(work.submission.student) if one.assignment == work.key[1]
+        earlier = [
+            one.made_from for one in self._store.attempts(work.key[0]) if one.assignment == work.key[1]
         ]
-        if not attempts:
+        if not earlier:
             return ""
-        changed = work.made_from.changes_since(attempts[-1].made_from)
-        return changed or ("--again was given" if self._again else "its result was not kept")
+        nothing = "--again was given" if self._again else "its result was not kept"
+        return work.made_from.changes_since(earlier[-1]) or nothing
 
     def _take_stored_results(self, work: Work) -> None:
         stored = self._store.results(*work.key)
@@ -372,15 +364,13 @@ class Batch:
             self._written += 1
         return work.written
 
-    def _keep_time(self, work: Work) -> SubmissionEntry:
-        """Enter a changed submission time into the gradebook, and compute the late penalty again."""
+    def _penalized(self, work: Work) -> SubmissionEntry:
+        """Compute the late penalty of an entered submission again, and return its entry in the gradebook."""
         entry = self._entries.get(work.key, SubmissionEntry())
-        at = handed_in_at(work.submission.folder, believed=entry.handed_in)
-        moved = at is not None and at != entry.handed_in
-        if not (moved or entry.is_late or entry.penalty):
+        if not (entry.is_late or entry.penalty):
             return entry
         with self._timings.measure("gradebook"):
-            self._writer.enter_time(work.submission, at if moved else None)
+            self._writer.assign_penalties(work.submission)
         return gradebook_reading.read_entry(self._directory.gradebook_url, *work.key)
 
     def _make_pages(self, work: Work, entry: SubmissionEntry) -> None:

@@ -142,28 +142,16 @@ class ClassStore:
         """
         names = (submission.student, submission.assignment)
         with self._step() as book:
+            made_from, rows = map(msgspec.json.encode, (attempt.made_from, attempt.rows))
             book.execute(
-                "INSERT INTO attempt (student, at, assignment, made_from, course, report) VALUES (?, ?, ?, ?, ?, ?)",
-                (
-                    submission.student,
-                    attempt.at.isoformat(),
-                    attempt.assignment,
-                    msgspec.json.encode(attempt.made_from),
-                    attempt.course,
-                    msgspec.json.encode(attempt.rows),
-                ),
+                "INSERT INTO attempt (student, assignment, at, made_from, course, report) VALUES (?, ?, ?, ?, ?, ?)",
+                (*names, attempt.at.isoformat(), made_from, attempt.course, rows),
             )
             if entered is not None:
+                blobs = (entered.made_from, entered.tasks, entered.scores, entered.rows)
                 book.execute(
                     "REPLACE INTO entered VALUES (?, ?, ?, ?, ?, ?, ?)",
-                    (
-                        *names,
-                        *map(
-                            msgspec.json.encode,
-                            (entered.made_from, entered.tasks, entered.scores, entered.rows),
-                        ),
-                        entered.shown,
-                    ),
+                    (*names, *map(msgspec.json.encode, blobs), entered.shown),
                 )
                 book.execute(
                     f"DELETE FROM evidence WHERE (student, assignment) = (?, ?) AND {_NOT_ENTERED}", names
@@ -191,8 +179,7 @@ class ClassStore:
             fields: list[Any] = list(map(_decoded, blobs, forms))
             if None not in fields:
                 made_from, tasks, scores, rows = fields
-                own = tuple(replace(row, student=student) for row in rows)
-                found[student, assignment] = Entered(made_from, tasks, scores, own, shown)
+                found[student, assignment] = Entered(made_from, tasks, scores, _own(rows, student), shown)
         return found
 
     def attempts(self, student: str) -> list[Attempt]:
@@ -204,8 +191,8 @@ class ClassStore:
         ):
             made_from, rows = _decoded(key, ResultKey), _decoded(report, tuple[Row, ...])
             if made_from is not None and rows is not None:
-                own = tuple(replace(row, student=student) for row in rows)
-                found.append(Attempt(datetime.fromisoformat(at), assignment, made_from, course, own))
+                when = datetime.fromisoformat(at)
+                found.append(Attempt(when, assignment, made_from, course, _own(rows, student)))
         return found
 
     def rename(self, ids: Mapping[str, str]) -> None:
@@ -326,6 +313,10 @@ class ClassStore:
             if isinstance(error, sqlite3.Error):
                 raise StoreTrouble(self._path, said_by_database(error)) from error
             raise
+
+
+def _own(rows: Iterable[Row], student: str) -> tuple[Row, ...]:
+    return tuple(replace(row, student=student) for row in rows)
 
 
 def _decoded(

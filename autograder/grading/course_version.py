@@ -13,7 +13,7 @@ from autograder.exercises import REFERENCE
 from autograder.kit.hunts.ticket import TICKET
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
+    from collections.abc import Iterable, Iterator
 
 _MADE_BY_PYTHON = "__pycache__"
 _MADE_BY_COLCON = frozenset({"build", "install", "log"})
@@ -22,105 +22,74 @@ files in ``src``, which are hashed.
 """
 _OF_CHAPTERS = (f"*/{course.CHAPTER}", "*/*/*.py", f"*/*/*{REFERENCE}", f"*/*/*{TICKET}")
 """Patterns for the chapters' files that the hash covers: ``chapter.toml``, exercises, reference outputs and tickets."""
-_GRADER = tuple(f"autograder/{part}/" for part in ("authoring", "cards", "cli", "grading"))
-"""The folders of the grader: the code that makes tasks from notebooks, and grades and pages from results."""
+_OF_GRADER = tuple(f"autograder/{part}/" for part in ("authoring", "cards", "cli", "grading"))
 _EXECUTES_TASKS = tuple(f"autograder/grading/{part}/" for part in ("cluster", "running"))
-"""The folders inside ``grading`` that belong to the judge's part, because they execute tasks."""
-_BEFORE_PARTS = ("42e9eafef104ffd0", "6914a5659ef8f202")
-"""The last version of the course that had one hash for all files, and what ``without_grader`` is for its files.
+JUDGE = "the judge"
+"""The part of the course that executes and judges notebooks, for all exercises."""
+GRADER = "the grader"
+"""The part of the course that changes no result: it makes tasks from notebooks, and grades and pages from results.
+
+If a changed grader makes a different task from a notebook, this task has no result yet, and so is executed.
+"""
+SHARED = "shared"
+"""The part of ``solutions`` that all exercises share: the workspace, and the chapters' descriptions and interfaces."""
+_BEFORE_PARTS = ("42e9eafef104ffd0", "6e3fc25e66fe0f58")
+"""The last version of the course that had one hash for all files, and the hash of its files without the grader.
 
 A class that was begun with this version keeps its results until a file on which results depend has changed.
 """
 
 
 class CourseFiles:
-    """The files of the course that run, judge or show submissions.
+    """The files of the course that run, judge or show submissions, in parts: see :func:`part_of`.
 
     Args:
-        contents: The content of each file, by the name that :func:`counted_files` gives it.
+        files: The name and the content of each file, as :func:`counted_files` names it.
     """
 
-    def __init__(self, contents: Mapping[str, bytes]) -> None:
-        self._contents = contents
+    def __init__(self, files: Iterable[tuple[str, bytes]]) -> None:
+        self._parts: dict[str, bytearray] = {}
+        for name, data in files:
+            content = self._parts.setdefault(part_of(name), bytearray())
+            content += f"{len(name)}:{name}{len(data)}:".encode() + data
+        self._hashes = {part: hashlib.sha256(content).hexdigest() for part, content in self._parts.items()}
 
-    @functools.cached_property
-    def whole(self) -> str:
-        """A hash of all files."""
-        return self._hash_of(self._contents)
+    def version(self, *parts: str, without: str = "") -> str:
+        """Return a hash of some parts, in hexadecimal; of all if none is given."""
+        chosen = sorted(self._hashes.keys() & set(parts or self._hashes) - {without})
+        return hashlib.sha256(
+            " ".join(f"{part} {self._hashes[part]}" for part in chosen).encode()
+        ).hexdigest()[:16]
 
-    @functools.cached_property
-    def without_grader(self) -> str:
-        """A hash of all files on which the result of a notebook may depend."""
-        return self._hash_of(name for name in self._contents if not _in_grader(name))
-
-    @functools.cached_property
-    def judge(self) -> str:
-        """A hash of the code that executes and judges notebooks, for all exercises."""
-        return self._hash_of(name for name in self._contents if not (_in_solutions(name) or _in_grader(name)))
-
-    @functools.cached_property
-    def grader(self) -> str:
-        """A hash of the grader's code, which changes no result: it makes tasks, enters results and makes pages.
-
-        If it makes a different task from a notebook, this task has no result yet, and so is executed.
-        """
-        return self._hash_of(filter(_in_grader, self._contents))
-
-    def exercises(self, text: bytes) -> str:
-        """Return a hash of the exercises that may judge a notebook.
-
-        These are all exercises of the labs that the notebook names, and of the labs that their files name in turn.
-        The hash also covers what all exercises share: the workspace and the chapters' interfaces.
+    def labs(self, text: bytes) -> set[str]:
+        """Return the labs whose exercises may judge a notebook: those that it names, and that their files name in turn.
 
         Args:
             text: The source of the notebook.
         """
-        return self._of_labs(frozenset(self._named_in(text)))
-
-    @functools.cached_property
-    def _labs(self) -> dict[str, list[str]]:
-        """The names of each lab's files, by the folder of the lab; under the key ``""`` the shared files."""
-        labs: dict[str, list[str]] = {"": []}
-        for name in filter(_in_solutions, self._contents):
-            labs.setdefault(_lab_of(name), []).append(name)
+        labs: set[str] = set()
+        others = self._parts.keys() - {JUDGE, GRADER, SHARED}
+        while more := {lab for lab in others - labs if lab.encode() in text}:
+            labs |= more
+            text = b"".join(self._parts[lab] for lab in more)
         return labs
 
-    def _named_in(self, text: bytes) -> Iterator[str]:
-        return (lab for lab in self._labs if lab and lab.encode() in text)
 
-    @functools.cache  # noqa: B019  (lives as long as the process)
-    def _of_labs(self, labs: frozenset[str]) -> str:
-        names = [name for lab in self._labs if lab in labs for name in self._labs[lab]]
-        more = labs.union(*(self._named_in(self._contents[name]) for name in names))
-        return self._of_labs(more) if more != labs else self._hash_of([*self._labs[""], *names])
-
-    def _hash_of(self, names: Iterable[str]) -> str:
-        digest = hashlib.sha256()
-        for name in names:
-            data = self._contents[name]
-            digest.update(f"{len(name)}:{name}{len(data)}:".encode())
-            digest.update(data)
-        return digest.hexdigest()[:16]
-
-
-def _in_solutions(name: str) -> bool:
-    return name.startswith(f"{course.SOLUTIONS}/")
-
-
-def _in_grader(name: str) -> bool:
-    return name.startswith(_GRADER) and not name.startswith(_EXECUTES_TASKS)
-
-
-def _lab_of(name: str) -> str:
-    """Return the folder of the lab that contains a file of ``solutions``; empty if all labs share the file."""
-    _, chapter, lab, *file = name.split("/")
-    return lab if len(file) == 1 and not chapter.endswith("ws") else ""
+def part_of(name: str) -> str:
+    """Return the part to which a file of the course belongs. Each lab is a part, named after its folder."""
+    if name.startswith(_OF_GRADER) and not name.startswith(_EXECUTES_TASKS):
+        return GRADER
+    top, *folders, _ = name.split("/")
+    if top != course.SOLUTIONS:
+        return JUDGE
+    is_lab = len(folders) == 2 and course.INTERFACES not in folders and not folders[0].endswith("ws")
+    return folders[1] if is_lab else SHARED
 
 
 @functools.cache
 def course_files() -> CourseFiles:
     """Return the files of the course as they were at the first call."""
-    return CourseFiles({name: path.read_bytes() for name, path in counted_files()})
+    return CourseFiles((name, path.read_bytes()) for name, path in counted_files())
 
 
 def course_version() -> str:
@@ -133,7 +102,7 @@ def course_version() -> str:
     workspace. It does not cover the masters, because a class is graded by its own copies in ``source/``, whose changes
     are found separately.
     """
-    return course_files().whole
+    return course_files().version()
 
 
 def judged_by(source: bytes) -> str:
@@ -147,9 +116,9 @@ def judged_by(source: bytes) -> str:
     """
     files = course_files()
     before, same = _BEFORE_PARTS
-    if files.without_grader == same:
+    if files.version(without=GRADER) == same:
         return before
-    return hashlib.sha256(f"{files.judge} {files.exercises(source)}".encode()).hexdigest()[:16]
+    return files.version(JUDGE, SHARED, *files.labs(source))
 
 
 def counted_files() -> Iterator[tuple[str, Path]]:

@@ -107,11 +107,10 @@ class Writer:
                 self._convert_and_enter(submission, results, rebuilt)
             # Read the points back, because a wrong grade is worse than none.
             self._verify(submission, results)
-        except NotWritten:
-            self.take_back([submission])
-            raise
         except Exception as error:
             self.take_back([submission])
+            if isinstance(error, NotWritten):
+                raise
             raise NotWritten(f"{submission.student}/{submission.assignment}: {error}") from error
         entered = Entered(
             made_from=made_from,
@@ -143,26 +142,15 @@ class Writer:
             url, submission.assignment, submission.student, entries, handed_in_at(submission.folder)
         )
         if has_due_date:
-            self._assign_penalties(submission)
+            self.assign_penalties(submission)
 
-    def enter_time(self, submission: Submission, at: datetime | None) -> None:
-        """Enter a new submission time of a graded submission, and the late penalty for it.
-
-        Args:
-            submission: A graded submission. Its grades stay unchanged.
-            at: The time in UTC; None if the gradebook already has the time, so that only the penalty is computed.
-        """
-        names = submission.assignment, submission.student
+    def assign_penalties(self, submission: Submission) -> None:
+        """Enter the late penalty of a submission into the gradebook."""
+        student = submission.student
         with quiet(self._directory.state):
-            if at is not None:
-                gradebook_writing.enter_time(self._directory.gradebook_url, *names, at)
-                _write_companions(submission, self._folder("autograded", submission))
-            self._assign_penalties(submission)
-
-    def _assign_penalties(self, submission: Submission) -> None:
-        url, student = self._directory.gradebook_url, submission.student
-        costs = penalties(self._directory.config, student, self._entry(submission))
-        gradebook_writing.enter_penalties(url, submission.assignment, student, costs)
+            costs = penalties(self._directory.config, student, self._entry(submission))
+            url = self._directory.gradebook_url
+            gradebook_writing.enter_penalties(url, submission.assignment, student, costs)
 
     def _entry(self, submission: Submission) -> SubmissionEntry:
         student, assignment = submission.student, submission.assignment

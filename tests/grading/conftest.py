@@ -60,7 +60,7 @@ def klass(tiny: TinyClass) -> TinyClass:
 def _the_course_stands_still() -> Iterator[None]:
     """Several processes and runs must agree on it, also while somebody edits the course."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(course_version, "course_files", lambda: CourseFiles(COURSE))
+        patch.setattr(course_version, "course_files", lambda: CourseFiles(COURSE.items()))
         yield
 
 

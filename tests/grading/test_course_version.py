@@ -10,9 +10,16 @@ import pytest
 
 from autograder import course
 from autograder.grading import batch_steps
-from autograder.grading import course_version as course_version_of
 from autograder.grading.cluster import dask_worker
-from autograder.grading.course_version import CourseFiles, counted_files, course_version
+from autograder.grading.course_version import (
+    GRADER,
+    JUDGE,
+    SHARED,
+    CourseFiles,
+    counted_files,
+    course_version,
+    part_of,
+)
 from autograder.grading.running import task_dispatcher
 from tests.test_imports import imports_of
 
@@ -41,11 +48,11 @@ def copy(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def version() -> str:
-    return files().whole
+    return CourseFiles(files().items()).version()
 
 
-def files() -> CourseFiles:
-    return CourseFiles({name: path.read_bytes() for name, path in counted_files()})
+def files() -> dict[str, bytes]:
+    return {name: path.read_bytes() for name, path in counted_files()}
 
 
 def kept() -> list[str]:
@@ -134,27 +141,17 @@ LABS = ("lab_1_2", "lab_1_4", "lab_1_4_robot", "lab_2_3", "bugs_1", "bugs_2")
     ],
 )
 def test_a_file_moves_the_parts_that_depend_on_it(name: str, moved: set[str]) -> None:
-    contents = dict(files()._contents)
+    contents = files()
 
     def parts() -> dict[str, str]:
-        made = CourseFiles(contents)
-        return {
-            "judge": made.judge,
-            "grader": made.grader,
-            **{lab: made.exercises(f"check('{lab}.one')".encode()) for lab in LABS},
-        }
+        made = CourseFiles(contents.items())
+        exercises = {lab: made.version(*made.labs(f"check('{lab}.one')".encode()), SHARED) for lab in LABS}
+        return {"judge": made.version(JUDGE), "grader": made.version(GRADER), **exercises}
 
     before = parts()
     contents[name] += b" "
     after = parts()
     assert {part for part, value in after.items() if value != before[part]} == moved
-
-
-def test_each_file_belongs_to_a_part() -> None:
-    made = files()
-    shared_and_labs = [name for names in made._labs.values() for name in names]
-    of_judge = [name for name in made._contents if not name.startswith("solutions/")]
-    assert sorted([*shared_and_labs, *of_judge]) == sorted(made._contents)
 
 
 MAY_ENTER_A_RESULT = {
@@ -171,10 +168,10 @@ def test_what_executes_and_judges_runs_no_code_of_the_grader() -> None:
     wrong = [
         f"{name} imports {one.name}"
         for name, path in counted_files()
-        if name.endswith(".py") and name.startswith("autograder/") and not course_version_of._in_grader(name)
+        if name.endswith(".py") and name.startswith("autograder/") and part_of(name) == JUDGE
         if not name.startswith(("autograder/masters/", "autograder/student/", "autograder/__main__"))
         for one in imports_of(path)
-        if course_version_of._in_grader(f"{one.name.replace('.', '/')}/") and not one.for_types
+        if part_of(f"{one.name.replace('.', '/')}/") == GRADER and not one.for_types
         if not any(one.name.startswith(allowed) for allowed in MAY_ENTER_A_RESULT)
     ]
     assert not wrong

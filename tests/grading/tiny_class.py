@@ -107,7 +107,7 @@ TALKER, LISTENER = "lab_1_2-talker", "lab_1_2-listener"
 STANDS_STILL = f"""
 from autograder.grading import course_version
 
-course_version.course_files = lambda: course_version.CourseFiles({COURSE!r})
+course_version.course_files = lambda: course_version.CourseFiles({COURSE!r}.items())
 """
 GRADE = f"""{STANDS_STILL}
 import sys

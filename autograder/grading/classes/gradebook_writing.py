@@ -167,17 +167,6 @@ def _enter_cells(
     )
 
 
-def enter_time(url: str, assignment: str, student: str, timestamp: datetime) -> None:
-    """Enter the submission time of a submission.
-
-    Args:
-        url: The address by which SQLAlchemy opens the gradebook.
-        timestamp: The time in UTC.
-    """
-    with opened(url) as book:
-        _submit(book, {"assignment": assignment, "student": student}, timestamp)
-
-
 def enter_penalties(url: str, assignment: str, student: str, penalties: Mapping[str, float | None]) -> None:
     """Enter the late penalty of each notebook of a submission.
 

@@ -14,8 +14,10 @@ from typing import TYPE_CHECKING
 
 from autograder.grading import course_version
 from autograder.grading.class_records import ResultKey
-from autograder.grading.classes.class_directory import CONFIG_NAME, SUFFIX, TIMESTAMP
+from autograder.grading.classes.class_directory import CONFIG_NAME, SUFFIX
+from autograder.grading.course_version import GRADER, JUDGE, SHARED
 from autograder.grading.rebuilding.submitted_notebook import UnreadableSubmission, read_bytes
+from autograder.grading.tasks.submission_times import read_timestamp
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -35,60 +37,42 @@ class ResultKeys:
 
         The student's id is not part of it, so that a student who gets another id keeps the result.
         """
-        names = (f"{name}{SUFFIX}" for name in self._notebooks(submission.assignment))
-        handed_in = _digest(_content(submission.folder / name) for name in (*names, TIMESTAMP))
+        names = self._directory.notebooks(submission.assignment)
+        files = [_content(submission.folder / f"{name}{SUFFIX}") for name in names]
+        handed_in = _hash_of([*files, read_timestamp(submission.folder)])
         return replace(self._of_assignment(submission.assignment), handed_in=handed_in)
 
     def of_sources(self) -> str:
         """Return a hash of everything from which the list of the cells with points is made."""
-        sources = (self._released(assignment) for assignment in self._directory.assignments())
-        return _digest([course_version.course_version(), self._configuration, *sources])
+        return _hash_of(str(self._of_assignment(name)) for name in self._directory.assignments())
 
     @functools.cache  # noqa: B019  (lives as long as one batch)
     def _of_assignment(self, assignment: str) -> ResultKey:
-        files = course_version.course_files()
-        is_sandbox_off = str(self._directory.is_sandbox_off)
+        folder, files = self._directory.path / "source" / assignment, course_version.course_files()
+        paths = [path for path in sorted(folder.rglob("*")) if path.is_file()]
+        names = [str(path.relative_to(folder)) for path in paths]
+        contents = [path.read_bytes() for path in paths]
+        configuration = (self._directory.path / CONFIG_NAME).read_bytes()
         return ResultKey(
-            released=self._released(assignment),
-            exercises=files.exercises(b"\n".join(self._sources(assignment).values())),
-            judge=files.judge,
-            settings=_digest([self._configuration, self._directory.secret.hex(), is_sandbox_off]),
-            grader=files.grader,
+            released=_hash_of([assignment, *names, *contents]),
+            exercises=files.version(SHARED, *files.labs(b"\n".join(contents))),
+            judge=files.version(JUDGE),
+            settings=_hash_of([configuration, self._directory.secret, str(self._directory.is_sandbox_off)]),
+            grader=files.version(GRADER),
         )
 
-    def _released(self, assignment: str) -> str:
-        files = self._sources(assignment).items()
-        return _digest([assignment, *(f"{name} {_hash_of(data)}" for name, data in files)])
 
-    @functools.cache  # noqa: B019
-    def _sources(self, assignment: str) -> dict[str, bytes]:
-        folder = self._directory.path / "source" / assignment
-        paths = (path for path in sorted(folder.rglob("*")) if path.is_file())
-        return {str(path.relative_to(folder)): path.read_bytes() for path in paths}
-
-    @functools.cached_property
-    def _configuration(self) -> str:
-        return _hash_of((self._directory.path / CONFIG_NAME).read_bytes())
-
-    @functools.cache  # noqa: B019
-    def _notebooks(self, assignment: str) -> list[str]:
-        return self._directory.notebooks(assignment)
-
-
-def _hash_of(data: bytes) -> str:
-    return hashlib.sha256(data).hexdigest()
-
-
-def _content(path: Path) -> str:
-    """Return a hash of a submitted file; if it cannot be read, return the reason."""
+def _content(path: Path) -> bytes | str:
+    """Return the content of a submitted file; if it cannot be read, return the reason."""
     try:
-        return _hash_of(read_bytes(path))
+        return read_bytes(path)
     except UnreadableSubmission as error:
         return str(error)
 
 
-def _digest(parts: Iterable[str]) -> str:
+def _hash_of(parts: Iterable[bytes | str]) -> str:
     digest = hashlib.sha256()
     for part in parts:
-        digest.update(f"{len(part)}:{part};".encode())
+        data = part.encode("utf-8", "surrogateescape") if isinstance(part, str) else part
+        digest.update(f"{len(data)}:".encode() + data)
     return digest.hexdigest()

@@ -15,7 +15,7 @@ from tiny_class import COURSE, LISTENER, TALKER, FakeEngine, TinyClass, make_ver
 from autograder.grading import course_version, result_writer
 from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.class_directory import ClassDirectory
-from autograder.grading.course_version import CourseFiles
+from autograder.grading.course_version import GRADER, CourseFiles
 from autograder.grading.reporting.grade_report import report_json, show
 
 if TYPE_CHECKING:
@@ -33,7 +33,7 @@ def course(monkeypatch: pytest.MonkeyPatch) -> Callable[..., None]:
 
     def change(*names: str) -> None:
         files = COURSE | dict.fromkeys(names, b"changed")
-        monkeypatch.setattr(course_version, "course_files", lambda: CourseFiles(files))
+        monkeypatch.setattr(course_version, "course_files", lambda: CourseFiles(files.items()))
 
     return change
 
@@ -132,7 +132,9 @@ def test_a_class_of_the_course_before_keys_had_parts_goes_on(
     monkeypatch: pytest.MonkeyPatch,
     files: list[str],
 ) -> None:
-    monkeypatch.setattr(course_version, "_BEFORE_PARTS", ("earlier", CourseFiles(COURSE).without_grader))
+    monkeypatch.setattr(
+        course_version, "_BEFORE_PARTS", ("earlier", CourseFiles(COURSE.items()).version(without=GRADER))
+    )
     tiny.submit("ada", 4, 7)
     tiny.grade()
     with store_of(tiny) as store:
