@@ -20,6 +20,7 @@ _COLOR_CODE = re2.compile(r"\x1b\[[0-9;:]*m")
 # invisible or reorder a line.
 _HARMLESS_FORMAT = frozenset("\u200c\u200d\u00ad")
 
+_LONG_NUMBER = re2.compile(r"\b\d+\.\d{3,}\b")
 _NAMED_ESCAPES = {"\n": "\\n", "\r": "\\r", "\t": "\\t"}
 
 
@@ -35,6 +36,23 @@ def one_line(text: str, limit: int, *, mark: str = "…") -> str:
     text = _cut(text, 4 * limit, mark)
     # Most texts are printable in Python's sense, and then contain no character that needs escaping.
     return _cut(text if text.isprintable() else "".join(map(_escaped, text)), limit, mark)
+
+
+def label(text: str, limit: int, *, mark: str = "…") -> str:
+    """Return the label of a message on one line, cut between its values: ``[1.18, 2.0, …, 0.94]``.
+
+    If it is too long, numbers are rounded to two digits after the point first. A text without three values that are
+    separated by commas is cut as in `one_line`.
+    """
+    if len(text) > limit:
+        text = _LONG_NUMBER.sub(lambda number: f"{float(number[0]):.2f}", text)
+        values = text.split(", ")
+        for kept in range(len(values), 1, -1):
+            head, tail = values[: (kept + 1) // 2], values[len(values) - kept // 2 :]
+            shorter = ", ".join([*head, *([mark] if kept < len(values) else []), *tail])
+            if len(shorter) <= limit:
+                return one_line(shorter, limit, mark=mark)
+    return one_line(text, limit, mark=mark)
 
 
 def paragraph(text: str, limit: int, *, mark: str = "…") -> str:

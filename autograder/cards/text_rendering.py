@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Unpack
 
-from autograder.cards import card_wording
+from autograder.cards import card_wording, readable_text
 from autograder.cards.card_content import IN_A_TERMINAL, Card, Choices, CriterionRow, Solution, marked
 from autograder.cards.readable_text import one_line, wrap
 from autograder.cards.readable_text import width as columns
@@ -146,7 +146,7 @@ class _Writer:
             lane = lanes[moment.lane]
             padding = " " * (lane_columns - columns(lane))
             start = f"  {part.when(index):>11}  {lane}{padding} {arrow} "
-            label = one_line(moment.label, self.width - columns(start), mark=_MARK)
+            label = readable_text.label(moment.label, self.width - columns(start), mark=_MARK)
             yield from (line.rstrip() for line in self._wrapped(label, start, " " * columns(start)))
             if index in part.gaps:
                 yield f"            {_MARK} {part.gaps[index]} more left out here"

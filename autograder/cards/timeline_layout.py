@@ -197,7 +197,7 @@ def _labels(part: TrafficPart) -> list[str]:
         way = (moment.lane, moment.direction)
         label = _continued(before.get(way, ""), moment.label) if full else moment.label
         before[way] = moment.label
-        labels.append(one_line(label, 22 if full else 30))
+        labels.append(readable_text.label(label, 22 if full else 30))
     return labels
 
 

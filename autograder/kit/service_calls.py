@@ -218,9 +218,19 @@ def cut_short(client: ClientSeen) -> str:
 
 
 def ended_before_its_answer(part: Part) -> bool:
-    """Return True if the subject ended while one of its calls was unanswered, or without having made a call."""
+    """Return True if the subject ended while one of its calls was unanswered."""
     if part.ending is None:
         return False
     asked = max(len(requests(part)), len(part.of("called")))
     given = sum(event.t <= part.ending.t for event in part.of("response"))
     return asked > given
+
+
+def stayed_for_no_answer(part: Part) -> bool:
+    """Return True if the subject ended before its answer came, less than a second after its last call.
+
+    The judge may hold an answer back for longer than a second, so a client that stays longer did wait.
+    """
+    if part.ending is None or not ended_before_its_answer(part):
+        return False
+    return part.ending.t - max(event.t for event in (*requests(part), *part.of("called"))) < 1.0

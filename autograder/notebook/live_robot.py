@@ -14,7 +14,7 @@ from IPython.display import display
 from autograder.notebook.nodes.background_nodes import replace_named, spin_in_background
 from autograder.notebook.nodes.ros_session import start_ros
 from autograder.notebook.observing.live_picture import LivePicture, as_image, svg_page
-from autograder.notebook.robot_drivers import CornerHunt, Spiral, Tour
+from autograder.notebook.robot_drivers import KEYBOARD, CornerHunt, Spiral, Tour
 from autograder.notebook.robot_node import RobotNames, RobotNode
 from autograder.robot.motion import RADIUS, ROOM
 
@@ -45,6 +45,8 @@ _BUTTON = (
 LONGEST_WAIT = 20.0
 """The maximum time in seconds for which a cell waits until a scene has ended."""
 _LOOK_EVERY = 0.05
+_UNKNOWN = "_NODE_NAME_UNKNOWN_"
+"""The name of a publisher's node before it has been discovered."""
 _TELEPORT = 0.5
 """A distance in meters that the robot cannot roll between two pictures. If the distance is larger, the robot was reset
 to the start.
@@ -126,20 +128,23 @@ class _RobotPictures:
         self._trail: deque[tuple[float, float]] = deque(maxlen=_TRAIL)
         self._shown = robot.state
         self._robots = 1
+        self._drivers: tuple[str, ...] = ()
 
     def first(self) -> RobotPicture:
         return RobotPicture(self._shown)
 
     def next(self, node: Node) -> RobotPicture | None:
-        before, known = self._shown, self._robots
+        before, known = self._shown, (self._robots, self._drivers)
         names = [space.rstrip("/") + "/" + name for name, space in node.get_node_names_and_namespaces()]
         self._robots = max(1, names.count(self._robot.get_fully_qualified_name()))
-        if self._robot.state == before and self._robots == known:
+        publishers = node.get_publishers_info_by_topic(self._robot.names.obeys)
+        self._drivers = tuple(sorted({info.node_name for info in publishers} - {KEYBOARD, _UNKNOWN}))
+        if self._robot.state == before and (self._robots, self._drivers) == known:
             return None
         far = self._follow()
         glides = not far and self._shown.pose != before.pose
         start = before.pose if glides else None
-        return RobotPicture(self._shown, tuple(self._trail), start, PERIOD, self._robots)
+        return RobotPicture(self._shown, tuple(self._trail), start, PERIOD, self._robots, self._drivers)
 
     def last(self) -> RobotPicture:
         """Return the last picture, in which the robot stands still."""
@@ -193,6 +198,7 @@ class RobotPicture:
         before: The pose in the previous picture, from which an animation moves the robot; None for no animation.
         glide: The duration of the animation in seconds.
         robots: The number of robots with this name on the ROS domain.
+        drivers: The names of the nodes that publish on the topic that the robot obeys.
     """
 
     state: RobotState
@@ -200,6 +206,7 @@ class RobotPicture:
     before: Pose | None = None
     glide: float = 0.2
     robots: int = 1
+    drivers: tuple[str, ...] = ()
 
     def __repr__(self) -> str:
         """Return the picture in words."""
@@ -217,14 +224,20 @@ class RobotPicture:
         )
 
     def _others(self) -> str:
-        """Return a warning if other robots have the same name; otherwise an empty text."""
-        if self.robots < 2:
-            return ""
-        return (
-            f"{self.robots} robots are called /robot, and each of them obeys /cmd_vel. If another "
-            "notebook has started one, end it there with robot.stop(). The robot of a restarted kernel "
-            "disappears within half a minute."
-        )
+        """Return a warning if other robots have the same name, or several nodes drive; otherwise an empty text."""
+        told = ""
+        if self.robots > 1:
+            told = (
+                f"{self.robots} robots are called /robot, and each of them obeys /cmd_vel. If another "
+                "notebook has started one, end it there with robot.stop(). The robot of a restarted kernel "
+                "disappears within half a minute."
+            )
+        if len(self.drivers) > 1:
+            told += (
+                f" {len(self.drivers)} nodes drive the robot: {', '.join(self.drivers)}. It obeys the last command, "
+                "whichever node it is from. If another notebook runs one of them, stop it there."
+            )
+        return told.strip()
 
     def _repr_html_(self) -> str:
         width, height = _page()

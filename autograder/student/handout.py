@@ -74,7 +74,8 @@ $ ./course lab
 ```
 
 The first time this sets everything up, in one to three minutes, or longer if the network is slow or the computer is
-busy. It opens a map of all notebooks; press *Begin*.
+busy. It opens a map of all notebooks; press *Begin*. If you work as root, as in many containers, JupyterLab does not
+start: type `./course lab --allow-root`.
 
 On a Mac, on Windows without WSL or on an ARM computer, Docker should work (not tried): `environment/jazzy.Dockerfile`
 begins with the two commands to type. Or open this folder in VS Code, choose *Reopen in Container*, and type
@@ -92,7 +93,7 @@ $ pip install "{PACKAGE}[ros,notebooks]"
 $ autograder lab
 ```
 
-The last line opens a map of all notebooks; press *Begin*.""",
+The last line opens a map of all notebooks; press *Begin*. If you work as root, type `autograder lab --allow-root`.""",
     "guide": "",
     "mistakes": "",
 }

@@ -22,7 +22,8 @@ TEXT = """\
 Type in two terminals:
 
 ```bash
-echo $ROS_DOMAIN_ID > first.txt
+# the domain of the notebook
+echo $ROS_DOMAIN_ID > first.txt  # and once more:
 echo again >> first.txt
 ```
 

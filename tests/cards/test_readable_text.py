@@ -7,7 +7,7 @@ import sys
 
 import pytest
 
-from autograder.cards.readable_text import _escaped, block, one_line, paragraph, width, wrap
+from autograder.cards.readable_text import _escaped, block, label, one_line, paragraph, width, wrap
 from autograder.standard_output import printable_json
 
 
@@ -93,3 +93,17 @@ def test_printed_json_moves_no_cursor_and_reads_back_the_same() -> None:
     assert printed.isprintable()
     assert "Grüße, 你好" in printed
     assert json.loads(printed) == {"said": said}
+
+
+@pytest.mark.parametrize(
+    ("text", "shown"),
+    [
+        ("[1.1795533, 2.0, 0.51234]", "[1.18, 2.0, 0.51]"),
+        ("[1.1795533, 1.99869, 3.0, 2.38654, 0.94]", "[1.18, 2.00, …, 0.94]"),
+        ("linear.x=0.5, linear.y=0.0, angular.z=1.57", "linear.x=0.5, …, angular.z=1.57"),
+        ("Hello, " + "a" * 40, "Hello, aaaaaaaa…aaaaaaaaaaaaaaa"),
+    ],
+)
+def test_a_label_is_cut_between_its_values(text: str, shown: str) -> None:
+    limit = 22 if text.startswith("[") else 31
+    assert label(text, limit) == shown

@@ -11,7 +11,7 @@ from types import SimpleNamespace
 from typing import Any, cast
 
 from autograder.notebook.live_robot import RobotPicture, _RobotPictures
-from autograder.notebook.robot_node import RobotState
+from autograder.notebook.robot_node import RobotNames, RobotState
 from autograder.robot.motion import START, Pose, Velocity
 
 
@@ -72,11 +72,21 @@ def test_its_bubble_is_inside_of_the_picture_wherever_it_is() -> None:
     assert "bubble" not in RobotPicture(RobotState()).svg().split("</style>")[1]
 
 
+def pictures_of(nodes: list[tuple[str, str]], drivers: list[str]) -> tuple[_RobotPictures, Any]:
+    """The pictures of a robot that stands still, and its graph with these nodes, of which some drive it."""
+    robot = SimpleNamespace(state=RobotState(), get_fully_qualified_name=lambda: "/robot", names=RobotNames())
+    graph = SimpleNamespace(
+        get_node_names_and_namespaces=lambda: nodes,
+        get_publishers_info_by_topic=lambda topic: [
+            SimpleNamespace(node_name=name) for name in drivers if topic == "/cmd_vel"
+        ],
+    )
+    return _RobotPictures(cast("Any", robot)), graph
+
+
 def test_a_second_robot_of_the_same_name_is_told_below_the_picture_while_it_is_there() -> None:
-    robot = SimpleNamespace(state=RobotState(), get_fully_qualified_name=lambda: "/robot")
     nodes = [("robot", "/"), ("talker", "/"), ("robot", "/other")]
-    graph = SimpleNamespace(get_node_names_and_namespaces=lambda: nodes)
-    pictures = _RobotPictures(cast("Any", robot))
+    pictures, graph = pictures_of(nodes, [])
     assert pictures.next(cast("Any", graph)) is None
     nodes.append(("robot", "/"))
     picture = pictures.next(cast("Any", graph))
@@ -88,3 +98,17 @@ def test_a_second_robot_of_the_same_name_is_told_below_the_picture_while_it_is_t
     picture = pictures.next(cast("Any", graph))
     assert picture is not None
     assert "robots are called" not in picture._repr_html_()
+
+
+def test_two_nodes_that_drive_the_robot_are_named_below_the_picture_while_they_are_there() -> None:
+    drivers = ["driver", "keyboard"]
+    pictures, graph = pictures_of([("robot", "/")], drivers)
+    alone = pictures.next(graph)
+    assert alone is not None
+    assert "nodes drive" not in repr(alone)
+    drivers.append("patrol")
+    picture = pictures.next(graph)
+    assert picture is not None
+    assert "2 nodes drive the robot: driver, patrol." in repr(picture)
+    assert "If another notebook runs one of them, stop it there." in picture._repr_html_()
+    assert pictures.next(graph) is None

@@ -254,13 +254,13 @@ def test_the_builds_of_one_notebook_have_so_much_room_and_no_more(
     cache = tmp_path / "narrow"
     cache.mkdir(mode=0o700)
     (workspace / "src" / "tiny_pkg" / "tiny_pkg" / "fat.py").write_bytes(b"#" * 300_000)
-    narrow = GradedBuilds(cache, jobs, room=800_000)
+    narrow = GradedBuilds(cache, jobs, room=1_200_000)  # for the build without texts, and one copy of it
     first = made(narrow, workspace)
     assert first.ok
     second = made(narrow, workspace, "# other sources\n")
     assert not second.ok
     assert "kB of space are left for it" in second.log
-    assert sum(file.stat().st_size for file in cache.rglob("*") if file.is_file()) < 450_000
+    assert sum(file.stat().st_size for file in cache.rglob("*") if file.is_file()) < 1_000_000
     assert made(GradedBuilds(cache, jobs), workspace).ok  # somebody else has room
     assert not made(narrow, workspace).ok  # and who has none gets no build from the cache, either
 

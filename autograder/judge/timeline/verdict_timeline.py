@@ -317,8 +317,8 @@ def _fields(data: Mapping[str, Any]) -> str:
         return str(next(iter(fields.values())))
     leaves = dict(_leaves(fields))
     # Most fields of nested messages are zero, so only the other fields are shown.
-    told = {name: value for name, value in leaves.items() if value or not inner} or leaves
-    return ", ".join(f"{name}={value}" for name, value in told.items())
+    told = [f"{name}={value}" for name, value in leaves.items() if value or not inner]
+    return ", ".join(told) or ("all 0" if inner else "")
 
 
 def _goal(data: Mapping[str, Any]) -> str:

@@ -30,6 +30,8 @@ _NOTHING_CAME = {
     "action_client": ("goal", "no goal arrived at {}"),
 }
 """For each role, the kind of event that shows that the endpoint works, and the symptom if there is no such event."""
+_ASKED = "the program does what its task says"
+"""What is expected of a node of which nothing came. The symptom alone says enough."""
 _TELLS_THE_CAUSE = ("mismatch", "misnamed")
 _WARNING = "incompatible QoS"
 """A part of the warning that rclpy logs if QoS settings do not fit. The student's own terminal shows it."""
@@ -106,36 +108,50 @@ def _without_diagnosis(judged: Exercise, known: Mistake) -> Mistake:
     """Return a mistake that is recognized as before, and whose advice tells only the symptom."""
 
     def recognize(evidence: Evidence) -> Advice | None:
-        advice, seen = known.recognize(evidence), _symptom(judged, evidence).seen
-        return (
-            replace(advice, text=f"The judge saw this: {seen}.", next_step=_LOOK, uses=()) if advice else None
-        )
+        advice, symptom = known.recognize(evidence), _symptom(judged, evidence)
+        asked = "" if symptom.expected == _ASKED else f"The judge asked for {symptom.expected}. "
+        text = f"{asked}The judge saw this: {symptom.seen}."
+        return replace(advice, text=text, next_step=_LOOK, uses=()) if advice else None
 
     return replace(known, recognize=recognize)
 
 
 def _symptom(judged: Exercise, evidence: Evidence) -> Finding:
     """Return what a user notices of a node that does not work: what never came, or else the first failed criterion."""
-    asked = "the node works as its task says"
     # Chance decides what the judge hears of a node that ends soon.
     if any(part.ending is not None and part.traceback for part in evidence):
-        return Finding(False, asked, "the program ended with an error")
+        return Finding(False, _ASKED, "the program ended with an error")
     for role, names in evidence.reference.interface.items():
         kind, words = _NOTHING_CAME.get(role, ("", ""))
         for name in names if kind else ():
             if not any(part.of(kind, name) for part in evidence):
-                return Finding(False, asked, words.format(name))
-    return replace(judged.judge_as_one(without_causes(evidence), "not what was asked for"), passed=False)
+                return Finding(False, _ASKED, words.format(name))
+    seen = without_causes(evidence)
+    found = {one.title: one.judge(seen) for one in judged.criteria}
+    failed = (
+        Finding(False, f"“{title}”: {one.expected}", one.seen)
+        for title, one in found.items()
+        if not one.passed
+    )
+    return next(failed, Finding(False, _ASKED, "not what was asked for"))
 
 
 def without_causes(evidence: Evidence) -> Evidence:
-    """Return the evidence without what tells a cause: wrong names and types, and QoS settings that do not fit."""
+    """Return the evidence without what tells a cause: wrong names and types, and QoS settings that do not fit.
+
+    Of a role that the exercise does not ask for, it keeps the names that the exercise knows from other roles.
+    """
     asked = evidence.reference.interface
+    names = {name: kind for ends in asked.values() for name, kind in ends.items()}
 
     def events(part: Part) -> Iterator[Event]:
         for event in part.events:
             if event.kind == "interface":
-                ends = {role: dict(event.data.get(role, {}).items() & asked[role].items()) for role in asked}
+                ends = {
+                    role: dict(ends.items() & asked.get(role, names).items())
+                    for role, ends in event.data.items()
+                    if role in _NOTHING_CAME
+                }
                 yield replace(event, data={**event.data, **ends})
             elif event.kind not in _TELLS_THE_CAUSE and _WARNING not in str(event.data.get("text")):
                 yield event

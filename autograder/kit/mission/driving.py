@@ -55,11 +55,14 @@ def _in_words(part: Part, counts: bool) -> str:
 
 def _movements(part: Part) -> list[str]:
     """Return the different commands, each in words: the numbers in it that are not 0."""
-    return list(dict.fromkeys(map(_movement, part.of("message"))))
+    return list(dict.fromkeys(map(movement, part.of("message"))))
 
 
-def _movement(command: Event) -> str:
-    # Two digits after the point: a speed may be calculated, and half a centimeter per second is the same movement.
+def movement(command: Event) -> str:
+    """Return a command in words: the numbers in it that are not 0, such as ``linear.x = 0.5``.
+
+    Two digits after the point: a speed may be calculated, and half a centimeter per second is the same movement.
+    """
     numbers = {f"{part}.{axis}": round(number_of(command, part, axis), 2) for part, axis in _AXES}
     return ", ".join(f"{name} = {number:g}" for name, number in numbers.items() if number) or "all numbers 0"
 

@@ -193,9 +193,9 @@ def _floats(fields: Mapping[str, object], path: str = "") -> Iterator[tuple[str,
 INT_IN_A_FLOAT = mistake(
     "field_type",
     _int_as_float,
-    "On {0[0]}, your {0[1]} arrives as {0[2]:g}: your code sets it to a whole number (an int), and ROS reads the bytes "
-    "of this number as those of a float.",
-    "A field of the type float64 needs a number with a point: write 1.0 and not 1, or convert it with float(...).",
+    "On {0[0]}, your {0[1]} arrives as {0[2]:g}. The cause: your code sets it to a whole number (an int), but the "
+    "field is a float64, and ROS reads the bytes of the int as a float.",
+    "Write the number with a point: 1.0 for 1, 0.0 for 0. Convert a number that your code calculates with float(...).",
     certain=True,
 )
 """The mistake of a whole number in a field for numbers with a point, of which rclpy says nothing."""

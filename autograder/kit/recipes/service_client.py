@@ -32,6 +32,7 @@ from autograder.kit.service_calls import (
     reports,
     requests,
     returns_another,
+    stayed_for_no_answer,
 )
 
 if TYPE_CHECKING:
@@ -106,7 +107,7 @@ class Calls:
         Of a client that stays for no answer, chance decides whether its request arrives.
         """
         seen = self.seen(evidence)
-        hasty = next(filter(ended_before_its_answer, seen.served), None)
+        hasty = next(filter(stayed_for_no_answer, seen.served), None)
         if hasty and not any(map(reports, seen.served)):
             return Finding(False, "waits, then calls", f"it ended before its answer came ({hasty.name})")
         called = bool(requests(seen.late))

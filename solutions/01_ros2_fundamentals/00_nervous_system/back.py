@@ -1,13 +1,27 @@
 """The first notebook, at its end: a robot drives through the door, turns around, and comes back."""
 
+from itertools import groupby
+
+from autograder.kit.mission.driving import movement
 from autograder.kit.mission.mission import Mission, Moment
 
+COUNT = (
+    "Compare with the task: 16 × linear.x = 0.5, then 4 × angular.z = 1.57, then 16 × linear.x = 0.5, then all numbers "
+    "0. self.count is 0 for the first command, so the first sixteen have the counts 0 to 15."
+)
 THERE, BACK = "Drives into the right room", "Comes back into the left room"
 
 
-def place(now: Moment) -> str:
-    """Return where the robot was in the end."""
-    return f"x = {now.pose.x:.1f} m, y = {now.pose.y:.1f} m"
+PARTS = 4
+"""The most parts of a way that a card names."""
+
+
+def way(now: Moment) -> str:
+    """Return in words what the robot was told, one part of its way after the other, and where it was in the end."""
+    parts = [(said, len(list(same))) for said, same in groupby(now.part.of("message", now.topic), movement)]
+    told = ", then ".join(f"{count} × {said}" for said, count in parts[:PARTS])
+    more = ", and more" if parts[PARTS:] else ""
+    return f"{told}{more}. It ended at x = {now.pose.x:.1f} m, y = {now.pose.y:.1f} m"
 
 
 EXERCISE = Mission(
@@ -23,15 +37,15 @@ EXERCISE = Mission(
     knows=[
         (
             "wrong_movement",
-            lambda now: now.bumped and place(now),
-            "A wall is in the way of your robot, at {}.",
-            "Count what each part sends: sixteen commands ahead, four that turn, sixteen ahead, and then only zeros.",
+            lambda now: now.bumped and way(now),
+            "Your robot drives against a wall. Its commands were {}.",
+            COUNT,
         ),
         (
             "wrong_movement",
-            lambda now: now.commands and BACK not in now.reached and place(now),
-            "Your robot ends at {}, and has not been there and back.",
-            "Compare what you set with the count: linear.x = 0.5 goes ahead, angular.z = 1.57 turns. Publish each one.",
+            lambda now: now.commands and BACK not in now.reached and way(now),
+            "Your robot has not been there and back. Its commands were {}.",
+            COUNT,
         ),
     ],
     within=60.0,

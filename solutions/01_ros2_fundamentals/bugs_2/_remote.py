@@ -24,8 +24,8 @@ EXERCISE = Mission(
         for step in (World(start=Pose(random.uniform(0.6, 1.2), 2.0, 0.0)), *steps)
     ],
     reaches=[
-        ("Drives while the remote control speaks", lambda now: now.leg == 0 and now.pose.x > 1.7),
-        ("Stands when it is silent", lambda now: now.leg == 1 and now.stood > 1.0),
-        ("Drives again", lambda now: now.leg == 2 and now.pose.x > 1.7),
+        ("Drives while the tablet speaks", lambda now: now.leg == 0 and now.pose.x > 1.7),
+        ("Stands while the tablet is silent", lambda now: now.leg == 1 and now.stood > 1.0),
+        ("Drives again when the tablet speaks again", lambda now: now.leg == 2 and now.pose.x > 1.7),
     ],
 ).exercise()

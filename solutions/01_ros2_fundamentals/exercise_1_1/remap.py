@@ -42,8 +42,8 @@ def talker(seen: Launched, _: Launched) -> Finding:
 def listener(seen: Launched, _: Launched) -> Finding:
     """A text that is sent under the new name is said by the listener."""
     says, is_ours = seen.says_what_it_hears, seen.has_a_listener
-    found = f"subscriptions: {names(seen.subscriptions) or 'none'}"
-    words = ("it says it" if is_ours else "something else says it") if says else found
+    found = f"; subscriptions: {names(seen.subscriptions)}" if seen.subscriptions else ""
+    words = ("it says it" if is_ours else "something else says it") if says else f"nothing says it{found}"
     return Finding(says and is_ours, f"the listener says what is sent on {seen.topic}", words)
 
 

@@ -10,12 +10,20 @@ NAMES, WORDS = ("kit", "mia", "noa", "pip", "zoe"), ("dock", "go", "move", "roll
 
 
 def robots(random: Random) -> dict[str, Robot]:
-    """Draw three robots, each beside a client of its action, and a lift with an action of the other type."""
+    """Draw three robots, each with a client, between a crane and a lift with actions of another type.
+
+    The graph lists nodes in the order in which they are made. So a subject that takes the first action that is served,
+    or the last one, is wrong.
+    """
     drawn = {}
     for n, name, word in zip("123", random.sample(NAMES, 3), random.sample(WORDS, 3), strict=True):
-        action, other = {f"/{word}": TYPES[n == "2"]}, {f"/lift{n}/move": TYPES[n != "2"]}
-        lift = {"publishes": other, "subscribes": action}
-        nodes = {f"/boss{n}": {"subscribes": action}, f"/{name}": {"publishes": action}, f"/lift{n}": lift}
+        action, other = {f"/{word}": TYPES[n == "2"]}, TYPES[n != "2"]
+        nodes = {
+            f"/boss{n}": {"subscribes": action},
+            f"/crane{n}": {"publishes": {f"/crane{n}/move": other}},
+            f"/{name}": {"publishes": action},
+            f"/lift{n}": {"publishes": {f"/lift{n}/move": other}, "subscribes": action},
+        }
         answer = {"node": f"/{name}", "type": action[f"/{word}"]}
         drawn[f"robot {n}"] = Robot(asked=(f"/{word}",), answer=answer, nodes=nodes)
     return drawn

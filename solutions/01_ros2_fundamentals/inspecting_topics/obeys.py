@@ -10,13 +10,20 @@ NAMES, WORDS = ("kit", "mia", "noa", "pip", "zoe"), ("drive", "go", "move", "rol
 
 
 def robots(random: Random) -> dict[str, Robot]:
-    """Draw three robots. Beside each are a lift, which obeys another type, and a joystick, which obeys nothing."""
+    """Draw three robots. Each is between a lift and a crane, which obey another type; a joystick obeys nothing.
+
+    The graph lists nodes in the order in which they are made. So a subject that takes the first topic with a
+    subscription, or the last one, is wrong.
+    """
     drawn = {}
     for n, name, word in zip("123", random.sample(NAMES, 3), random.sample(WORDS, 3), strict=True):
         obeys = f"/{name}/{word}"  # in the list of topics neither the first nor the last with a Twist
-        lift, joystick = {f"/lift{n}/cmd_vel": OTHER}, {f"/joystick{n}/cmd_vel": TWIST}
-        own = {"publishes": {f"/{name}/velocity": TWIST}, "subscribes": {obeys: TWIST}}
-        nodes = {f"/lift{n}": {"subscribes": lift}, f"/joystick{n}": {"publishes": joystick}, f"/{name}": own}
+        nodes = {
+            f"/lift{n}": {"subscribes": {f"/lift{n}/cmd_vel": OTHER}},
+            f"/joystick{n}": {"publishes": {f"/joystick{n}/cmd_vel": TWIST}},
+            f"/{name}": {"publishes": {f"/{name}/velocity": TWIST}, "subscribes": {obeys: TWIST}},
+            f"/crane{n}": {"subscribes": {f"/crane{n}/cmd_vel": OTHER}},
+        }
         drawn[f"robot {n}"] = Robot(answer={"robot": f"/{name}", "topic": obeys}, nodes=nodes)
     return drawn
 

@@ -21,7 +21,7 @@ talker.asks("rate", "Keeps the rate", heard.keeps_rate, points=3)
 EXERCISE = talker.exercise(
     text={
         "The topic of this lab is `chatter`, and its type is `std_msgs/msg/String`.": "topic type",
-        "The talker has to publish one message every half second, also at the beginning.": "rate",
+        "The talker has to publish one message every half second, from the first one on.": "rate",
         "The method does three things: it makes a message, publishes it, and adds one to the count.": "text counter",
         'Says "Hello, world! N" on the topic chatter every 0.5 s; N counts up from 0.': "topic text rate counter",
         "log the string that it publishes": "",

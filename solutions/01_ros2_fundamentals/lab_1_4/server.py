@@ -136,6 +136,7 @@ EXERCISE = server.exercise(
         "Each of two goals has to end with its own sequence": "two",
         "a cancel request has to end only the goal that it is about": "cancel two",
         "Let your node offer the action `fibonacci`.": "action",
+        "Its method `on_cancel` accepts each cancel request": "cancel",
     },
     counts={
         "sequence": "For order 0, `[0, 1]` counts as well.",

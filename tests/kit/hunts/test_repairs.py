@@ -11,7 +11,7 @@ from autograder import exercises
 from autograder.cards.text_rendering import card_text
 from autograder.judge import evidence_files, one_check
 from autograder.kit.evidence import Event, Evidence, Part
-from autograder.kit.hunts.repairs import Repairs
+from autograder.kit.hunts.repairs import Repairs, without_causes
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -72,6 +72,7 @@ def test_the_card_of_a_repaired_node_states_the_cause() -> None:
 def test_what_came_and_is_wrong_stands_on_the_card() -> None:
     verdict = one_check.judge(repair(), solved(_shouting), "s")
     assert verdict.diagnosis is not None
+    assert "The judge asked for “Says the right string”: “Hello, world! 0”" in verdict.diagnosis.text
     assert "HELLO" in verdict.diagnosis.text
     assert verdict.diagnosis.hidden
     assert not verdict.remarks
@@ -96,6 +97,13 @@ def test_what_a_subscriber_never_got_is_its_symptom() -> None:
     met = [*events, Event(0.2, "matched", "/chatter", {"count": 1, "now": 1})]
     parts = [replace(part, events=met) for part in reference.parts]
     assert "reached" not in one_check.judge(exercise, Evidence(parts, reference), "s").criteria[0].seen
+
+
+def test_a_wrong_name_is_no_symptom_even_in_a_role_that_the_exercise_does_not_ask_for() -> None:
+    ends = {"publisher": {"/chater": STRING}, "subscription": {"/chater": STRING, "/chatter": STRING}}
+    graph = Event(0.1, "interface", "graph", {"nodes": ["/a"], **ends})
+    shown = without_causes(Evidence([Part("launching", {}, [graph])], REFERENCE)).main.events[0].data
+    assert shown == {"nodes": ["/a"], "publisher": {}, "subscription": {"/chatter": STRING}}
 
 
 @pytest.mark.parametrize("came", [True, False])

@@ -19,8 +19,10 @@ window._JUPYTERLAB["ros2-course-terminals"] = (() => {
     details > .ros2-course-terminal { margin: 6px 0 12px; }
     .ros2-course-terminal:hover { background: var(--jp-layout-color2); }`;
 
-  // The lines of a block as one line: a line's end would run it, and the student presses Enter.
-  const asOneLine = block => block.textContent.split("\n").filter(line => line.trim()).join(" && ");
+  // The commands of a block as one line: a line's end would run it, and the student presses Enter. A comment is left
+  // out, because it would hide the commands behind it.
+  const asOneLine = block => block.textContent.split("\n").map(line => line.trim().replace(/^#.*|\s+#[^'"]*$/, ""))
+    .filter(line => line).join(" && ");
 
   // Wait until the shell of a terminal asks for a line.
   function prompted(session) {

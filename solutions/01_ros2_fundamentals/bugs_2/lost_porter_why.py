@@ -1,4 +1,4 @@
-"""The question on the cause: its words are in new_name.ticket.toml."""
+"""The question on the cause: its words are in lost_porter.ticket.toml."""
 
 from autograder.kit.hunts.ticket import question
 

@@ -1,4 +1,4 @@
-"""A ticket of the bug hunt: its words are in new_name.ticket.toml."""
+"""A ticket of the bug hunt: its words are in lost_porter.ticket.toml."""
 
 from autograder.kit.hunts.ticket import repair
 
