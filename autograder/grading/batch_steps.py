@@ -98,7 +98,6 @@ class Batch:
         self._timings = Timings()
         self._feedback = feedback
         self._run_again: Counter[str] = Counter()
-        self._executed = 0
         self._reused = 0
         self._written = 0
 
@@ -174,9 +173,7 @@ class Batch:
     def make_tasks(self, works: list[Work]) -> Iterator[Task]:
         """Yield the tasks to execute. Each task is made only when a worker is free, to save memory."""
         for work in works:
-            if work.rows is not None:
-                continue
-            for task, rebuilt in self._tasks_of(work):
+            for task, rebuilt in self._tasks_of(work) if work.rows is None else ():
                 work.rebuilt[task.notebook] = rebuilt
                 if task.problem:
                     work.results[task.notebook] = task, task.without_execution()
@@ -215,7 +212,6 @@ class Batch:
         works = {work.key: work for work in self._works}
         for done in results:
             work, task = works[done.task.student, done.task.assignment], done.task
-            self._executed += 1
             self._run_again[self._why_again(work)] += 1
             self._timings.count(task.cells, done.execution)
             execution = self._store.keep(task, done.execution)
@@ -295,7 +291,7 @@ class Batch:
             problems=tuple(self._problems),
             notices=tuple(self._notices),
             would_change=tuple(changes) if self._dry_run else None,
-            executed=self._executed,
+            executed=self._run_again.total(),
             run_again={why: count for why, count in self._run_again.items() if why},
             reused=self._reused,
             written=self._written,
@@ -350,8 +346,7 @@ class Batch:
             with self._timings.measure("gradebook"):
                 if self._keys.of(work.submission) != work.made_from:
                     # The files changed during the run, so the tasks may have been made from other files.
-                    name = f"{work.submission.student}/{work.submission.assignment}"
-                    raise NotWritten(f"{name} was changed while it was graded: grade it again")
+                    raise NotWritten(f"{'/'.join(work.key)} was changed while it was graded: grade it again")
                 self._writer.write(work.submission, work.made_from, work.pairs, work.rebuilt, rows)
         except NotWritten as error:
             if is_disk_full(error):
@@ -381,6 +376,4 @@ class Batch:
             self._store.note_shown(submission, entry.shown())
         else:
             log = self._directory.state / "nbgrader.log"
-            self._problems.append(
-                f"feedback for {submission.student}/{submission.assignment} could not be made (see {log})"
-            )
+            self._problems.append(f"feedback for {'/'.join(work.key)} could not be made (see {log})")

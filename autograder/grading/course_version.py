@@ -70,7 +70,7 @@ class CourseFiles:
         labs: set[str] = set()
         others = self._parts.keys() - {JUDGE, GRADER, SHARED}
         while more := {lab for lab in others - labs if lab.encode() in text}:
-            labs |= more
+            labs.update(more)
             text = b"".join(self._parts[lab] for lab in more)
         return labs
 

@@ -26,7 +26,7 @@ from autograder.execution.executed_cells import Cell, CellCheck, CellRun, CellTy
 from autograder.grading.class_records import Attempt, Entered
 from autograder.grading.classes import gradebook_writing
 from autograder.grading.classes.class_directory import SUFFIX
-from autograder.grading.classes.gradebook_reading import read_entries
+from autograder.grading.classes.gradebook_reading import read_entry
 from autograder.grading.classes.gradebook_writing import NotebookEntry
 from autograder.grading.grading_errors import is_disk_full
 from autograder.grading.grading_task import points, scores_of, unchecked
@@ -146,16 +146,13 @@ class Writer:
 
     def assign_penalties(self, submission: Submission) -> None:
         """Enter the late penalty of a submission into the gradebook."""
-        student = submission.student
         with quiet(self._directory.state):
-            costs = penalties(self._directory.config, student, self._entry(submission))
-            url = self._directory.gradebook_url
-            gradebook_writing.enter_penalties(url, submission.assignment, student, costs)
+            url, config = self._directory.gradebook_url, self._directory.config
+            costs = penalties(config, submission.student, self._entry(submission))
+            gradebook_writing.enter_penalties(url, submission.assignment, submission.student, costs)
 
     def _entry(self, submission: Submission) -> SubmissionEntry:
-        student, assignment = submission.student, submission.assignment
-        url = self._directory.gradebook_url
-        return read_entries(url, student=student, assignment=assignment)[student, assignment]
+        return read_entry(self._directory.gradebook_url, submission.student, submission.assignment)
 
     def write_feedback(self, submission: Submission) -> bool:
         """Write the feedback pages of a submission. Return False if that failed; the log then contains the reason.
