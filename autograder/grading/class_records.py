@@ -26,12 +26,12 @@ _PARTS = {
     "settings": "the settings of the class",
     "grader": "the grader",
 }
-"""What the parts of a key are called in messages."""
+"""The names of a key's parts in messages."""
 
 
 @dataclass(frozen=True)
 class ResultKey:
-    """What the results of a submission were made from: a hash of each part.
+    """The parts from which the results of a submission were made, each as a hash.
 
     A part is empty if the record was made by an earlier version of the course, which had one hash for all parts.
 

@@ -1,4 +1,4 @@
-"""Computes from files what the result of a submission is made from, so that a run can skip unchanged submissions.
+"""Computes the key of a submission's results from files, so that a run can skip unchanged submissions.
 
 This saves time, because reading files is much faster than rebuilding notebooks: a class of a hundred students has a
 thousand notebooks, and in most runs few of them are new. Only if a part of the key has changed are the notebooks of a
