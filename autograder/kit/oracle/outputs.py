@@ -101,7 +101,9 @@ class Output:
         if theirs and differs == len(theirs):
             return Finding(True, right := f"the same as the solution in all {len(theirs)} steps", right)
         due, came = (
-            f"{self._in_words(rows[differs][0])} {rows[differs][1]}" if differs < len(rows) else "nothing more"
+            f"{self._in_words(rows[differs][0])} {rows[differs][1]}"
+            if differs < len(rows)
+            else "nothing more"
             for rows in (theirs, mine)
         )
         return Finding(False, due, came if differs < len(mine) else "nothing came from then on")
