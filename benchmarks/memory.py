@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import threading
 import time
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Self
+from typing import TYPE_CHECKING, Self
 
 import psutil
 
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
 _EVERY_SECONDS = 2.0
+_WAITING = {"bwrap", "cat"}
+"""The processes of a box in which no program runs."""
 
 
 @dataclass(frozen=True)
@@ -22,7 +28,8 @@ class MemorySample:
         seconds: Since the first look.
         grader: Resident bytes of the grader's own process.
         together: Bytes of all processes of the run, each page counted once (PSS).
-        boxes: Bytes of each process namespace that is not the grader's (PSS): what each box has for itself.
+        boxes: Bytes of each process namespace that is not the grader's (PSS): what each box has for itself. A box that
+            waits for its first or next program is left out.
     """
 
     seconds: float
@@ -67,14 +74,28 @@ def _sample(pid: int, seconds: float) -> MemorySample:
     grader = psutil.Process(pid)
     own = _namespace(pid)
     together = _pss(pid)
-    boxes: dict[int, int] = {}
+    boxed: dict[int, list[tuple[str, int]]] = {}
     for process in grader.children(recursive=True):
         size = _pss(process.pid)
         together += size
         space = _namespace(process.pid)
-        if space and space != own:
-            boxes[space] = boxes.get(space, 0) + size
-    return MemorySample(seconds, grader.memory_info().rss, together, tuple(boxes.values()))
+        with contextlib.suppress(psutil.NoSuchProcess):  # it has just ended
+            if space and space != own:
+                boxed.setdefault(space, []).append((process.name(), size))
+    return MemorySample(seconds, grader.memory_info().rss, together, own_memory(boxed.values()))
+
+
+def own_memory(boxes: Iterable[Sequence[tuple[str, int]]]) -> tuple[int, ...]:
+    """The bytes of each box in which a program runs.
+
+    Args:
+        boxes: For each box, the name and the bytes of each of its processes.
+    """
+    return tuple(
+        sum(size for _, size in processes)
+        for processes in boxes
+        if not _WAITING.issuperset(name for name, _ in processes)
+    )
 
 
 def _namespace(pid: int) -> int:

@@ -153,6 +153,19 @@ def was_patient_with_an_answer(part: Part, requests: Sequence[str]) -> bool:
     return _waited_since(part, request, PATIENT_WITH_AN_ANSWER)
 
 
+def stays_for_an_answer(part: Part, kind: str) -> bool:
+    """Return True if a client that ended had waited for the answer to its last request.
+
+    The time for which the client waited counts, and not whether the answer came before its end: on a busy machine and
+    in real time, the judge holds an answer back for longer.
+
+    Args:
+        part: A run of the client.
+        kind: The kind of event of its requests.
+    """
+    return _waited_since(part, next(reversed(part.of(kind)), None), ANSWERS_LATE)
+
+
 def missed_a_result(part: Part) -> bool:
     """Return True if a client ended before its goal did, although it had waited long enough for the result."""
     result, ending = part.first("result"), part.ending

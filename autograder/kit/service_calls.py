@@ -224,13 +224,3 @@ def ended_before_its_answer(part: Part) -> bool:
     asked = max(len(requests(part)), len(part.of("called")))
     given = sum(event.t <= part.ending.t for event in part.of("response"))
     return asked > given
-
-
-def stayed_for_no_answer(part: Part) -> bool:
-    """Return True if the subject ended before its answer came, less than a second after its last call.
-
-    The judge may hold an answer back for longer than a second, so a client that stays longer did wait.
-    """
-    if part.ending is None or not ended_before_its_answer(part):
-        return False
-    return part.ending.t - max(event.t for event in (*requests(part), *part.of("called"))) < 1.0

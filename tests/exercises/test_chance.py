@@ -195,6 +195,16 @@ def test_a_program_that_ends_without_a_node_is_told_so(said: list[Event], told: 
     assert _told(said) == told
 
 
+@pytest.mark.parametrize(("waited", "certain"), [(12.3, True), (30.0, False)])
+def test_only_on_a_calm_machine_a_program_that_goes_on_has_surely_no_node(
+    waited: float, certain: bool
+) -> None:
+    survey = Event(waited, "interface", "graph", {"nodes": []})
+    evidence = Evidence([Part("serving", {}, [READY, survey])], Reference("lab_1_3.server", {}))
+    known = next(mistake for mistake in unfinished.NOTHING_THERE if mistake.recognize(evidence))
+    assert (known.key, known.certain) == ("nothing_on_the_graph", certain)
+
+
 def _told(seen: list[Event]) -> str:
     """What is told of a program that has come to its end."""
     ended = Event(0.4, "subject", "exited", {"code": 0})

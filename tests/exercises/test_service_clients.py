@@ -267,6 +267,35 @@ def test_who_raises_has_not_waited_also_where_the_answer_came_before_its_end(
     assert found.key == key
 
 
+def _given_up(name: str, *, waited: float, answered: float) -> Part:
+    """A run of a client that gives up on its answer."""
+    events = [
+        Event(0.1, "request", "/add_two_ints", {"fields": {"a": 1, "b": 2}}),
+        Event(0.1 + answered, "response", "/add_two_ints", {"fields": {"sum": -987654321}}),
+        Event(0.1 + waited, "subject", "exited", {"code": 1}),
+    ]
+    return Part(name, {"numbers": [1, 2]}, sorted(events, key=lambda event: event.t))
+
+
+@pytest.mark.parametrize(("waited", "met"), [(1.0, True), (0.01, False)], ids=["stays", "does not stay"])
+def test_it_earns_the_same_for_a_late_service_however_long_an_answer_is_held_back(
+    waited: float, met: bool
+) -> None:
+    found = [
+        lab_1_3_client.recipe.waits(
+            Evidence([_given_up(name, waited=waited, answered=answered) for name in CALLED], REFERENCE)
+        )
+        for answered in (0.7, 1.9)
+    ]
+    assert [one.passed for one in found] == [met, met]
+
+
+def test_right_numbers_are_not_told_as_wrong_where_the_answer_was_not_awaited() -> None:
+    early = [_given_up(name, waited=0.01, answered=0.7) for name in CALLED]
+    found, _ = one_check.diagnose(lab_1_3_client.EXERCISE, Evidence(early, REFERENCE))
+    assert found.key == "result_read_too_early"
+
+
 @pytest.mark.parametrize("lateness", [0.0, 1.5])
 def test_the_service_comes_when_its_client_is_known_so_that_no_call_gets_lost(lateness: float) -> None:
     bench = MagicMock(pace=Pace.FAST)

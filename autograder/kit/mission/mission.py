@@ -36,7 +36,7 @@ Row = Sequence[Any]
 """A line of the card: its text, a function of a :class:`Moment`, and perhaps a name without blanks and the points."""
 OTHER = "A command of yours says {0[0]}; the task asks for {0[1]}."
 MOVEMENT = (
-    "linear.x points ahead, in metres per second, and angular turns the robot: make a new Twist() for each command, "
+    "linear.x points ahead, in meters per second, and angular turns the robot: make a new Twist() for each command, "
     "set what the task asks for before you publish it, and leave the other numbers alone."
 )
 WRONG_RATE = "Your commands come {}; the task asks for another rate."

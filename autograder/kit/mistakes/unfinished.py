@@ -147,12 +147,21 @@ def _without_node(evidence: Evidence) -> str:
     return ended.get(ending.name, "No") if ending is not None else "No"
 
 
-def _surely_without_node(evidence: Evidence) -> str:
-    """Return the text of :func:`_without_node`, but an empty text for a function that returned.
+_CALM = 14.0
+"""Seconds. On a machine that is not crowded, the judge stops waiting for a node earlier, after twelve seconds
+(:data:`autograder.judge.bench.subject_presence.APPEAR`).
+"""
 
-    The node of a function that returned may have ended before the graph showed it.
+
+def _surely_without_node(evidence: Evidence) -> str:
+    """Return the text of :func:`_without_node`, but an empty text if the subject may have had a node.
+
+    The node of a function that returned may have ended before the graph showed it. If the judge waited for long, the
+    machine was crowded, and a program that still runs may not have come to the line that makes its node.
     """
-    return "" if evidence.main.returned is not None else _without_node(evidence)
+    main = evidence.main
+    waited = main.ending is None and any(survey.t > _CALM for survey in main.of("interface"))
+    return "" if main.returned is not None or waited else _without_node(evidence)
 
 
 def _never_constructed(part: Part) -> bool:

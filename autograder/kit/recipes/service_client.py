@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import re2
 
 from autograder.kit.draft import OWN, OWN_LATE
+from autograder.kit.lateness import stays_for_an_answer
 from autograder.kit.mistakes import common_mistakes as common
 from autograder.kit.mistakes import unfinished
 from autograder.kit.mistakes.crashes import CRASHES, OTHER_CRASHES, OTHER_SLIPS
@@ -32,7 +33,6 @@ from autograder.kit.service_calls import (
     reports,
     requests,
     returns_another,
-    stayed_for_no_answer,
 )
 
 if TYPE_CHECKING:
@@ -96,10 +96,7 @@ class Calls:
             return Finding(False, wanted, hung)
         if ended_before_its_answer(wrong):
             return Finding(False, wanted, f"it ended before its answer came ({wrong.name})")
-        made = [f"{e.data['fields']['a']} + {e.data['fields']['b']}" for e in requests(wrong)[:3]]
-        numbers = ", ".join(map(str, wrong.inputs.get("numbers", ())))
-        given = f"for {numbers}: " if numbers else ""
-        return Finding(False, wanted, given + (", then ".join(made) or "no call"))
+        return Finding(False, wanted, _calls_in_words(wrong))
 
     def waits(self, evidence: Evidence) -> Finding:
         """Decide whether the client calls even if the service comes late; another criterion judges the result.
@@ -107,7 +104,7 @@ class Calls:
         Of a client that stays for no answer, chance decides whether its request arrives.
         """
         seen = self.seen(evidence)
-        hasty = next(filter(stayed_for_no_answer, seen.served), None)
+        hasty = next(filter(_stays_for_no_answer, seen.served), None)
         if hasty and not any(map(reports, seen.served)):
             return Finding(False, "waits, then calls", f"it ended before its answer came ({hasty.name})")
         called = bool(requests(seen.late))
@@ -123,9 +120,9 @@ class Calls:
 
         The text is also empty if a run has too few or too many calls, because that is another mistake.
         """
-        found = self.calls_right(evidence)
         as_many = self.seen(evidence).called(self.expected(evidence).calls)
-        return found.seen if as_many and not found.passed else ""
+        wrong = (part for part in self.seen(evidence).served if not self._is_right_so_far(part))
+        return next(map(_calls_in_words, wrong), "") if as_many else ""
 
     def _dislikes_zero(self, evidence: Evidence) -> bool:
         """Return True if the client is wrong only in runs in which it took an answer of 0 for a missing answer."""
@@ -243,6 +240,18 @@ class Calls:
             *OTHER_CRASHES,
             *unfinished.NOTHING_THERE,
         )
+
+
+def _calls_in_words(part: Part) -> str:
+    """Return the first calls of a run, and the numbers that the client was given, such as "for 1, 2: 1 + 1"."""
+    made = [f"{e.data['fields']['a']} + {e.data['fields']['b']}" for e in requests(part)[:3]]
+    numbers = ", ".join(map(str, part.inputs.get("numbers", ())))
+    given = f"for {numbers}: " if numbers else ""
+    return given + (", then ".join(made) or "no call")
+
+
+def _stays_for_no_answer(part: Part) -> bool:
+    return ended_before_its_answer(part) and not stays_for_an_answer(part, "request")
 
 
 def _does_not_wait_for_answers(evidence: Evidence) -> bool:

@@ -7,7 +7,7 @@ from autograder.kit.mission.mission import Mission
 EXERCISE = Mission(
     "00_nervous_system.first_move",
     "The robotic nervous system · The first move",
-    "Tell the robot every half second to drive straight ahead at 0.5 metres per second.",
+    "Tell the robot every half second to drive straight ahead at 0.5 meters per second.",
     drives=("Drives straight ahead", "velocity", 6),
     rate=("Keeps telling it", "rate", 4),
     within=9.0,

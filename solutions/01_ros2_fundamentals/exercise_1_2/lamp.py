@@ -4,7 +4,7 @@ from autograder.kit.mission.mission import Mission, Moment, Pose, World
 from autograder.kit.rules import value
 
 PLACES = ((0.6, 2.8), (3.1, 3.8), (5.2, 5.6), (4.2, 4.9), (0.6, 2.8), (3.1, 3.8))
-"""The places of the robot, one after the other: x in metres, on both sides of the door."""
+"""The places of the robot, one after the other: x in meters, on both sides of the door."""
 CHANGES = 5
 """How often the lamp has to change there: on and off by turns."""
 
@@ -41,7 +41,7 @@ EXERCISE = Mission(
     within=30.0,
 ).exercise(
     text={
-        "Let the lamp be on while the robot is less than 1 metre from the door, at `x = 4`, and off elsewhere.": "lamp",
+        "Let the lamp be on while the robot is less than 1 meter from the door, at `x = 4`, and off elsewhere.": "lamp",
         "Call the service once for each change, and never more often.": "lamp",
     },
 )

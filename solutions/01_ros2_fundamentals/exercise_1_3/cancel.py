@@ -305,7 +305,7 @@ EXERCISE = cancel.exercise(
     },
     counts={
         "cancel": "After the fourth or the fifth message counts as well.",
-        "status": "You may ask up to three times. `status: 5` or `cancelled` counts as well.",
+        "status": "You may ask for the result up to three times. `status: 5` or `cancelled` counts as well.",
         "refused": "Any exception, or a line that contains `rejected`.",
         "": "`add_done_callback` is not graded.",
     },

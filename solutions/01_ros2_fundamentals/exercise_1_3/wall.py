@@ -34,7 +34,7 @@ EXERCISE = Mission(
 ).exercise(
     text={
         "sends the goal x = 5.5, y = 2.0 to the action `walk_to`, once": "goal",
-        "At the first scan whose `ranges[0]` is less than 1.5 metres, ask to cancel the goal.": "stands touches",
+        "At the first scan whose `ranges[0]` is less than 1.5 meters, ask to cancel the goal.": "stands touches",
         "Ask only once.": "cancel",
     },
 )

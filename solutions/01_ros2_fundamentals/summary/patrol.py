@@ -10,7 +10,7 @@ AWAY = 3.14
 
 
 def near(now: Moment) -> int:
-    """Return how many feedback messages below one metre came before the first request to cancel."""
+    """Return how many feedback messages below one meter came before the first request to cancel."""
     feedback = now.before("cancel").part.of("feedback")
     return sum(event.data["fields"]["distance"] < 1.0 for event in feedback)
 
@@ -52,19 +52,19 @@ EXERCISE = Mission(
         (
             "cancel_too_early",
             lambda now: cancels(now) and not near(now),
-            "Your node asked to cancel its walk when one metre or more was left.",
+            "Your node asked to cancel its walk when one meter or more was left.",
             "Compare the distance that the feedback brings, and do not count messages: if distance < 1.0.",
         ),
         (
             "cancel_too_late",
             lambda now: cancels(now) and near(now) > 1,
-            "Your node let a feedback message below one metre pass before it asked to cancel its walk.",
+            "Your node let a feedback message below one meter pass before it asked to cancel its walk.",
             "Ask at the first such message: if distance < 1.0.",
         ),
         (
             "cancel_missing",
             lambda now: bool(now.part.of("result")) and not cancels(now),
-            "Your node never asked to cancel its walk, although less than one metre was left.",
+            "Your node never asked to cancel its walk, although less than one meter was left.",
             "Keep the goal handle, which is the answer to the goal, and call its cancel_goal_async(), with "
             "parentheses, if distance < 1.0. If no feedback arrives, pass feedback_callback=... to send_goal_async.",
             {"late": True},
@@ -78,7 +78,7 @@ EXERCISE = Mission(
         "Let the future call `self.on_lamp`.": "",
         "When the lamp has answered, send the goal x = 4.0, y = 2.0, the door, to the action `walk_to`, once.": "door",
         "Pass `self.on_feedback` for the feedback": "cancel",
-        "At the first feedback that says that less than 1 metre is left, ask once to cancel the goal.": "cancel",
+        "At the first feedback that says that less than 1 meter is left, ask once to cancel the goal.": "cancel",
     },
     counts={
         "lamp": "A round that is not twelve commands costs this, too.",

@@ -35,8 +35,8 @@ EXERCISE = Returns(
     gives=lambda random: [observation(number, wall, random) for number, wall in enumerate(COURSE)],
 ).exercise(
     text={
-        "If it turns, and the wall ahead is farther than 1 metre, it stops turning.": "returned",
-        "nearer than 0.6 metres, it begins to turn": "returned",
+        "If it turns, and the wall ahead is farther than 1 meter, it stops turning.": "returned",
+        "nearer than 0.6 meters, it begins to turn": "returned",
         "`Command(turn=self.turn)` while it turns": "returned",
     }
 )

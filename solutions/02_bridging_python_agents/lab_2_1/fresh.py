@@ -30,7 +30,7 @@ EXERCISE = SameAsSolution(
     text={
         "returns `nothing` as long as no scan has come": "known",
         "`fresh` if the newest one came less than 1 second ago, and otherwise `old`": "known",
-        "five times a second `act` says its state on `known`": "known_rate cmd_vel_rate",
+        "which the timer calls five times a second": "known_rate cmd_vel_rate",
         "drives ahead with 0.4 if the": "cmd_vel",
         "Otherwise it publishes `Twist()`.": "cmd_vel",
     }

@@ -35,6 +35,6 @@ EXERCISE = SameAsSolution(
     text={
         "`max_forward`, by default 0.5, from 0.0 to 1.0": "max_forward cmd_vel",
         "`max_turn`, by default 1.0, from 0.0 to 2.0": "max_turn cmd_vel",
-        "publish each command with its `linear.x` between `-max_forward` and `max_forward`": "cmd_vel",
+        "between `-max_forward` and `max_forward`": "cmd_vel",
     }
 )

@@ -10,14 +10,14 @@ EXERCISE = SameAsSolution(
     "Ask without waiting, and say each answer with the number of its question.",
     gives=lambda random: [*questions(random, 3), 2.1, *questions(random, 2), 1.6],
     tells={"/told": "data", "/beat": "data"},
-    serves={"/where": Serves(place, late={1: 2.0, 4: 1.0})},
+    serves={"/where": Serves(place, late={1: 2.0, 4: 1.4})},
     every=("/told",),
-    pause=0.3,
+    pause=0.5,
     roles=("publisher", "subscription", "client"),
 ).exercise(
     text={
         "For each question call `where`, and say the answer": "told",
         "each answer has to know its number": "told",
-        "So nobody waits.": "beat",
+        "So no callback waits.": "beat",
     }
 )

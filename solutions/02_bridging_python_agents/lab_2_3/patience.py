@@ -8,16 +8,16 @@ EXERCISE = SameAsSolution(
     "lab_2_3.patience",
     "Lab 2.3 · What never comes",
     "Give a question up after two seconds, and say so.",
-    gives=lambda random: [*questions(random, 2), 1.3, *questions(random, 2), 3.2],
+    gives=lambda random: [*questions(random, 2), 1.0, *questions(random, 2), 3.2],
     tells={"/told": "data", "/beat": "data"},
     serves={"/where": Serves(place, late={2: 2.7}, never={1, 4})},
     every=("/told",),
-    pause=0.3,
+    pause=0.7,
     roles=("publisher", "subscription", "client"),
 ).exercise(
     text={
         "open for more than 2 seconds of the robot's time, and says `no answer`": "told",
         "An answer that comes later than that is not said any more.": "told",
-        "So the heart looks after it: at each beat": "beat",
+        "So the heart looks after the questions: at each beat": "beat",
     }
 )

@@ -67,7 +67,7 @@ SAID = {
         "not an object of the type String"
     ),
     "AttributeError: type object 'type' has no attribute '_TYPE_SUPPORT'": "Python's own str is not String",
-    "AssertionError: The 'linear' field must be a sub message of type 'Vector3'": "separately: command.linear.x = 0.5",
+    "AssertionError: The 'linear' field must be a sub message of type 'Vector3'": "whole name: command.linear.x = 0.5",
     "AssertionError: The 'data' field must be of type 'str'": "str(...)",
     "SystemError: <built-in method publish of x> returned a result with an exception set": "or a number that is too",
     "AttributeError: 'Fibonacci_Feedback' object attribute 'partial_sequence' is read-only": "Run All Cells",

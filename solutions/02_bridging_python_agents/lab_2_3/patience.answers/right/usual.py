@@ -6,27 +6,27 @@ import rclpy
 from rclpy.duration import Duration
 from rclpy.node import Node
 from rclpy.task import Future
-from std_msgs.msg import Bool, Int32, String
+from std_msgs.msg import Int32, String
 from std_srvs.srv import Trigger
 
 
 class Heart(Node):
-    """Beats, and says what it is asked."""
+    """Beats, and tells answers."""
 
     def __init__(self) -> None:
         super().__init__("asker")
-        self.beats = 0
-        self.beat = self.create_publisher(Bool, "beat", 10)
+        self.answers: list[str] = []
+        self.beat = self.create_publisher(Int32, "beat", 10)
         self.told = self.create_publisher(String, "told", 10)
         self.create_timer(0.1, self.on_beat)
 
     def on_beat(self) -> None:
-        self.beats += 1
-        self.beat.publish(Bool(data=True))
+        self.beat.publish(Int32(data=len(self.answers)))
 
     def tell(self, number: int, answer: str) -> None:
         """Say the answer to a question."""
-        self.told.publish(String(data=f"{number}: {answer}"))
+        self.answers.append(f"{number}: {answer}")
+        self.told.publish(String(data=self.answers[-1]))
 
 
 class Guided(Heart):
