@@ -23,7 +23,7 @@ import msgspec
 from autograder import course
 from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.class_directory import ClassDirectory
-from autograder.grading.tasks.task_making import tasks_of
+from autograder.grading.tasks.task_making import task_of
 from autograder.safe_files import fresh_folder
 from benchmarks.classes import make_class
 from benchmarks.machine import Machine, Watch, machine
@@ -219,9 +219,9 @@ def _bytes(path: Path) -> tuple[float, float]:
     """Mean bytes of the tasks of a class, and of their results as the store has them."""
     directory = ClassDirectory(path)
     tasks = [
-        len(msgspec.json.encode(task))
+        len(msgspec.json.encode(task_of(directory, found, notebook)[0]))
         for found in directory.submissions()[0]
-        for task in tasks_of(directory, found)
+        for notebook in directory.notebooks(found.assignment)
     ]
     with ClassStore(directory) as store:
         results = [

@@ -11,7 +11,7 @@ import msgspec
 
 from autograder import exercises
 from autograder.grading.classes.class_directory import ClassDirectory
-from autograder.grading.tasks.task_making import tasks_of
+from autograder.grading.tasks.task_making import task_of
 from environment.python_child import python_child
 
 if TYPE_CHECKING:
@@ -59,10 +59,10 @@ def measure_floor(made: BenchmarkClass, students: Sequence[str]) -> list[Floor]:
     """
     directory = ClassDirectory(made.path)
     tasks = [
-        task
+        task_of(directory, submission, notebook)[0]
         for submission in directory.submissions()[0]
         if submission.student in students
-        for task in tasks_of(directory, submission)
+        for notebook in directory.notebooks(submission.assignment)
     ]
     done = subprocess.run(
         python_child("-m", "benchmarks.warm_notebook").command,

@@ -5,9 +5,9 @@ from __future__ import annotations
 import contextlib
 import functools
 import time
+from collections import Counter
 from typing import TYPE_CHECKING
 
-from autograder.command_name import COMMAND
 from autograder.grading.batch_work import Work, due_dates, find_work, without_grade, would_change
 from autograder.grading.class_checks import changed_master_warnings, limits_of
 from autograder.grading.classes import gradebook_reading
@@ -21,20 +21,20 @@ from autograder.grading.running.batch_progress import BatchProgress, Timings, pl
 from autograder.grading.table.rows import rows_of, write_csv
 from autograder.grading.table.student_list import enter_roster
 from autograder.grading.table.weighted_rows import read_what_counts, true_rows
+from autograder.grading.tasks.result_keys import ResultKeys
 from autograder.grading.tasks.source_points import check_release, read_released
-from autograder.grading.tasks.submission_fingerprints import Fingerprints
-from autograder.grading.tasks.submission_times import handed_in_at
 
 # Some modules are imported inside functions, because they import nbgrader, which takes a second.
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
+    from nbformat import NotebookNode
     from rich.console import Console
 
     from autograder.grading.batch_work import AskedFor
     from autograder.grading.class_store import ClassStore
-    from autograder.grading.classes.class_directory import ClassDirectory, Submission
+    from autograder.grading.classes.class_directory import ClassDirectory
     from autograder.grading.grading_task import Task
     from autograder.grading.reporting.class_table import Difference
     from autograder.grading.result_writer import Writer
@@ -86,9 +86,9 @@ class Batch:
         self._directory = directory
         self._store = store
         self._console = console
-        self._fingerprints = Fingerprints(directory)
+        self._keys = ResultKeys(directory)
         # Read before any step, so that a class without a usable source is refused while it is unchanged.
-        self._released = released = read_released(directory, store, self._fingerprints)
+        self._released = released = read_released(directory, store, self._keys)
         self._cells = released.cells
         self._what_counts = read_what_counts(directory, released.cells)
         if not released.cells and released.unusable:
@@ -97,7 +97,7 @@ class Batch:
         self._notices: list[str] = []
         self._timings = Timings()
         self._feedback = feedback
-        self._executed = 0
+        self._run_again: Counter[str] = Counter()
         self._reused = 0
         self._written = 0
 
@@ -128,9 +128,7 @@ class Batch:
         for text in changed_master_warnings(self._directory, self._store, assignments or self._cells):
             self._notices.append(text)
             plain_line(self._console, f"note: {text}")
-        work = find_work(
-            self._directory, self._asked, self._released, self._roster, self._fingerprints, beside
-        )
+        work = find_work(self._directory, self._asked, self._released, self._roster, self._keys, beside)
         self._works, self._others, self._refused = work.works, work.others, work.refused
         self._notices += work.notices
         return work.works
@@ -147,14 +145,6 @@ class Batch:
             self._notices.append(
                 f"students.csv does not list these students, so this work is not graded: {names}. To grade it anyway, "
                 f"add --student {unlisted[0].submission.student}"
-            )
-        older = sum(
-            work.key in self._entered and self._entered[work.key].course != course_version() for work in works
-        )
-        if older:
-            self._notices.append(
-                f"{older} submissions had been graded with another version of the course. To see whose points have "
-                f"changed, type `{COMMAND} compare` after the run, or `{COMMAND} grade --dry-run` before a run."
             )
         if self._again:
             self._store.forget_results(work.submission for work in works)
@@ -183,12 +173,11 @@ class Batch:
     def make_tasks(self, works: list[Work]) -> Iterator[Task]:
         """Yield the tasks to execute. Each task is made only when a worker is free, to save memory."""
         for work in works:
-            if work.rows is not None:
-                continue
-            for task in self._tasks_of(work.submission):
+            for task, rebuilt in self._tasks_of(work) if work.rows is None else ():
+                work.rebuilt[task.notebook] = rebuilt
                 if task.problem:
                     work.results[task.notebook] = task, task.without_execution()
-                elif task.notebook not in work.results:
+                else:
                     yield task
 
     def execute(self, tasks: Iterable[Task]) -> Iterator[Done]:
@@ -223,7 +212,7 @@ class Batch:
         works = {work.key: work for work in self._works}
         for done in results:
             work, task = works[done.task.student, done.task.assignment], done.task
-            self._executed += 1
+            self._run_again[self._why_again(work)] += 1
             self._timings.count(task.cells, done.execution)
             execution = self._store.keep(task, done.execution)
             if execution.trouble:
@@ -242,7 +231,7 @@ class Batch:
         for work in works:
             if work.written:
                 if not self._dry_run:
-                    yield work, self._keep_time(work)
+                    yield work, self._penalized(work)
                 continue
             rows = tuple(row for pair in work.pairs for row in rows_of(*pair))
             if self._dry_run:
@@ -250,6 +239,7 @@ class Batch:
             elif self._write(work, rows):
                 yield work, gradebook_reading.read_entry(self._directory.gradebook_url, *work.key)
             work.results.clear()
+            work.rebuilt.clear()
 
     def show(self, entered: Iterable[tuple[Work, SubmissionEntry]]) -> Iterator[Work]:
         """Make the feedback pages of submissions, except of those whose pages show what the gradebook contains."""
@@ -301,7 +291,8 @@ class Batch:
             problems=tuple(self._problems),
             notices=tuple(self._notices),
             would_change=tuple(changes) if self._dry_run else None,
-            executed=self._executed,
+            executed=self._run_again.total(),
+            run_again={why: count for why, count in self._run_again.items() if why},
             reused=self._reused,
             written=self._written,
             seconds=time.monotonic() - self._began,
@@ -314,36 +305,38 @@ class Batch:
     def _settle(self, work: Work) -> None:
         """Mark a submission as written if the gradebook contains the grades of its present files."""
         entered, entry = self._entered.get(work.key), self._entries.get(work.key, SubmissionEntry())
-        if entered is None or not entered.is_in(entry):
+        if entered is None or entered.made_from != work.made_from or not entered.is_in(entry):
             return
-        if not self._directory.has_converted(work.submission, entered.tasks):
-            return
-        try:
-            handed_in_at(work.submission.folder, believed=entry.handed_in)
-        except ValueError:
-            return  # the timestamp file is invalid; the writer will reject the submission, with the reason
-        if entered.fingerprint != work.fingerprint:
-            # The files have changed, but perhaps no cell has: for example, the student saved the notebook again, or
-            # another part of the course changed.
-            if entered.tasks != {task.notebook: task.key() for task in self._tasks_of(work.submission)}:
-                return
-            self._store.note_fingerprint(work.submission, work.fingerprint)
-        work.rows = entered.rows
-        work.shown = entered.shown
-        work.written = True
+        if self._directory.has_converted(work.submission, entered.tasks):
+            work.rows, work.shown, work.written = entered.rows, entered.shown, True
+
+    def _why_again(self, work: Work) -> str:
+        """Return why a notebook of a submission is executed again; empty if it is executed for the first time."""
+        earlier = [
+            one.made_from for one in self._store.attempts(work.key[0]) if one.assignment == work.key[1]
+        ]
+        if not earlier:
+            return ""
+        nothing = "--again was given" if self._again else "its result was not kept"
+        return work.made_from.changes_since(earlier[-1]) or nothing
 
     def _take_stored_results(self, work: Work) -> None:
         stored = self._store.results(*work.key)
-        for task in self._tasks_of(work.submission) if stored else ():
+        for task, rebuilt in self._tasks_of(work) if stored else ():
             if (key := task.key()) in stored:
                 self._reused += 1
                 work.results[task.notebook] = task, stored[key]
+                work.rebuilt[task.notebook] = rebuilt
 
-    def _tasks_of(self, submission: Submission) -> list[Task]:
-        from autograder.grading.tasks.task_making import tasks_of
+    def _tasks_of(self, work: Work) -> Iterator[tuple[Task, NotebookNode]]:
+        """Yield a task for each notebook that has no result yet, with the rebuilt notebook."""
+        from autograder.grading.tasks.task_making import task_of
 
-        with self._timings.measure("rebuild"):
-            return tasks_of(self._directory, submission)
+        for notebook in work.notebooks:
+            if notebook not in work.results:
+                with self._timings.measure("rebuild"):
+                    made = task_of(self._directory, work.submission, notebook)
+                yield made
 
     def _write(self, work: Work, rows: tuple[Row, ...]) -> bool:
         """Write the results of a submission. Return False if the gradebook now has zero points for it."""
@@ -351,12 +344,10 @@ class Batch:
 
         try:
             with self._timings.measure("gradebook"):
-                if self._fingerprints.of(work.submission) != work.fingerprint:
-                    # The files changed during the run, so the tasks may have been made from files with another
-                    # fingerprint.
-                    name = f"{work.submission.student}/{work.submission.assignment}"
-                    raise NotWritten(f"{name} was changed while it was graded: grade it again")
-                self._writer.write(work.submission, work.fingerprint, work.pairs, rows)
+                if self._keys.of(work.submission) != work.made_from:
+                    # The files changed during the run, so the tasks may have been made from other files.
+                    raise NotWritten(f"{'/'.join(work.key)} was changed while it was graded: grade it again")
+                self._writer.write(work.submission, work.made_from, work.pairs, work.rebuilt, rows)
         except NotWritten as error:
             if is_disk_full(error):
                 raise
@@ -368,15 +359,13 @@ class Batch:
             self._written += 1
         return work.written
 
-    def _keep_time(self, work: Work) -> SubmissionEntry:
-        """Enter a changed submission time into the gradebook, and compute the late penalty again."""
+    def _penalized(self, work: Work) -> SubmissionEntry:
+        """Compute the late penalty of an entered submission again, and return its entry in the gradebook."""
         entry = self._entries.get(work.key, SubmissionEntry())
-        at = handed_in_at(work.submission.folder, believed=entry.handed_in)
-        moved = at is not None and at != entry.handed_in
-        if not (moved or entry.is_late or entry.penalty):
+        if not (entry.is_late or entry.penalty):
             return entry
         with self._timings.measure("gradebook"):
-            self._writer.enter_time(work.submission, at if moved else None)
+            self._writer.assign_penalties(work.submission)
         return gradebook_reading.read_entry(self._directory.gradebook_url, *work.key)
 
     def _make_pages(self, work: Work, entry: SubmissionEntry) -> None:
@@ -387,6 +376,4 @@ class Batch:
             self._store.note_shown(submission, entry.shown())
         else:
             log = self._directory.state / "nbgrader.log"
-            self._problems.append(
-                f"feedback for {submission.student}/{submission.assignment} could not be made (see {log})"
-            )
+            self._problems.append(f"feedback for {'/'.join(work.key)} could not be made (see {log})")

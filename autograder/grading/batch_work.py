@@ -21,13 +21,16 @@ if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
     from datetime import datetime
 
+    from nbformat import NotebookNode
+
     from autograder.execution.executed_cells import Execution
+    from autograder.grading.class_records import ResultKey
     from autograder.grading.classes.class_directory import ClassDirectory, Submission
     from autograder.grading.classes.gradebook_reading import Entries
     from autograder.grading.grading_task import GradedCell, Task
     from autograder.grading.table.roster import Roster
+    from autograder.grading.tasks.result_keys import ResultKeys
     from autograder.grading.tasks.source_points import Released
-    from autograder.grading.tasks.submission_fingerprints import Fingerprints
 
 
 @dataclass(frozen=True)
@@ -64,18 +67,20 @@ class Work:
     """The state of a submission during a run.
 
     Attributes:
-        fingerprint: The hash of its files at the beginning of the run.
+        made_from: The key that its result has if it is made from the files at the beginning of the run.
         notebooks: The names of the assignment's notebooks.
         results: The results by notebook, until they are entered into the gradebook.
+        rebuilt: The rebuilt notebooks that are executed or have results, until the results are entered.
         rows: The results as rows of the report; None if the submission has not been graded yet.
         written: True if the gradebook contains these results.
         shown: The hash of the gradebook's entry from which the feedback pages were made; empty without pages.
     """
 
     submission: Submission
-    fingerprint: str
+    made_from: ResultKey
     notebooks: Sequence[str]
     results: dict[str, tuple[Task, Execution]] = field(default_factory=dict)
+    rebuilt: dict[str, NotebookNode] = field(default_factory=dict)
     rows: tuple[Row, ...] | None = None
     written: bool = False
     shown: str = ""
@@ -118,7 +123,7 @@ def find_work(
     asked: AskedFor,
     released: Released,
     roster: Roster,
-    fingerprints: Fingerprints,
+    keys: ResultKeys,
     beside: Iterable[RefusedFile],
 ) -> FoundWork:
     """Find the submissions of a class, and select the chosen ones.
@@ -126,7 +131,7 @@ def find_work(
     Args:
         asked: The chosen students and assignments.
         released: The cells with points in the source notebooks.
-        fingerprints: Computes the fingerprint of a submission.
+        keys: Computes the key of a submission.
         beside: Files in ``submitted`` that lie in a wrong folder.
 
     Raises:
@@ -144,7 +149,7 @@ def find_work(
     check_known(asked.students, sorted(there | roster.students.keys()), "student")
     names = {assignment: directory.notebooks(assignment) for assignment in released.cells}
     for submission in submissions:
-        work = Work(submission, fingerprints.of(submission), names[submission.assignment])
+        work = Work(submission, keys.of(submission), names[submission.assignment])
         if is_not_believed(submission.folder):
             result.notices.append(
                 f"{submission.student}/{submission.assignment}: timestamp.txt is ignored, because "

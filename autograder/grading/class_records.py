@@ -18,33 +18,80 @@ if TYPE_CHECKING:
     from autograder.grading.grading_task import Task
 
 
+_PARTS = {
+    "handed_in": "the submission",
+    "released": "the released notebook",
+    "exercises": "the exercise",
+    "judge": "the judge",
+    "settings": "the settings of the class",
+    "grader": "the grader",
+}
+"""The names of a key's parts in messages."""
+
+
+@dataclass(frozen=True)
+class ResultKey:
+    """The parts from which the results of a submission were made, each as a hash.
+
+    A part is empty if the record was made by an earlier version of the course, which had one hash for all parts.
+
+    Attributes:
+        handed_in: The submitted notebooks and the time of handing in.
+        released: The assignment's files in ``source``, from which the released notebook was made.
+        exercises: The exercises that judge the notebooks, with their reference outputs.
+        judge: The code of the course that executes and judges notebooks.
+        settings: The configuration of the class, its secret, and whether the sandbox is on.
+        grader: The code of the course that makes tasks from notebooks, and cards, grades and pages from results. If
+            only this part changed, grades and pages are made again from the stored results.
+    """
+
+    handed_in: str = ""
+    released: str = ""
+    exercises: str = ""
+    judge: str = ""
+    settings: str = ""
+    grader: str = ""
+
+    def changes_since(self, earlier: ResultKey) -> str:
+        """Return a sentence about the parts that differ from an earlier key; empty if none does."""
+        if not earlier.judge:
+            return "an earlier version of the course had graded it"
+        changed = [words for part, words in _PARTS.items() if getattr(self, part) != getattr(earlier, part)]
+        return f"{' and '.join(changed)} changed" if changed else ""
+
+
 @dataclass(frozen=True)
 class Attempt:
     """One grading of a submission, whose results were entered into the gradebook.
 
     Attributes:
         at: The time of the grading, in UTC.
-        work: The fingerprint of the submission, a hash of all files that influence its grade.
-        course: The version of the course that graded the submission.
+        made_from: The key of the results.
+        course: The version of the course that judged the submission.
         rows: The judge's results, as rows of the report.
     """
 
     at: datetime
     assignment: str
-    work: str
+    made_from: ResultKey
     course: str
     rows: tuple[Row, ...]
 
-    def line(self) -> str:
-        """Return the attempt as a line of text."""
+    def line(self, earlier: Attempt | None) -> str:
+        """Return the attempt as a line of text.
+
+        Args:
+            earlier: The student's attempt before this one at the same assignment; None if this is the first.
+        """
         score, most = sum(row.score for row in self.rows), sum(row.max_score for row in self.rows)
+        why = self.made_from.changes_since(earlier.made_from) if earlier else "first attempt"
         words = [
             f"{row.exercise} {row.score:g}" + (f" ({row.diagnosis})" if row.diagnosis else "")
             for row in self.rows
         ]
         return (
             f"{self.at:%Y-%m-%d %H:%M:%S} UTC  {self.assignment}  {score:g}/{most:g}  {', '.join(words)}  "
-            f"[work {self.work[:8]}, course {self.course[:8]}]"
+            f"[{why or 'nothing changed'}, course {self.course[:8]}]"
         )
 
 
@@ -53,19 +100,17 @@ class Entered:
     """The results of a submission that were last entered into the gradebook. A run skips an unchanged submission.
 
     Attributes:
-        fingerprint: The hash of all files that influence the grades, from :class:`Fingerprints`.
+        made_from: The key of the results.
         tasks: The hash of each notebook's task, from :meth:`autograder.grading.grading_task.Task.key`.
         scores: The points of each check cell, by notebook and grade_id.
         rows: The results as rows of the report, with the recognized mistakes.
-        course: The version of the course that graded the submission.
         shown: The hash of the gradebook's entry from which the feedback pages were made; empty without pages.
     """
 
-    fingerprint: str
+    made_from: ResultKey
     tasks: dict[str, str]
     scores: dict[str, dict[str, float]]
     rows: tuple[Row, ...]
-    course: str
     shown: str = ""
 
     def is_in(self, entry: SubmissionEntry) -> bool:

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any, Self, TypeVar
 import msgspec
 
 from autograder.execution.executed_cells import Execution
-from autograder.grading.class_records import Attempt, Entered, KeptEvidence, Origin
+from autograder.grading.class_records import Attempt, Entered, KeptEvidence, Origin, ResultKey
 from autograder.grading.grading_errors import DiskFull, StoreTrouble, is_disk_full, said_by_database
 from autograder.grading.store_tables import bring_up_to_date
 from autograder.grading.table.rows import Row
@@ -142,39 +142,28 @@ class ClassStore:
         """
         names = (submission.student, submission.assignment)
         with self._step() as book:
+            made_from, rows = map(msgspec.json.encode, (attempt.made_from, attempt.rows))
             book.execute(
-                "INSERT INTO attempt (student, at, assignment, work, course, report) VALUES (?, ?, ?, ?, ?, ?)",
-                (
-                    submission.student,
-                    attempt.at.isoformat(),
-                    attempt.assignment,
-                    attempt.work,
-                    attempt.course,
-                    msgspec.json.encode(attempt.rows),
-                ),
+                "INSERT INTO attempt (student, assignment, at, made_from, course, report) VALUES (?, ?, ?, ?, ?, ?)",
+                (*names, attempt.at.isoformat(), made_from, attempt.course, rows),
             )
             if entered is not None:
+                blobs = (entered.made_from, entered.tasks, entered.scores, entered.rows)
                 book.execute(
-                    "REPLACE INTO entered VALUES (?, ?, ?, ?, ?, ?, ?, ?)",
-                    (
-                        *names,
-                        entered.fingerprint,
-                        *map(msgspec.json.encode, (entered.tasks, entered.scores, entered.rows)),
-                        entered.course,
-                        entered.shown,
-                    ),
+                    "REPLACE INTO entered VALUES (?, ?, ?, ?, ?, ?, ?)",
+                    (*names, *map(msgspec.json.encode, blobs), entered.shown),
                 )
                 book.execute(
                     f"DELETE FROM evidence WHERE (student, assignment) = (?, ?) AND {_NOT_ENTERED}", names
                 )
 
-    def note_fingerprint(self, submission: Submission, fingerprint: str) -> None:
-        """Replace the fingerprint of an entered submission, because its files have changed but its grades have not."""
-        self._note(submission, "fingerprint", fingerprint)
-
     def note_shown(self, submission: Submission, shown: str) -> None:
         """Record the hash of the gradebook's entry from which the feedback pages of a submission were made."""
-        self._note(submission, "shown", shown)
+        with self._step() as book:
+            book.execute(
+                "UPDATE entered SET shown = ? WHERE (student, assignment) = (?, ?)",
+                (shown, submission.student, submission.assignment),
+            )
 
     def forget_entered(self, submissions: Iterable[Submission]) -> None:
         """Delete the records of submissions' grades. Call this before setting the grades in the gradebook to zero."""
@@ -185,26 +174,25 @@ class ClassStore:
     def entered(self) -> dict[tuple[str, str], Entered]:
         """Return the results that were last entered into the gradebook, by student and assignment."""
         found = {}
-        for student, assignment, fingerprint, *blobs, course, shown in self._rows("SELECT * FROM entered"):
-            tasks = _decoded(blobs[0], dict[str, str])
-            scores = _decoded(blobs[1], dict[str, dict[str, float]])
-            rows = _decoded(blobs[2], tuple[Row, ...])
-            if tasks is not None and scores is not None and rows is not None:
-                own = tuple(replace(row, student=student) for row in rows)
-                found[student, assignment] = Entered(fingerprint, tasks, scores, own, course, shown)
+        forms: tuple[Any, ...] = (ResultKey, dict[str, str], dict[str, dict[str, float]], tuple[Row, ...])
+        for student, assignment, *blobs, shown in self._rows("SELECT * FROM entered"):
+            fields: list[Any] = list(map(_decoded, blobs, forms))
+            if None not in fields:
+                made_from, tasks, scores, rows = fields
+                found[student, assignment] = Entered(made_from, tasks, scores, _own(rows, student), shown)
         return found
 
     def attempts(self, student: str) -> list[Attempt]:
         """Return all attempts of a student, oldest first."""
         found = []
-        for at, assignment, work, course, report in self._rows(
-            "SELECT at, assignment, work, course, report FROM attempt WHERE student = ? ORDER BY number",
+        for at, assignment, key, course, report in self._rows(
+            "SELECT at, assignment, made_from, course, report FROM attempt WHERE student = ? ORDER BY number",
             student,
         ):
-            rows = _decoded(report, tuple[Row, ...])
-            if rows is not None:
-                own = tuple(replace(row, student=student) for row in rows)
-                found.append(Attempt(datetime.fromisoformat(at), assignment, work, course, own))
+            made_from, rows = _decoded(key, ResultKey), _decoded(report, tuple[Row, ...])
+            if made_from is not None and rows is not None:
+                when = datetime.fromisoformat(at)
+                found.append(Attempt(when, assignment, made_from, course, _own(rows, student)))
         return found
 
     def rename(self, ids: Mapping[str, str]) -> None:
@@ -279,13 +267,6 @@ class ClassStore:
 
     # -- the file
 
-    def _note(self, submission: Submission, column: str, value: str) -> None:
-        with self._step() as book:
-            book.execute(
-                f"UPDATE entered SET {column} = ? WHERE (student, assignment) = (?, ?)",
-                (value, submission.student, submission.assignment),
-            )
-
     def _rows(self, question: str, *names: str) -> list[tuple[Any, ...]]:
         with self._said_clearly():
             if self._connection is None and not self._path.exists():
@@ -334,8 +315,12 @@ class ClassStore:
             raise
 
 
+def _own(rows: Iterable[Row], student: str) -> tuple[Row, ...]:
+    return tuple(replace(row, student=student) for row in rows)
+
+
 def _decoded(
-    data: bytes, form: type[_Decoded], decode: Callable[..., Any] = msgspec.json.decode
+    data: bytes | str, form: type[_Decoded], decode: Callable[..., Any] = msgspec.json.decode
 ) -> _Decoded | None:
     """Return the decoded value; None if the data is damaged."""
     try:

@@ -12,19 +12,19 @@ CREATE TABLE IF NOT EXISTS evidence (
 );
 -- The results that were entered into the gradebook; see the class Entered.
 CREATE TABLE IF NOT EXISTS entered (
-    student TEXT, assignment TEXT, fingerprint TEXT NOT NULL, tasks BLOB NOT NULL, scores BLOB NOT NULL,
-    report BLOB NOT NULL, course TEXT NOT NULL, shown TEXT NOT NULL,
+    student TEXT, assignment TEXT, made_from TEXT NOT NULL, tasks BLOB NOT NULL, scores BLOB NOT NULL,
+    report BLOB NOT NULL, shown TEXT NOT NULL,
     PRIMARY KEY (student, assignment)
 );
 -- Each grading of a submission; see the class Attempt. Attempts are only added, never changed or removed;
 -- only the id of their student may change.
 CREATE TABLE IF NOT EXISTS attempt (
     number INTEGER PRIMARY KEY, student TEXT NOT NULL, at TEXT NOT NULL, assignment TEXT NOT NULL,
-    work TEXT NOT NULL, course TEXT NOT NULL, report BLOB NOT NULL
+    made_from TEXT NOT NULL, course TEXT NOT NULL, report BLOB NOT NULL
 );
 CREATE INDEX IF NOT EXISTS attempt_of ON attempt (student);
 CREATE TRIGGER IF NOT EXISTS not_removed BEFORE DELETE ON attempt BEGIN SELECT RAISE(ABORT, 'attempts stay'); END;
-CREATE TRIGGER IF NOT EXISTS not_changed BEFORE UPDATE OF number, at, assignment, work, course, report ON attempt
+CREATE TRIGGER IF NOT EXISTS not_changed BEFORE UPDATE OF number, at, assignment, made_from, course, report ON attempt
     BEGIN SELECT RAISE(ABORT, 'attempts stay'); END;
 -- The class's table of results after each of the last runs that changed the table. The name is the run's time in UTC.
 CREATE TABLE IF NOT EXISTS run (name TEXT PRIMARY KEY, course TEXT NOT NULL, report BLOB NOT NULL);

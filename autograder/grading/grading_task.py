@@ -25,7 +25,7 @@ class Task:
         student: The student's id, for messages.
         cells: The cells of the rebuilt notebook.
         seed: The seed of the judge's random inputs.
-        course: The version of the course, a hash of all files that may influence a grade.
+        course: The version of the course: a hash of the code that executes the notebook, and of its exercises.
         limits: The limits on time, memory and output.
         files: The assignment's files next to the notebook, by relative path.
         problem: The reason if the notebook cannot be executed; otherwise empty.

@@ -26,7 +26,7 @@ from autograder.execution.executed_cells import Cell, CellCheck, CellRun, CellTy
 from autograder.grading.class_records import Attempt, Entered
 from autograder.grading.classes import gradebook_writing
 from autograder.grading.classes.class_directory import SUFFIX
-from autograder.grading.classes.gradebook_reading import read_entries
+from autograder.grading.classes.gradebook_reading import read_entry
 from autograder.grading.classes.gradebook_writing import NotebookEntry
 from autograder.grading.grading_errors import is_disk_full
 from autograder.grading.grading_task import points, scores_of, unchecked
@@ -36,7 +36,7 @@ from autograder.grading.returning.sanitize import harmless_output, make_harmless
 from autograder.grading.running import execution_backends
 from autograder.grading.table.late_policy import penalties
 from autograder.grading.tasks.submission_times import companions, handed_in_at
-from autograder.grading.tasks.task_making import LEFT_OUT, task_of
+from autograder.grading.tasks.task_making import LEFT_OUT
 from autograder.safe_files import write_whole
 
 if TYPE_CHECKING:
@@ -46,6 +46,7 @@ if TYPE_CHECKING:
     from nbformat import NotebookNode
 
     from autograder.boxes.run_limits import Limits
+    from autograder.grading.class_records import ResultKey
     from autograder.grading.class_store import ClassStore
     from autograder.grading.classes.class_directory import ClassDirectory, Submission
     from autograder.grading.classes.gradebook_reading import SubmissionEntry
@@ -83,16 +84,18 @@ class Writer:
     def write(
         self,
         submission: Submission,
-        fingerprint: str,
+        made_from: ResultKey,
         results: Sequence[tuple[Task, Execution]],
+        rebuilt: Mapping[str, NotebookNode],
         rows: tuple[Row, ...],
     ) -> None:
         """Convert the submission and enter its grades.
 
         Args:
             submission: The submission that was executed.
-            fingerprint: The hash of all files that influence the results, from :class:`Fingerprints`.
+            made_from: The key of the results.
             results: Pairs of a task and its result, one for each notebook of the assignment.
+            rebuilt: The rebuilt notebooks that were executed, by name. They get the results as outputs.
             rows: The results as rows of the report.
 
         Raises:
@@ -101,29 +104,31 @@ class Writer:
         """
         try:
             with quiet(self._directory.state):
-                self._convert_and_enter(submission, results)
+                self._convert_and_enter(submission, results, rebuilt)
             # Read the points back, because a wrong grade is worse than none.
             self._verify(submission, results)
-        except NotWritten:
-            self.take_back([submission])
-            raise
         except Exception as error:
             self.take_back([submission])
+            if isinstance(error, NotWritten):
+                raise
             raise NotWritten(f"{submission.student}/{submission.assignment}: {error}") from error
-        course = results[0][0].course
         entered = Entered(
-            fingerprint=fingerprint,
+            made_from=made_from,
             tasks={task.notebook: task.key() for task, _ in results},
             scores={task.notebook: scores_of(task, execution) for task, execution in results},
             rows=rows,
-            course=course,
         )
-        attempt = Attempt(datetime.now(tz=UTC), submission.assignment, fingerprint, course, rows)
+        attempt = Attempt(datetime.now(tz=UTC), submission.assignment, made_from, results[0][0].course, rows)
         # If the grader itself failed, the attempt is kept, but the submission is not entered as done: it runs again.
         is_final = not any(execution.trouble for _, execution in results)
         self._store.enter(submission, attempt, entered if is_final else None)
 
-    def _convert_and_enter(self, submission: Submission, results: Sequence[tuple[Task, Execution]]) -> None:
+    def _convert_and_enter(
+        self,
+        submission: Submission,
+        results: Sequence[tuple[Task, Execution]],
+        rebuilt: Mapping[str, NotebookNode],
+    ) -> None:
         """Write the notebooks, then enter the grades.
 
         The notebooks come first because notebooks without grades do no harm, if the grader is interrupted between the
@@ -131,37 +136,23 @@ class Writer:
         """
         folder = self._folder("autograded", submission)
         _remove(folder)
-        entries = _convert(self._directory, submission, results, folder)
+        entries = _convert(self._directory, submission, results, rebuilt, folder)
         url = self._directory.gradebook_url
         has_due_date = gradebook_writing.enter(
             url, submission.assignment, submission.student, entries, handed_in_at(submission.folder)
         )
         if has_due_date:
-            self._assign_penalties(submission)
+            self.assign_penalties(submission)
 
-    def enter_time(self, submission: Submission, at: datetime | None) -> None:
-        """Enter a new submission time of a graded submission, and the late penalty for it.
-
-        Args:
-            submission: A graded submission. Its grades stay unchanged.
-            at: The time in UTC; None if the gradebook already has the time, so that only the penalty is computed.
-        """
-        names = submission.assignment, submission.student
+    def assign_penalties(self, submission: Submission) -> None:
+        """Enter the late penalty of a submission into the gradebook."""
         with quiet(self._directory.state):
-            if at is not None:
-                gradebook_writing.enter_time(self._directory.gradebook_url, *names, at)
-                _write_companions(submission, self._folder("autograded", submission))
-            self._assign_penalties(submission)
-
-    def _assign_penalties(self, submission: Submission) -> None:
-        url, student = self._directory.gradebook_url, submission.student
-        costs = penalties(self._directory.config, student, self._entry(submission))
-        gradebook_writing.enter_penalties(url, submission.assignment, student, costs)
+            url, config = self._directory.gradebook_url, self._directory.config
+            costs = penalties(config, submission.student, self._entry(submission))
+            gradebook_writing.enter_penalties(url, submission.assignment, submission.student, costs)
 
     def _entry(self, submission: Submission) -> SubmissionEntry:
-        student, assignment = submission.student, submission.assignment
-        url = self._directory.gradebook_url
-        return read_entries(url, student=student, assignment=assignment)[student, assignment]
+        return read_entry(self._directory.gradebook_url, submission.student, submission.assignment)
 
     def write_feedback(self, submission: Submission) -> bool:
         """Write the feedback pages of a submission. Return False if that failed; the log then contains the reason.
@@ -233,6 +224,7 @@ def _convert(
     directory: ClassDirectory,
     submission: Submission,
     results: Sequence[tuple[Task, Execution]],
+    rebuilt: Mapping[str, NotebookNode],
     folder: Path,
 ) -> dict[str, NotebookEntry]:
     """Write the notebooks of a submission with their results, and return the entries for the gradebook.
@@ -240,13 +232,13 @@ def _convert(
     Args:
         submission: The submission that was executed.
         results: Pairs of a task and its result, one for each notebook of the assignment.
+        rebuilt: The rebuilt notebooks that were executed, by name.
         folder: The folder to create for the notebooks. It must not exist yet.
 
     Returns:
         The entries by notebook.
 
     Raises:
-        RuntimeError: A notebook in ``submitted`` changed while it was executed.
         OSError: A file could not be written.
     """
     folder.mkdir(parents=True)
@@ -255,7 +247,7 @@ def _convert(
     _write_companions(submission, folder)
     entries = {}
     for task, execution in results:
-        notebook = _graded_notebook(directory, submission, task, execution)
+        notebook = _with_results(rebuilt[task.notebook], task, execution)
         # Before the entry is made, because nbgrader, too, cuts outputs before it computes points from them.
         LimitOutput(config=directory.config).preprocess(notebook, {})
         entries[task.notebook] = replace(_notebook_entry(notebook), unchecked=unchecked(task, execution))
@@ -271,17 +263,6 @@ def _write_companions(submission: Submission, folder: Path) -> None:
     """
     for name, data in companions(submission.folder).items():
         _write_read_only(folder / name, data)
-
-
-def _graded_notebook(
-    directory: ClassDirectory, submission: Submission, task: Task, execution: Execution
-) -> NotebookNode:
-    now, rebuilt = task_of(directory, submission, task.notebook)
-    if now.key() != task.key():
-        raise RuntimeError(
-            f"{task.label} was changed while it was graded: grade it again to use the new file"
-        )
-    return _with_results(rebuilt, task, execution)
 
 
 def _notebook_text(notebook: NotebookNode) -> bytes:

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from autograder.safe_files import keep_whole
 
-FORM = 3
+FORM = 4
 """The version of the tables, as the file's ``user_version``."""
 TABLES = Path(__file__).with_name("class_tables.sql").read_text(encoding="utf-8")
 _STEPS = {
@@ -20,6 +20,16 @@ _STEPS = {
         "DROP TRIGGER IF EXISTS not_changed",
         "CREATE TRIGGER not_changed BEFORE UPDATE OF number, at, assignment, work, course, report ON attempt"
         " BEGIN SELECT RAISE(ABORT, 'attempts stay'); END",
+    ),
+    3: (
+        "DROP TRIGGER IF EXISTS not_changed",
+        "ALTER TABLE attempt RENAME COLUMN work TO made_from",
+        "UPDATE attempt SET made_from = json_object('handed_in', made_from)",
+        "CREATE TRIGGER not_changed BEFORE UPDATE OF number, at, assignment, made_from, course, report ON attempt"
+        " BEGIN SELECT RAISE(ABORT, 'attempts stay'); END",
+        "ALTER TABLE entered RENAME COLUMN fingerprint TO made_from",
+        "UPDATE entered SET made_from = json_object('handed_in', made_from)",
+        "ALTER TABLE entered DROP COLUMN course",
     ),
 }
 """For each earlier version, the statements that make the next version's tables from its tables."""

@@ -250,7 +250,9 @@ def _definitions(cell: MasterCell) -> dict[str, str]:
     lines = source.split("\n")
     found = {}
     for node in body:
-        text = "\n".join(lines[node.lineno - 1 : node.end_lineno])
+        decorators = getattr(node, "decorator_list", [])
+        first = min([node.lineno, *(decorator.lineno for decorator in decorators)])
+        text = "\n".join(lines[first - 1 : node.end_lineno])
         if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)):
             found[node.name] = text
         elif isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Name):

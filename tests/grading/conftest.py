@@ -10,15 +10,15 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from autograder.grading import batch_steps
+from autograder.grading import course_version
+from autograder.grading.course_version import CourseFiles
 from autograder.grading.rebuilding import submission_desk
-from autograder.grading.tasks import task_making
 
 sys.path.insert(0, str(Path(__file__).parent))
 sys.path.insert(0, str(Path(__file__).parent / "collecting"))
 sys.path.insert(0, str(Path(__file__).parent / "day"))
 from downloads import ROSTER
-from tiny_class import FakeEngine, TinyClass, make_tiny_class
+from tiny_class import COURSE, FakeEngine, TinyClass, make_tiny_class
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -57,11 +57,10 @@ def klass(tiny: TinyClass) -> TinyClass:
 
 
 @pytest.fixture(scope="module", autouse=True)
-def _one_course_version() -> Iterator[None]:
+def _the_course_stands_still() -> Iterator[None]:
     """Several processes and runs must agree on it, also while somebody edits the course."""
     with pytest.MonkeyPatch.context() as patch:
-        for part in (task_making, batch_steps):
-            patch.setattr(part, "course_version", lambda: "test")
+        patch.setattr(course_version, "course_files", lambda: CourseFiles(COURSE.items()))
         yield
 
 

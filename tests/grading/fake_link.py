@@ -22,7 +22,7 @@ from autograder.grading.running.worker_messages import (
     Offer,
     Order,
 )
-from autograder.grading.tasks.task_making import tasks_of
+from autograder.grading.tasks.task_making import task_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -88,7 +88,7 @@ def tasks_of_six(tiny: TinyClass) -> list[Task]:
     """The same work of six students."""
     tiny.submit("ada", 6)
     directory = ClassDirectory(tiny.path)
-    task = tasks_of(directory, directory.submissions()[0][0])[0]
+    task, _ = task_of(directory, directory.submissions()[0][0], "lab_1_2")
     return [replace(task, student=f"student-{number}") for number in range(6)]
 
 

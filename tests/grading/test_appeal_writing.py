@@ -19,6 +19,7 @@ from autograder.cli import cli
 from autograder.grading.appeal_writing import write_appeal
 from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.class_directory import ClassDirectory, switch_sandbox_off
+from autograder.grading.course_version import judged_by
 from autograder.grading.grading_errors import GradingError
 from autograder.grading.running import execution_backends, task_execution
 from autograder.judge import evidence_files, one_check
@@ -79,7 +80,7 @@ def test_everything_about_the_check_is_in_the_file_and_it_is_judged_the_same(gra
     appeal = appeal_file.read(file)
     check = appeal.check
     assert (check.student, check.assignment, check.notebook) == ("ada", "lab_1_2", "lab_1_2")
-    assert check.course == "test"
+    assert check.course == judged_by(b"lab_1_2")
     assert [(cell.cell, cell.text) for cell in check.solution] == [
         ("Talker", ["def Talker():", "    return 10"])
     ]

@@ -77,7 +77,7 @@ def test_an_unchanged_submission_is_not_run_again(tiny: TinyClass, fake_engine: 
     fake_engine.ran.clear()
     report = tiny.grade()
     assert fake_engine.ran == []
-    assert (report.executed, report.reused, report.written) == (0, 2, 0)
+    assert (report.executed, report.reused, report.written) == (0, 2, 1)
     assert row(report, "ada").score == 10
     tiny.submit("ben", 3)
     report = tiny.grade()

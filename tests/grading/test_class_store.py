@@ -16,13 +16,13 @@ from typing import TYPE_CHECKING
 
 import pytest
 from click.testing import CliRunner
-from tiny_class import TALKER, FakeEngine, TinyClass
+from tiny_class import TALKER, FakeEngine, TinyClass, make_version_3
 
 from autograder.boxes.run_limits import Ended, Limits
 from autograder.cli import cli
 from autograder.execution.executed_cells import Cell, CellCheck, CellRun, Execution
 from autograder.grading import class_store, store_tables
-from autograder.grading.class_records import Attempt, Entered, Origin
+from autograder.grading.class_records import Attempt, Entered, Origin, ResultKey
 from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.class_directory import ClassDirectory, Submission
 from autograder.grading.grading_errors import DiskFull, StoreTrouble
@@ -62,11 +62,11 @@ def submission(student: str = "ada", assignment: str = "lab") -> Submission:
 def entered(student: str = "ada", assignment: str = "lab") -> Entered:
     rows = (Row(student, assignment, "lab.one", 2, 4, "failed"),)
     task = replace(TASK, student=student, assignment=assignment)
-    return Entered(f"of {student}", {"lab": task.key()}, {"lab": {"lab-one": 2.0}}, rows, "v1")
+    return Entered(ResultKey(f"of {student}"), {"lab": task.key()}, {"lab": {"lab-one": 2.0}}, rows)
 
 
 def attempt(number: int = 0, assignment: str = "lab") -> Attempt:
-    return Attempt(AT, assignment, f"work {number}", "v1", ROWS)
+    return Attempt(AT, assignment, ResultKey(f"work {number}"), "v1", ROWS)
 
 
 def change(store: ClassStore, statement: str) -> None:
@@ -163,9 +163,8 @@ def test_what_was_entered_is_known_with_its_attempt_until_it_is_taken_back(store
     store.enter(submission(), attempt(1), entered())
     store.enter(submission(), attempt(2), None)  # to be tried again
     assert store.entered() == {("ada", "lab"): entered()}
-    store.note_fingerprint(submission(), "other bytes")
     store.note_shown(submission(), "pages")
-    noted = replace(entered(), fingerprint="other bytes", shown="pages")
+    noted = replace(entered(), shown="pages")
     assert store.entered() == {("ada", "lab"): noted}
     store.enter(submission(), attempt(3), entered())
     assert store.entered()["ada", "lab"].shown == "", "its pages say something else"
@@ -176,7 +175,7 @@ def test_what_was_entered_is_known_with_its_attempt_until_it_is_taken_back(store
 
 def test_attempts_are_added_and_neither_changed_nor_removed(store: ClassStore) -> None:
     store.enter(submission(), attempt(), None)
-    for statement in ("DELETE FROM attempt", "UPDATE attempt SET work = 'other'"):
+    for statement in ("DELETE FROM attempt", "UPDATE attempt SET made_from = 'other'"):
         with pytest.raises(sqlite3.IntegrityError, match="attempts stay"):
             change(store, statement)
     assert store.attempts("ada") == [attempt()]
@@ -228,8 +227,8 @@ def test_no_name_touches_the_rows_of_another(store: ClassStore) -> None:
         seen = store.evidence(student, f"{assignment}.one")
         assert seen is not None
         assert (seen.task, seen.checks) == (task.key(), {f"{assignment}.one": f"{number}".encode()})
-        own = [one.work for one in store.attempts(student) if one.assignment == assignment]
-        assert own == [f"work {number}"]
+        own = [one.made_from for one in store.attempts(student) if one.assignment == assignment]
+        assert own == [ResultKey(f"work {number}")]
     assert store.attempts("\udcff") == store.attempts("") == []
 
 
@@ -307,18 +306,21 @@ def test_a_file_of_a_newer_course_is_sound(store: ClassStore, tmp_path: Path) ->
 # -- files of an earlier course
 
 
-def make_earlier(store: ClassStore) -> list[str]:
-    """Give the file the tables of version 2, with content, and return that content."""
+def make_earlier(store: ClassStore, form: int = 2) -> list[str]:
+    """Give the file the tables of an earlier version, with content, and return that content."""
     store.keep(TASK, DONE)
     store.enter(submission(), attempt(), entered())
     store.keep_run("v1", ROWS)
     store.close()
+    make_version_3(file_of(store))
     with contextlib.closing(sqlite3.connect(file_of(store))) as book, book:
-        book.execute("DROP TRIGGER not_changed")
-        book.execute(
-            "CREATE TRIGGER not_changed BEFORE UPDATE ON attempt BEGIN SELECT RAISE(ABORT, 'attempts stay'); END"
-        )
-        book.execute("PRAGMA user_version = 2")
+        if form == 2:
+            book.execute("DROP TRIGGER not_changed")
+            book.execute(
+                "CREATE TRIGGER not_changed BEFORE UPDATE ON attempt"
+                " BEGIN SELECT RAISE(ABORT, 'attempts stay'); END"
+            )
+        book.execute(f"PRAGMA user_version = {form}")
         return list(book.iterdump())
 
 
@@ -327,29 +329,31 @@ def dump_of(path: Path) -> list[str]:
         return list(book.iterdump())
 
 
-def test_a_file_of_an_earlier_course_is_used_on_and_a_copy_stays(store: ClassStore) -> None:
-    before = make_earlier(store)
+@pytest.mark.parametrize("form", [2, 3])
+def test_a_file_of_an_earlier_course_is_used_on_and_a_copy_stays(store: ClassStore, form: int) -> None:
+    before = make_earlier(store, form)
     assert store.entered() == {("ada", "lab"): entered()}
     assert (store.attempts("ada"), len(store.runs())) == ([attempt()], 1)
     with contextlib.closing(sqlite3.connect(file_of(store))) as book:
         assert book.execute("PRAGMA user_version").fetchone() == (store_tables.FORM,)
-    copy = file_of(store).with_name("class.db.version-2")
+    copy = file_of(store).with_name(f"class.db.version-{form}")
     assert dump_of(copy) == before
     store.rename({"ada": "eve"})
     assert (store.attempts("ada"), len(store.attempts("eve"))) == ([], 1)
     with pytest.raises(sqlite3.IntegrityError, match="attempts stay"):
-        change(store, "UPDATE attempt SET work = 'forged'")
+        change(store, "UPDATE attempt SET made_from = 'forged'")
     assert dump_of(copy) == before
     store.close()
-    make_earlier(store)  # the instructor put back a file of the earlier course
+    make_earlier(store, form)  # the instructor put back a file of the earlier course
     assert ("ada", "lab") in store.entered()
 
 
+@pytest.mark.parametrize("form", [2, 3])
 @pytest.mark.parametrize("name", ["_copy", "keep_whole", "_form_of"])
 def test_a_file_whose_conversion_was_killed_is_whole(
-    store: ClassStore, monkeypatch: pytest.MonkeyPatch, name: str
+    store: ClassStore, monkeypatch: pytest.MonkeyPatch, name: str, form: int
 ) -> None:
-    before = make_earlier(store)
+    before = make_earlier(store, form)
 
     def die(*_: object) -> None:
         os.kill(os.getpid(), signal.SIGKILL)
@@ -371,7 +375,7 @@ def test_a_file_whose_conversion_was_killed_is_whole(
     monkeypatch.undo()
     assert dump_of(file_of(store)) == before
     assert store.entered() == {("ada", "lab"): entered()}
-    assert dump_of(file_of(store).with_name("class.db.version-2")) == before
+    assert dump_of(file_of(store).with_name(f"class.db.version-{form}")) == before
 
 
 # -- killed
@@ -420,7 +424,9 @@ def test_whenever_it_is_killed_all_that_was_said_to_be_kept_is_there(store: Clas
 
         def work(write: int = write, done: int = done) -> None:
             for number in range(done, 10_000):
-                store.enter(submission(), attempt(number), replace(entered(), fingerprint=f"{number}"))
+                store.enter(
+                    submission(), attempt(number), replace(entered(), made_from=ResultKey(f"{number}"))
+                )
                 os.write(write, b".")
 
         child = in_a_process(work)
@@ -436,7 +442,7 @@ def test_whenever_it_is_killed_all_that_was_said_to_be_kept_is_there(store: Clas
             assert book.execute("PRAGMA integrity_check").fetchone() == ("ok",)
         kept = len(store.attempts("ada"))
         assert kept - done in (len(said), len(said) + 1)
-        assert store.entered()["ada", "lab"].fingerprint == f"{kept - 1}", "both of a step, or none"
+        assert store.entered()["ada", "lab"].made_from == ResultKey(f"{kept - 1}"), "both of a step, or none"
         store.close()
         done = kept
 

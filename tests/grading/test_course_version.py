@@ -9,10 +9,19 @@ from pathlib import Path
 import pytest
 
 from autograder import course
+from autograder.grading import batch_steps
 from autograder.grading.cluster import dask_worker
-from autograder.grading.course_version import counted_files, course_version
+from autograder.grading.course_version import (
+    GRADER,
+    JUDGE,
+    SHARED,
+    CourseFiles,
+    counted_files,
+    course_version,
+    part_of,
+)
 from autograder.grading.running import task_dispatcher
-from autograder.grading.tasks import submission_fingerprints
+from tests.test_imports import imports_of
 
 ROOT = Path(__file__).resolve().parents[2]
 # What git keeps of these counts. That list is not taken from the code under test.
@@ -39,7 +48,11 @@ def copy(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def version() -> str:
-    return course_version.__wrapped__()
+    return CourseFiles(files().items()).version()
+
+
+def files() -> dict[str, bytes]:
+    return {name: path.read_bytes() for name, path in counted_files()}
 
 
 def kept() -> list[str]:
@@ -102,7 +115,63 @@ def test_it_does_not_depend_on_where_the_course_lies(copy: Path, monkeypatch: py
     assert version() == here
 
 
-def test_results_grades_and_clusters_go_by_the_same_value() -> None:
-    # What tasks go by stands still in these tests (conftest.py).
-    modules = (submission_fingerprints, dask_worker, task_dispatcher)
+def test_runs_and_clusters_go_by_the_same_value() -> None:
+    modules = (batch_steps, dask_worker, task_dispatcher)
     assert {vars(module)["course_version"] for module in modules} == {course_version}
+
+
+LABS = ("lab_1_2", "lab_1_4", "lab_1_4_robot", "lab_2_3", "bugs_1", "bugs_2")
+
+
+@pytest.mark.parametrize(
+    ("name", "moved"),
+    [
+        ("autograder/judge/check_server.py", {"judge"}),
+        ("autograder/grading/running/worker_messages.py", {"judge"}),
+        ("environment/setup_steps.py", {"judge"}),
+        ("autograder/cards/card_wording.py", {"grader"}),
+        ("autograder/grading/result_writer.py", {"grader"}),
+        ("solutions/01_ros2_fundamentals/lab_1_4/server.py", {"lab_1_4", "lab_1_4_robot", "bugs_2"}),
+        ("solutions/01_ros2_fundamentals/lab_1_2/talker.reference.json", {"lab_1_2", "bugs_1"}),
+        ("solutions/02_bridging_python_agents/lab_2_3/_questions.py", {"lab_2_3"}),
+        (
+            "solutions/ros2_ws/src/my_robot_pkg/package.xml",
+            {"lab_1_2", "lab_1_4", "lab_1_4_robot", "lab_2_3", "bugs_1", "bugs_2"},
+        ),
+    ],
+)
+def test_a_file_moves_the_parts_that_depend_on_it(name: str, moved: set[str]) -> None:
+    contents = files()
+
+    def parts() -> dict[str, str]:
+        made = CourseFiles(contents.items())
+        exercises = {lab: made.version(*made.labs(f"check('{lab}.one')".encode()), SHARED) for lab in LABS}
+        return {"judge": made.version(JUDGE), "grader": made.version(GRADER), **exercises}
+
+    before = parts()
+    contents[name] += b" "
+    after = parts()
+    assert {part for part, value in after.items() if value != before[part]} == moved
+
+
+MAY_ENTER_A_RESULT = {
+    "autograder.cards",  # cards are shown in the student's kernel; the judge cannot import them
+    "autograder.grading.grading_task",
+    "autograder.grading.grading_errors",
+    "autograder.grading.course_version",
+}
+"""What the judge's part of the course imports from the grader's part."""
+
+
+def test_what_executes_and_judges_runs_no_code_of_the_grader() -> None:
+    """Otherwise a change of the grader could change a result, and the result would be kept."""
+    wrong = [
+        f"{name} imports {one.name}"
+        for name, path in counted_files()
+        if name.endswith(".py") and name.startswith("autograder/") and part_of(name) == JUDGE
+        if not name.startswith(("autograder/masters/", "autograder/student/", "autograder/__main__"))
+        for one in imports_of(path)
+        if part_of(f"{one.name.replace('.', '/')}/") == GRADER and not one.for_types
+        if not any(one.name.startswith(allowed) for allowed in MAY_ENTER_A_RESULT)
+    ]
+    assert not wrong

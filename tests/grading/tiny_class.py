@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import sqlite3
 import sys
 from dataclasses import dataclass
 from pathlib import Path
@@ -95,14 +96,24 @@ check("lab_1_2.listener", Listener)
 ```
 """
 
+COURSE = {
+    "autograder/judge/check_server.py": b"the judge",
+    "autograder/cards/card_wording.py": b"the words of cards",
+    "solutions/chapter/lab_1_2/talker.py": b"an exercise",
+    "solutions/chapter/lab_1_3/server.py": b"an exercise of another lab",
+}
+"""The files of the course on which results depend in these tests: they stand still while somebody edits the course."""
 TALKER, LISTENER = "lab_1_2-talker", "lab_1_2-listener"
-GRADE = """
+STANDS_STILL = f"""
+from autograder.grading import course_version
+
+course_version.course_files = lambda: course_version.CourseFiles({COURSE!r}.items())
+"""
+GRADE = f"""{STANDS_STILL}
 import sys
 from pathlib import Path
 from rich.console import Console
-from autograder.grading.tasks import task_making
 from autograder.grading.batch import grade
-task_making.course_version = lambda: "test"
 grade(Path(sys.argv[1]), jobs=2, judge=sys.argv[2], feedback=False, console=Console(stderr=True, width=200))
 """
 """A batch in a process of its own: the class, and what makes a judge."""
@@ -156,6 +167,32 @@ def write_master(course: Path, lab: str, text: str) -> None:
     folder = course / "solutions" / "chapter" / lab
     folder.mkdir(parents=True)
     (folder / "lab.md").write_text(text)
+
+
+def make_version_3(store: Path) -> None:
+    """Give a class's store the tables of the course before a result's key had parts."""
+    with contextlib.closing(sqlite3.connect(store)) as book, book:
+        book.executescript(
+            """
+            DROP TRIGGER not_changed;
+            ALTER TABLE attempt RENAME COLUMN made_from TO work;
+            UPDATE attempt SET work = json_extract(work, '$.handed_in');
+            CREATE TRIGGER not_changed BEFORE UPDATE OF number, at, assignment, work, course, report ON attempt
+                BEGIN SELECT RAISE(ABORT, 'attempts stay'); END;
+            ALTER TABLE entered RENAME COLUMN made_from TO fingerprint;
+            UPDATE entered SET fingerprint = json_extract(fingerprint, '$.handed_in');
+            CREATE TABLE earlier (
+                student TEXT, assignment TEXT, fingerprint TEXT NOT NULL, tasks BLOB NOT NULL, scores BLOB NOT NULL,
+                report BLOB NOT NULL, course TEXT NOT NULL, shown TEXT NOT NULL,
+                PRIMARY KEY (student, assignment)
+            );
+            INSERT INTO earlier
+                SELECT student, assignment, fingerprint, tasks, scores, report, 'v1', shown FROM entered;
+            DROP TABLE entered;
+            ALTER TABLE earlier RENAME TO entered;
+            PRAGMA user_version = 3;
+            """
+        )
 
 
 def make_tiny_class(folder: Path) -> Path:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import pairwise
 from random import Random
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
@@ -36,6 +37,7 @@ class Ros:
         self._answer, self._hangs_at = answer, more.get("hangs_at", 1e9)
         self.events: list[Event] = []
         self.asked_whether_it_spins = False
+        self.answers = dict[str, Any]()
         self.record("interface", "graph", **interface, nodes=["/driver"])
 
     def record(self, kind: str, name: str, **data: Any) -> None:
@@ -68,6 +70,9 @@ class Ros:
 
     def note(self, name: str, **data: Any) -> None:
         self.record("noted", name, **data)
+
+    def serve(self, service: str, _: str, answer: Any, **__: Any) -> None:
+        self.answers[service] = answer
 
     def note_whether_it_spins(self) -> None:
         self.asked_whether_it_spins = True
@@ -234,6 +239,34 @@ def test_what_became_of_a_goal_is_read_from_the_answers() -> None:
     run = now.goal(0)
     assert (run.accepted, run.cancel_accepted, now.ended(), len(run.feedback)) == (True, True, "CANCELED", 1)
     assert not now.goal(1).over
+
+
+def test_a_sensor_is_silent_for_some_time_after_a_line_was_reached() -> None:
+    out = ("Sets out", lambda now: now.pose.x > 0.2)
+    silent: list[float] = []
+
+    def senses(now: Moment) -> Mapping[str, Any] | None:
+        return {} if now.since("Sets out") < 1.0 else None
+
+    def counts(ros: Ros) -> None:
+        ros.command(0.5)
+        sent = [event.moment for event in ros.events if (event.kind, event.name) == ("sent", "/odom")]
+        silent[:] = [b - a for a, b in pairwise(sent)]
+
+    driven(mission(reaches=[out], senses={"/odom": senses}, until=lambda now: now.time > 2.0), counts)
+    assert 1.0 <= max(silent) < 1.3
+    assert sorted(silent)[-2] < 0.15
+
+
+def test_a_service_of_the_world_answers_what_its_author_says() -> None:
+    places = {"lamp": (3.0, 1.0)}
+    ends = {**BRAKE, "client": {"/where": "std_srvs/srv/Trigger", "/light": "std_srvs/srv/SetBool"}}
+    serves = {"/where": lambda now: {"message": str(now.to("lamp"))}}
+    _, bench = driven(
+        mission(world=replace(IN_THE_WAY, places=places), serves=serves), brakes(0.9), interface=ends
+    )
+    assert float(bench.answers["/where"]({})["message"]) == pytest.approx(1.25, abs=0.2)
+    assert bench.answers["/light"]({"data": True})["message"] == "the lamp is on"
 
 
 DRIVER = {"publisher": {"/cmd_vel": TWIST}}

@@ -79,7 +79,7 @@ def test_between_the_texts_of_a_pair_the_listener_handles_the_first_and_no_time_
 
 
 class Hung(Bench):
-    """A bench with a listener that says the first text and then no more. A copy of it comes on /rosout, later."""
+    """A bench with a listener that says the first text, and then no more. A copy of it comes later, on /rosout."""
 
     pace = Pace.REAL_TIME
 

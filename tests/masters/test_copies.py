@@ -74,6 +74,15 @@ def test_the_master_writes_the_whole_program(write_master: Callable[[str], Path]
     assert "LIMIT = 3\n\n\n# TODO: copy double to this place.\n\n\nprint" in given
 
 
+def test_a_decorator_is_copied_with_what_it_decorates(
+    write_master: Callable[[str], Path], ten_points: Points
+) -> None:
+    master = write_master(
+        MASTER.replace("def double(number: int) -> int:", "@cache\ndef double(number: int) -> int:")
+    )
+    assert "@cache\ndef double" in source_notebook(master, points=ten_points).cells[3].source
+
+
 def test_what_is_not_defined_above_cannot_be_copied(
     write_master: Callable[[str], Path], ten_points: Points
 ) -> None:

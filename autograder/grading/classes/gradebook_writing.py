@@ -97,7 +97,20 @@ def enter(
             raise LookupError(
                 f"the gradebook has no assignment named {assignment} with a notebook named {min(missing)}"
             )
-        _submit(book, names, timestamp)
+        for statement in (
+            "INSERT INTO student (id) VALUES (:student) ON CONFLICT (id) DO NOTHING",
+            "INSERT INTO submitted_assignment (id, assignment_id, student_id)"
+            " SELECT :id, a.id, :student FROM assignment a WHERE a.name = :assignment"
+            " ON CONFLICT (assignment_id, student_id) DO NOTHING",
+        ):
+            _put(book, [{**names, "id": uuid.uuid4().hex}], statement)
+        if timestamp is not None:
+            setting = sql(
+                "UPDATE submitted_assignment SET timestamp = :at WHERE student_id = :student"
+                " AND assignment_id IN (SELECT id FROM assignment WHERE name = :assignment)"
+            )
+            typed = setting.bindparams(sqlalchemy.bindparam("at", type_=sqlalchemy.DateTime()))
+            book.execute(typed, {**names, "at": timestamp})
         _put(
             book,
             [{**names, "id": uuid.uuid4().hex, "notebook": name, "no": False} for name in due],
@@ -109,24 +122,6 @@ def enter(
         )
         _enter_cells(book, names, notebooks)
     return any(due.values())
-
-
-def _submit(book: Connection, names: Mapping[str, object], timestamp: datetime | None) -> None:
-    """Add a missing student and a missing submission, and set the time of the submission."""
-    for statement in (
-        "INSERT INTO student (id) VALUES (:student) ON CONFLICT (id) DO NOTHING",
-        "INSERT INTO submitted_assignment (id, assignment_id, student_id)"
-        " SELECT :id, a.id, :student FROM assignment a WHERE a.name = :assignment"
-        " ON CONFLICT (assignment_id, student_id) DO NOTHING",
-    ):
-        _put(book, [{**names, "id": uuid.uuid4().hex}], statement)
-    if timestamp is not None:
-        setting = sql(
-            "UPDATE submitted_assignment SET timestamp = :at WHERE student_id = :student"
-            " AND assignment_id IN (SELECT id FROM assignment WHERE name = :assignment)"
-        )
-        typed = setting.bindparams(sqlalchemy.bindparam("at", type_=sqlalchemy.DateTime()))
-        book.execute(typed, {**names, "at": timestamp})
 
 
 def _enter_cells(
@@ -165,17 +160,6 @@ def _enter_cells(
         "INSERT INTO comment (id, notebook_id, cell_id, auto_comment) VALUES (:id, :n, :cell, :comment)"
         " ON CONFLICT (cell_id, notebook_id) DO UPDATE SET auto_comment = excluded.auto_comment",
     )
-
-
-def enter_time(url: str, assignment: str, student: str, timestamp: datetime) -> None:
-    """Enter the submission time of a submission.
-
-    Args:
-        url: The address by which SQLAlchemy opens the gradebook.
-        timestamp: The time in UTC.
-    """
-    with opened(url) as book:
-        _submit(book, {"assignment": assignment, "student": student}, timestamp)
 
 
 def enter_penalties(url: str, assignment: str, student: str, penalties: Mapping[str, float | None]) -> None:

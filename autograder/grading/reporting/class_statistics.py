@@ -241,7 +241,7 @@ def progress(student: str, attempts: Iterable[Attempt]) -> list[AttemptProgress]
     shown = []
     for assignment, all_of_it in found.items():
         same = [one for one in all_of_it if one.course == all_of_it[-1].course]
-        works = len({one.work for one in same})
+        works = len({one.made_from.handed_in for one in same})
         first, last = (sum(row.score for row in one.rows) for one in (same[0], same[-1]))
         if works > 1:
             most = sum(row.max_score for row in same[-1].rows)

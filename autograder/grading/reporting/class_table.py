@@ -15,8 +15,8 @@ from autograder.grading.table.roster import Roster, Student
 from autograder.grading.table.rows import DROPPED, EXCUSED, NOT_SUBMITTED, Row, total
 from autograder.grading.table.student_list import read_roster
 from autograder.grading.table.weighted_rows import read_what_counts, true_rows
+from autograder.grading.tasks.result_keys import ResultKeys
 from autograder.grading.tasks.source_points import read_released
-from autograder.grading.tasks.submission_fingerprints import Fingerprints
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Mapping, Sequence
@@ -155,10 +155,10 @@ def read_table(directory: ClassDirectory, sections: Sequence[str] = ()) -> Class
     Raises:
         GradingError: The class or its list of students cannot be used, or a section has no students.
     """
-    fingerprints = Fingerprints(directory)
+    keys = ResultKeys(directory)
     with ClassStore(directory) as store:
         entered = store.entered()
-        released = read_released(directory, store, fingerprints)
+        released = read_released(directory, store, keys)
     cells = released.cells
     entries = read_entries(directory.gradebook_url)
     found = {(one.student, one.assignment): one for one in directory.submissions()[0]}
@@ -169,7 +169,7 @@ def read_table(directory: ClassDirectory, sections: Sequence[str] = ()) -> Class
         known = entered.get(key)
         if known is not None:
             judged[key] = known.rows
-        if submission is not None and (known is None or known.fingerprint != fingerprints.of(submission)):
+        if submission is not None and (known is None or known.made_from != keys.of(submission)):
             stale.append("/".join(key))
     roster = read_roster(directory)
     what_counts = read_what_counts(directory, cells)

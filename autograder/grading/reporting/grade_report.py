@@ -59,6 +59,7 @@ class GradeReport:
         notices: Sentences for the instructor that are not about a failure.
         would_change: After a dry run, the points that would change; None if points were entered.
         executed: The number of notebooks that were executed.
+        run_again: The number of notebooks that were executed again, by the reason.
         reused: The number of notebooks whose result was already known.
         written: The number of submissions that this run entered into the gradebook.
         seconds: The duration of the run, in seconds of wall time.
@@ -75,6 +76,7 @@ class GradeReport:
     notices: tuple[str, ...] = ()
     would_change: tuple[Difference, ...] | None = None
     executed: int = 0
+    run_again: Mapping[str, int] = field(default_factory=dict)
     reused: int = 0
     written: int = 0
     seconds: float = 0.0
@@ -117,6 +119,7 @@ def report_json(report: GradeReport) -> bytes:
             "due": report.due,
             "notices": [name_as_text(text) for text in report.notices],
             "would_change": report.would_change,
+            "run_again": report.run_again,
             "totals": {
                 "executed": report.executed,
                 "reused": report.reused,
@@ -224,6 +227,8 @@ def show(report: GradeReport, console: Console | None = None) -> None:
         plain_line(console, f"remark       {student}/{assignment}: {words}")
     for notice in report.notices:
         plain_line(console, f"note         {notice}")
+    for why, count in report.run_again.items():
+        plain_line(console, f"run again    {counted(count, 'notebook')}: {why}")
     for problem in report.problems:
         plain_line(console, f"problem      {problem}", "red")
     if report.note:

@@ -19,7 +19,7 @@ from autograder.grading.table.rows import NO_EXERCISE
 if TYPE_CHECKING:
     from autograder.grading.class_store import ClassStore
     from autograder.grading.classes.class_directory import ClassDirectory
-    from autograder.grading.tasks.submission_fingerprints import Fingerprints
+    from autograder.grading.tasks.result_keys import ResultKeys
 
 
 @dataclass(frozen=True)
@@ -35,15 +35,14 @@ class Released:
     unusable: dict[str, str]
 
 
-def read_released(directory: ClassDirectory, store: ClassStore, fingerprints: Fingerprints) -> Released:
+def read_released(directory: ClassDirectory, store: ClassStore, keys: ResultKeys) -> Released:
     """Return the cells with points of all assignments, from the store if the sources are unchanged."""
-    assignments = directory.assignments()
-    fingerprint = " ".join(fingerprints.of_sources(assignment) for assignment in assignments)
+    fingerprint = keys.of_sources()
     with contextlib.suppress(msgspec.MsgspecError):
         stored = msgspec.json.decode(store.graded_cells(fingerprint), type=dict[str, tuple[GradedCell, ...]])
         return Released(stored, {})
     cells, unusable = {}, {}
-    for assignment in assignments:
+    for assignment in directory.assignments():
         try:
             cells[assignment] = tuple(_read(directory, assignment))
         except MasterUnusable as error:

@@ -15,7 +15,7 @@ from autograder.execution.executed_cells import Cell, CellType
 from autograder.grading.class_checks import limits_of
 from autograder.grading.classes.class_directory import SUFFIX, ClassDirectory, Submission
 from autograder.grading.classes.class_secret import seed_for
-from autograder.grading.course_version import course_version
+from autograder.grading.course_version import judged_by
 from autograder.grading.grading_task import Task
 from autograder.grading.rebuilding.notebook_rebuilding import (
     grade_id,
@@ -36,16 +36,6 @@ if TYPE_CHECKING:
 
 
 LEFT_OUT = "[a demonstration of the notebook: left out while grading]"
-
-
-def tasks_of(directory: ClassDirectory, submission: Submission) -> list[Task]:
-    """Return the tasks of a submission, one for each notebook of the assignment.
-
-    Raises:
-        MasterUnusable: A source notebook cannot be used for grading.
-    """
-    notebooks = directory.notebooks(submission.assignment)
-    return [task_of(directory, submission, notebook)[0] for notebook in notebooks]
 
 
 def task_of(directory: ClassDirectory, submission: Submission, notebook: str) -> tuple[Task, NotebookNode]:
@@ -73,7 +63,7 @@ def task_of(directory: ClassDirectory, submission: Submission, notebook: str) ->
         notebook=notebook,
         cells=cells,
         seed=seed_for(directory.secret, student, assignment, notebook, work),
-        course=course_version(),
+        course=judged_by("\n".join(cell.source for cell in master.cells).encode()),
         limits=limits_of(directory),
         files=directory.files(assignment),
         problem=problem,

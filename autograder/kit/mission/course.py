@@ -98,7 +98,7 @@ class Course:
         for line in self._lines.reaches:
             if line.name not in self._reached and line.holds(now):
                 self._reached[line.name] = str(now)
-                now = self._robot.now = replace(now, reached=now.reached | {line.text})
+                now = self._robot.now = replace(now, reached={**now.reached, line.text: now.time})
         for line in self._lines.never:
             if line.name not in self._broken and line.holds(now):
                 self._broken[line.name] = str(now)

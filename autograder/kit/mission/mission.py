@@ -23,11 +23,13 @@ from autograder.kit.mission.steps import Goal, Journey, Step
 from autograder.kit.mistakes.common_mistakes import KEEP_THE_PERIOD
 from autograder.kit.model import Finding
 from autograder.kit.oracle.steps import To
+from autograder.kit.recipes.own_scenario import QUIET
+from autograder.kit.runners import processes
 from autograder.robot.motion import ROOM, Pose, Wall, Walls
 
 if TYPE_CHECKING:
     from autograder.kit.bench import Bench
-    from autograder.kit.evidence import Part
+    from autograder.kit.evidence import Evidence, Part
     from autograder.kit.model import Exercise
 
 __all__ = ["ROOM", "Goal", "Mission", "Moment", "Pose", "To", "Wall", "Walls", "World"]
@@ -73,7 +75,9 @@ class Mission:
         rate: The line about the rate of the commands, which must be the solution's, in the same form.
         knows: The mistakes that a :class:`Moment` at the end shows: key, function, two texts (see
             :meth:`autograder.kit.draft.Draft.knows`), and perhaps a dictionary with ``certain`` or ``late``.
-        senses: For topics that the course's robot does not have, a function that returns the fields of a message.
+        senses: For topics that the course's robot does not have, a function that returns the fields of a message, or
+            nothing for silence. None stands for what the course's robot senses.
+        serves: For services other than a lamp's switch, a function that returns the fields of the answer.
         late: For services that answer their first request late, the delay in seconds of the subject's time.
         roles: The roles of the subject's endpoints, the most telling first.
         within: Seconds of the subject's time for the whole mission.
@@ -109,7 +113,8 @@ class Mission:
         drives: Row = (),
         rate: Row = (),
         knows: Sequence[Sequence[Any]] = (),
-        senses: Mapping[str, Callable[[Moment], Mapping[str, Any]]] = NOTHING,
+        senses: Mapping[str, Callable[[Moment], Mapping[str, Any] | None]] = NOTHING,
+        serves: Mapping[str, Callable[[Moment], Mapping[str, Any]]] = NOTHING,
         late: Mapping[str, float] = NOTHING,
         roles: Sequence[str] = ("publisher",),
         within: float = 30.0,
@@ -118,7 +123,8 @@ class Mission:
         threads: int = 1,
         points: float = POINTS,
     ) -> None:
-        self._world, self._draws, self._senses, self._late = world or World(), draws, senses, late
+        self._world, self._draws, self._late = world or World(), draws, late
+        self._senses, self._serves = senses, serves
         kinds = (("yes", reaches), ("never", never), ("", same))
         self._lines = Lines(*([_line(wants, *row) for row in rows] for wants, rows in kinds))
         self._knows = [found for _, found, *_ in knows]
@@ -156,11 +162,16 @@ class Mission:
             bench.listen(topic, kind)
         first, *others = steps = [*self._draws(bench.random)] or [self._world]
         world, steps = (first, others) if isinstance(first, World) else (self._world, steps)
-        robot = Robot(bench, world, self._senses, self._late)
+        robot = Robot(bench, world, self._senses, self._serves, self._late)
         course = Course(bench, robot, self._lines, self._within, self._quiet)
         journey = Journey(bench, robot, course.go)
         bench.start(threads=self._threads)
-        there = [bench.await_endpoint(role, name) for role, names in ends.items() for name in names]
+        named = [(role, name) for role, names in ends.items() for name in names]
+        there = [bench.await_endpoint(*end) for end in named[:1]]
+        if processes(bench.seen()):
+            # The programs of a launch start one after the other, so the endpoints of the first are not all.
+            bench.watch_graph(partial(_has_all, named), QUIET[bench.pace])
+        there += [bench.await_endpoint(*end) for end in named[1:]]
         bench.release()
         if any(there):
             bench.await_attention()
@@ -169,6 +180,11 @@ class Mission:
             if not (course.note(self._knows if answered else ()) and answered):
                 bench.note_whether_it_spins()
         bench.stop()
+
+
+def _has_all(ends: Sequence[tuple[str, str]], evidence: Evidence) -> bool:
+    """Return True if the subject has made all endpoints, given by role and name."""
+    return all(name in evidence.main.endpoints(role) for role, name in ends)
 
 
 def _line(wants: str, text: str, holds: Callable[[Moment], Any], name: str = "", points: float = 0.0) -> Line:

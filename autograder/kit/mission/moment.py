@@ -53,7 +53,7 @@ class Moment:
         lamp: True if the robot's lamp is on.
         stood: Seconds for which the robot has neither moved nor pushed against a wall.
         silent: Seconds since the subject's last command; since the beginning if no command has come.
-        reached: The texts of the lines of ``reaches`` that have been reached.
+        reached: For the text of each line of ``reaches`` that has been reached, the ``time`` at which it was.
         part: Everything that the judge has recorded so far.
         topic: The name of the topic with commands.
     """
@@ -69,7 +69,7 @@ class Moment:
     lamp: bool = False
     stood: float = 0.0
     silent: float = 0.0
-    reached: frozenset[str] = frozenset()
+    reached: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def ahead(self) -> float:
@@ -89,6 +89,10 @@ class Moment:
         """Return the content of the last message on a topic of the subject; None if none has come."""
         messages = self.part.of("message", topic)
         return value(messages[-1]) if messages else None
+
+    def since(self, line: str) -> float:
+        """Return the seconds since a line of ``reaches`` was reached, given by its text; infinity if it was not."""
+        return self.time - self.reached.get(line, -math.inf)
 
     @property
     def commands(self) -> int:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from autograder.kit.bench import Pace
@@ -62,7 +63,8 @@ class Robot:
     Args:
         bench: The bench of the scenario. The subject's endpoints are those of the reference solution.
         world: The world at the beginning.
-        senses: What the robot tells on topics that are not those of the course's robot: the fields of a message.
+        senses: What the robot tells on topics: the fields of a message, or None for what the course's robot tells.
+        serves: What the robot answers to calls of services that do not switch the lamp: the fields of an answer.
         late: The services that answer late, with the delay in seconds of the subject's time.
     """
 
@@ -70,11 +72,12 @@ class Robot:
         self,
         bench: Bench,
         world: World,
-        senses: Mapping[str, Callable[[Moment], Mapping[str, Any]]],
+        senses: Mapping[str, Callable[[Moment], Mapping[str, Any] | None]],
+        serves: Mapping[str, Callable[[Moment], Mapping[str, Any]]],
         late: Mapping[str, float],
     ) -> None:
         ends = bench.reference.interface
-        self._bench, self._senses = bench, senses
+        self._bench, self._senses, self._serves = bench, senses, serves
         self._topic = drive_topic(ends)
         self._sensors: dict[str, tuple[Speaker, str]] = {}
         self._steps, self._obeyed, self._commanded = 0, 0, 0.0
@@ -83,7 +86,7 @@ class Robot:
             self._sensors[topic] = bench.speak(topic, kind), kind
         for service, kind in ends.get("client", {}).items():
             delay = {1: late[service]} if service in late else {}
-            bench.serve(service, kind, self._switch, late=delay)
+            bench.serve(service, kind, partial(self._answer, service), late=delay)
         self._walks = [Walk(bench, action, kind) for action, kind in ends.get("action_client", {}).items()]
         self.now = Moment(bench.seen(), self._topic, world, world.start)
 
@@ -130,8 +133,8 @@ class Robot:
     def _sensed(self, topic: str) -> Mapping[str, Any]:
         """Return the fields of the message that is due on a topic; empty if none is."""
         now, stamp, kind = self.now, round(self._at * 1e9), self._sensors[topic][1]
-        if topic in self._senses:
-            return self._senses[topic](now)
+        if topic in self._senses and (fields := self._senses[topic](now)) is not None:
+            return fields
         if kind == "nav_msgs/msg/Odometry":
             return odometry(now.pose, now.velocity, stamp)
         if kind == "sensor_msgs/msg/LaserScan" and self._steps % SCAN_EVERY == 0:
@@ -157,8 +160,9 @@ class Robot:
             lamp=next((bool(one) for one in reversed(_switched(now))), False),
         )  # fmt: skip
 
-    @staticmethod
-    def _switch(request: Mapping[str, Any]) -> Mapping[str, Any]:
+    def _answer(self, service: str, request: Mapping[str, Any]) -> Mapping[str, Any]:
+        if service in self._serves:
+            return self._serves[service](self.now)
         return {"success": True, "message": f"the lamp is {'on' if request.get('data') else 'off'}"}
 
 

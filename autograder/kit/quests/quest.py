@@ -51,6 +51,8 @@ LONGEST_QUOTE = 200
 """The most characters of a line that a card quotes."""
 UNKNOWN_NODE = "_NODE_NAME_UNKNOWN_"
 """The node name that the graph gives for an endpoint before it has discovered the node (rmw_dds_common)."""
+ACCEPTED = "You may print the dictionary instead. A value may be a list of one name or type."
+"""The other forms of an answer with several keys that count. A list of several is a guess."""
 _NODE_NOT_MET = ("NodeNameNonExistentError", "Failed to get action server names and type")
 """The words of rclpy's errors if a node is asked about that is not on the graph yet: also those for its actions."""
 _GAVE_UP = re2.compile(r"(?m)^TimeoutError(?:: .*)?$")
@@ -159,7 +161,7 @@ class Quest:
         draft = Draft(exercise_id, title, task, self)
         for key, line in finds.items():
             draft.asks(key, line, self.finds(key))
-        return draft.exercise(**{"counts": {"": "You may print the dictionary instead."}, **more})
+        return draft.exercise(**{"counts": {"": ACCEPTED}, **more})
 
     # --- the scenario --------------------------------------------------------------------------------------------
 

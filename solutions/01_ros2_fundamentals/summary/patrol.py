@@ -78,6 +78,7 @@ EXERCISE = Mission(
         "Let the future call `self.on_lamp`.": "",
         "When the lamp has answered, send the goal x = 4.0, y = 2.0, the door, to the action `walk_to`, once.": "door",
         "Pass `self.on_feedback` for the feedback": "cancel",
+        "Keep the goal handle, the result of the future `sent`, in `self.goal_handle`.": "",
         "At the first feedback that says that less than 1 meter is left, ask once to cancel the goal.": "cancel",
     },
     counts={

@@ -14,7 +14,7 @@ import psutil
 import pytest
 from dask_cluster import UNBOXED, VERSION, DaskCluster, end, until
 from rich.console import Console
-from tiny_class import LISTENER, TALKER, TinyClass
+from tiny_class import LISTENER, STANDS_STILL, TALKER, TinyClass
 
 from autograder import course
 from autograder.boxes.sandbox import why_impossible
@@ -251,15 +251,13 @@ def test_where_nobody_can_execute_anything_the_class_stays_as_it_is(
     assert tiny.scores("ada")[TALKER] == 4
 
 
-GRADE = """
+GRADE = f"""{STANDS_STILL}
 import sys
 from pathlib import Path
 from rich.console import Console
-from autograder.grading.tasks import task_making
 from autograder.grading.classes.class_directory import switch_sandbox_off
 from autograder.grading.batch import grade
 from autograder.grading.running import task_dispatcher as dispatcher
-task_making.course_version = lambda: "test"
 dispatcher.course_version = lambda: "test"
 switch_sandbox_off(Path(sys.argv[1]))
 grade(Path(sys.argv[1]), judge="fake_judge:FakeJudge", feedback=False, scheduler=sys.argv[2],

@@ -35,12 +35,17 @@ def test_each_time_is_noted_with_what_came_of_it(tiny: TinyClass, fake_engine: F
     tiny.grade()
     first, again, better = attempts(tiny, "ada")
     assert [[row.score for row in one.rows] for one in (first, again, better)] == [[4, 7], [4, 7], [10, 7]]
-    assert first.work == again.work != better.work
+    assert first.made_from == again.made_from != better.made_from
     assert len(attempts(tiny, "ben")) == 1
     said = CliRunner().invoke(cli, ["attempts", str(tiny.path), "ada"]).output.splitlines()
     assert len(said) == 3
     assert "11/20  lab_1_2.talker 4 (wrong_text), lab_1_2.listener 7 (wrong_text)" in said[0]
     assert "17/20" in said[2]
+    assert [line.rpartition("[")[2].partition(",")[0] for line in said] == [
+        "first attempt",
+        "nothing changed",
+        "the submission changed",
+    ]
     data = json.loads(CliRunner().invoke(cli, ["attempts", str(tiny.path), "ada", "--json"]).output)
     assert [sum(row["score"] for row in one["rows"]) for one in data["attempts"]] == [11, 11, 17]
 

@@ -12,11 +12,9 @@ from test_true_table import DUE, EARLY, LATE, shown, total
 from tiny_class import LISTENER, TALKER
 
 from autograder.cli import cli
-from autograder.grading import batch_steps
 from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.running import execution_backends
-from autograder.grading.tasks import task_making
 
 if TYPE_CHECKING:
     import pytest
@@ -145,15 +143,3 @@ def test_two_runs_can_be_compared_at_any_time(tiny: TinyClass, fake_engine: Fake
     data = json.loads(CliRunner().invoke(cli, ["compare", str(tiny.path), "--json"]).output)
     assert [(one["before"], one["after"]) for one in data["differences"]] == [(7, 9)]
     assert CliRunner().invoke(cli, ["compare", str(tiny.path), "yesterday"]).exit_code == 2
-
-
-def test_another_version_of_the_course_is_said(
-    tiny: TinyClass, fake_engine: FakeEngine, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    tiny.submit("ada", 4, 7)
-    assert not any("another version" in notice for notice in tiny.grade().notices)
-    assert not any("another version" in notice for notice in tiny.grade().notices)
-    monkeypatch.setattr(batch_steps, "course_version", lambda: "next")
-    monkeypatch.setattr(task_making, "course_version", lambda: "next")
-    report = tiny.grade()
-    assert any("1 submissions had been graded with another version" in notice for notice in report.notices)

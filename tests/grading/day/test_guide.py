@@ -23,7 +23,7 @@ from autograder.execution.executed_cells import Execution
 from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.class_directory import ClassDirectory, Submission
 from autograder.grading.running import execution_backends
-from autograder.grading.tasks.task_making import tasks_of
+from autograder.grading.tasks.task_making import task_of
 from autograder.judge import evidence_files, one_check
 from autograder.kit.evidence import Evidence
 
@@ -55,9 +55,8 @@ def keep_evidence(tiny: TinyClass, student: str, exercise: str) -> None:
     verdict = one_check.decide(exercises.get(exercise), seen, "s")
     packed = evidence_files.pack(verdict, seen, evidence_files.reference_digest(exercise), at=1.8e9)
     directory = ClassDirectory(tiny.path)
-    (task,) = tasks_of(
-        directory, Submission(student, "lab_1_2", tiny.path / "submitted" / student / "lab_1_2")
-    )
+    submission = Submission(student, "lab_1_2", tiny.path / "submitted" / student / "lab_1_2")
+    task, _ = task_of(directory, submission, "lab_1_2")
     with ClassStore(directory) as store:
         store.keep(task, Execution((), evidence={exercise: packed}))
 

@@ -23,8 +23,8 @@ from autograder.grading.reporting import class_statistics as figures
 from autograder.grading.reporting.class_table import ClassTable, read_table
 from autograder.grading.reporting.report_page import write_report
 from autograder.grading.table.rows import Row
+from autograder.grading.tasks.result_keys import ResultKeys
 from autograder.grading.tasks.source_points import read_released
-from autograder.grading.tasks.submission_fingerprints import Fingerprints
 from autograder.verdict import CriterionResult, Diagnosis, Verdict
 
 if TYPE_CHECKING:
@@ -141,7 +141,7 @@ def test_two_assignments_with_cells_of_one_name_stay_apart(graded: TinyClass) ->
     for name in ("one", "two"):
         write_assignment(graded, name)
     directory = ClassDirectory(graded.path)
-    cells = read_released(directory, ClassStore(directory), Fingerprints(directory)).cells
+    cells = read_released(directory, ClassStore(directory), ResultKeys(directory)).cells
     assert [cell.exercise for cell in cells["one"]] == [cell.exercise for cell in cells["two"]]
     points = {"one": 2.0, "two": 1.0}
     found = [

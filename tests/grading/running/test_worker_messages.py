@@ -20,7 +20,7 @@ from autograder.grading.running.worker_messages import (
     admitted,
     admitted_offer,
 )
-from autograder.grading.tasks.task_making import tasks_of
+from autograder.grading.tasks.task_making import task_of
 from autograder.verdict import State
 
 if TYPE_CHECKING:
@@ -35,7 +35,7 @@ pytestmark = pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning")
 def task(tiny: TinyClass) -> Task:
     tiny.submit("ada", 6)
     directory = ClassDirectory(tiny.path)
-    return tasks_of(directory, directory.submissions()[0][0])[0]
+    return task_of(directory, directory.submissions()[0][0], "lab_1_2")[0]
 
 
 @pytest.fixture

@@ -6,16 +6,22 @@ from geometry_msgs.msg import Twist
 from rclpy.action import ActionServer, CancelResponse
 from rclpy.executors import MultiThreadedExecutor
 from rclpy.node import Node
+from sensor_msgs.msg import LaserScan
 from small_robot_interfaces.action import WalkTo
 
 
 class SafeDock(Node):
     def __init__(self):
         super().__init__("safe_dock")
+        self.ahead = 0.0
+        self.create_subscription(LaserScan, "scan", self.on_scan, 10)
         self.velocity = self.create_publisher(Twist, "cmd_vel", 10)
         self.server = ActionServer(
             self, WalkTo, "dock", execute_callback=self.dock, cancel_callback=self.on_cancel
         )
+
+    def on_scan(self, scan):
+        self.ahead = scan.ranges[0]
 
     def dock(self, goal_handle):
         left = goal_handle.request.x

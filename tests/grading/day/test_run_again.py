@@ -1,0 +1,158 @@
+"""Only what may change a result executes a notebook again, and the run says which part of the key changed."""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import json
+from typing import TYPE_CHECKING
+
+import nbformat
+import pytest
+from rich.console import Console
+from tiny_class import COURSE, LISTENER, TALKER, FakeEngine, TinyClass, make_version_3
+
+from autograder.grading import course_version, result_writer
+from autograder.grading.class_store import ClassStore
+from autograder.grading.classes.class_directory import ClassDirectory
+from autograder.grading.course_version import GRADER, CourseFiles
+from autograder.grading.reporting.grade_report import report_json, show
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+JUDGE, CARDS, EXERCISE, OF_ANOTHER_LAB = COURSE
+
+pytestmark = pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning")
+
+
+@pytest.fixture
+def course(monkeypatch: pytest.MonkeyPatch) -> Callable[..., None]:
+    """Change files of the course."""
+
+    def change(*names: str) -> None:
+        files = COURSE | dict.fromkeys(names, b"changed")
+        monkeypatch.setattr(course_version, "course_files", lambda: CourseFiles(files.items()))
+
+    return change
+
+
+def resaved(path: Path, *, source: str = "") -> None:
+    """Save a notebook with other outputs, or with other text in a text cell."""
+    notebook = nbformat.read(path, as_version=4)
+    notebook.metadata["saved"] = "again"
+    for cell in notebook.cells:
+        if source and cell.cell_type == "markdown" and "Between" in cell.source:
+            cell.source = source
+    path.write_text(nbformat.writes(notebook))
+
+
+def store_of(tiny: TinyClass) -> ClassStore:
+    return ClassStore(ClassDirectory(tiny.path))
+
+
+@pytest.mark.parametrize(
+    ("files", "why"),
+    [
+        ([JUDGE], {"the judge changed": 2}),
+        ([EXERCISE], {"the exercise changed": 2}),
+        ([JUDGE, EXERCISE], {"the exercise and the judge changed": 2}),
+        ([JUDGE, CARDS], {"the judge and the grader changed": 2}),
+        ([OF_ANOTHER_LAB], {}),
+        ([CARDS], {}),
+        ([], {}),
+    ],
+)
+def test_a_change_of_the_course(
+    tiny: TinyClass,
+    fake_engine: FakeEngine,
+    course: Callable[..., None],
+    files: list[str],
+    why: dict[str, int],
+) -> None:
+    tiny.submit("ada", 4, 7)
+    tiny.submit("ben")
+    assert tiny.grade().run_again == {}, "no notebook was executed before"
+    course(*files)
+    report = tiny.grade()
+    assert (report.executed, report.run_again) == (sum(why.values()), why)
+    assert json.loads(report_json(report))["run_again"] == why
+    console = Console(file=io.StringIO(), width=200)
+    show(report, console)
+    said = [line for line in console.file.getvalue().splitlines() if line.startswith("run again")]  # type: ignore[attr-defined]
+    assert said == [f"run again    2 notebooks: {words}" for words in why]
+    assert tiny.scores("ada") == {TALKER: 4, LISTENER: 7}
+    assert tiny.grade().executed == 0
+
+
+def test_a_corrected_sentence_on_a_card_makes_pages_again_and_executes_nothing(
+    tiny: TinyClass,
+    fake_engine: FakeEngine,
+    course: Callable[..., None],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    tiny.submit("ada", 4, 7)
+    tiny.grade(feedback=True)
+    page = tiny.path / "feedback" / "ada" / "lab_1_2" / "lab_1_2.html"
+    assert "A corrected sentence." not in page.read_text()
+    monkeypatch.setattr(result_writer, "card_bundle", lambda _: {"text/plain": "A corrected sentence."})
+    course(CARDS)
+    report = tiny.grade(feedback=True)
+    assert (report.executed, report.reused, report.written) == (0, 1, 1)
+    assert "A corrected sentence." in page.read_text()
+    assert tiny.scores("ada") == {TALKER: 4, LISTENER: 7}
+    assert tiny.grade(feedback=True).written == 0
+
+
+def test_a_change_of_the_class(tiny: TinyClass, fake_engine: FakeEngine) -> None:
+    file = tiny.submit("ada", 4, 7)
+    tiny.submit("ben", "'die'")
+    source = tiny.path / "source" / "lab_1_2" / "lab_1_2.ipynb"
+    tiny.grade()
+    resaved(file)
+    assert tiny.grade().run_again == {"its result was not kept": 1}, "the judge had failed for ben"
+    resaved(source)
+    assert tiny.grade(students=["ada"]).run_again == {}
+    tiny.submit("ada", 10, 7)
+    assert tiny.grade(students=["ada"]).run_again == {"the submission changed": 1}
+    resaved(source, source="Between both.")
+    assert tiny.grade(students=["ada"]).run_again == {"the released notebook changed": 1}
+    tiny.configure("c.WireExecute.memory_bytes = 4_000_000_000")
+    assert tiny.grade(students=["ada"]).run_again == {"the settings of the class changed": 1}
+    assert tiny.grade(students=["ada"], again=True).run_again == {"--again was given": 1}
+    assert tiny.scores("ada") == {TALKER: 10, LISTENER: 7}
+
+
+@pytest.mark.parametrize("files", [[CARDS], [JUDGE], [EXERCISE]])
+def test_a_class_of_the_course_before_keys_had_parts_goes_on(
+    tiny: TinyClass,
+    fake_engine: FakeEngine,
+    course: Callable[..., None],
+    monkeypatch: pytest.MonkeyPatch,
+    files: list[str],
+) -> None:
+    monkeypatch.setattr(
+        course_version, "_BEFORE_PARTS", ("earlier", CourseFiles(COURSE.items()).version(without=GRADER))
+    )
+    tiny.submit("ada", 4, 7)
+    tiny.grade()
+    with store_of(tiny) as store:
+        (attempt,) = store.attempts("ada")
+        assert attempt.course == "earlier", "as the earlier course wrote it"
+    make_version_3(tiny.path / ".autograder" / "class.db")
+    course(*files)
+    report = tiny.grade()
+    again = {} if files == [CARDS] else {"an earlier version of the course had graded it": 1}
+    assert (report.run_again, report.written) == (again, 1)
+    assert tiny.scores("ada") == {TALKER: 4, LISTENER: 7}
+    assert (tiny.path / ".autograder" / "class.db.version-3").exists()
+    with contextlib.closing(store_of(tiny)) as store:
+        assert store.attempts("ada")[0] == attempt.__class__(
+            attempt.at,
+            attempt.assignment,
+            attempt.made_from.__class__(attempt.made_from.handed_in),
+            attempt.course,
+            attempt.rows,
+        )
+    assert (tiny.grade().executed, tiny.grade().written) == (0, 0)
