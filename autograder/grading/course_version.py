@@ -33,11 +33,6 @@ If a changed grader makes a different task from a notebook, this task has no res
 """
 SHARED = "shared"
 """The part of ``solutions`` that all exercises share: the workspace, and the chapters' descriptions and interfaces."""
-_BEFORE_PARTS = ("518b55abbfffaca9", "57a04af06986605d")
-"""The last version of the course that had one hash for all files, and the hash of its files without the grader.
-
-A class that was begun with this version keeps its results until a file on which results depend has changed.
-"""
 
 
 class CourseFiles:
@@ -54,9 +49,9 @@ class CourseFiles:
             content += f"{len(name)}:{name}{len(data)}:".encode() + data
         self._hashes = {part: hashlib.sha256(content).hexdigest() for part, content in self._parts.items()}
 
-    def version(self, *parts: str, without: str = "") -> str:
+    def version(self, *parts: str) -> str:
         """Return a hash of some parts, in hexadecimal; of all if none is given."""
-        chosen = sorted(self._hashes.keys() & set(parts or self._hashes) - {without})
+        chosen = sorted(self._hashes.keys() & set(parts or self._hashes))
         return hashlib.sha256(
             " ".join(f"{part} {self._hashes[part]}" for part in chosen).encode()
         ).hexdigest()[:16]
@@ -115,9 +110,6 @@ def judged_by(source: bytes) -> str:
         source: The source notebook.
     """
     files = course_files()
-    before, same = _BEFORE_PARTS
-    if files.version(without=GRADER) == same:
-        return before
     return files.version(JUDGE, SHARED, *files.labs(source))
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
+from typing import Any, cast
 
 import pytest
 
@@ -53,6 +53,39 @@ def test_what_comes_of_a_goal_is_its_status_its_feedback_and_its_result(
     step: Goal, seen: Part, came: list[Any]
 ) -> None:
     assert step.outcomes(seen, PATHS) == [came]
+
+
+class Noting:
+    """Takes the place of a sender, and notes what a step asks it to do."""
+
+    def __init__(self) -> None:
+        self.asked: list[tuple[str, Any]] = []
+
+    def send(self, **fields: Any) -> int:
+        self.asked.append(("send", fields["distance"]))
+        return len([word for word, _ in self.asked if word == "send"]) - 1
+
+    def pass_time(self, number: int, messages: int) -> None:
+        self.asked.append(("pass_time", (number, messages)))
+
+    def finish(self, *numbers: int) -> bool:
+        self.asked.append(("finish", numbers))
+        return True
+
+
+def test_a_goal_beside_another_one_is_sent_at_once_or_while_it_is_at_work() -> None:
+    later = Goal(ACTION, {"distance": 1}, after=7)
+    step = Goal(ACTION, {"distance": 9}, beside=Goal(ACTION, {"distance": 2}, beside=later))
+    sender = Noting()
+    assert step.play(cast("GoalSender", sender))
+    assert sender.asked == [
+        ("send", 9),
+        ("send", 2),
+        ("pass_time", (0, 7)),
+        ("send", 1),
+        ("finish", (0, 1, 2)),
+    ]
+    assert str(step).endswith("beside /dock with distance 1 after 7 feedback messages")
 
 
 def test_a_card_says_which_goal_differs() -> None:

@@ -104,7 +104,7 @@ def test_a_card_shows_the_first_step_that_differs() -> None:
         )
     }
     assert failed(run([[], *RIGHT[1:]]))["cmd_vel"][1] == "nothing at the start"
-    assert "did not get that far" in failed(run(RIGHT[:2]))["cmd_vel"][1]
+    assert failed(run(RIGHT[:2]))["cmd_vel"][1] == "nothing came from then on"
 
 
 def test_a_number_may_differ_by_the_tolerance() -> None:

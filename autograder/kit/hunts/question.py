@@ -95,7 +95,11 @@ class Question:
         @draft.criterion("right", "Names the right choice")
         def right(seen: Evidence, _: Evidence) -> Finding:
             said = answer(seen)
-            return Finding(_plain(said) == _plain(self.right), "the right choice", f"“{said or 'nothing'}”")
+            return Finding(
+                _plain(said) == _plain(self.right),
+                "the right choice",
+                f"“{said}”" if said else "no answer yet",
+            )
 
         @draft.mistake("wrong_choice", certain=True)
         def wrong_choice(seen: Evidence, _: Evidence) -> Advice | None:
@@ -109,8 +113,11 @@ class Question:
                 return None
             noted = seen.main.first("noted")
             listed = "; ".join(f"“{choice}”" for choice in (noted.data["order"] if noted else choices))
+            said = answer(seen)
             return Advice(
-                f"Your answer is “{answer(seen) or 'nothing'}”, which is not one of the choices.",
+                f"Your answer is “{said}”, which is not one of the choices."
+                if said
+                else "There is no answer yet.",
                 f"Let your function return the text of one choice: {listed}.",
             )
 

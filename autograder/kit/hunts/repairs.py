@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, cast
 
 from autograder.kit.model import Advice, Criterion, Exercise, Finding, Mistake
+from autograder.kit.runners import LaunchesFromPackage, RunsProgram
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
@@ -35,9 +36,21 @@ _ASKED = "the program does what its task says"
 _TELLS_THE_CAUSE = ("mismatch", "misnamed")
 _WARNING = "incompatible QoS"
 """A part of the warning that rclpy logs if QoS settings do not fit. The student's own terminal shows it."""
+_TOPICS, _SERVICES = "`ros2 topic list`, `ros2 topic info -v`, `ros2 topic echo`", "`ros2 service list -t`"
+_ACTIONS, _INSTALLED = "`ros2 action list -t`, `ros2 action info`", "`ros2 pkg executables`, `find install`"
+_TOOLS = {
+    "publisher": _TOPICS,
+    "subscription": _TOPICS,
+    "service": _SERVICES,
+    "client": _SERVICES,
+    "action_server": _ACTIONS,
+    "action_client": _ACTIONS,
+}
+"""The commands that show an endpoint of a role."""
+_FROM_A_PACKAGE = (RunsProgram, LaunchesFromPackage)
 _LOOK = (
-    "Find out why, with the tools of the course: `ros2 node list`, `ros2 topic list`, `ros2 topic info -v`, `ros2 "
-    "topic echo`, and the output of the program. Change the code that causes it, and check again."
+    "Find out why, with the tools of the course: {}, and the output of the program. Change the code "
+    "that causes it, and check again."
 )
 
 
@@ -109,11 +122,18 @@ def _without_diagnosis(judged: Exercise, known: Mistake) -> Mistake:
 
     def recognize(evidence: Evidence) -> Advice | None:
         advice, symptom = known.recognize(evidence), _symptom(judged, evidence)
-        asked = "" if symptom.expected == _ASKED else f"The judge asked for {symptom.expected}. "
-        text = f"{asked}The judge saw this: {symptom.seen}."
-        return replace(advice, text=text, next_step=_LOOK, uses=()) if advice else None
+        asked = "" if symptom.expected == _ASKED else f"Asked for: {symptom.expected}. "
+        text = f"{asked}Seen: {symptom.seen}."
+        return replace(advice, text=text, next_step=_next_step(judged, evidence), uses=()) if advice else None
 
     return replace(known, recognize=recognize)
+
+
+def _next_step(judged: Exercise, evidence: Evidence) -> str:
+    """Return the advice to use the commands that show what the exercise is about."""
+    tools = [_TOOLS[role] for role in evidence.reference.interface if role in _TOOLS]
+    built = [_INSTALLED] if isinstance(judged.runner, _FROM_A_PACKAGE) else []
+    return _LOOK.format(", ".join(dict.fromkeys(["`ros2 node info`", *built, *tools])))
 
 
 def _symptom(judged: Exercise, evidence: Evidence) -> Finding:

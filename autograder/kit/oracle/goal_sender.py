@@ -25,6 +25,8 @@ works. Messages are counted, not seconds, so that the load of the machine change
 """
 AFTERMATH = 0.5
 """The seconds in which late feedback, or the end of a program that an exception has ended, must arrive."""
+AT_WORK = 20.0
+"""The maximum number of seconds of the subject's time that pass before a goal is sent beside one that is at work."""
 SLICE = 0.1
 """The seconds of wall time, and then of simulated time, that pass in turn while goals are at work."""
 
@@ -81,6 +83,14 @@ class GoalSender:
             return len(seen.feedback) >= messages or seen.over or (bool(seen.accepted) and self._is_silent())
 
         self._wait(has_told, GOAL_LIMIT)
+
+    def pass_time(self, number: int, messages: int) -> None:
+        """Let the subject's time pass until a goal has sent so many feedback messages, or is over."""
+
+        def has_told() -> bool:
+            return len(self[number].feedback) >= messages or self[number].over
+
+        self.bench.run_time(AT_WORK, until=has_told, quiet=QUIET[self.bench.pace])
 
     def _is_silent(self) -> bool:
         # A server that sends no feedback, or all of it at the end, may send none now: its goal would be over before.

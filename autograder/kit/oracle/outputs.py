@@ -101,10 +101,12 @@ class Output:
         if theirs and differs == len(theirs):
             return Finding(True, right := f"the same as the solution in all {len(theirs)} steps", right)
         due, came = (
-            f"{self._in_words(rows[differs][0])} {rows[differs][1]}" if differs < len(rows) else "nothing"
+            f"{self._in_words(rows[differs][0])} {rows[differs][1]}"
+            if differs < len(rows)
+            else "nothing more"
             for rows in (theirs, mine)
         )
-        return Finding(False, due, came if differs < both else f"{came}: your code did not get that far")
+        return Finding(False, due, came if differs < len(mine) else "nothing came from then on")
 
     def is_undeclared(self, seen: Part, _: Part) -> bool:
         """Return True if the subject has no parameter of this name."""

@@ -80,7 +80,9 @@ class Goal:
         fields: The fields of the goal.
         cancel_after: The number of feedback messages after which the judge requests to cancel the goal; None if it does
             not. Of such a goal, the result is not compared, and of its feedback only these messages.
-        beside: Another goal that is sent at the same moment; None for a goal alone.
+        beside: Another goal that is sent while this one is served; None for a goal alone.
+        after: For the goal ``beside`` another one: the number of feedback messages of the first goal after which it is
+            sent; 0 for the same moment. Meanwhile the subject's time passes, so that its timers fire.
 
     Example::
 
@@ -88,6 +90,7 @@ class Goal:
             Goal("/dock", {"distance": random.randint(2, 4)}),
             Goal("/dock", {"distance": 9}, cancel_after=3),
             Goal("/dock", {"distance": 2}, beside=Goal("/dock", {"distance": 3})),
+            Goal("/dock", {"distance": 9}, beside=Goal("/dock", {"distance": 3}, after=7)),
             Goal("/dock", {"distance": -1}),
         ]
     """
@@ -96,10 +99,11 @@ class Goal:
     fields: Mapping[str, Any]
     cancel_after: int | None = None
     beside: Goal | None = None
+    after: int = 0
 
     @property
     def goals(self) -> list[Goal]:
-        """This goal, and the one that is sent at the same moment."""
+        """This goal, and those that are sent while it is served."""
         return [self, *(self.beside.goals if self.beside else [])]
 
     def __str__(self) -> str:
@@ -110,11 +114,16 @@ class Goal:
             if self.cancel_after is None
             else f", canceled after {counted(self.cancel_after, 'feedback message')}"
         )
-        return f"{self.name} with {fields}{canceled}{f', beside {self.beside}' if self.beside else ''}"
+        later = f" after {counted(self.after, 'feedback message')}" if self.after else ""
+        return f"{self.name} with {fields}{later}{canceled}{f', beside {self.beside}' if self.beside else ''}"
 
     def play(self, sender: GoalSender) -> bool:
         """Send the goal, and wait for its end. Return False if it does not end."""
-        numbers = [sender.send(**goal.fields) for goal in self.goals]
+        numbers: list[int] = []
+        for goal in self.goals:
+            if goal.after:
+                sender.pass_time(numbers[0], goal.after)
+            numbers.append(sender.send(**goal.fields))
         for number, goal in zip(numbers, self.goals, strict=True):
             if goal.cancel_after is not None:
                 sender.cancel(number, after=goal.cancel_after)

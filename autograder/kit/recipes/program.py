@@ -148,7 +148,7 @@ class Program:
         if report is not None and not report.built:
             return Finding(False, expected, package_mistakes.seen_of_build(report))
         if report is not None and report.missing:
-            return Finding(False, expected, f"built, but it does not contain {report.missing}")
+            return Finding(False, expected, f"built, but ros2 run does not find {report.missing}")
         if package_mistakes.entry_point(evidence, self._entry):
             return Finding(False, expected, "built, but its entry point points to nothing")
         seen = _Ran(evidence)

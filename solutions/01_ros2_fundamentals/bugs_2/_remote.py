@@ -2,15 +2,14 @@
 
 from autograder.kit.mission.mission import Mission, Pose, To, World
 
-SECONDS, SILENCE = 2.5, 3.5
+SECONDS, SILENCE = 2.6, 3.5
 """How long the remote control speaks, and how long it is silent, in seconds."""
 
 
 def held(speed: float) -> list[To | float]:
-    """Return the steps of a remote control that speaks ten times a second."""
-    return [
-        step for _ in range(round(10 * SECONDS)) for step in (To("/remote", {"linear": {"x": speed}}), 0.1)
-    ]
+    """Return the steps of a remote control that speaks ten times a second, but not evenly: as a radio does."""
+    command = To("/remote", {"linear": {"x": speed}})
+    return [step for _ in range(round(5 * SECONDS)) for step in (command, command, 0.2)]
 
 
 EXERCISE = Mission(
@@ -21,7 +20,7 @@ EXERCISE = Mission(
     draws=lambda random: [
         step
         for steps in (held(0.5), [SILENCE], held(0.4))
-        for step in (World(start=Pose(random.uniform(0.6, 1.2), 2.0, 0.0)), *steps)
+        for step in (World(start=Pose(random.uniform(0.8, 1.0), 2.0, 0.0)), *steps)
     ],
     reaches=[
         ("Drives while the tablet speaks", lambda now: now.leg == 0 and now.pose.x > 1.7),

@@ -41,7 +41,8 @@ EXERCISE = Returns(
         "keep its `(x, y)` in `self.home`": "returned",
         "`search` becomes `go` when the observation has a lamp.": "returned",
         "`go` becomes `back` when the lamp is nearer than 0.3 meters.": "returned",
-        "`back` becomes `done` when home is nearer than 0.3 meters. `done` remains.": "returned",
+        "`back` becomes `done` when home is nearer than 0.3 meters.": "returned",
+        "`done` remains.": "returned",
         "towards the lamp in `go`, towards home in `back`, and otherwise `Command()`": "returned",
     }
 )

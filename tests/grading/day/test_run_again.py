@@ -15,7 +15,7 @@ from tiny_class import COURSE, LISTENER, TALKER, FakeEngine, TinyClass, make_ver
 from autograder.grading import course_version, result_writer
 from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.class_directory import ClassDirectory
-from autograder.grading.course_version import GRADER, CourseFiles
+from autograder.grading.course_version import CourseFiles
 from autograder.grading.reporting.grade_report import report_json, show
 
 if TYPE_CHECKING:
@@ -124,27 +124,16 @@ def test_a_change_of_the_class(tiny: TinyClass, fake_engine: FakeEngine) -> None
     assert tiny.scores("ada") == {TALKER: 10, LISTENER: 7}
 
 
-@pytest.mark.parametrize("files", [[CARDS], [JUDGE], [EXERCISE]])
 def test_a_class_of_the_course_before_keys_had_parts_goes_on(
-    tiny: TinyClass,
-    fake_engine: FakeEngine,
-    course: Callable[..., None],
-    monkeypatch: pytest.MonkeyPatch,
-    files: list[str],
+    tiny: TinyClass, fake_engine: FakeEngine
 ) -> None:
-    monkeypatch.setattr(
-        course_version, "_BEFORE_PARTS", ("earlier", CourseFiles(COURSE.items()).version(without=GRADER))
-    )
     tiny.submit("ada", 4, 7)
     tiny.grade()
     with store_of(tiny) as store:
         (attempt,) = store.attempts("ada")
-        assert attempt.course == "earlier", "as the earlier course wrote it"
     make_version_3(tiny.path / ".autograder" / "class.db")
-    course(*files)
     report = tiny.grade()
-    again = {} if files == [CARDS] else {"an earlier version of the course had graded it": 1}
-    assert (report.run_again, report.written) == (again, 1)
+    assert (report.run_again, report.written) == ({}, 1)
     assert tiny.scores("ada") == {TALKER: 4, LISTENER: 7}
     assert (tiny.path / ".autograder" / "class.db.version-3").exists()
     with contextlib.closing(store_of(tiny)) as store:

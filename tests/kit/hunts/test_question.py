@@ -50,7 +50,7 @@ def test_the_right_choice_passes(events: tuple[Event, ...]) -> None:
     [
         ("the QoS", "wrong_choice", "“the QoS” is not the right choice."),
         ("types", "not_written", "“types”, which is not one of the choices."),
-        (None, "not_written", "“nothing”, which is not one of the choices."),
+        (None, "not_written", "There is no answer yet."),
     ],
 )
 def test_a_wrong_answer_does_not_tell_the_right_one(value: object, key: str, words: str) -> None:

@@ -55,7 +55,7 @@ def test_the_card_of_a_broken_node_tells_the_symptom_and_no_cause() -> None:
     assert "topic_name" in ordinary
     verdict = one_check.judge(repair(), misspelt(), "s")
     card = card_text(verdict)
-    assert "The judge saw this: no message arrived on /chatter." in card
+    assert "Seen: no message arrived on /chatter." in card
     assert not [
         word for word in ("/chater", "topic_name", "DURABILITY", "durability", CAUSE[:9]) if word in card
     ]
@@ -72,7 +72,7 @@ def test_the_card_of_a_repaired_node_states_the_cause() -> None:
 def test_what_came_and_is_wrong_stands_on_the_card() -> None:
     verdict = one_check.judge(repair(), solved(_shouting), "s")
     assert verdict.diagnosis is not None
-    assert "The judge asked for “Says the right string”: “Hello, world! 0”" in verdict.diagnosis.text
+    assert "Asked for: “Says the right string”: “Hello, world! 0”" in verdict.diagnosis.text
     assert "HELLO" in verdict.diagnosis.text
     assert verdict.diagnosis.hidden
     assert not verdict.remarks
