@@ -22,7 +22,7 @@ EXERCISE = SameAsSolution(
     "Let the agent think in a thread of its own, and throw decisions about old observations away.",
     gives=steps,
     tells={"/told": "data", "/beat": "data"},
-    serves={"/oracle": Serves(decision, late={1: 1.0, 2: 1.8, 3: 0.8, 5: 1.5})},
+    serves={"/oracle": Serves(decision, late={1: 1.0, 2: 1.8, 3: 0.8, 4: 0.8, 5: 1.5, 6: 0.8})},
     every=("/told",),
     pause=0.5,
     roles=("publisher", "subscription", "client"),
