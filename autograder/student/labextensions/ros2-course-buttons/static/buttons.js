@@ -15,7 +15,7 @@ window._JUPYTERLAB["ros2-course-buttons"] = (() => {
   const NAME = /^[A-Za-z_]\w*$/;
   const LAST_HINT = /Hint (\d+) of \1\./g;
 
-  // For each key, metres a second ahead and radians a second to the left.
+  // For each key, meters a second ahead and radians a second to the left.
   const KEYS = { ArrowUp: [0.5, 0], ArrowDown: [-0.5, 0], ArrowLeft: [0, 1.5], ArrowRight: [0, -1.5] };
   const SILENCE = 20; // seconds until it is sure that Validate does not begin
   const AGAIN = 300; // milliseconds; the robot obeys a command for a second
