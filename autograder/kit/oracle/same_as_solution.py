@@ -54,8 +54,9 @@ class _Drawn(OwnScenario):
 
     Args:
         outputs: What is compared.
-        is_timed: True if time alone decides some of it, on any clock. A right node with a clock of its own may then do the same as a
-            wrong one while the judge moves its clock, so no wrong answer is proven before the look in real time.
+        is_timed: True if time alone decides some of it, on any clock. A right node with a clock of its own may then do
+            the same as a wrong one while the judge moves its clock, so no wrong answer is proven before the look in
+            real time.
     """
 
     def __init__(
