@@ -2,16 +2,24 @@
 
 .. code-block:: python
 
-    cells, left_out = read_notebook(read_bytes(path))
+    cells, left_out = read_notebook(read_bytes(path), directory.documents)
+
+The document that a desk makes of a file is kept in the class, under a hash of the file. So `grade`, `collect` and
+`similar` parse a file once, also over several runs and after an update of the course.
 
 Even if a file takes over its desk, it can only change what is read from this one file, because the desk's document is
-checked: it must be one that a desk could have made from a notebook. If the document is impossible, or the desk fails on
-the file, the file counts as unreadable.
+checked each time that it is used: it must be one that a desk could have made from a notebook. If the document is
+impossible, or the desk fails on the file, the file counts as unreadable.
 """
 
 from __future__ import annotations
 
+import contextlib
+import functools
+import hashlib
+import inspect
 import signal
+import zlib
 from typing import TYPE_CHECKING
 
 import msgspec
@@ -19,8 +27,10 @@ import msgspec
 from autograder.boxes.box_connection import ChannelClosed
 from autograder.boxes.reading_desks import KeptDesk, answer_in, in_memory
 from autograder.cards.readable_text import paragraph
+from autograder.execution import executed_cells
 from autograder.execution.executed_cells import IMAGES
 from autograder.grading.grading_errors import GradingError
+from autograder.grading.rebuilding import notebook_parsing, submitted_notebook
 from autograder.grading.rebuilding.notebook_parsing import BASE64
 from autograder.grading.rebuilding.submitted_notebook import (
     LONGEST_REASON,
@@ -30,9 +40,11 @@ from autograder.grading.rebuilding.submitted_notebook import (
     Unreadable,
     UnreadableSubmission,
 )
+from autograder.safe_files import write_whole
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+    from pathlib import Path
 
     from autograder.boxes.reading_desks import Desk
     from autograder.grading.rebuilding.submitted_notebook import SubmittedCell
@@ -50,20 +62,42 @@ _TOO_LONG = f"Reading the file takes far more time than reading a notebook. {_AS
 _NOT_READ = f"The file is not a notebook: the program that reads notebooks failed on it. {_AS_SAVED}"
 
 
-def read_notebook(data: bytes) -> tuple[Sequence[SubmittedCell], int]:
+def read_notebook(data: bytes, documents: Path | None = None) -> tuple[Sequence[SubmittedCell], int]:
     """Return the valid cells of a submitted file, and the number of invalid cells that were left out.
+
+    Args:
+        data: The bytes of the file.
+        documents: The class's folder for the documents of files that could be read
+            (:attr:`autograder.grading.classes.class_directory.ClassDirectory.documents`); None to keep no document.
 
     Raises:
         UnreadableSubmission: The file is not a notebook. The message is a sentence for the student.
         GradingError: No file can be read on this machine.
     """
+    kept = documents and documents / hashlib.sha256(_version() + data).hexdigest()
+    # A missing or damaged document is made again.
+    with contextlib.suppress(OSError, zlib.error, UnreadableSubmission):
+        if kept is not None:
+            return checked(zlib.decompress(kept.read_bytes()))
     try:
-        return checked(document_of(_desk, data))
+        document = document_of(_desk, data)
+        read = checked(document)
     except ChannelClosed as error:
         raise GradingError(
             f"No submitted file can be read on this machine: {error}. Usually the machine is short of memory: end "
             "other programs, and type the command again."
         ) from error
+    with contextlib.suppress(OSError):  # for example, the class may only be read
+        if kept is not None:
+            write_whole(kept, zlib.compress(document, 1))
+    return read
+
+
+@functools.cache
+def _version() -> bytes:
+    """Return a hash of the code that makes a document from a file."""
+    parts = (notebook_parsing, submitted_notebook, executed_cells)
+    return hashlib.sha256("".join(map(inspect.getsource, parts)).encode()).digest()
 
 
 def document_of(desk: Desk | KeptDesk, data: bytes) -> bytes:
