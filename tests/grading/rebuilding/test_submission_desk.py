@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import random
+import re
 import shutil
 import tempfile
 import zlib
@@ -12,6 +13,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
+from hypothesis import example, given
+from hypothesis import strategies as st
 from tiny_class import LISTENER, TALKER, FakeEngine, TinyClass
 
 from autograder.boxes import reading_desks as desk_of_boxes
@@ -30,6 +33,7 @@ from autograder.grading.rebuilding.submission_desk import (
 )
 from autograder.grading.rebuilding.submitted_notebook import MAX_CELL_CHARACTERS, UnreadableSubmission
 from autograder.grading.similarity.similar_pairs import find_similar
+from tests.drawn import drawn
 from tests.grading.rebuilding.hostile_desk import CRAFTED, SCRIPT
 
 if TYPE_CHECKING:
@@ -289,3 +293,54 @@ def test_a_class_reads_each_file_once(tiny: TinyClass, asked: list[bytes], fake_
     assert len(asked) == 3
     assert set(asked) > {path.read_bytes() for path in files}
     assert tiny.scores("ada")[TALKER] == 6
+
+
+# -- what a desk says of any file
+
+JSON = st.recursive(
+    st.none() | st.booleans() | st.integers() | st.floats() | st.text(max_size=3),
+    lambda inner: st.lists(inner, max_size=2) | st.dictionaries(st.text(max_size=3), inner, max_size=2),
+    max_leaves=4,
+)
+TEXT = st.text(st.characters(exclude_categories=()), max_size=20)
+
+
+def maybe(usual: st.SearchStrategy[object]) -> st.SearchStrategy[object]:
+    return st.one_of(usual, usual, usual, JSON)
+
+
+SHOWN = st.dictionaries(
+    TEXT, maybe(st.dictionaries(st.sampled_from(["image/png", "image/svg+xml"]), maybe(TEXT)))
+)
+CELL = st.fixed_dictionaries(
+    {
+        "cell_type": maybe(st.sampled_from(["code", "markdown", "raw"])),
+        "source": maybe(TEXT | st.lists(TEXT)),
+    },
+    optional={
+        "id": maybe(TEXT),
+        "metadata": maybe(
+            st.fixed_dictionaries({"nbgrader": maybe(st.fixed_dictionaries({"grade_id": maybe(TEXT)}))})
+        ),
+        "attachments": maybe(SHOWN),
+        "outputs": JSON,
+    },
+)
+FILE = st.fixed_dictionaries(
+    {"nbformat": st.sampled_from([4, 4, 4, 3, "4"]), "cells": maybe(st.lists(maybe(CELL)))}
+)
+
+
+@drawn(60)
+@given(FILE)
+@example({"nbformat": 4, "cells": [{"cell_type": "markdown", "source": "\ud800", "id": "\udcff"}]})
+def test_what_a_desk_says_of_any_file_is_what_was_parsed(file: object) -> None:
+    data = json.dumps(file).encode()
+    try:
+        cells, left_out = parse(data)
+    except UnreadableSubmission as error:
+        with pytest.raises(UnreadableSubmission, match=re.escape(str(error)[:20])):
+            checked(answer_to(data))
+        return
+    assert checked(answer_to(data)) == (tuple(cells), left_out)
+    assert len(cells) + left_out == len(file["cells"])  # type: ignore[index]
