@@ -199,14 +199,14 @@ def test_the_last_runs_are_kept_and_none_twice(store: ClassStore) -> None:
 
 
 def test_of_a_student_with_two_ids_the_new_one_keeps_its_grade(store: ClassStore) -> None:
-    for number, student in enumerate(("ada", "eve")):
+    for number, student in enumerate(("eve", "ada")):
         store.enter(submission(student), entered(number, student))
         store.note_shown(submission(student), "pages")
     store.rename({"ada": "eve"})
-    assert store.entered() == {("eve", "lab"): entered(1, "eve")}
+    assert store.entered() == {("eve", "lab"): entered(0, "eve")}
     assert [one.made_from for one in store.attempts("eve")] == [ResultKey("work 0"), ResultKey("work 1")]
     store.rename({"eve": "zoe"})
-    assert [one.made_from for one in store.entered().values()] == [ResultKey("work 1")]
+    assert [one.made_from for one in store.entered().values()] == [ResultKey("work 0")]
 
 
 def test_read_cells_are_those_of_the_present_sources(store: ClassStore) -> None:
@@ -325,9 +325,10 @@ def make_earlier(store: ClassStore, form: int = 2) -> list[str]:
     """Give the file the tables of an earlier version, with content, and return that content."""
     store.keep(TASK, DONE)
     store.enter(submission(), entered())
+    store.note_shown(submission(), "pages")
     store.enter(
         submission(), entered(1), is_final=False
-    )  # not the newest attempt is the one in the gradebook
+    )  # so the newest attempt is not the one in the gradebook
     store.keep_run("v1", ROWS)
     store.close()
     make_version_4(file_of(store))
@@ -352,7 +353,7 @@ def dump_of(path: Path) -> list[str]:
 @pytest.mark.parametrize("form", [2, 3, 4])
 def test_a_file_of_an_earlier_course_is_used_on_and_a_copy_stays(store: ClassStore, form: int) -> None:
     before = make_earlier(store, form)
-    assert store.entered() == {("ada", "lab"): entered()}
+    assert store.entered() == {("ada", "lab"): replace(entered(), shown="pages")}
     assert (store.attempts("ada"), len(store.runs())) == ([attempt(), attempt(1)], 1)
     with contextlib.closing(sqlite3.connect(file_of(store))) as book:
         assert book.execute("PRAGMA user_version").fetchone() == (store_tables.FORM,)
@@ -360,8 +361,9 @@ def test_a_file_of_an_earlier_course_is_used_on_and_a_copy_stays(store: ClassSto
     assert dump_of(copy) == before
     store.rename({"ada": "eve"})
     assert (store.attempts("ada"), len(store.attempts("eve"))) == ([], 2)
-    with pytest.raises(sqlite3.IntegrityError, match="attempts stay"):
-        change(store, "UPDATE attempt SET made_from = 'forged'")
+    for column in ("made_from", "scores"):
+        with pytest.raises(sqlite3.IntegrityError, match="attempts stay"):
+            change(store, f"UPDATE attempt SET {column} = 'forged'")
     assert dump_of(copy) == before
     store.close()
     make_earlier(store, form)  # the instructor put back a file of the earlier course
@@ -394,7 +396,7 @@ def test_a_file_whose_conversion_was_killed_is_whole(
     os.waitpid(in_a_process(store.entered), 0)
     monkeypatch.undo()
     assert dump_of(file_of(store)) == before
-    assert store.entered() == {("ada", "lab"): entered()}
+    assert store.entered() == {("ada", "lab"): replace(entered(), shown="pages")}
     assert dump_of(file_of(store).with_name(f"class.db.version-{form}")) == before
 
 
