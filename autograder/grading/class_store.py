@@ -36,6 +36,16 @@ _NOT_ENTERED = (
     " WHERE a.entered AND a.student = evidence.student AND a.assignment = evidence.assignment)"
 )
 """SQL condition for evidence whose points are not in the gradebook."""
+_RENAME = (
+    "UPDATE attempt SET entered = 0 WHERE student = ?2 AND entered"
+    " AND assignment IN (SELECT assignment FROM attempt WHERE student = ?1 AND entered)",
+    "UPDATE attempt SET student = ?1, shown = '' WHERE student IN (?1, ?2)",
+    "UPDATE OR IGNORE result SET student = ?1 WHERE student = ?2",
+    "DELETE FROM result WHERE student = ?2",
+    "UPDATE OR IGNORE evidence SET student = ?1 WHERE student = ?2",
+    "DELETE FROM evidence WHERE student = ?2",
+)
+"""SQL statements that give a student (?2) another id (?1). Pages name the student, so they are made again."""
 _TAKE_BACK = "UPDATE attempt SET entered = 0 WHERE (student, assignment) = (?, ?) AND entered"
 _RUNS = 50
 """The maximum number of runs for which the table of results is stored."""
@@ -152,9 +162,8 @@ class ClassStore:
                 (*names, attempt.at.isoformat(), attempt.course, *map(msgspec.json.encode, blobs), is_final),
             )
             if is_final:
-                book.execute(
-                    f"DELETE FROM evidence WHERE (student, assignment) = (?, ?) AND {_NOT_ENTERED}", names
-                )
+                whose = "(student, assignment) = (?, ?)"
+                book.execute(f"DELETE FROM evidence WHERE {whose} AND {_NOT_ENTERED}", names)
 
     def note_shown(self, submission: Submission, shown: str) -> None:
         """Record the hash of the gradebook's entry from which the feedback pages of a submission were made."""
@@ -200,17 +209,8 @@ class ClassStore:
         if not self._path.exists():
             return
         with self._step() as book:
-            for pair in ((new, old) for old, new in ids.items()):
-                book.execute(
-                    "UPDATE attempt SET entered = 0 WHERE student = ?2 AND entered"
-                    " AND assignment IN (SELECT assignment FROM attempt WHERE student = ?1 AND entered)",
-                    pair,
-                )
-                # The feedback pages name the student.
-                book.execute("UPDATE attempt SET student = ?1, shown = '' WHERE student IN (?1, ?2)", pair)
-                for table in ("result", "evidence"):
-                    book.execute(f"UPDATE OR IGNORE {table} SET student = ? WHERE student = ?", pair)
-                    book.execute(f"DELETE FROM {table} WHERE student = ?", pair[1:])
+            for statement in _RENAME:
+                book.executemany(statement, [(new, old) for old, new in ids.items()])
             for name, report in book.execute("SELECT name, report FROM run").fetchall():
                 if rows := _decoded(report, tuple[Row, ...]):
                     own = [replace(row, student=ids.get(row.student, row.student)) for row in rows]

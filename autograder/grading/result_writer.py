@@ -112,15 +112,10 @@ class Writer:
             if isinstance(error, NotWritten):
                 raise
             raise NotWritten(f"{submission.student}/{submission.assignment}: {error}") from error
-        attempt = Entered(
-            at=datetime.now(tz=UTC),
-            assignment=submission.assignment,
-            made_from=made_from,
-            course=results[0][0].course,
-            rows=rows,
-            tasks={task.notebook: task.key() for task, _ in results},
-            scores={task.notebook: scores_of(task, execution) for task, execution in results},
-        )
+        tasks = {task.notebook: task.key() for task, _ in results}
+        scores = {task.notebook: scores_of(task, execution) for task, execution in results}
+        now, course = datetime.now(tz=UTC), results[0][0].course
+        attempt = Entered(now, submission.assignment, made_from, course, rows, tasks, scores)
         # If the grader itself failed, the attempt is kept, but the submission is not entered as done: it runs again.
         self._store.enter(submission, attempt, is_final=not any(one.trouble for _, one in results))
 

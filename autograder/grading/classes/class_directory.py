@@ -96,11 +96,6 @@ class ClassDirectory:
         return self.path / STATE_NAME
 
     @property
-    def documents(self) -> Path:
-        """The folder with the documents that desks made of submitted files, each named by a hash of its file."""
-        return self.state / "documents"
-
-    @property
     def gradebook_url(self) -> str:
         """The database URL with which SQLAlchemy opens the gradebook."""
         return str(

@@ -70,7 +70,7 @@ def lines_of(
         # All lists, from any delivery, map numbers to students.
         student_of = StudentOf(roster, delivery.form, delivery.names, itertools.chain(*entries.values()))
         zone = ZoneInfo(delivery.zone) if delivery.zone else directory.time_zone
-        reading = _Reading(inbox, directory.documents, assignments, student_of, delivery, id_, zone)
+        reading = _Reading(inbox, directory.state, assignments, student_of, delivery, id_, zone)
         read += [(delivery, line) for line in reading.lines(edits)]
     timed = list(ListTimes(inbox, directory.time_zone).applied(read))
     clear = {line.key for line in timed if not line.reason}
@@ -88,7 +88,7 @@ class _Reading:
     """Interprets the files of one delivery."""
 
     inbox: Inbox
-    documents: Path
+    state: Path
     assignments: _AssignmentOf
     student_of: StudentOf
     delivery: Delivery
@@ -182,7 +182,7 @@ class _Reading:
             return replace(line, reason=reason)
         cells: Sequence[SubmittedCell] = ()
         try:
-            cells, _ = read_notebook(data, self.documents)
+            cells, _ = read_notebook(data, self.state)
         except UnreadableSubmission as error:
             line = replace(line, unreadable=str(error))
         if edit.assignment or edit.notebook:

@@ -2,7 +2,7 @@
 
 .. code-block:: python
 
-    cells, left_out = read_notebook(read_bytes(path), directory.documents)
+    cells, left_out = read_notebook(read_bytes(path), directory.state)
 
 The document that a desk makes of a file is kept in the class, under a hash of the file. So `grade`, `collect` and
 `similar` parse a file once, also over several runs and after an update of the course.
@@ -15,11 +15,13 @@ impossible, or the desk fails on the file, the file counts as unreadable.
 from __future__ import annotations
 
 import contextlib
-import functools
 import hashlib
 import inspect
+import os
 import signal
+import sys
 import zlib
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import msgspec
@@ -30,7 +32,7 @@ from autograder.cards.readable_text import paragraph
 from autograder.execution import executed_cells
 from autograder.execution.executed_cells import IMAGES
 from autograder.grading.grading_errors import GradingError
-from autograder.grading.rebuilding import notebook_parsing, submitted_notebook
+from autograder.grading.rebuilding import submitted_notebook
 from autograder.grading.rebuilding.notebook_parsing import BASE64
 from autograder.grading.rebuilding.submitted_notebook import (
     LONGEST_REASON,
@@ -44,12 +46,16 @@ from autograder.safe_files import write_whole
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-    from pathlib import Path
 
     from autograder.boxes.reading_desks import Desk
     from autograder.grading.rebuilding.submitted_notebook import SubmittedCell
 
 
+_PARSER = "autograder.grading.rebuilding.notebook_parsing"
+_DOCUMENTS = "documents"
+_PARTS = (sys.modules[_PARSER], submitted_notebook, executed_cells)
+_VERSION = hashlib.sha256("".join(map(inspect.getsource, _PARTS)).encode()).digest()
+"""A hash of the code that makes a document from a file. Another version of this code makes each document again."""
 CPU_SECONDS = 20
 """The maximum processor time of a desk process, in seconds. A file of 50 MB takes two seconds."""
 _LARGEST_DOCUMENT = MAX_BYTES + 14_000_000
@@ -62,23 +68,22 @@ _TOO_LONG = f"Reading the file takes far more time than reading a notebook. {_AS
 _NOT_READ = f"The file is not a notebook: the program that reads notebooks failed on it. {_AS_SAVED}"
 
 
-def read_notebook(data: bytes, documents: Path | None = None) -> tuple[Sequence[SubmittedCell], int]:
+def read_notebook(data: bytes, state: Path = Path(os.devnull)) -> tuple[Sequence[SubmittedCell], int]:
     """Return the valid cells of a submitted file, and the number of invalid cells that were left out.
 
     Args:
         data: The bytes of the file.
-        documents: The class's folder for the documents of files that could be read
-            (:attr:`autograder.grading.classes.class_directory.ClassDirectory.documents`); None to keep no document.
+        state: The class's folder for the grader's own files, in which the document of a file that can be read is kept;
+            by default no document is kept.
 
     Raises:
         UnreadableSubmission: The file is not a notebook. The message is a sentence for the student.
         GradingError: No file can be read on this machine.
     """
-    kept = documents and documents / hashlib.sha256(_version() + data).hexdigest()
+    kept = state / _DOCUMENTS / hashlib.sha256(_VERSION + data).hexdigest()
     # A missing or damaged document is made again.
     with contextlib.suppress(OSError, zlib.error, UnreadableSubmission):
-        if kept is not None:
-            return checked(zlib.decompress(kept.read_bytes()))
+        return checked(zlib.decompress(kept.read_bytes()))
     try:
         document = document_of(_desk, data)
         read = checked(document)
@@ -88,16 +93,8 @@ def read_notebook(data: bytes, documents: Path | None = None) -> tuple[Sequence[
             "other programs, and type the command again."
         ) from error
     with contextlib.suppress(OSError):  # for example, the class may only be read
-        if kept is not None:
-            write_whole(kept, zlib.compress(document, 1))
+        write_whole(kept, zlib.compress(document, 1))
     return read
-
-
-@functools.cache
-def _version() -> bytes:
-    """Return a hash of the code that makes a document from a file."""
-    parts = (notebook_parsing, submitted_notebook, executed_cells)
-    return hashlib.sha256("".join(map(inspect.getsource, parts)).encode()).digest()
 
 
 def document_of(desk: Desk | KeptDesk, data: bytes) -> bytes:
@@ -144,4 +141,4 @@ def _rehearse(desk: Desk) -> None:
         raise ChannelClosed(f"not even a sample ({error})") from error
 
 
-_desk = KeptDesk("autograder.grading.rebuilding.notebook_parsing", rehearse=_rehearse)
+_desk = KeptDesk(_PARSER, rehearse=_rehearse)

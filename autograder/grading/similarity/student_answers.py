@@ -88,7 +88,7 @@ def read_answers(
         who = f"{submission.student}/{assignment}"
         try:
             data = read_bytes(submission.folder / f"{notebook}{SUFFIX}")
-            cells, left_out = read_notebook(data, directory.documents)
+            cells, left_out = read_notebook(data, directory.state)
         except NotAFile:
             continue  # the instructor gets a line about this refused file elsewhere
         except UnreadableSubmission as error:

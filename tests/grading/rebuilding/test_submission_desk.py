@@ -247,7 +247,7 @@ def asked(monkeypatch: pytest.MonkeyPatch) -> list[bytes]:
 
 def test_a_file_is_read_once_and_each_other_file_for_itself(asked: list[bytes], tmp_path: Path) -> None:
     files = [notebook("one"), notebook("two")]
-    read = [read_notebook(data, tmp_path / "documents") for data in files * 2]
+    read = [read_notebook(data, tmp_path) for data in files * 2]
     assert asked == files
     assert [list(cells) for cells, _ in read] == [list(parse(data)[0]) for data in files * 2]
 
@@ -256,7 +256,7 @@ def test_a_file_that_cannot_be_read_is_tried_again(asked: list[bytes], tmp_path:
     for _ in range(2):
         with pytest.raises(UnreadableSubmission, match="not a Jupyter notebook"):
             read_notebook(b"[]", tmp_path)
-    assert (len(asked), [*tmp_path.iterdir()]) == (2, [])
+    assert (len(asked), [*tmp_path.rglob("*")]) == (2, [])
 
 
 @pytest.mark.parametrize("damage", ["cut", "other bytes", "no notebook", "another parser", "a folder"])
@@ -265,7 +265,7 @@ def test_a_document_that_does_not_fit_is_not_used(
 ) -> None:
     data = notebook("one")
     right = read_notebook(data, tmp_path)
-    (kept,) = tmp_path.iterdir()
+    (kept,) = (tmp_path / submission_desk._DOCUMENTS).iterdir()
     if damage == "cut":
         kept.write_bytes(kept.read_bytes()[:-3])
     elif damage == "other bytes":
@@ -273,7 +273,7 @@ def test_a_document_that_does_not_fit_is_not_used(
     elif damage == "no notebook":
         kept.write_bytes(zlib.compress(b'{"type": "ReadNotebook", "cells": 5}'))
     elif damage == "another parser":
-        monkeypatch.setattr(submission_desk, "_version", lambda: b"another")
+        monkeypatch.setattr(submission_desk, "_VERSION", b"another")
     else:
         kept.unlink()
         kept.mkdir()
