@@ -38,7 +38,7 @@ class Goal:
 
 
 Step = World | To | Goal | float | Callable[[Moment], bool]
-"""A step: another world, a message or a call, a goal, seconds of the subject's time to let pass, or a condition to await."""
+"""A step: another world, a message or a call, a goal, seconds of the subject's time to let pass, or a condition."""
 
 
 class Journey:
