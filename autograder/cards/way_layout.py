@@ -37,8 +37,9 @@ class WayPicture:
         radius: The radius of the robot.
         nose: The path of the arrow on the robot.
         bumps: The places at which the robot pushed against a wall.
-        places: The names and positions of places.
-        below: The distance from a place to the base line of its name.
+        places: The places with names.
+        names: The names of start, bumps and places, and the position that each stands for.
+        below: The distance from such a position to the base line of its name.
     """
 
     width: float
@@ -52,7 +53,8 @@ class WayPicture:
     radius: float
     nose: str
     bumps: tuple[Point, ...]
-    places: tuple[tuple[str, Point], ...]
+    places: tuple[Point, ...]
+    names: tuple[tuple[str, Point], ...]
     below: float
 
 
@@ -64,6 +66,7 @@ def way_picture(way: Way) -> WayPicture:
     scale = min(_SCALE, _WIDTH / wide, _HEIGHT / high)
     plan = Plan(left - RADIUS, top + RADIUS, scale, _MARGIN)
     radius = round(RADIUS * scale, 1)
+    named = [("start", way.points[0]), *(("wall!", bump) for bump in way.bumps), *way.places.items()]
     return WayPicture(
         width=round(wide * scale + 2 * _MARGIN),
         height=round(high * scale + 2 * _MARGIN),
@@ -76,7 +79,8 @@ def way_picture(way: Way) -> WayPicture:
         radius=radius,
         nose=nose(radius),
         bumps=tuple(map(plan.at, way.bumps)),
-        places=tuple((one_line(name, 24), plan.at(place)) for name, place in way.places.items()),
+        places=tuple(map(plan.at, way.places.values())),
+        names=tuple((one_line(name, 24), plan.at(place)) for name, place in named),
         below=radius + 12,
     )
 

@@ -30,7 +30,7 @@ def test_a_way_is_said_in_one_sentence() -> None:
 )
 def test_all_of_a_way_is_in_its_picture(way: Way) -> None:
     picture = way_picture(way)
-    drawn = [picture.start, picture.end, *(place for _, place in picture.places)]
+    drawn = [picture.start, picture.end, *(place for _, place in picture.names)]
     drawn += [end for wall in picture.walls for end in wall]
     assert all(0 <= x <= picture.width and 0 <= y <= picture.height for x, y in drawn)
     assert picture.width <= 430
@@ -39,7 +39,7 @@ def test_all_of_a_way_is_in_its_picture(way: Way) -> None:
 
 def test_y_points_up_and_the_robot_turns_to_the_left() -> None:
     picture = way_picture(WAY)
-    assert dict(picture.places)["lamp"][1] < picture.start[1]
+    assert dict(picture.names)["lamp"][1] < picture.start[1]
     assert picture.turned == pytest.approx(-90.0, abs=0.1)
 
 
