@@ -77,6 +77,12 @@ class Ros:
     def serve(self, service: str, _: str, answer: Any, **__: Any) -> None:
         self.answers[service] = answer
 
+    def serve_action(self, action: str, _: str) -> Any:
+        def send(distance: float) -> None:
+            self.record("feedback", action, fields={"distance": distance})
+
+        return SimpleNamespace(await_goal=lambda _: None, send_feedback=send)
+
     def note_whether_it_spins(self) -> None:
         self.asked_whether_it_spins = True
 
@@ -172,6 +178,20 @@ def test_a_command_holds_for_a_second() -> None:
 
     _, bench = driven(mission(), once)
     assert "at x = 0.50 m" in noted(bench, "end")
+
+
+def test_a_walk_that_pushes_against_a_wall_is_over_once_the_subject_is_silent() -> None:
+    ends = {"action_client": {"/walk_to": "small_robot_interfaces/action/WalkTo"}}
+
+    def sends_it_through_the_wall(ros: Ros) -> None:
+        if ros.moment > 101.0 and not ros.seen().of("goal"):
+            ros.record("goal", "/walk_to", fields={"x": 5.0, "y": 0.0})
+
+    holds, bench = driven(mission(quiet=2.0), sends_it_through_the_wall, interface=ends)
+    assert not any(holds.values())
+    assert "at x = 2.80 m" in noted(bench, "end")
+    # It sets out after a second, is at the wall after some seconds more, and the world goes on for a second at the end.
+    assert 108.0 < bench.moment < 112.0
 
 
 def test_the_same_commands_lead_to_the_same_places_with_the_same_seed() -> None:

@@ -159,8 +159,8 @@ def _process(gid: bytes) -> int:
     return int.from_bytes(gid[4:6], "little") if gid[:2] == _FAST_DDS else 0
 
 
-def counterparts(judge: Node, heard: list[str], spoken: list[str]) -> list[NodeName]:
-    """Return the subject's nodes that use these topics; none before the names of all of them are discovered.
+def counterparts(judge: Node, heard: list[str], spoken: list[str]) -> list[NodeName] | None:
+    """Return the subject's nodes that use these topics; None before the names of all of them are discovered.
 
     Args:
         heard: The topics to which the judge subscribes.
@@ -171,7 +171,7 @@ def counterparts(judge: Node, heard: list[str], spoken: list[str]) -> list[NodeN
     names = [NodeName(info.node_name, info.node_namespace) for info in infos]
     own = judge.get_name()
     if any(not one.name or one.name.startswith(UNNAMED) for one in names):
-        return []
+        return None
     return [one for one in dict.fromkeys(names) if one.name != own]
 
 

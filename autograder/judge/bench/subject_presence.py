@@ -64,6 +64,8 @@ MAX_RESTARTS = 2
 The limit starts again when the subject has started more processes, because a command may build a package before it runs
 the program. Without this maximum, a program that forks without end would restart the limit forever.
 """
+NAMED = 1.0
+"""Time limit in seconds for the names of the nodes that use the judge's topics to be discovered."""
 MATCH = 5.0
 """Time limit in seconds for two compatible endpoints to be matched."""
 GRAPH_POLL = 0.004
@@ -94,25 +96,30 @@ class Presence:
     subscriptions: dict[str, RecordedSubscription] = field(default_factory=dict)
     publishers: dict[str, RecordedPublisher] = field(default_factory=dict)
     _again: int = field(default=MAX_RESTARTS, init=False)
+    _unused: tuple[list[str], list[str]] | None = field(default=None, init=False)
+    """The judge's topics when a wait for a node that uses one of them was in vain; None before."""
 
     def nodes(self) -> list[discovery.NodeName]:
         return discovery.subject_nodes(self.node, self.subject.keeper)
 
     def counterparts(self) -> list[discovery.NodeName]:
-        """Return the subject's nodes that use the judge's topics; all of the subject's nodes if the judge has no topic.
+        """Return the subject's nodes that use the judge's topics; all of the subject's nodes if none uses one.
 
-        This waits up to a second until the names of these nodes are discovered.
+        This waits up to a second until the names of these nodes are discovered, and for a node that uses one of these
+        topics only once, because it is called again in each step of a run.
         """
-        found: list[discovery.NodeName] = []
+        topics = list(self.subscriptions), list(self.publishers)
+        found: list[discovery.NodeName] | None = []
 
         def named() -> bool:
-            found[:] = discovery.counterparts(self.node, list(self.subscriptions), list(self.publishers))
-            return bool(found) or self.subject.ended
+            nonlocal found
+            found = discovery.counterparts(self.node, *topics)
+            is_missing = found == [] and self._unused == topics
+            return bool(found) or is_missing or self.subject.ended
 
-        if not (self.subscriptions or self.publishers):
-            return self.nodes()
-        self.recorder.wait(named, 1.0, poll=GRAPH_POLL)
-        return found
+        if any(topics) and not self.recorder.wait(named, NAMED, poll=GRAPH_POLL):
+            self._unused = topics
+        return self.nodes() if found == [] and not self.subject.ended else found or []
 
     def await_endpoint(self, role: str, name: str) -> bool:
         """Wait until the subject's endpoint is on the graph and, if an endpoint of the judge fits, matched with it."""

@@ -63,7 +63,7 @@ class Course:
         robot: The robot in its world.
         lines: The lines of the card.
         within: Seconds of the subject's time for the whole mission.
-        quiet: Seconds of standstill and silence after which the mission is over.
+        quiet: Seconds without a word of the subject and a movement of the robot after which the mission is over.
     """
 
     def __init__(self, bench: Bench, robot: Robot, lines: Lines, within: float, quiet: float) -> None:
@@ -71,7 +71,8 @@ class Course:
         self._within, self._quiet = within, quiet
         self._reached: dict[str, str] = {}
         self._broken: dict[str, str] = {}
-        self._heard, self._heard_at = 0, 0.0
+        self._last: tuple[object, ...] = ()
+        self._last_at = 0.0
         self._track = Track()
 
     def run(self, journey: Journey, steps: Sequence[Step], until: Callable[[Moment], bool] | None) -> bool:
@@ -108,10 +109,11 @@ class Course:
                 self._broken[line.name] = str(now)
 
     def _is_quiet(self, now: Moment) -> bool:
+        """Return True if the subject has sent nothing, and the robot kept its place, also at a wall, for long."""
         heard = sum(event.kind not in _OF_THE_JUDGE for event in now.part.events)
-        if heard != self._heard:
-            self._heard, self._heard_at = heard, now.time
-        return min(now.stood, now.time - self._heard_at) >= self._quiet
+        if (state := (heard, now.leg, now.pose)) != self._last:
+            self._last, self._last_at = state, now.time
+        return now.time - self._last_at >= self._quiet
 
     def note(self, knows: Sequence[Callable[[Moment], Any]]) -> bool:
         """Note what became of each line, and which mistakes show. Return True if all lines hold."""

@@ -83,7 +83,8 @@ class Mission:
         roles: The roles of the subject's endpoints, the most telling first.
         within: Seconds of the subject's time for the whole mission.
         until: The mission is over a second after this holds; by default, after all of ``reaches`` were reached.
-        quiet: The mission is over if the robot has stood and the subject has sent nothing for so many seconds.
+        quiet: The mission is over if the robot has not moved, which may be because it pushes against a wall, and the
+            subject has sent nothing for so many seconds.
         threads: The number of threads that spin a class of a notebook.
         points: The points of the exercise, in equal parts for the lines without points.
 

@@ -36,6 +36,7 @@ EXERCISE = Mission(
             lambda now: (count := len(now.part.of("request"))) > CHANGES and count,
             "Your node called the service lamp {} times, and the lamp had to change less often.",
             "Store in self.is_on what the lamp is now, and call only if it has to change.",
+            {"certain": True},
         ),
     ],
     within=30.0,

@@ -152,3 +152,46 @@ def test_the_graph_is_asked_often_once_a_node_is_announced_and_no_longer_than_wa
     assert not presence.await_sign_of_life(0.1)
     assert [poll for _, poll in waits] == polls
     assert all(within <= 0.1 for within, _ in waits)
+
+
+@pytest.mark.parametrize(
+    ("users", "has_ended", "found", "in_vain"),
+    [
+        pytest.param(["talker"], False, ["talker"], [False, False, False], id="it is there"),
+        pytest.param([], False, ["helper", "talker"], [True, False, True], id="none uses the topics: all"),
+        pytest.param(None, False, [], [True, True, True], id="a name is still to come"),
+        pytest.param([], True, [], [False, False, False], id="it has ended"),
+    ],
+)
+def test_a_node_that_uses_the_judges_topics_is_waited_for_once(
+    monkeypatch: pytest.MonkeyPatch,
+    users: list[str] | None,
+    has_ended: bool,
+    found: list[str],
+    in_vain: list[bool],
+) -> None:
+    """A run asks in each of its steps, and waits again only for other topics."""
+
+    class Subject(_ASubject):
+        ended = has_ended
+
+    def nodes(names: Sequence[str]) -> list[discovery.NodeName]:
+        return [discovery.NodeName(name, "/") for name in names]
+
+    waits: list[bool] = []
+
+    def wait(*how: Any, **more: Any) -> bool:
+        held = Recorder().wait(*how, **more)
+        waits.append(not held)
+        return held
+
+    presence, recorder = _presence(
+        monkeypatch, Subject(), lambda _: _interface(), nodes=nodes(["talker", "helper"])
+    )
+    monkeypatch.setattr(recorder, "wait", wait)
+    monkeypatch.setattr(discovery, "counterparts", lambda *_: None if users is None else nodes(users))
+    monkeypatch.setattr(presence_module, "NAMED", 0.1)
+    for topic in (TOPIC, TOPIC, "/another"):
+        presence.subscriptions[topic] = cast("Any", None)
+        assert [node.name for node in presence.counterparts()] == found
+    assert waits == in_vain
