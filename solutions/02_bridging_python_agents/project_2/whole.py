@@ -131,7 +131,7 @@ EXERCISE = Mission(
         "has to stand while its position is old": "old",
         "come to the lamp": "lamp",
         "back to its start": "back",
-        "it has to stand until the button is released": "button",
+        "has to stand until the button is released": "button",
         "It never touches a wall": "walls",
         "never faster than 0.4 meters and 0.8 radians per second": "limits",
     },
