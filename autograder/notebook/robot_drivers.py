@@ -121,7 +121,7 @@ def _answer(x: float, y: float) -> GoalResponse:
 
 SAYS_EVERY = 5
 """The number of simulation steps between two messages about the position."""
-METRES = 0.1
+METERS = 0.1
 """The radius in meters of the arc for the number 1. For any other number, the radius is multiplied by this number."""
 _TOUR = ((2.5, 2.4), (3.6, 2.0))
 """The points on the robot's way to the door, in meters."""
@@ -213,7 +213,7 @@ class Spiral:
         while self._left and not self._steps:
             number = self._left.popleft()
             self.says = str(number)
-            self._arc, self._steps = _quarter_circle(METRES * number)
+            self._arc, self._steps = _quarter_circle(METERS * number)
         if not self._steps:
             self.says = ""
             return None

@@ -35,8 +35,8 @@ _MATCHING_QOS = {
         "other node."
     ),
     Qos.SENSOR: (
-        "The other node is best effort, as sensors are. Write qos_profile_sensor_data, from rclpy.qos, instead of "
-        "the queue depth."
+        "The other node is best effort, as sensors are. Write a QoSProfile with ReliabilityPolicy.BEST_EFFORT, or "
+        "qos_profile_sensor_data, both from rclpy.qos, instead of the queue depth."
     ),
     Qos.LATCHED: (
         "The other node is transient local, as for a message that late subscribers get, too. Write "

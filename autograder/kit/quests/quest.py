@@ -18,7 +18,7 @@ from autograder.kit.bench import Pace
 from autograder.kit.draft import OWN, OWN_LATE, Draft
 from autograder.kit.evidence import Part
 from autograder.kit.giving_up import LATENESS, PATIENCE, PATIENCES
-from autograder.kit.lateness import SOON, was_patient
+from autograder.kit.lateness import SOON
 from autograder.kit.mistakes import unfinished
 from autograder.kit.mistakes.crashes import CRASHES, OTHER_CRASHES, OTHER_SLIPS
 from autograder.kit.model import Advice, Finding, Mistake, mistake
@@ -177,7 +177,8 @@ class Quest:
             bench.part(name, **asdict(robot), **patience)
             self._meets(bench, robot, patience, LATENESS)
             search = Search(bench.seen())
-            if robot.late and not search.has() and was_patient(search.since_it_appeared):
+            gave_up = search.part.ending and not search.gave_up_at_once
+            if robot.late and not search.has() and gave_up:
                 bench.again()
                 self._meets(bench, robot, patience, SOON)
             search = Search(bench.seen())

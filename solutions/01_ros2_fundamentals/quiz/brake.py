@@ -7,7 +7,7 @@ EXERCISE = SameAsSolution(
     "quiz.brake",
     "The chapter in short · A brake that hears its sensor",
     "Hear a sensor that offers best effort, and say for each distance whether to brake.",
-    gives=lambda random: [To("/distance", random.uniform(*metres)) for metres in DISTANCES],
+    gives=lambda random: [To("/distance", random.uniform(*meters)) for meters in DISTANCES],
     tells={"/brake": "data"},
     qos=["/distance"],
     every=True,

@@ -15,7 +15,7 @@ window._JUPYTERLAB["ros2-course-buttons"] = (() => {
   const NAME = /^[A-Za-z_]\w*$/;
   const LAST_HINT = /Hint (\d+) of \1\./g;
 
-  // For each key, metres a second ahead and radians a second to the left.
+  // For each key, meters a second ahead and radians a second to the left.
   const KEYS = { ArrowUp: [0.5, 0], ArrowDown: [-0.5, 0], ArrowLeft: [0, 1.5], ArrowRight: [0, -1.5] };
   const SILENCE = 20; // seconds until it is sure that Validate does not begin
   const AGAIN = 300; // milliseconds; the robot obeys a command for a second
@@ -40,10 +40,10 @@ window._JUPYTERLAB["ros2-course-buttons"] = (() => {
     return panel?.content?.widgets && panel.sessionContext ? panel : null;
   }
 
-  // The check of the active cell: the cell itself, or the next check below it.
-  function check(panel) {
-    const { widgets, activeCellIndex } = panel.content;
-    const at = widgets.findIndex((cell, place) => place >= activeCellIndex && isCheck(cell));
+  // The check of a cell, of the active one if no place is given: the cell itself, or the next check below it.
+  function check(panel, from = panel.content.activeCellIndex) {
+    const { widgets } = panel.content;
+    const at = widgets.findIndex((cell, place) => place >= from && isCheck(cell));
     if (at < 0) return null;
     const [, , exercise, subject] = CHECK.exec(text(widgets[at]));
     return { at, exercise, subject };
@@ -115,7 +115,7 @@ window._JUPYTERLAB["ros2-course-buttons"] = (() => {
 
       // A check ends with its kernel, or when its page is closed: its card must not say for ever that it goes on.
       function endCards(panel, whyOf) {
-        for (const cell of panel.content.widgets) {
+        for (const [place, cell] of panel.content.widgets.entries()) {
           const outputs = cell.model.type === "code" ? cell.model.outputs : [];
           for (let at = 0; at < outputs.length; at++) {
             const output = outputs.get(at).toJSON();
@@ -124,7 +124,7 @@ window._JUPYTERLAB["ros2-course-buttons"] = (() => {
             const page = new DOMParser().parseFromString(html, "text/html");
             const card = page.querySelector(".agc-waiting");
             if (!card) continue;
-            const why = whyOf(cell);
+            const why = whyOf(check(panel, place));
             card.classList.replace("agc-waiting", "agc-over");
             card.querySelector(".agc-state").textContent = why;
             card.setAttribute("aria-label", why);
@@ -133,14 +133,15 @@ window._JUPYTERLAB["ros2-course-buttons"] = (() => {
         }
       }
 
-      // Why a check has no result whose kernel has ended. If the check itself ends it, a third one would, too.
-      const crashed = new WeakSet(); // the cells whose check has ended with a crash
-      function whyEnded(cell, crash) {
+      // Why a check has no result whose kernel has ended. If the check itself ends it, a third one would, too. Its card
+      // may be that of a watched check, below the student's own cell.
+      const crashed = new Set(); // the exercises whose check has ended with a crash
+      function whyEnded(found, crash) {
         const ended = "The kernel ended during this check";
-        const again = crash && crashed.has(cell.model);
-        if (crash) crashed.add(cell.model);
+        const again = crash && crashed.has(found?.exercise);
+        if (crash && found) crashed.add(found.exercise);
         if (!again) return `${ended}, so there is no result: check again.`;
-        return `${ended} again, so your code ends it. Look at the cell that defines ${CHECK.exec(text(cell))?.[3]}, and at what `
+        return `${ended} again, so your code ends it. Look at the cell that defines ${found.subject}, and at what `
           + "that code calls: exit(), os._exit(), a call of itself without an end, or a library that crashes.";
       }
 
@@ -163,7 +164,7 @@ window._JUPYTERLAB["ros2-course-buttons"] = (() => {
           crash ||= CRASHED.includes(status);
           // JupyterLab says "restarting" first if a kernel has crashed, too, and "autorestarting" just after.
           if (ENDED.includes(status)) setTimeout(() => {
-            endCards(panel, cell => whyEnded(cell, crash));
+            endCards(panel, found => whyEnded(found, crash));
             crash = false;
           });
         });
