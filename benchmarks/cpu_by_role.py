@@ -216,7 +216,7 @@ def table(before: Sequence[Mapping[str, float]], now: Sequence[Mapping[str, floa
 
 
 def main() -> None:
-    """Grade by turns, and print the table."""
+    """Grade by turns, and print the table of all rounds so far after each round."""
     options = argparse.ArgumentParser(prog="python -m benchmarks.cpu_by_role", description=__doc__)
     options.add_argument("labs", nargs="+", metavar="LAB", help="the assignments, such as lab_1_2")
     options.add_argument("--against", type=Path, help="another checkout of the course that is set up")
@@ -243,9 +243,10 @@ def main() -> None:
             for side in sides if turn % 2 else sides[::-1]:
                 runs[side].append(side.spent(("--jobs", chosen.jobs)))
                 _tell(f"{side.checkout}: {sum(runs[side][-1].values()):.2f} s a notebook")
+            # After each round, so that a run that is ended early has shown something.
+            print(table(runs[sides[0]] if len(sides) > 1 else [], runs[sides[-1]]), flush=True)
     finally:
         shutil.rmtree(folder, ignore_errors=True)
-    print(table(runs[sides[0]] if len(sides) > 1 else [], runs[sides[-1]]))
 
 
 if __name__ == "__main__":
