@@ -62,7 +62,7 @@ class ResultKey:
 
 @dataclass(frozen=True)
 class Attempt:
-    """One grading of a submission, whose results were entered into the gradebook.
+    """One grading of a submission.
 
     Attributes:
         at: The time of the grading, in UTC.
@@ -96,21 +96,17 @@ class Attempt:
 
 
 @dataclass(frozen=True)
-class Entered:
-    """The results of a submission that were last entered into the gradebook. A run skips an unchanged submission.
+class Entered(Attempt):
+    """An attempt with everything by which a run recognizes that the gradebook contains its results.
 
     Attributes:
-        made_from: The key of the results.
         tasks: The hash of each notebook's task, from :meth:`autograder.grading.grading_task.Task.key`.
         scores: The points of each check cell, by notebook and grade_id.
-        rows: The results as rows of the report, with the recognized mistakes.
         shown: The hash of the gradebook's entry from which the feedback pages were made; empty without pages.
     """
 
-    made_from: ResultKey
     tasks: dict[str, str]
     scores: dict[str, dict[str, float]]
-    rows: tuple[Row, ...]
     shown: str = ""
 
     def is_in(self, entry: SubmissionEntry) -> bool:

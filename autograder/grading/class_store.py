@@ -32,10 +32,21 @@ if TYPE_CHECKING:
 
 NAME = "class.db"
 _NOT_ENTERED = (
-    "task NOT IN (SELECT value FROM entered AS e, json_each(CAST(e.tasks AS TEXT))"
-    " WHERE e.student = evidence.student AND e.assignment = evidence.assignment)"
+    "task NOT IN (SELECT value FROM attempt AS a, json_each(CAST(a.tasks AS TEXT))"
+    " WHERE a.entered AND a.student = evidence.student AND a.assignment = evidence.assignment)"
 )
 """SQL condition for evidence whose points are not in the gradebook."""
+_RENAME = (
+    "UPDATE attempt SET entered = 0 WHERE student = ?2 AND entered"
+    " AND assignment IN (SELECT assignment FROM attempt WHERE student = ?1 AND entered)",
+    "UPDATE attempt SET student = ?1, shown = '' WHERE student IN (?1, ?2)",
+    "UPDATE OR IGNORE result SET student = ?1 WHERE student = ?2",
+    "DELETE FROM result WHERE student = ?2",
+    "UPDATE OR IGNORE evidence SET student = ?1 WHERE student = ?2",
+    "DELETE FROM evidence WHERE student = ?2",
+)
+"""SQL statements that give a student (?2) another id (?1). Pages name the student, so they are made again."""
+_TAKE_BACK = "UPDATE attempt SET entered = 0 WHERE (student, assignment) = (?, ?) AND entered"
 _RUNS = 50
 """The maximum number of runs for which the table of results is stored."""
 _PATIENCE = 30.0
@@ -133,67 +144,61 @@ class ClassStore:
                 return KeptEvidence(assignment, notebook, task, course, found, cells)
         return None
 
-    # -- entries in the gradebook
+    # -- attempts
 
-    def enter(self, submission: Submission, attempt: Attempt, entered: Entered | None) -> None:
-        """Record an attempt, and the results that are now in the gradebook.
+    def enter(self, submission: Submission, attempt: Entered, *, is_final: bool = True) -> None:
+        """Record an attempt, whose results are now in the gradebook.
 
-        If ``entered`` is None, the next run grades the submission again.
+        If ``is_final`` is False, the next run grades the submission again.
         """
         names = (submission.student, submission.assignment)
         with self._step() as book:
-            made_from, rows = map(msgspec.json.encode, (attempt.made_from, attempt.rows))
+            if is_final:
+                book.execute(_TAKE_BACK, names)
+            blobs = (attempt.made_from, attempt.rows, attempt.tasks, attempt.scores)
             book.execute(
-                "INSERT INTO attempt (student, assignment, at, made_from, course, report) VALUES (?, ?, ?, ?, ?, ?)",
-                (*names, attempt.at.isoformat(), made_from, attempt.course, rows),
+                "INSERT INTO attempt (student, assignment, at, course, made_from, report, tasks, scores, entered)"
+                " VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)",
+                (*names, attempt.at.isoformat(), attempt.course, *map(msgspec.json.encode, blobs), is_final),
             )
-            if entered is not None:
-                blobs = (entered.made_from, entered.tasks, entered.scores, entered.rows)
-                book.execute(
-                    "REPLACE INTO entered VALUES (?, ?, ?, ?, ?, ?, ?)",
-                    (*names, *map(msgspec.json.encode, blobs), entered.shown),
-                )
-                book.execute(
-                    f"DELETE FROM evidence WHERE (student, assignment) = (?, ?) AND {_NOT_ENTERED}", names
-                )
+            if is_final:
+                whose = "(student, assignment) = (?, ?)"
+                book.execute(f"DELETE FROM evidence WHERE {whose} AND {_NOT_ENTERED}", names)
 
     def note_shown(self, submission: Submission, shown: str) -> None:
         """Record the hash of the gradebook's entry from which the feedback pages of a submission were made."""
         with self._step() as book:
             book.execute(
-                "UPDATE entered SET shown = ? WHERE (student, assignment) = (?, ?)",
+                "UPDATE attempt SET shown = ? WHERE (student, assignment) = (?, ?) AND entered",
                 (shown, submission.student, submission.assignment),
             )
 
     def forget_entered(self, submissions: Iterable[Submission]) -> None:
-        """Delete the records of submissions' grades. Call this before setting the grades in the gradebook to zero."""
+        """Record that submissions have no grades. Call this before setting the grades in the gradebook to zero."""
         with self._step() as book:
-            names = ((one.student, one.assignment) for one in submissions)
-            book.executemany("DELETE FROM entered WHERE (student, assignment) = (?, ?)", names)
+            book.executemany(_TAKE_BACK, ((one.student, one.assignment) for one in submissions))
 
     def entered(self) -> dict[tuple[str, str], Entered]:
         """Return the results that were last entered into the gradebook, by student and assignment."""
-        found = {}
-        forms: tuple[Any, ...] = (ResultKey, dict[str, str], dict[str, dict[str, float]], tuple[Row, ...])
-        for student, assignment, *blobs, shown in self._rows("SELECT * FROM entered"):
-            fields: list[Any] = list(map(_decoded, blobs, forms))
-            if None not in fields:
-                made_from, tasks, scores, rows = fields
-                found[student, assignment] = Entered(made_from, tasks, scores, _own(rows, student), shown)
-        return found
+        return {(student, one.assignment): one for student, one in self._attempts("entered")}
 
     def attempts(self, student: str) -> list[Attempt]:
         """Return all attempts of a student, oldest first."""
-        found = []
-        for at, assignment, key, course, report in self._rows(
-            "SELECT at, assignment, made_from, course, report FROM attempt WHERE student = ? ORDER BY number",
-            student,
+        found = self._attempts("student = ?", student)
+        return [Attempt(one.at, one.assignment, one.made_from, one.course, one.rows) for _, one in found]
+
+    def _attempts(self, condition: str, *names: str) -> Iterator[tuple[str, Entered]]:
+        forms: tuple[Any, ...] = (ResultKey, tuple[Row, ...], dict[str, str], dict[str, dict[str, float]])
+        for student, at, assignment, course, shown, *blobs in self._rows(
+            "SELECT student, at, assignment, course, shown, made_from, report, tasks, scores FROM attempt"
+            f" WHERE {condition} ORDER BY number",
+            *names,
         ):
-            made_from, rows = _decoded(key, ResultKey), _decoded(report, tuple[Row, ...])
-            if made_from is not None and rows is not None:
-                when = datetime.fromisoformat(at)
-                found.append(Attempt(when, assignment, made_from, course, _own(rows, student)))
-        return found
+            fields: list[Any] = list(map(_decoded, blobs, forms))
+            if None not in fields:
+                key, rows, tasks, scores = fields
+                when, own = datetime.fromisoformat(at), tuple(replace(row, student=student) for row in rows)
+                yield student, Entered(when, assignment, key, course, own, tasks, scores, shown)
 
     def rename(self, ids: Mapping[str, str]) -> None:
         """Give students other ids. If a student had both ids, the results under the new one stay.
@@ -204,13 +209,8 @@ class ClassStore:
         if not self._path.exists():
             return
         with self._step() as book:
-            for pair in ((new, old) for old, new in ids.items()):
-                for table in ("result", "evidence", "entered", "attempt"):
-                    book.execute(f"UPDATE OR IGNORE {table} SET student = ? WHERE student = ?", pair)
-                for table in ("result", "evidence", "entered"):
-                    book.execute(f"DELETE FROM {table} WHERE student = ?", pair[1:])
-                # The feedback pages name the student.
-                book.execute("UPDATE entered SET shown = '' WHERE student = ?", pair[:1])
+            for statement in _RENAME:
+                book.executemany(statement, [(new, old) for old, new in ids.items()])
             for name, report in book.execute("SELECT name, report FROM run").fetchall():
                 if rows := _decoded(report, tuple[Row, ...]):
                     own = [replace(row, student=ids.get(row.student, row.student)) for row in rows]
@@ -313,10 +313,6 @@ class ClassStore:
             if isinstance(error, sqlite3.Error):
                 raise StoreTrouble(self._path, said_by_database(error)) from error
             raise
-
-
-def _own(rows: Iterable[Row], student: str) -> tuple[Row, ...]:
-    return tuple(replace(row, student=student) for row in rows)
 
 
 def _decoded(

@@ -10,22 +10,20 @@ CREATE TABLE IF NOT EXISTS evidence (
     checks BLOB NOT NULL, cells BLOB NOT NULL,
     PRIMARY KEY (student, assignment, notebook, task)
 );
--- The results that were entered into the gradebook; see the class Entered.
-CREATE TABLE IF NOT EXISTS entered (
-    student TEXT, assignment TEXT, made_from TEXT NOT NULL, tasks BLOB NOT NULL, scores BLOB NOT NULL,
-    report BLOB NOT NULL, shown TEXT NOT NULL,
-    PRIMARY KEY (student, assignment)
-);
--- Each grading of a submission; see the class Attempt. Attempts are only added, never changed or removed;
--- only the id of their student may change.
+-- Each grading of a submission; see the class Entered. The column entered is 1 if the gradebook contains the results of
+-- this attempt: of each submission one attempt at most. Attempts are only added, never changed or removed; only the id of
+-- their student, entered and shown may change.
 CREATE TABLE IF NOT EXISTS attempt (
     number INTEGER PRIMARY KEY, student TEXT NOT NULL, at TEXT NOT NULL, assignment TEXT NOT NULL,
-    made_from TEXT NOT NULL, course TEXT NOT NULL, report BLOB NOT NULL
+    made_from TEXT NOT NULL, course TEXT NOT NULL, report BLOB NOT NULL,
+    tasks BLOB NOT NULL DEFAULT '{}', scores BLOB NOT NULL DEFAULT '{}', entered INTEGER NOT NULL DEFAULT 0,
+    shown TEXT NOT NULL DEFAULT ''
 );
 CREATE INDEX IF NOT EXISTS attempt_of ON attempt (student);
+CREATE INDEX IF NOT EXISTS entered_of ON attempt (student, assignment) WHERE entered;
 CREATE TRIGGER IF NOT EXISTS not_removed BEFORE DELETE ON attempt BEGIN SELECT RAISE(ABORT, 'attempts stay'); END;
-CREATE TRIGGER IF NOT EXISTS not_changed BEFORE UPDATE OF number, at, assignment, made_from, course, report ON attempt
-    BEGIN SELECT RAISE(ABORT, 'attempts stay'); END;
+CREATE TRIGGER IF NOT EXISTS not_changed BEFORE UPDATE OF number, at, assignment, made_from, course, report, tasks, scores
+    ON attempt BEGIN SELECT RAISE(ABORT, 'attempts stay'); END;
 -- The class's table of results after each of the last runs that changed the table. The name is the run's time in UTC.
 CREATE TABLE IF NOT EXISTS run (name TEXT PRIMARY KEY, course TEXT NOT NULL, report BLOB NOT NULL);
 -- The master from which each source notebook of the class was made; see the class Origin.

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from autograder.safe_files import keep_whole
 
-FORM = 4
+FORM = 5
 """The version of the tables, as the file's ``user_version``."""
 TABLES = Path(__file__).with_name("class_tables.sql").read_text(encoding="utf-8")
 _STEPS = {
@@ -30,6 +30,22 @@ _STEPS = {
         "ALTER TABLE entered RENAME COLUMN fingerprint TO made_from",
         "UPDATE entered SET made_from = json_object('handed_in', made_from)",
         "ALTER TABLE entered DROP COLUMN course",
+    ),
+    4: (
+        "ALTER TABLE attempt ADD COLUMN tasks BLOB NOT NULL DEFAULT '{}'",
+        "ALTER TABLE attempt ADD COLUMN scores BLOB NOT NULL DEFAULT '{}'",
+        "ALTER TABLE attempt ADD COLUMN entered INTEGER NOT NULL DEFAULT 0",
+        "ALTER TABLE attempt ADD COLUMN shown TEXT NOT NULL DEFAULT ''",
+        # A grade without its attempt is entered once more, from the stored results.
+        "UPDATE attempt SET (tasks, scores, entered, shown) = (SELECT tasks, scores, 1, shown FROM entered AS one"
+        " WHERE (one.student, one.assignment) = (attempt.student, attempt.assignment)) WHERE number IN"
+        " (SELECT max(number) FROM attempt JOIN entered USING (student, assignment, made_from, report)"
+        " GROUP BY student, assignment)",
+        "DROP TABLE entered",
+        "CREATE INDEX entered_of ON attempt (student, assignment) WHERE entered",
+        "DROP TRIGGER IF EXISTS not_changed",
+        "CREATE TRIGGER not_changed BEFORE UPDATE OF number, at, assignment, made_from, course, report, tasks, scores"
+        " ON attempt BEGIN SELECT RAISE(ABORT, 'attempts stay'); END",
     ),
 }
 """For each earlier version, the statements that make the next version's tables from its tables."""

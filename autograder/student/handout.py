@@ -21,6 +21,7 @@ from autograder.exercises import REFERENCE
 from autograder.kit.hunts.ticket import TICKET
 from autograder.masters.chapter_building import holds_work
 from autograder.masters.master_files import relinked
+from autograder.packed_files import packed
 from autograder.safe_files import write_whole
 from environment.installation import PACKAGE
 
@@ -137,8 +138,8 @@ def hand_out(
         assignments: The names of the notebooks to hand out, graded or not; all if empty.
         as_zip: True to make a zip file.
         with_solutions: True to add the reference solutions and explanations that cards show with full marks, or offer
-            after enough failures. Students can then also read them earlier, in the folder ``exercises``, as those of a
-            bug hunt always.
+            after enough failures. Students can then also read them earlier, in the folder ``exercises``. The causes of
+            a bug hunt, and without this also its repairs, are packed there.
 
     Raises:
         CannotHandOut: The place is not empty, a name is not that of a notebook, a notebook of the chapters was
@@ -186,10 +187,12 @@ def _files(
         yield from ((path.relative_to(root).as_posix(), path) for path in _below(root / name, root))
     yield from _pages(root)
     names = {lab.name for chapter in chapters for lab in chapter.labs}
+    to_pack = (TICKET,) if with_solutions else (TICKET, course.SOLUTION)
     for chapter in chapters:
         for path in [chapter.folder / course.CHAPTER, *_judges_part(chapter, with_solutions=with_solutions)]:
             if path.is_file():
-                yield f"{HANDED_OUT}/{path.relative_to(chapter.folder.parent).as_posix()}", path
+                content = packed(path.read_bytes()) if path.name.endswith(to_pack) else path
+                yield f"{HANDED_OUT}/{path.relative_to(chapter.folder.parent).as_posix()}", content
         for lab in chapter.labs:
             yield from _notebook(root, chapter, lab, names)
 
@@ -225,7 +228,7 @@ def _judges_part(chapter: course.Chapter, *, with_solutions: bool) -> Iterator[P
         yield from sorted(lab.glob("*.py"))
         yield from sorted(lab.glob(f"*{REFERENCE}"))
         yield from (tickets := sorted(lab.glob(f"*{TICKET}")))
-        # The card of a ticket shows our repair beside the student's; the cause stands in the ticket anyway.
+        # The card of a ticket shows our repair beside the student's.
         if with_solutions or tickets:
             yield from sorted(lab.glob(f"*{course.SOLUTION}"))
     yield from _below(chapter.folder / course.INTERFACES, chapter.folder)

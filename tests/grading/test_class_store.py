@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 from click.testing import CliRunner
-from tiny_class import TALKER, FakeEngine, TinyClass, make_version_3
+from tiny_class import TALKER, FakeEngine, TinyClass, make_version_3, make_version_4
 
 from autograder.boxes.run_limits import Ended, Limits
 from autograder.cli import cli
@@ -59,14 +59,15 @@ def submission(student: str = "ada", assignment: str = "lab") -> Submission:
     return Submission(student, assignment, Path("submitted", student, assignment))
 
 
-def entered(student: str = "ada", assignment: str = "lab") -> Entered:
+def entered(number: int = 0, student: str = "ada", assignment: str = "lab") -> Entered:
     rows = (Row(student, assignment, "lab.one", 2, 4, "failed"),)
     task = replace(TASK, student=student, assignment=assignment)
-    return Entered(ResultKey(f"of {student}"), {"lab": task.key()}, {"lab": {"lab-one": 2.0}}, rows)
+    scores = {"lab": {"lab-one": 2.0}}
+    return Entered(AT, assignment, ResultKey(f"work {number}"), "v1", rows, {"lab": task.key()}, scores)
 
 
-def attempt(number: int = 0, assignment: str = "lab") -> Attempt:
-    return Attempt(AT, assignment, ResultKey(f"work {number}"), "v1", ROWS)
+def attempt(number: int = 0) -> Attempt:
+    return Attempt(AT, "lab", ResultKey(f"work {number}"), "v1", ROWS)
 
 
 def change(store: ClassStore, statement: str) -> None:
@@ -85,7 +86,7 @@ def file_of(store: ClassStore) -> Path:
 def test_a_run_that_enters_nothing_leaves_the_evidence_of_a_grade(store: ClassStore) -> None:
     changed = replace(TASK, course="v2")
     store.keep(TASK, replace(DONE, evidence={"lab.one": b"first"}))
-    store.enter(submission(), attempt(), entered())
+    store.enter(submission(), entered())
     for number in range(2):  # two dry runs with a changed course
         store.keep(changed, replace(DONE, evidence={"lab.one": b"%d" % number}))
     seen = store.evidence("ada", "lab.one")
@@ -94,7 +95,7 @@ def test_a_run_that_enters_nothing_leaves_the_evidence_of_a_grade(store: ClassSt
     store.keep(TASK, replace(DONE, evidence={"lab.one": b"executed again, and seen otherwise"}))
     assert store.evidence("ada", "lab.one") == seen
     store.keep(changed, replace(DONE, evidence={"lab.one": b"1"}))
-    store.enter(submission(), attempt(), replace(entered(), tasks={"lab": changed.key()}))
+    store.enter(submission(), replace(entered(), tasks={"lab": changed.key()}))
     seen = store.evidence("ada", "lab.one")
     assert seen is not None
     assert (seen.task, seen.checks) == (changed.key(), {"lab.one": b"1"})
@@ -160,13 +161,13 @@ def test_trouble_of_the_grader_is_not_kept(store: ClassStore) -> None:
 
 
 def test_what_was_entered_is_known_with_its_attempt_until_it_is_taken_back(store: ClassStore) -> None:
-    store.enter(submission(), attempt(1), entered())
-    store.enter(submission(), attempt(2), None)  # to be tried again
-    assert store.entered() == {("ada", "lab"): entered()}
+    store.enter(submission(), entered(1))
+    store.enter(submission(), entered(2), is_final=False)  # to be tried again
+    assert store.entered() == {("ada", "lab"): entered(1)}
     store.note_shown(submission(), "pages")
-    noted = replace(entered(), shown="pages")
+    noted = replace(entered(1), shown="pages")
     assert store.entered() == {("ada", "lab"): noted}
-    store.enter(submission(), attempt(3), entered())
+    store.enter(submission(), entered(3))
     assert store.entered()["ada", "lab"].shown == "", "its pages say something else"
     store.forget_entered([submission()])
     store.note_shown(submission(), "pages")
@@ -174,8 +175,12 @@ def test_what_was_entered_is_known_with_its_attempt_until_it_is_taken_back(store
 
 
 def test_attempts_are_added_and_neither_changed_nor_removed(store: ClassStore) -> None:
-    store.enter(submission(), attempt(), None)
-    for statement in ("DELETE FROM attempt", "UPDATE attempt SET made_from = 'other'"):
+    store.enter(submission(), entered(), is_final=False)
+    for statement in (
+        "DELETE FROM attempt",
+        "UPDATE attempt SET made_from = 'other'",
+        "UPDATE attempt SET tasks = ''",
+    ):
         with pytest.raises(sqlite3.IntegrityError, match="attempts stay"):
             change(store, statement)
     assert store.attempts("ada") == [attempt()]
@@ -191,6 +196,17 @@ def test_the_last_runs_are_kept_and_none_twice(store: ClassStore) -> None:
     assert store.run(names[0]) == (replace(ROWS[0], score=3),)
     store.keep_run("v2", [replace(ROWS[0], score=class_store._RUNS + 2)])
     assert store.runs()[-1] > names[-1], "of another version of the course it is another table"
+
+
+def test_of_a_student_with_two_ids_the_new_one_keeps_its_grade(store: ClassStore) -> None:
+    for number, student in enumerate(("eve", "ada")):
+        store.enter(submission(student), entered(number, student))
+        store.note_shown(submission(student), "pages")
+    store.rename({"ada": "eve"})
+    assert store.entered() == {("eve", "lab"): entered(0, "eve")}
+    assert [one.made_from for one in store.attempts("eve")] == [ResultKey("work 0"), ResultKey("work 1")]
+    store.rename({"eve": "zoe"})
+    assert [one.made_from for one in store.entered().values()] == [ResultKey("work 0")]
 
 
 def test_read_cells_are_those_of_the_present_sources(store: ClassStore) -> None:
@@ -212,9 +228,7 @@ def test_no_name_touches_the_rows_of_another(store: ClassStore) -> None:
         tasks[student, assignment] = replace(TASK, student=student, assignment=assignment)
         exercise = f"{assignment}.one"
         store.keep(tasks[student, assignment], replace(DONE, evidence={exercise: f"{number}".encode()}))
-        store.enter(
-            submission(student, assignment), attempt(number, assignment), entered(student, assignment)
-        )
+        store.enter(submission(student, assignment), entered(number, student, assignment))
     gone = submission("ada", "lab")
     store.forget_entered([gone])
     store.forget_results([gone])
@@ -248,9 +262,10 @@ def test_a_damaged_result_counts_as_none_and_the_others_stay(store: ClassStore, 
 @pytest.mark.parametrize("column", ["tasks", "scores", "report"])
 def test_a_damaged_entry_counts_as_none_and_the_others_stay(store: ClassStore, column: str) -> None:
     for student in ("ada", "ben"):
-        store.enter(submission(student), attempt(), entered(student))
-    change(store, f"UPDATE entered SET {column} = 'x' WHERE student = 'ada'")
-    assert store.entered() == {("ben", "lab"): entered("ben")}
+        store.enter(submission(student), entered(student=student))
+    change(store, "DROP TRIGGER not_changed")
+    change(store, f"UPDATE attempt SET {column} = 'x' WHERE student = 'ada'")
+    assert store.entered() == {("ben", "lab"): entered(student="ben")}
 
 
 @pytest.mark.parametrize(
@@ -309,10 +324,16 @@ def test_a_file_of_a_newer_course_is_sound(store: ClassStore, tmp_path: Path) ->
 def make_earlier(store: ClassStore, form: int = 2) -> list[str]:
     """Give the file the tables of an earlier version, with content, and return that content."""
     store.keep(TASK, DONE)
-    store.enter(submission(), attempt(), entered())
+    store.enter(submission(), entered())
+    store.note_shown(submission(), "pages")
+    store.enter(
+        submission(), entered(1), is_final=False
+    )  # so the newest attempt is not the one in the gradebook
     store.keep_run("v1", ROWS)
     store.close()
-    make_version_3(file_of(store))
+    make_version_4(file_of(store))
+    if form < 4:
+        make_version_3(file_of(store))
     with contextlib.closing(sqlite3.connect(file_of(store))) as book, book:
         if form == 2:
             book.execute("DROP TRIGGER not_changed")
@@ -329,26 +350,27 @@ def dump_of(path: Path) -> list[str]:
         return list(book.iterdump())
 
 
-@pytest.mark.parametrize("form", [2, 3])
+@pytest.mark.parametrize("form", [2, 3, 4])
 def test_a_file_of_an_earlier_course_is_used_on_and_a_copy_stays(store: ClassStore, form: int) -> None:
     before = make_earlier(store, form)
-    assert store.entered() == {("ada", "lab"): entered()}
-    assert (store.attempts("ada"), len(store.runs())) == ([attempt()], 1)
+    assert store.entered() == {("ada", "lab"): replace(entered(), shown="pages")}
+    assert (store.attempts("ada"), len(store.runs())) == ([attempt(), attempt(1)], 1)
     with contextlib.closing(sqlite3.connect(file_of(store))) as book:
         assert book.execute("PRAGMA user_version").fetchone() == (store_tables.FORM,)
     copy = file_of(store).with_name(f"class.db.version-{form}")
     assert dump_of(copy) == before
     store.rename({"ada": "eve"})
-    assert (store.attempts("ada"), len(store.attempts("eve"))) == ([], 1)
-    with pytest.raises(sqlite3.IntegrityError, match="attempts stay"):
-        change(store, "UPDATE attempt SET made_from = 'forged'")
+    assert (store.attempts("ada"), len(store.attempts("eve"))) == ([], 2)
+    for column in ("made_from", "scores"):
+        with pytest.raises(sqlite3.IntegrityError, match="attempts stay"):
+            change(store, f"UPDATE attempt SET {column} = 'forged'")
     assert dump_of(copy) == before
     store.close()
     make_earlier(store, form)  # the instructor put back a file of the earlier course
     assert ("ada", "lab") in store.entered()
 
 
-@pytest.mark.parametrize("form", [2, 3])
+@pytest.mark.parametrize("form", [2, 3, 4])
 @pytest.mark.parametrize("name", ["_copy", "keep_whole", "_form_of"])
 def test_a_file_whose_conversion_was_killed_is_whole(
     store: ClassStore, monkeypatch: pytest.MonkeyPatch, name: str, form: int
@@ -374,7 +396,7 @@ def test_a_file_whose_conversion_was_killed_is_whole(
     os.waitpid(in_a_process(store.entered), 0)
     monkeypatch.undo()
     assert dump_of(file_of(store)) == before
-    assert store.entered() == {("ada", "lab"): entered()}
+    assert store.entered() == {("ada", "lab"): replace(entered(), shown="pages")}
     assert dump_of(file_of(store).with_name(f"class.db.version-{form}")) == before
 
 
@@ -394,7 +416,7 @@ def in_a_process(work: object) -> int:
 
 def test_a_step_that_was_killed_in_its_middle_was_never_begun(store: ClassStore) -> None:
     """Also where pages of it are in the file already."""
-    store.enter(submission(), attempt(), entered())
+    store.enter(submission(), entered())
     store.close()
 
     def die() -> None:
@@ -404,7 +426,7 @@ def test_a_step_that_was_killed_in_its_middle_was_never_begun(store: ClassStore)
                 book.execute(
                     "INSERT INTO result VALUES (?, 'lab', 'lab', 'key', ?)", (f"{number}", bytes(9000))
                 )
-            book.execute("DELETE FROM entered")
+            book.execute("UPDATE attempt SET entered = 0")
             os.kill(os.getpid(), signal.SIGKILL)
 
     os.waitpid(in_a_process(die), 0)
@@ -416,7 +438,7 @@ def test_a_step_that_was_killed_in_its_middle_was_never_begun(store: ClassStore)
 
 def test_whenever_it_is_killed_all_that_was_said_to_be_kept_is_there(store: ClassStore) -> None:
     chance = random.Random(4)
-    store.enter(submission(), attempt(), entered())
+    store.enter(submission(), entered())
     store.close()
     done = 1
     for _ in range(15):
@@ -424,9 +446,7 @@ def test_whenever_it_is_killed_all_that_was_said_to_be_kept_is_there(store: Clas
 
         def work(write: int = write, done: int = done) -> None:
             for number in range(done, 10_000):
-                store.enter(
-                    submission(), attempt(number), replace(entered(), made_from=ResultKey(f"{number}"))
-                )
+                store.enter(submission(), entered(number))
                 os.write(write, b".")
 
         child = in_a_process(work)
@@ -442,7 +462,9 @@ def test_whenever_it_is_killed_all_that_was_said_to_be_kept_is_there(store: Clas
             assert book.execute("PRAGMA integrity_check").fetchone() == ("ok",)
         kept = len(store.attempts("ada"))
         assert kept - done in (len(said), len(said) + 1)
-        assert store.entered()["ada", "lab"].made_from == ResultKey(f"{kept - 1}"), "both of a step, or none"
+        assert store.entered()["ada", "lab"].made_from == ResultKey(f"work {kept - 1}"), (
+            "both of a step, or none"
+        )
         store.close()
         done = kept
 
@@ -487,17 +509,17 @@ def test_who_reads_reads_while_a_batch_runs(tiny: TinyClass, fake_engine: FakeEn
 
 
 def test_who_reads_waits_for_no_step_that_has_not_come_to_its_end(store: ClassStore) -> None:
-    store.enter(submission(), attempt(), entered())
+    store.enter(submission(), entered())
     with contextlib.closing(sqlite3.connect(file_of(store), isolation_level=None)) as other:
         other.execute("BEGIN IMMEDIATE")
-        other.execute("DELETE FROM entered")
+        other.execute("UPDATE attempt SET entered = 0")
         assert store.entered() == {("ada", "lab"): entered()}
         other.execute("ROLLBACK")
 
 
 def test_a_store_that_another_program_holds(store: ClassStore, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(class_store, "_PATIENCE", 0.1)
-    store.enter(submission(), attempt(), entered())
+    store.enter(submission(), entered())
     store.close()
     with contextlib.closing(sqlite3.connect(file_of(store), isolation_level=None)) as other:
         other.execute("BEGIN EXCLUSIVE")
@@ -527,7 +549,7 @@ def test_a_full_disk_is_said_and_loses_nothing(store: ClassStore) -> None:
     with mounted(file_of(store).parent, "-t", "tmpfs", "-o", "size=400k", "tmpfs"):
         filler = file_of(store).with_name("filler")
         filler.write_bytes(bytes(100_000))
-        store.enter(submission(), attempt(), entered())
+        store.enter(submission(), entered())
         with pytest.raises(DiskFull, match="Free some space"):
             [store.keep(task, large) for task in tasks]
         kept = len(store.results("ada", "lab"))

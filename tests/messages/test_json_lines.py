@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import signal
 import socket
@@ -12,9 +13,12 @@ from typing import get_args
 
 import msgspec
 import pytest
+from hypothesis import example, given
+from hypothesis import strategies as st
 
 from autograder.messages import json_lines, judge_messages, run_messages, workspace_messages
 from autograder.messages.json_lines import Hangup, Lines, NotUnderstood, Silent, TooLong
+from tests.drawn import drawn
 
 
 def _pair() -> tuple[socket.socket, Lines]:
@@ -77,11 +81,20 @@ class Stubborn(str):
         return self
 
 
-@pytest.mark.parametrize("text", ["Grüße", "\ud800 half a character", "\0", Stubborn("stubborn")])
-def test_any_text_of_a_subject_s_arrives(text: str) -> None:
+TEXTS = st.text(st.characters(exclude_categories=()))
+
+
+@drawn(200)
+@given(TEXTS, st.integers(0, 2**53))
+@example("\ud800 half a character", 1)
+@example("\0", 1)
+@example(Stubborn("stubborn"), 1)
+def test_any_text_of_a_subject_s_arrives(text: str, run: int) -> None:
     wire, judge = _pair()
-    Lines(wire).say(run_messages.Output(1, text))
-    assert judge.hear(judge_messages.FromNotebook) == run_messages.Output(1, text)
+    with wire, contextlib.closing(judge):
+        for message in (run_messages.Output(run, text), judge_messages.Check(text)):
+            Lines(wire).say(message)
+            assert judge.hear(judge_messages.FromNotebook) == message
 
 
 def test_every_word_stands_for_one_message() -> None:

@@ -61,7 +61,7 @@ def test_it_finds_the_door_whatever_it_looks_at(heading: float) -> None:
 
 
 @pytest.mark.parametrize(
-    ("angle", "metres"),
+    ("angle", "meters"),
     [
         (0.0, 5.0),
         (math.pi / 2, 2.0),
@@ -70,8 +70,8 @@ def test_it_finds_the_door_whatever_it_looks_at(heading: float) -> None:
         (math.atan2(1.0, 3.0), math.hypot(3.0, 1.0)),
     ],
 )
-def test_a_ray_ends_at_the_first_wall_and_goes_through_the_door(angle: float, metres: float) -> None:
-    assert ROOM.ranges((1.0, 2.0), (angle,)) == [pytest.approx(metres)]
+def test_a_ray_ends_at_the_first_wall_and_goes_through_the_door(angle: float, meters: float) -> None:
+    assert ROOM.ranges((1.0, 2.0), (angle,)) == [pytest.approx(meters)]
 
 
 def test_every_ray_of_every_place_ends() -> None:

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from autograder import course, exercises
+from autograder import course, exercises, packed_files
 from autograder.masters.master_files import lab_name, masters
 from autograder.student import handout
 from autograder.student.handout import CannotHandOut, hand_out
@@ -87,6 +87,17 @@ def test_of_a_bug_hunt_it_has_the_tickets_and_what_their_cards_show_after_the_pa
     assert lab / "dark_display.solution.json" in kept
     assert (handed_out / "exercises" / lab / "dark_display.ticket.toml").is_file()
     assert {path.parent.name for path in kept if path.name.endswith(course.SOLUTION)} <= {"bugs_1", "bugs_2"}
+
+
+def test_the_causes_and_repairs_of_a_bug_hunt_cannot_be_read_by_chance(handed_out: Path) -> None:
+    lab = Path("01_ros2_fundamentals/bugs_2")
+    for name in ("runaway.ticket.toml", "runaway.solution.json"):
+        content = (ROOT / "solutions" / lab / name).read_bytes()
+        packed = handed_out / "exercises" / lab / name
+        assert packed_files.read(packed) == content
+        assert not [
+            path for path in handed_out.rglob("*") if path.is_file() and content[:60] in path.read_bytes()
+        ]
 
 
 def test_a_solution_that_slipped_in_would_be_found(tmp_path: Path) -> None:

@@ -228,7 +228,7 @@ def _has_work(directory: ClassDirectory, assignment: str, notebook: str, data: b
         data: The bytes that a student handed in.
     """
     try:
-        cells, _ = read_notebook(data)
+        cells, _ = read_notebook(data, directory.state)
     except UnreadableSubmission:
         return False
     try:

@@ -22,6 +22,7 @@ from autograder.grading.rebuilding.submitted_notebook import UnreadableSubmissio
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
     from datetime import tzinfo
+    from pathlib import Path
 
     from autograder.grading.classes.class_directory import ClassDirectory
     from autograder.grading.collecting.collected_files import Arrival, Delivery, Inbox
@@ -69,8 +70,8 @@ def lines_of(
         # All lists, from any delivery, map numbers to students.
         student_of = StudentOf(roster, delivery.form, delivery.names, itertools.chain(*entries.values()))
         zone = ZoneInfo(delivery.zone) if delivery.zone else directory.time_zone
-        lines_there = _Reading(inbox, assignments, student_of, delivery, id_, zone).lines(edits)
-        read += [(delivery, line) for line in lines_there]
+        reading = _Reading(inbox, directory.state, assignments, student_of, delivery, id_, zone)
+        read += [(delivery, line) for line in reading.lines(edits)]
     timed = list(ListTimes(inbox, directory.time_zone).applied(read))
     clear = {line.key for line in timed if not line.reason}
     by_target: dict[tuple[str, str, str], list[Line]] = defaultdict(list)
@@ -87,6 +88,7 @@ class _Reading:
     """Interprets the files of one delivery."""
 
     inbox: Inbox
+    state: Path
     assignments: _AssignmentOf
     student_of: StudentOf
     delivery: Delivery
@@ -178,8 +180,11 @@ class _Reading:
             return _no_notebook(line, arrival)
         if reason:
             return replace(line, reason=reason)
-        cells, unreadable = _cells(data)
-        line = replace(line, unreadable=unreadable)
+        cells: Sequence[SubmittedCell] = ()
+        try:
+            cells, _ = read_notebook(data, self.state)
+        except UnreadableSubmission as error:
+            line = replace(line, unreadable=str(error))
         if edit.assignment or edit.notebook:
             return self._as_written(line, name, edit, asked)
         return self.assignments.completed(line, name, cells, asked)
@@ -315,11 +320,3 @@ def _stem_of(name: str) -> str:
     """Return the name of a file without ``.ipynb``, and without what programs add to a copy, such as `` (1)``."""
     end = name.lower().find(SUFFIX)
     return base_of(name[:end] if end > 0 else name.rpartition(".")[0] or name)
-
-
-def _cells(data: bytes) -> tuple[Sequence[SubmittedCell], str]:
-    """Return a notebook's cells; and if it cannot be read, no cells and the reason."""
-    try:
-        return read_notebook(data)[0], ""
-    except UnreadableSubmission as error:
-        return (), str(error)

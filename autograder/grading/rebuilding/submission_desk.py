@@ -2,16 +2,26 @@
 
 .. code-block:: python
 
-    cells, left_out = read_notebook(read_bytes(path))
+    cells, left_out = read_notebook(read_bytes(path), directory.state)
+
+The document that a desk makes of a file is kept in the class, under a hash of the file. So `grade`, `collect` and
+`similar` parse a file once, also over several runs and after an update of the course.
 
 Even if a file takes over its desk, it can only change what is read from this one file, because the desk's document is
-checked: it must be one that a desk could have made from a notebook. If the document is impossible, or the desk fails on
-the file, the file counts as unreadable.
+checked each time that it is used: it must be one that a desk could have made from a notebook. If the document is
+impossible, or the desk fails on the file, the file counts as unreadable.
 """
 
 from __future__ import annotations
 
+import contextlib
+import hashlib
+import inspect
+import os
 import signal
+import sys
+import zlib
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import msgspec
@@ -19,8 +29,10 @@ import msgspec
 from autograder.boxes.box_connection import ChannelClosed
 from autograder.boxes.reading_desks import KeptDesk, answer_in, in_memory
 from autograder.cards.readable_text import paragraph
+from autograder.execution import executed_cells
 from autograder.execution.executed_cells import IMAGES
 from autograder.grading.grading_errors import GradingError
+from autograder.grading.rebuilding import submitted_notebook
 from autograder.grading.rebuilding.notebook_parsing import BASE64
 from autograder.grading.rebuilding.submitted_notebook import (
     LONGEST_REASON,
@@ -30,6 +42,7 @@ from autograder.grading.rebuilding.submitted_notebook import (
     Unreadable,
     UnreadableSubmission,
 )
+from autograder.safe_files import write_whole
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -38,6 +51,11 @@ if TYPE_CHECKING:
     from autograder.grading.rebuilding.submitted_notebook import SubmittedCell
 
 
+_PARSER = "autograder.grading.rebuilding.notebook_parsing"
+_DOCUMENTS = "documents"
+_PARTS = (sys.modules[_PARSER], submitted_notebook, executed_cells)
+_VERSION = hashlib.sha256("".join(map(inspect.getsource, _PARTS)).encode()).digest()
+"""A hash of the code that makes a document from a file. Another version of this code makes each document again."""
 CPU_SECONDS = 20
 """The maximum processor time of a desk process, in seconds. A file of 50 MB takes two seconds."""
 _LARGEST_DOCUMENT = MAX_BYTES + 14_000_000
@@ -50,20 +68,33 @@ _TOO_LONG = f"Reading the file takes far more time than reading a notebook. {_AS
 _NOT_READ = f"The file is not a notebook: the program that reads notebooks failed on it. {_AS_SAVED}"
 
 
-def read_notebook(data: bytes) -> tuple[Sequence[SubmittedCell], int]:
+def read_notebook(data: bytes, state: Path = Path(os.devnull)) -> tuple[Sequence[SubmittedCell], int]:
     """Return the valid cells of a submitted file, and the number of invalid cells that were left out.
+
+    Args:
+        data: The bytes of the file.
+        state: The class's folder for the grader's own files, in which the document of a file that can be read is kept;
+            by default no document is kept.
 
     Raises:
         UnreadableSubmission: The file is not a notebook. The message is a sentence for the student.
         GradingError: No file can be read on this machine.
     """
+    kept = state / _DOCUMENTS / hashlib.sha256(_VERSION + data).hexdigest()
+    # A missing or damaged document is made again.
+    with contextlib.suppress(OSError, zlib.error, UnreadableSubmission):
+        return checked(zlib.decompress(kept.read_bytes()))
     try:
-        return checked(document_of(_desk, data))
+        document = document_of(_desk, data)
+        read = checked(document)
     except ChannelClosed as error:
         raise GradingError(
             f"No submitted file can be read on this machine: {error}. Usually the machine is short of memory: end "
             "other programs, and type the command again."
         ) from error
+    with contextlib.suppress(OSError):  # for example, the class may only be read
+        write_whole(kept, zlib.compress(document, 1))
+    return read
 
 
 def document_of(desk: Desk | KeptDesk, data: bytes) -> bytes:
@@ -110,4 +141,4 @@ def _rehearse(desk: Desk) -> None:
         raise ChannelClosed(f"not even a sample ({error})") from error
 
 
-_desk = KeptDesk("autograder.grading.rebuilding.notebook_parsing", rehearse=_rehearse)
+_desk = KeptDesk(_PARSER, rehearse=_rehearse)

@@ -87,7 +87,8 @@ def read_answers(
     for submission in submissions:
         who = f"{submission.student}/{assignment}"
         try:
-            cells, left_out = read_notebook(read_bytes(submission.folder / f"{notebook}{SUFFIX}"))
+            data = read_bytes(submission.folder / f"{notebook}{SUFFIX}")
+            cells, left_out = read_notebook(data, directory.state)
         except NotAFile:
             continue  # the instructor gets a line about this refused file elsewhere
         except UnreadableSubmission as error:

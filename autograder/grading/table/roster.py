@@ -238,11 +238,13 @@ def name_forms(name: str) -> set[tuple[str, ...]]:
 
 
 def _words(name: str) -> list[str]:
-    """Return the words of a name, without accents and in lower case."""
+    """Return the words of a name, without accents, in lower case, and with i for the Turkish ı, whose capital is I."""
     plain = "".join(
         character for character in unicodedata.normalize("NFKD", name) if not unicodedata.combining(character)
     )
-    return "".join(character if character.isalnum() else " " for character in plain.casefold()).split()
+    return "".join(
+        character if character.isalnum() else " " for character in plain.casefold().replace("ı", "i")
+    ).split()
 
 
 def _joined_names(student: Student) -> tuple[str, str]:

@@ -80,7 +80,7 @@ def _rebuilt(
     """Return the rebuilt notebook, and the reason if the submitted file was not used (empty if it was used)."""
     path = submission.folder / f"{notebook}{SUFFIX}"
     try:
-        cells, left_out = read_notebook(read_bytes(path))
+        cells, left_out = read_notebook(read_bytes(path), directory.state)
         if is_of_another(master, cells):
             raise UnreadableSubmission(
                 f"The cells of {path.name} belong to another assignment: hand in the notebook of this assignment."

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import msgspec
 
+from autograder import packed_files
 from autograder.kit.hunts.question import Question
 from autograder.kit.hunts.repairs import Repairs
 
@@ -94,8 +95,8 @@ def _ticket(file: str) -> tuple[str, Ticket]:
     exercise = Path(file)
     words = exercise.with_name(f"{exercise.stem.removesuffix(_WHY)}{TICKET}")
     try:
-        ticket = msgspec.toml.decode(words.read_bytes(), type=Ticket)
-    except (OSError, ValueError) as error:
+        ticket = msgspec.toml.decode(packed_files.read(words), type=Ticket)
+    except (OSError, ValueError, EOFError) as error:
         fields = ", ".join(Ticket.__struct_fields__)
         raise ValueError(f"{words.name}: {error}. A ticket has the fields {fields}") from error
     return f"{exercise.parent.name}.{exercise.stem}", ticket

@@ -54,8 +54,9 @@ class _Drawn(OwnScenario):
 
     Args:
         outputs: What is compared.
-        is_timed: True if time alone decides some of it. A right node with a clock of its own may then do the same as a
-            wrong one while the judge moves its clock, so no wrong answer is proven before the look in real time.
+        is_timed: True if time alone decides some of it, on any clock. A right node with a clock of its own may then do
+            the same as a wrong one while the judge moves its clock, so no wrong answer is proven before the look in
+            real time.
     """
 
     def __init__(
@@ -144,6 +145,8 @@ class SameAsSolution:
             topics, the period is the student's.
         pause: Seconds of the subject's time after each input.
         tolerance: The absolute or relative tolerance for numbers.
+        robots_clock: True if the task demands the robot's clock for all that time alone decides. What a node does in
+            simulated time is then proven, also where another clock would make it right in real time.
         roles: The roles of the subject's endpoints, the most telling first.
         points: The points of the exercise. All criteria are worth the same.
 
@@ -178,6 +181,7 @@ class SameAsSolution:
         rates: Mapping[str, float] = NOTHING,
         pause: float = PAUSE,
         tolerance: float = TOLERANCE,
+        robots_clock: bool = False,
         roles: Sequence[str] = ("publisher", "subscription"),
         points: float = POINTS,
     ) -> None:
@@ -196,7 +200,7 @@ class SameAsSolution:
             for name, paths in outputs.items()
         ]
         self._outputs += [Output(name, (), Kind.RATE, tolerance, period) for name, period in rates.items()]
-        is_timed = any(isinstance(step, (int, float)) for step in gives(Random(0)))
+        is_timed = not robots_clock and any(isinstance(step, (int, float)) for step in gives(Random(0)))
         drawn = _Drawn(self._scenario, self._outputs, roles, is_timed=is_timed)
         self._draft = Draft(exercise_id, title, task, drawn, points=points)
         if late_after:

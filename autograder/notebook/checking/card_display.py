@@ -22,7 +22,7 @@ import weakref
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Self
 
-from autograder import course
+from autograder import course, packed_files
 from autograder.cards import card_wording, html_rendering
 from autograder.cards.card_content import Solution
 from autograder.cards.card_wording import duration
@@ -328,10 +328,10 @@ def solution_of(exercise: str) -> Solution | None:
         for chapter in course.chapters(course.root()):
             for lab in chapter.labs:
                 if file := chapter.exercises_of(lab).get(exercise):
-                    said = json.loads(file.with_suffix(course.SOLUTION).read_text(encoding="utf-8"))
+                    said = json.loads(packed_files.read(file.with_suffix(course.SOLUTION)))
                     fields = {name: said[name] for name in ("why", "other_way", "other_code") if name in said}
                     return Solution(tuple(said["code"]), broken=tuple(said.get("broken", ())), **fields)
-    except (OSError, ValueError, KeyError, TypeError, course.NoCourse, course.BrokenChapter):
+    except (OSError, EOFError, ValueError, KeyError, TypeError, course.NoCourse, course.BrokenChapter):
         pass  # The solution is only an addition, so an error here must not break the check.
     return None
 

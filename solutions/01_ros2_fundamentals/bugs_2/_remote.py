@@ -1,15 +1,29 @@
 """The exercise that judges the runaway: a remote control drives the robot, falls silent, and drives it again."""
 
-from autograder.kit.mission.mission import Mission, Pose, To, World
+from itertools import pairwise
 
-SECONDS, SILENCE = 2.6, 3.5
-"""How long the remote control speaks, and how long it is silent, in seconds."""
+from autograder.kit.mission.mission import Mission, Moment, Pose, To, World
+
+GAPS, SILENCE = (0.4, 0.3, 0.4, 0.4, 0.2) * 2, 3.5
+"""Seconds between two commands, as a radio brings them, and seconds without a command.
+
+The gaps differ, so that a command that is forgotten at regular times is forgotten in the middle of one of them.
+"""
+SPEAKS = 0.45
+"""The remote control still speaks if no gap is longer, in seconds; on a busy machine, one may be."""
 
 
 def held(speed: float) -> list[To | float]:
-    """Return the steps of a remote control that speaks ten times a second, but not evenly: as a radio does."""
-    command = To("/remote", {"linear": {"x": speed}})
-    return [step for _ in range(round(5 * SECONDS)) for step in (command, command, 0.2)]
+    """Return the steps of a remote control that speaks at least twice a second, but not evenly."""
+    return [step for gap in GAPS for step in (To("/remote", {"linear": {"x": speed}}), gap)]
+
+
+def stutters(now: Moment) -> bool:
+    """Return True if the robot has driven in this world and stands, although the remote control speaks."""
+    sent = [event.moment for event in now.part.of("sent", "/remote")]
+    # The first command is sent when the mission begins.
+    gaps = [late - early for early, late in pairwise([*sent[-2:], sent[0] + now.time])] if sent else []
+    return bool(gaps) and max(gaps) < SPEAKS and now.pose.x > now.world.start.x and now.stood > 0.0
 
 
 EXERCISE = Mission(
@@ -19,7 +33,7 @@ EXERCISE = Mission(
     roles=("publisher", "subscription"),
     draws=lambda random: [
         step
-        for steps in (held(0.5), [SILENCE], held(0.4))
+        for steps in (held(0.5), [SILENCE], held(0.4), [])
         for step in (World(start=Pose(random.uniform(0.8, 1.0), 2.0, 0.0)), *steps)
     ],
     reaches=[
@@ -27,4 +41,5 @@ EXERCISE = Mission(
         ("Stands while the tablet is silent", lambda now: now.leg == 1 and now.stood > 1.0),
         ("Drives again when the tablet speaks again", lambda now: now.leg == 2 and now.pose.x > 1.7),
     ],
+    never=[("Never stands between two commands of the tablet", stutters)],
 ).exercise()

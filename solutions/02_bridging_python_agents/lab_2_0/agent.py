@@ -6,6 +6,7 @@ from autograder.kit.oracle.returns import Returns
 
 AHEAD = {"far": (1.1, 3.0), "between": (0.65, 0.95), "near": (0.2, 0.55)}
 COURSE = (
+    "between",
     "far",
     "between",
     "near",
@@ -19,12 +20,17 @@ COURSE = (
     "far",
     "near",
 )
-"""Where the wall ahead is. Between the two distances, only what was decided before says what is right."""
+"""Where the wall ahead is. Between the two distances, only what was decided before says what is right.
+
+So a new agent drives at the first wall, and one that has seen the last wall turns.
+"""
 
 
 def observation(number: int, wall: str, random: Random) -> list[float]:
-    """Return what is seen: more room on the left and on the right by turns, also while the agent turns."""
+    """Return what is seen: more room on the left and on the right by turns; at the last wall, as much on both."""
     sides = sorted(random.sample((0.5, 0.9, 1.4, 2.0), 2), reverse=number % 2 == 0)
+    if number == len(COURSE) - 1:
+        sides = [1.0, 1.0]
     return [random.uniform(*AHEAD[wall]), *sides]
 
 

@@ -36,6 +36,14 @@ EXERCISE = Mission(
         ),
     ],
     never=[("Touches no wall", lambda now: now.bumped, "walls")],
+    knows=[
+        (
+            "other_side",
+            lambda now: now.pose.heading > 0.7 and not now.reached,
+            "Your robot turns to the side with less room.",
+            "To the left is a positive turn. Compare seen.left with seen.right, and hand command.turn on as angular.z.",
+        ),
+    ],
     within=17.0,
 ).exercise(
     text={

@@ -8,21 +8,33 @@ from autograder.kit.quests.quest import Quest
 from autograder.kit.quests.robot import Robot
 
 NAMES, KIND = ("arm", "base", "camera", "display", "gripper", "map", "planner"), "sensor_msgs/msg/LaserScan"
+CASES = (
+    ([Qos.SENSOR], [Qos.SENSOR, Qos.SENSOR], Qos.DEFAULT),
+    ([Qos.DEFAULT], [Qos.DEFAULT, Qos.SENSOR], Qos.LATCHED),
+    ([Qos.DEFAULT, Qos.SENSOR], [Qos.SENSOR], Qos.DEFAULT),
+    ([Qos.SENSOR, Qos.DEFAULT], [Qos.SENSOR], Qos.DEFAULT),
+)
+"""The QoS of the publishers, of those who hear them, and of the one who is deaf to one of the publishers."""
 
 
 def robots(random: Random) -> dict[str, Robot]:
-    """Draw three robots with a sensor, two nodes that hear it, and one that cannot."""
-    drawn = {}
-    for number in (1, 2, 3):
-        topic, names = f"/laser{number}/scan", [f"/{name}{number}" for name in random.sample(NAMES, 4)]
-        sensor, deaf = names[:2]
-        ends = {"subscribes": {topic: KIND}}
-        nodes = {sensor: {"publishes": {topic: KIND}, "qos": Qos.SENSOR}}
-        nodes |= {
-            name: ends | ({} if name == deaf else {"qos": Qos.SENSOR}) for name in random.sample(names[1:], 3)
-        }
-        drawn[f"robot {number}"] = Robot(asked=(topic,), answer={"node": deaf}, nodes=nodes)
-    return drawn
+    """Draw a robot for each case."""
+    return {f"robot {number}": robot(random, number, *case) for number, case in enumerate(CASES, 1)}
+
+
+def robot(random: Random, number: int, talk: list[Qos], hear: list[Qos], deaf: Qos) -> Robot:
+    """Draw a robot: its publishers first, then its subscribers in any order."""
+    topic, names = f"/laser{number}/scan", [f"/{name}{number}" for name in random.sample(NAMES, len(NAMES))]
+    publishers = [
+        (name, {"publishes": {topic: KIND}, "qos": qos}) for name, qos in zip(names, talk, strict=False)
+    ]
+    rest = names[len(talk) :]
+    subscribers = [
+        (name, {"subscribes": {topic: KIND}, "qos": qos})
+        for name, qos in zip(rest, [deaf, *hear], strict=False)
+    ]
+    nodes = dict(publishers + random.sample(subscribers, len(subscribers)))
+    return Robot(asked=(topic,), answer={"node": rest[0]}, nodes=nodes)
 
 
 quest = Quest(robots)

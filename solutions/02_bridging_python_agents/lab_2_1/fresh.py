@@ -26,10 +26,11 @@ EXERCISE = SameAsSolution(
     rates={"/known": 0.2, "/cmd_vel": 0.2},
     qos=["/scan"],
     pause=0.6,
+    robots_clock=True,
 ).exercise(
     text={
         "returns `nothing` as long as no scan has come": "known",
-        "`fresh` if the newest one came less than 1 second ago, and otherwise `old`": "known",
+        "`fresh` if the newest one came less than 1 second of the robot's time ago": "known",
         "which the timer calls five times a second": "known_rate cmd_vel_rate",
         "drives ahead with 0.4 if the": "cmd_vel",
         "Otherwise it publishes `Twist()`.": "cmd_vel",

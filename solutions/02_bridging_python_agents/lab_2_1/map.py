@@ -20,7 +20,7 @@ EXERCISE = SameAsSolution(
     every=True,
 ).exercise(
     text={
-        "with a queue of one message that late subscribers get, and publish `self.map` at once": "map",
+        "whose last message late subscribers get, and publish `self.map` at once": "map",
         "it sets the point's cell to 100, and publishes the map again": "map",
     }
 )

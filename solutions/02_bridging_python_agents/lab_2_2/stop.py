@@ -17,14 +17,17 @@ def button(pressed: bool) -> To:
     return To("/stop", {"data": pressed})
 
 
+STILL = To("/agent_vel", {"linear": {"x": 0.0}})
+"""A command of an agent that stands: it does not release the stop."""
+
 EXERCISE = SameAsSolution(
     "lab_2_2.stop",
     "Lab 2.2 · The red button",
     "Stop the robot when the button is pressed, and hold it until it is released.",
     gives=lambda random: [
-        *(command(random), command(random), button(True), command(random), 0.9, command(random)),
-        *(button(False), 0.9, command(random), button(True), button(True), command(random), button(False)),
-        *(button(False), command(random), 0.9),
+        *(command(random), command(random), button(True), command(random), STILL, command(random), 3.2),
+        *(command(random), button(False), 0.9, command(random), button(True), command(random)),
+        *(button(False), button(False), command(random), 0.9),
     ],
     tells={"/cmd_vel": ("linear.x", "angular.z"), "/stop": ("success", "message")},
     every=True,
@@ -34,7 +37,7 @@ EXERCISE = SameAsSolution(
     text={
         "stop the robot at once with one `Twist()`": "cmd_vel",
         "While the stop holds, publish nothing, whatever the agent says.": "cmd_vel",
-        "answer with `success` true and the `message` `released`": "stop",
+        "publish nothing, and answer with `success` true and the `message` `released`": "stop cmd_vel",
         "Only a *new* command moves the robot again": "cmd_vel",
     }
 )

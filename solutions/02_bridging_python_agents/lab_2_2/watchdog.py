@@ -5,11 +5,10 @@ from random import Random
 from autograder.kit.oracle.same_as_solution import SameAsSolution, To
 
 
-def command(random: Random) -> To:
-    """Return a command below the limits."""
-    return To(
-        "/agent_vel", {"linear": {"x": random.uniform(0.1, 0.4)}, "angular": {"z": random.uniform(0.1, 0.9)}}
-    )
+def command(random: Random, *, turns: bool = False) -> To:
+    """Return a command below the limits, which drives, or only turns."""
+    forward = 0.0 if turns else random.uniform(0.1, 0.4)
+    return To("/agent_vel", {"linear": {"x": forward}, "angular": {"z": random.uniform(0.1, 0.9)}})
 
 
 EXERCISE = SameAsSolution(
@@ -18,7 +17,7 @@ EXERCISE = SameAsSolution(
     "Stop the robot once when no command has come for half a second.",
     gives=lambda random: [
         1.1,
-        *(command(random) for _ in range(4)),
+        *(command(random, turns=turns) for turns in (False, False, False, True)),
         0.45,
         1.4,
         *(command(random) for _ in range(3)),
@@ -30,9 +29,10 @@ EXERCISE = SameAsSolution(
     tells={"/cmd_vel": ("linear.x", "angular.z")},
     every=True,
     pause=0.3,
+    robots_clock=True,
 ).exercise(
     text={
         "Each command is handed on as before": "cmd_vel",
-        "If no command has come for 0.5 seconds, publish one `Twist()`": "cmd_vel",
+        "If no command has come for 0.5 seconds of the robot's time, publish one `Twist()`": "cmd_vel",
     }
 )

@@ -13,6 +13,7 @@ EXERCISE = SameAsSolution(
     serves={"/where": Serves(place, late={2: 2.7}, never={1, 4})},
     every=("/told",),
     pause=0.7,
+    robots_clock=True,
     roles=("publisher", "subscription", "client"),
 ).exercise(
     text={

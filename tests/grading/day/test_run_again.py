@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import nbformat
 import pytest
 from rich.console import Console
-from tiny_class import COURSE, LISTENER, TALKER, FakeEngine, TinyClass, make_version_3
+from tiny_class import COURSE, LISTENER, TALKER, FakeEngine, TinyClass, make_version_3, make_version_4
 
 from autograder.grading import course_version, result_writer
 from autograder.grading.class_store import ClassStore
@@ -131,6 +131,7 @@ def test_a_class_of_the_course_before_keys_had_parts_goes_on(
     tiny.grade()
     with store_of(tiny) as store:
         (attempt,) = store.attempts("ada")
+    make_version_4(tiny.path / ".autograder" / "class.db")
     make_version_3(tiny.path / ".autograder" / "class.db")
     report = tiny.grade()
     assert (report.run_again, report.written) == ({}, 1)

@@ -80,7 +80,7 @@ def ids(klass: TinyClass) -> dict[str, set[str]]:
     with Gradebook(f"sqlite:///{klass.path / 'gradebook.db'}") as book:
         in_gradebook = {one.student.id for one in book.assignment_submissions("lab_1_2")}
     with closing(sqlite3.connect(klass.path / ".autograder" / "class.db")) as book:
-        tables = ("entered", "result", "attempt")
+        tables = ("result", "attempt")
         in_store = {row[0] for name in tables for row in book.execute(f"SELECT student FROM {name}")}
     table = csv.DictReader(io.StringIO((klass.path / "collected.csv").read_text("utf-8-sig")))
     return {

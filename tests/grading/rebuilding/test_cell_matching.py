@@ -8,12 +8,15 @@ from typing import TYPE_CHECKING, Any
 import jupytext
 import nbformat
 import pytest
+from hypothesis import example, given
+from hypothesis import strategies as st
 from nbformat import NotebookNode
 
 from autograder.execution.executed_cells import CellType
 from autograder.grading.rebuilding.notebook_parsing import parse
 from autograder.grading.rebuilding.notebook_rebuilding import rebuild
 from autograder.grading.rebuilding.submitted_notebook import SubmittedCell
+from tests.drawn import drawn
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -229,17 +232,54 @@ def test_right_answers_are_what_the_checks_see(kind: str) -> None:
     assert outcome(KINDS[kind](submitted())) == RIGHT
 
 
-@pytest.mark.parametrize("kind", KINDS)
-def test_each_given_cell_and_each_check_is_the_masters(kind: str) -> None:
-    rebuilt = rebuild(master(), KINDS[kind](submitted()))
-    locked = {
-        cell.metadata.nbgrader.grade_id: cell.source for cell in rebuilt.cells if "nbgrader" in cell.metadata
-    }
-    assert locked.keys() == {*CELLS, "why"}
-    assert len(locked) == sum("nbgrader" in cell.metadata for cell in rebuilt.cells)
-    assert {name: text for name, text in locked.items() if name in CELLS.keys() - ANSWERS} == {
-        name: text for name, text in CELLS.items() if name not in ANSWERS
-    }
+EDITS: dict[str, Callable[[Cells, int, int], Cells]] = {
+    "delete": lambda cells, at, _: [*cells[:at], *cells[at + 1 :]],
+    "move": lambda cells, at, to: [*(rest := [*cells[:at], *cells[at + 1 :]])[:to], cells[at], *rest[to:]],
+    "double": lambda cells, at, to: [*cells[:to], cells[at], *cells[to:]],
+    "strip": lambda cells, at, _: [*cells[:at], *bare(cells[at : at + 1]), *cells[at + 1 :]],
+    "write": lambda cells, at, to: [
+        *cells[:at],
+        SubmittedCell(CellType.CODE, f"# note {to}", "", f"{at}"),
+        *cells[at:],
+    ],
+    "forge": lambda cells, at, to: [
+        replace(cell, source=f"forged {to}") if place == at and cell.grade_id not in ANSWERS else cell
+        for place, cell in enumerate(cells)
+    ],
+    "answer": lambda cells, at, to: [
+        replace(cell, source=f"{cell.source}\n# draft {to}")
+        if place == at and cell.grade_id in ANSWERS
+        else cell
+        for place, cell in enumerate(cells)
+    ],
+}
+_MASTER, _COPY = master(), master()
+_OF_KINDS = {kind: make(submitted()) for kind, make in KINDS.items()}
+EDITING = st.lists(st.tuples(st.sampled_from([*EDITS]), st.integers(0, 99), st.integers(0, 99)), max_size=8)
+
+
+@drawn(100)
+@given(st.sampled_from([*KINDS]), EDITING)
+@example("as it was", [("delete", at, 0) for at in range(9, -1, -1)])
+@example("as it was", [("forge", at, 0) for at in range(10)])
+@example("as it was", [("double", at, 0) for at in range(10)])
+def test_of_each_notebook_nothing_is_lost_and_what_is_given_is_the_masters(
+    kind: str, edits: list[tuple[str, int, int]]
+) -> None:
+    cells = _OF_KINDS[kind]
+    for name, at, to in edits:
+        if cells:
+            cells = EDITS[name](cells, at % len(cells), to % len(cells))
+    rebuilt = rebuild(_MASTER, cells)
+    assert (rebuild(_MASTER, cells), _MASTER) == (rebuilt, _COPY)
+    named = [cell for cell in rebuilt.cells if "nbgrader" in cell.metadata]
+    assert sorted(cell.metadata.nbgrader.grade_id for cell in named) == sorted([*CELLS, "why"])
+    for cell in named:
+        name = cell.metadata.nbgrader.grade_id
+        assert name in ANSWERS or name == "why" or cell.source == CELLS[name]
+    given = {cell.source for cell in _MASTER.cells}
+    written = {cell.source for cell in cells if cell.grade_id not in CELLS.keys() - ANSWERS} - given
+    assert {text for text in written if "forged" not in text} <= {cell.source for cell in rebuilt.cells}
 
 
 @pytest.mark.parametrize("mark", [without_metadata, without_ids, bare, through_jupytext])

@@ -5,18 +5,24 @@ from __future__ import annotations
 import json
 import os
 import random
+import re
 import shutil
 import tempfile
+import zlib
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
+from hypothesis import example, given
+from hypothesis import strategies as st
 from tiny_class import LISTENER, TALKER, FakeEngine, TinyClass
 
 from autograder.boxes import reading_desks as desk_of_boxes
 from autograder.boxes.box_connection import ChannelClosed
 from autograder.boxes.reading_desks import Desk
 from autograder.boxes.sandbox import why_impossible
+from autograder.grading.classes.class_directory import ClassDirectory
+from autograder.grading.collecting.collect import collect
 from autograder.grading.grading_errors import GradingError
 from autograder.grading.rebuilding import submission_desk
 from autograder.grading.rebuilding.notebook_parsing import answer_to, parse
@@ -26,6 +32,8 @@ from autograder.grading.rebuilding.submission_desk import (
     read_notebook,
 )
 from autograder.grading.rebuilding.submitted_notebook import MAX_CELL_CHARACTERS, UnreadableSubmission
+from autograder.grading.similarity.similar_pairs import find_similar
+from tests.drawn import drawn
 from tests.grading.rebuilding.hostile_desk import CRAFTED, SCRIPT
 
 if TYPE_CHECKING:
@@ -219,3 +227,120 @@ def test_a_desk_that_cannot_be_started_leaves_no_process_and_no_folder(
     with pytest.raises(OSError, match="too long"):
         Desk(HOSTILE, {"PYTHONPATH": str(ROOT)})
     assert not list(tmp_path.iterdir())
+
+
+# -- documents that are kept
+
+
+@pytest.fixture
+def asked(monkeypatch: pytest.MonkeyPatch) -> list[bytes]:
+    """The files that a desk was asked to read."""
+    files: list[bytes] = []
+
+    def document(_: object, data: bytes) -> bytes:
+        files.append(data)
+        return answer_to(data)
+
+    monkeypatch.setattr(submission_desk, "document_of", document)
+    return files
+
+
+def test_a_file_is_read_once_and_each_other_file_for_itself(asked: list[bytes], tmp_path: Path) -> None:
+    files = [notebook("one"), notebook("two")]
+    read = [read_notebook(data, tmp_path) for data in files * 2]
+    assert asked == files
+    assert [list(cells) for cells, _ in read] == [list(parse(data)[0]) for data in files * 2]
+
+
+def test_a_file_that_cannot_be_read_is_tried_again(asked: list[bytes], tmp_path: Path) -> None:
+    for _ in range(2):
+        with pytest.raises(UnreadableSubmission, match="not a Jupyter notebook"):
+            read_notebook(b"[]", tmp_path)
+    assert (len(asked), [*tmp_path.rglob("*")]) == (2, [])
+
+
+@pytest.mark.parametrize("damage", ["cut", "other bytes", "no notebook", "another parser", "a folder"])
+def test_a_document_that_does_not_fit_is_not_used(
+    asked: list[bytes], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, damage: str
+) -> None:
+    data = notebook("one")
+    right = read_notebook(data, tmp_path)
+    (kept,) = (tmp_path / submission_desk._DOCUMENTS).iterdir()
+    if damage == "cut":
+        kept.write_bytes(kept.read_bytes()[:-3])
+    elif damage == "other bytes":
+        kept.write_bytes(b"nothing")
+    elif damage == "no notebook":
+        kept.write_bytes(zlib.compress(b'{"type": "ReadNotebook", "cells": 5}'))
+    elif damage == "another parser":
+        monkeypatch.setattr(submission_desk, "_VERSION", b"another")
+    else:
+        kept.unlink()
+        kept.mkdir()
+    assert read_notebook(data, tmp_path) == right
+    assert asked == [data, data]
+
+
+def test_a_class_reads_each_file_once(tiny: TinyClass, asked: list[bytes], fake_engine: FakeEngine) -> None:
+    files = [tiny.submit("ada", 4), tiny.submit("ben", 5)]
+    tiny.grade()
+    collect(tiny.path)
+    tiny.submit("ada", 6)
+    tiny.grade(again=True)
+    (tiny.path / "nbgrader_config.py").open("a").write("c.WireExecute.memory_bytes = 4_000_000_000\n")
+    tiny.grade()
+    find_similar(ClassDirectory(tiny.path))
+    assert len(asked) == 3
+    assert set(asked) > {path.read_bytes() for path in files}
+    assert tiny.scores("ada")[TALKER] == 6
+
+
+# -- what a desk says of any file
+
+JSON = st.recursive(
+    st.none() | st.booleans() | st.integers() | st.floats() | st.text(max_size=3),
+    lambda inner: st.lists(inner, max_size=2) | st.dictionaries(st.text(max_size=3), inner, max_size=2),
+    max_leaves=4,
+)
+TEXT = st.text(st.characters(exclude_categories=()), max_size=20)
+
+
+def maybe(usual: st.SearchStrategy[object]) -> st.SearchStrategy[object]:
+    return st.one_of(usual, usual, usual, JSON)
+
+
+SHOWN = st.dictionaries(
+    TEXT, maybe(st.dictionaries(st.sampled_from(["image/png", "image/svg+xml"]), maybe(TEXT)))
+)
+CELL = st.fixed_dictionaries(
+    {
+        "cell_type": maybe(st.sampled_from(["code", "markdown", "raw"])),
+        "source": maybe(TEXT | st.lists(TEXT)),
+    },
+    optional={
+        "id": maybe(TEXT),
+        "metadata": maybe(
+            st.fixed_dictionaries({"nbgrader": maybe(st.fixed_dictionaries({"grade_id": maybe(TEXT)}))})
+        ),
+        "attachments": maybe(SHOWN),
+        "outputs": JSON,
+    },
+)
+FILE = st.fixed_dictionaries(
+    {"nbformat": st.sampled_from([4, 4, 4, 3, "4"]), "cells": maybe(st.lists(maybe(CELL)))}
+)
+
+
+@drawn(60)
+@given(FILE)
+@example({"nbformat": 4, "cells": [{"cell_type": "markdown", "source": "\ud800", "id": "\udcff"}]})
+def test_what_a_desk_says_of_any_file_is_what_was_parsed(file: object) -> None:
+    data = json.dumps(file).encode()
+    try:
+        cells, left_out = parse(data)
+    except UnreadableSubmission as error:
+        with pytest.raises(UnreadableSubmission, match=re.escape(str(error)[:20])):
+            checked(answer_to(data))
+        return
+    assert checked(answer_to(data)) == (tuple(cells), left_out)
+    assert len(cells) + left_out == len(file["cells"])  # type: ignore[index]

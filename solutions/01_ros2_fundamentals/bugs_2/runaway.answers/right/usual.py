@@ -20,7 +20,7 @@ class Driver(Node):
 
     def drive(self):
         self.silent += 1
-        self.velocity.publish(self.command if self.silent < 5 else Twist())
+        self.velocity.publish(self.command if self.silent < 8 else Twist())
 
 
 rclpy.init()
