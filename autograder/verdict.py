@@ -6,8 +6,10 @@ on ROS, notebooks or the judge.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, field
 from enum import StrEnum
+from itertools import pairwise
 
 import msgspec
 
@@ -100,6 +102,34 @@ class Moment:
     stray: bool = False
 
 
+Point = tuple[float, float]
+"""A place in the plane, x and y in meters."""
+
+
+@dataclass(frozen=True)
+class Way:
+    """The way of a robot through one world.
+
+    Attributes:
+        points: The places of the robot's center, in order. There is at least the start.
+        heading: The heading at the end, in radians, counterclockwise from the x axis.
+        walls: The two ends of each wall.
+        places: Places with names, such as a lamp.
+        bumps: The places at which the robot pushed against a wall.
+    """
+
+    points: tuple[Point, ...]
+    heading: float = 0.0
+    walls: tuple[tuple[Point, Point], ...] = ()
+    places: dict[str, Point] = field(default_factory=dict)
+    bumps: tuple[Point, ...] = ()
+
+    @property
+    def length(self) -> float:
+        """The length of the way in meters."""
+        return sum(math.dist(*pair) for pair in pairwise(self.points))
+
+
 @dataclass(frozen=True)
 class Verdict:
     """The judge's findings for one exercise.
@@ -113,6 +143,7 @@ class Verdict:
         diagnosis: The most helpful diagnosis; None if the check passed.
         remarks: Remarks that cost no points.
         timeline: The most important events on the wire, in order.
+        ways: The ways of the robot, one for each world in which it was driven.
         seed: The seed of the random inputs; the same seed gives the same inputs.
         seconds: The duration of the check, in seconds of wall time.
         detail: A traceback, or the last lines of output, if they help; else empty.
@@ -129,6 +160,7 @@ class Verdict:
     diagnosis: Diagnosis | None = None
     remarks: tuple[str, ...] = ()
     timeline: tuple[Moment, ...] = ()
+    ways: tuple[Way, ...] = ()
     seed: str = ""
     seconds: float = 0.0
     detail: str = ""

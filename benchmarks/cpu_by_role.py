@@ -6,7 +6,9 @@
     $ python -m benchmarks.cpu_by_role --against ../before exercise_1_2 lab_1_3
 
 Both versions of the course grade the same answers, by turns, so that whatever else the machine does meets both. A CPU
-second of a busy core does less than one of an idle core: compare only what one run has printed.
+second of a busy core does less than one of an idle core: compare only what one run has printed. On a busy machine, put
+``nice -n -20`` before it. ``colcon`` calls ``ninja`` with ``-l``: one compiler runs at a time while the load is above
+the number of processors.
 """
 
 from __future__ import annotations
@@ -186,6 +188,10 @@ class _Side:
         return {role: seconds / notebooks for role, seconds in accounts.seconds.items()}
 
 
+def _tell(words: str) -> None:
+    print(words, file=sys.stderr, flush=True)
+
+
 def _plain() -> dict[str, str]:
     return {name: os.environ[name] for name in ("HOME", "LANG", "PATH") if name in os.environ}
 
@@ -210,7 +216,7 @@ def table(before: Sequence[Mapping[str, float]], now: Sequence[Mapping[str, floa
 
 
 def main() -> None:
-    """Grade by turns, and print the table."""
+    """Grade by turns, and print the table of all rounds so far after each round."""
     options = argparse.ArgumentParser(prog="python -m benchmarks.cpu_by_role", description=__doc__)
     options.add_argument("labs", nargs="+", metavar="LAB", help="the assignments, such as lab_1_2")
     options.add_argument("--against", type=Path, help="another checkout of the course that is set up")
@@ -231,14 +237,16 @@ def main() -> None:
         for side in sides[:-1]:
             shutil.copytree(sides[-1].made / "submitted", side.made / "submitted")
         for side in sides:
-            side.spent(("--student", "student-000"))  # makes what each version builds once for all classes
+            _tell(f"{side.checkout}: building what is built once for all classes, which may take minutes")
+            side.spent(("--student", "student-000"))
         for turn in range(chosen.rounds):
             for side in sides if turn % 2 else sides[::-1]:
                 runs[side].append(side.spent(("--jobs", chosen.jobs)))
-                print(f"{side.checkout}: {sum(runs[side][-1].values()):.2f} s a notebook", file=sys.stderr)
+                _tell(f"{side.checkout}: {sum(runs[side][-1].values()):.2f} s a notebook")
+            # After each round, so that a run that is ended early has shown something.
+            print(table(runs[sides[0]] if len(sides) > 1 else [], runs[sides[-1]]), flush=True)
     finally:
         shutil.rmtree(folder, ignore_errors=True)
-    print(table(runs[sides[0]] if len(sides) > 1 else [], runs[sides[-1]]))
 
 
 if __name__ == "__main__":

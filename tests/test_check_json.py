@@ -7,7 +7,7 @@ import re
 from dataclasses import fields
 from pathlib import Path
 
-from autograder.verdict import CriterionResult, Diagnosis, Moment, State, Verdict, to_json
+from autograder.verdict import CriterionResult, Diagnosis, Moment, State, Verdict, Way, to_json
 
 PAGE = (Path(__file__).resolve().parents[1] / "docs/your-own-repository.md").read_text(encoding="utf-8")
 SAMPLE = Verdict(
@@ -44,7 +44,8 @@ def test_the_sample_on_the_page_is_made_from_the_types() -> None:
 
 def test_each_field_has_its_row_and_no_row_is_of_another_field() -> None:
     known = {field.name for field in fields(Verdict)}
-    for name, kind in (("criteria[]", CriterionResult), ("diagnosis", Diagnosis), ("timeline[]", Moment)):
+    nested = {"criteria[]": CriterionResult, "diagnosis": Diagnosis, "timeline[]": Moment, "ways[]": Way}
+    for name, kind in nested.items():
         known |= {f"{name}.{field.name}" for field in fields(kind)}
     table = PAGE.partition("## What `check --json` prints")[2].partition("\n## ")[0]
     rows = re.findall(r"^\| (`.+?`) \|", table, re.MULTILINE)

@@ -31,7 +31,7 @@ MAY_IMPORT = {
     "kit": frozenset({"known_errors", "packed_files", "robot", "verdict"}),
     "exercises": frozenset({"course", "kit"}),
     "messages": frozenset({"verdict"}),
-    "cards": frozenset({"verdict"}),
+    "cards": frozenset({"robot", "verdict"}),
     "boxes": frozenset({"process_trees", "safe_files"}),  # what isolates knows nothing of what runs
     "execution": frozenset({"boxes", "messages", "verdict", "process_trees", "safe_files"}),
     "masters": frozenset({"course", "exercises", "safe_files", "standard_output"}),

@@ -16,6 +16,7 @@ import re2
 from autograder.cards import card_wording
 from autograder.cards.card_traffic import Traffic, traffic
 from autograder.cards.readable_text import TRACEBACK, TracebackLine, block, one_line, paragraph, students_line
+from autograder.cards.way_layout import SHOWN, WayPicture, way_picture
 from autograder.verdict import State
 
 if TYPE_CHECKING:
@@ -166,6 +167,7 @@ class Card:
         score_line: The points in words.
         before: The points of the previous check, if they were different; otherwise empty.
         notice: Why the card is out of date; empty if it is up to date.
+        ways: The ways of the robot.
         traffic: The traffic on the wire. Its texts come from the subject.
         traffic_notes: Which parts of the traffic are left out.
         counts: What else counts for the exercise as a whole, and what is not graded.
@@ -193,6 +195,7 @@ class Card:
     counts: str
     nothing_seen: bool
     remarks: tuple[str, ...]
+    ways: tuple[WayPicture, ...]
     traffic: Traffic
     traffic_notes: str
     detail_heading: str
@@ -241,6 +244,7 @@ class Card:
             counts=one_line(verdict.counts, 1200, mark=mark),
             nothing_seen=verdict.nothing_seen,
             remarks=tuple(paragraph(remark, 600, mark=mark) for remark in verdict.remarks),
+            ways=tuple(map(way_picture, verdict.ways[:SHOWN])),
             traffic=shown,
             traffic_notes=card_wording.traffic_notes(shown),
             detail_heading=one_line(card_wording.detail_heading(detail), 160, mark=mark),
@@ -261,6 +265,7 @@ class Card:
             criteria=(),
             counts="",
             remarks=(),
+            ways=(),
             traffic=Traffic(()),
             detail=(),
             facts=(),

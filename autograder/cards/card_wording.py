@@ -39,6 +39,9 @@ COUNTS = "what counts"
 COUNTS_BESIDES = "what else counts, and what does not"
 """The label of the same about the exercise as a whole."""
 
+WAY = "The way of the robot"
+"""The heading of the pictures of a robot's way."""
+
 SOLUTION = "The reference solution, and why it is written so"
 """The heading of the folded reference solution."""
 OFFER = (

@@ -68,6 +68,11 @@ class _Writer:
             yield self._heading("Worth mentioning (costs no points)")
             for remark in card.remarks:
                 yield from self._wrapped(remark, "  - ", "    ")
+        if card.ways:
+            yield ""
+            yield self._heading(card_wording.WAY)
+            for way in card.ways:
+                yield from self._wrapped(way.sentence, "  ", "  ")
         if card.traffic.parts:
             yield from self._traffic(card)
         if card.detail:

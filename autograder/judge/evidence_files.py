@@ -40,7 +40,7 @@ _RECORDED_KINDS = (
 )  # fmt: skip
 
 _UNTIL_CANCELED = ("feedback_heard", "result_heard")
-_VARYING_FIELDS = ("number", "sent", "arrived")
+_VARYING_FIELDS = ("number", "sent", "arrived", "ways")
 """The fields of an event that differ from run to run, and so are not recorded."""
 
 

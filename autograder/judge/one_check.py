@@ -33,6 +33,7 @@ from autograder.kit.bench import Pace
 from autograder.kit.evidence import Evidence, Reference
 from autograder.kit.hunts.repairs import without_causes
 from autograder.kit.in_words import of_its_kind, shortened, visible
+from autograder.kit.mission.track import ways
 from autograder.kit.mistakes.package_mistakes import changed_since_build
 from autograder.kit.model import Advice, Criterion, Exercise, Finding, Mistake
 from autograder.kit.runners import runner_trouble
@@ -320,6 +321,7 @@ def judge(exercise: Exercise, evidence: Evidence, seed: str) -> Verdict:
         diagnosis=diagnosis,
         remarks=tuple(_cut(text) for remark in remarks if (text := remark(evidence))),
         timeline=verdict_timeline.moments(shown, " ".join(told), missed=not passed),
+        ways=ways(shown),
         seed=seed,
         # The last lines of a traceback name the error and the student's line.
         detail=traceback[-MAX_DETAIL:],

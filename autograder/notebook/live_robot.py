@@ -17,6 +17,7 @@ from autograder.notebook.observing.live_picture import LivePicture, as_image, sv
 from autograder.notebook.robot_drivers import KEYBOARD, CornerHunt, Spiral, Tour
 from autograder.notebook.robot_node import RobotNames, RobotNode
 from autograder.robot.motion import RADIUS, ROOM
+from autograder.robot.plan import Plan, nose
 
 if TYPE_CHECKING:
     from typing import Any
@@ -166,6 +167,7 @@ class _RobotPictures:
 _SCALE = 75
 """Pixels per meter."""
 _MARGIN = 14
+_at = Plan(0, ROOM.height, _SCALE, _MARGIN).at
 _FOOT = 26
 _LETTER, _PADDING, _BUBBLE = 7.85, 10, 24
 """Sizes in pixels: the width of a letter, the space left and right of the text, the height of the speech bubble."""
@@ -286,11 +288,9 @@ class RobotPicture:
         radius = RADIUS * _SCALE
         glow = f'<circle class="glow" r="{2 * radius}"/>' if self.state.lamp else ""
         body = "body bumped" if self.state.bumped else "body"
-        tip, back, side = 0.75 * radius, -0.3 * radius, 0.55 * radius
-        nose = f"M{tip:.1f},0 L{back:.1f},{-side:.1f} L{back:.1f},{side:.1f} z"
         return (
             f'<g class="robot" transform="{_placed(self.state.pose, "")}">{glow}'
-            f'<circle class="{body}" r="{radius}"/><path class="nose" d="{nose}"/></g>'
+            f'<circle class="{body}" r="{radius}"/><path class="nose" d="{nose(radius)}"/></g>'
         )
 
     def _bubble(self) -> str:
@@ -328,11 +328,6 @@ class RobotPicture:
 
 def _page() -> tuple[int, int]:
     return round(ROOM.width * _SCALE + 2 * _MARGIN), round(ROOM.height * _SCALE + 2 * _MARGIN + _FOOT)
-
-
-def _at(point: Point) -> tuple[float, float]:
-    """Convert a position in meters, with y up, to pixels, with y down."""
-    return round(_MARGIN + point[0] * _SCALE, 1), round(_MARGIN + (ROOM.height - point[1]) * _SCALE, 1)
 
 
 def _line(kind: str, start: Point, end: Point) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from itertools import pairwise
 from random import Random
@@ -10,10 +11,12 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from autograder.judge.evidence_files import dump_reference
 from autograder.kit.bench import Pace
 from autograder.kit.evidence import Event, Evidence, Part, Reference
 from autograder.kit.mission.course import NOTHING_REACHED
 from autograder.kit.mission.mission import Goal, Mission, Moment, Pose, To, Wall, Walls, World
+from autograder.kit.mission.track import ways
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -338,3 +341,39 @@ def test_commands_are_the_solutions_keep_its_rate_and_go_on(
 def test_if_the_solutions_commands_come_to_an_end_their_number_counts() -> None:
     assert judged(every(0.5, most=5), every(0.5, most=6))[0]["velocity"] is False
     assert judged(every(0.5, most=6), every(0.5, most=6))[0]["velocity"] is True
+
+
+def test_a_step_may_wait_for_a_moment() -> None:
+    def draws(_: Random) -> Sequence[Any]:
+        return [IN_THE_WAY, lambda now: now.pose.x > 1.0, To("/follow", True)]
+
+    interface = {**BRAKE, "subscription": {**BRAKE["subscription"], "/follow": "std_msgs/msg/Bool"}}
+    given: list[float] = []
+
+    def answer(ros: Ros) -> None:
+        if "/follow" in ros.heard and not given:
+            given.append(ros.heard["/odom"]["pose"]["pose"]["position"]["x"])
+        brakes(0.9)(ros)
+
+    holds, _ = driven(mission(draws=draws), answer, interface=interface)
+    assert holds["stands"]
+    assert given == [pytest.approx(1.0, abs=0.1)]
+
+
+def test_the_way_through_each_world_in_which_the_robot_drove_is_kept() -> None:
+    lamp = World(Walls([Wall((3.0, -1.0), (3.0, 1.0))]), Pose(1.0, 0.5, 0.0), {"lamp": (2.0, 0.5)})
+    still = World(start=Pose(5.0, 3.0, 0.0))
+    exercise = mission(draws=lambda _: [IN_THE_WAY, 1.0, lamp, 4.0, still, 2.0], reaches=(), within=8.0)
+    _, bench = driven(exercise, lambda ros: ros.command(0.5 if ros.moment < 105.0 else 0.0))
+    first, second = ways(Evidence([bench.seen()], bench.reference))
+    assert (first.points[0], first.places, first.bumps) == ((0.0, 0.0), {}, ())
+    assert first.length == pytest.approx(0.5, abs=0.1)
+    assert second.points[0] == (1.0, 0.5)
+    assert (second.walls, second.places) == ((((3.0, -1.0), (3.0, 1.0)),), {"lamp": (2.0, 0.5)})
+    assert second.bumps == (second.points[-1],)
+    assert all(math.dist(*pair) >= 0.05 for pair in pairwise(second.points[:-1]))
+
+
+def test_the_way_is_no_part_of_a_recording() -> None:
+    _, bench = driven(mission(), brakes(0.9))
+    assert "ways" not in dump_reference(Reference("a.b", BRAKE, [bench.seen()]), ["noted"])

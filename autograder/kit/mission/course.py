@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
+from autograder.kit.mission.track import NOTED, Track
+
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
@@ -71,6 +73,7 @@ class Course:
         self._broken: dict[str, str] = {}
         self._last: tuple[object, ...] = ()
         self._last_at = 0.0
+        self._track = Track()
 
     def run(self, journey: Journey, steps: Sequence[Step], until: Callable[[Moment], bool] | None) -> bool:
         """Take all steps, and go on until the mission is over. Return False if the subject did not answer."""
@@ -94,8 +97,9 @@ class Course:
         return True
 
     def _look(self) -> None:
-        """Note which lines the present moment reaches or breaks."""
+        """Note the place of the robot, and which lines the present moment reaches or breaks."""
         now = self._robot.now
+        self._track.add(now)
         for line in self._lines.reaches:
             if line.name not in self._reached and line.holds(now):
                 self._reached[line.name] = str(now)
@@ -129,7 +133,7 @@ class Course:
             self._bench.note(line.name, text=text)
             due = theirs[0].first("noted", line.name) if theirs else None
             holds.append(due is None or due.data["text"] == text)
-        self._bench.note("end", text=str(now))
+        self._bench.note(NOTED, text=str(now), ways=self._track.told())
         for number, found in enumerate(knows):
             if shown := found(now):
                 self._bench.note(MISTAKE, number=number, shown=shown)

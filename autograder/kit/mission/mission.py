@@ -65,7 +65,8 @@ class Mission:
         task: One sentence that states the task.
         world: The world at the beginning.
         draws: Draws the steps, which the judge takes one after the other: another :class:`World`, :class:`To` a topic
-            or service, a :class:`Goal` for an action, or seconds of the subject's time to let pass.
+            or service, a :class:`Goal` for an action, seconds of the subject's time to let pass, or a condition to
+            await. A condition has to hold for a robot that gives up, too: otherwise the mission lasts ``within``.
         reaches: The lines about what must hold at some moment: text and condition.
         never: The lines about what must hold at no moment. They count only if a line of ``reaches`` was reached.
         same: The lines about a fact at the end that must be the solution's: text, and a function that returns the fact

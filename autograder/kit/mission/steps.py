@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from autograder.kit.mission.moment import World
+from autograder.kit.mission.moment import Moment, World
 from autograder.kit.oracle.steps import To
 from autograder.kit.recipes.own_scenario import QUIET
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Mapping
 
     from autograder.kit.bench import Bench
     from autograder.kit.counterparts import ActionCaller, Caller
     from autograder.kit.evidence import Evidence
-    from autograder.kit.mission.moment import Moment
     from autograder.kit.mission.robot import Robot
 
 
@@ -36,8 +37,8 @@ class Goal:
     within: float = 12.0
 
 
-Step = World | To | Goal | float
-"""A step: another world, a message or a call, a goal, or seconds of the subject's time to let pass."""
+Step = World | To | Goal | float | Callable[[Moment], bool]
+"""A step: another world, a message or a call, a goal, seconds of the subject's time to let pass, or a condition."""
 
 
 class Journey:
@@ -62,7 +63,7 @@ class Journey:
             return self._pursue(step)
         if isinstance(step, To):
             return self._give(step)
-        return self._go(step, lambda _: False)
+        return self._go(math.inf, step) if callable(step) else self._go(step, lambda _: False)
 
     def _give(self, step: To) -> bool:
         fields = step.value if isinstance(step.value, dict) else {"data": step.value}

@@ -146,7 +146,7 @@ class SameAsSolution:
         pause: Seconds of the subject's time after each input.
         tolerance: The absolute or relative tolerance for numbers.
         robots_clock: True if the task demands the robot's clock for all that time alone decides. What a node does in
-            simulated time is then proven, also where another clock would make it right in real time.
+            simulated time is then proven, even if another clock makes it right in real time.
         roles: The roles of the subject's endpoints, the most telling first.
         points: The points of the exercise. All criteria are worth the same.
 

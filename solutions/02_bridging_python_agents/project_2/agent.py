@@ -6,7 +6,7 @@ from typing import Any
 
 from autograder.kit.oracle.returns import Returns
 
-AT_HOME, CLOSE, AWAY, FAR = (0.0, 0.0), (0.05, 0.25), (0.4, 0.6), (0.8, 1.2)
+AT_HOME, CLOSE, AWAY, FAR = (0.0, 0.0), (0.05, 0.25), (0.35, 0.45), (0.8, 1.2)
 MISSION = (
     *(("home", AT_HOME), ("home", AWAY), ("home", CLOSE), ("lamp", FAR), ("lamp", FAR), ("lamp", AWAY)),
     *(("lamp", CLOSE), ("lamp", CLOSE), ("lamp", FAR), ("home", FAR), ("home", AWAY), ("home", AWAY)),

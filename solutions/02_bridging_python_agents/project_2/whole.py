@@ -3,14 +3,17 @@
 from math import inf, pi
 from random import Random
 
-from autograder.kit.mission.mission import Mission, Moment, Pose, World
+from autograder.kit.mission.mission import Mission, Moment, Pose, To, World
 from autograder.kit.runners import LaunchesFromPackage
 
 WAITS, OUT = "Sends commands while it waits for the answer", "Sets out when the answer is there"
 OLD, LAMP = "Stands while its position is old", "Comes to the lamp"
-SILENT, NEAR, LIMITS = 3.0, 0.45, (0.405, 0.805)
-"""Seconds for which the robot does not tell its position after it has set out; the distance in meters from the lamp and
-from home that is near enough; and the limits, with some tolerance."""
+BUTTON, BACK = "Stands while the red button is pressed", "Comes back, and stands"
+SILENT, PRESSED, GIVEN_UP = 3.0, 2.0, 8.0
+"""Seconds for which the robot does not tell its position after it has set out, for which the red button is pressed, and
+for which a robot stands that does nothing more."""
+NEAR, LIMITS = 0.45, (0.405, 0.805)
+"""The distance in meters from the lamp and from home that is near enough; and the limits, with some tolerance."""
 
 
 def world(random: Random) -> World:
@@ -27,6 +30,18 @@ def where(now: Moment) -> dict[str, object]:
 def home(now: Moment) -> float:
     """Return the distance in meters to the start."""
     return now.to(now.world.start.point)
+
+
+def on_the_way_back(now: Moment) -> bool:
+    """Return True between the lamp and the start, and for a robot that has given up."""
+    between = LAMP in now.reached and now.to("lamp") > 0.6
+    return between or now.stood > GIVEN_UP
+
+
+def obeys_the_button(now: Moment) -> bool:
+    """Return True if the robot has stopped on its way back since the red button was pressed."""
+    pressed = len(now.part.of("answered", "/stop")) == 1
+    return pressed and LAMP in now.reached and home(now) > NEAR and 1.0 < now.stood < PRESSED + 0.5
 
 
 def goes_on(now: Moment) -> bool:
@@ -51,8 +66,10 @@ EXERCISE = Mission(
     "project_2.whole",
     "Project 2 · There and back",
     "Go where the lamp is on, and come back.",
-    roles=("publisher", "subscription", "client"),
-    draws=lambda random: [world(random)],
+    roles=("publisher", "subscription", "client", "service"),
+    draws=lambda random: [
+        *(world(random), on_the_way_back, To("/stop", True), PRESSED, To("/stop", False)),
+    ],
     serves={"/where": where},
     late={"/where": 1.5},
     senses={"/odom": lambda now: {} if now.since(OUT) < SILENT else None},
@@ -61,11 +78,8 @@ EXERCISE = Mission(
         (OUT, lambda now: now.part.of("response") and home(now) > 0.4, "out"),
         (OLD, lambda now: 2.0 < now.since(OUT) < SILENT and now.stood > 0.5, "old"),
         (LAMP, lambda now: now.to("lamp") < NEAR, "lamp"),
-        (
-            "Comes back, and stands",
-            lambda now: LAMP in now.reached and home(now) < NEAR and now.stood > 1,
-            "back",
-        ),
+        (BUTTON, obeys_the_button, "button"),
+        (BACK, lambda now: LAMP in now.reached and home(now) < NEAR and now.stood > 1, "back"),
     ],
     never=[
         ("Keeps the limits of the launch file", too_fast, "limits"),
@@ -96,9 +110,15 @@ EXERCISE = Mission(
             "Your robot comes to the lamp, and ends {} meters from its start.",
             "Near the lamp, go becomes back, and then the command leads to self.home, the first place that was seen.",
         ),
+        (
+            "ignores_the_button",
+            lambda now: BACK in now.reached and BUTTON not in now.reached,
+            "Your robot drives on while its red button is pressed.",
+            "Only safe_hands may publish on cmd_vel: the bridge publishes on agent_vel, in the launch file, too.",
+        ),
     ],
-    within=40.0,
-    until=lambda now: now.stood > (1.0 if LAMP in now.reached and home(now) < NEAR else 8.0),
+    within=45.0,
+    until=lambda now: now.stood > (1.0 if LAMP in now.reached and home(now) < NEAR else GIVEN_UP),
 ).exercise(
     limit=400.0,
     runner=LaunchesFromPackage("lamp_robot", "lamp.launch"),
@@ -111,6 +131,7 @@ EXERCISE = Mission(
         "has to stand while its position is old": "old",
         "come to the lamp": "lamp",
         "back to its start": "back",
+        "has to stand until the button is released": "button",
         "It never touches a wall": "walls",
         "never faster than 0.4 meters and 0.8 radians per second": "limits",
     },
