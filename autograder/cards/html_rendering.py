@@ -78,7 +78,6 @@ def card_html(verdict: Verdict, *, buttons: bool = False, **choices: Unpack[Choi
     template = _templates().get_template("card.html.j2")
     return template.render(
         card=card,
-        ways=card.ways,
         parts=[_Part.of(part, width) for part in card.traffic.parts],
         moments=[moment for part in card.traffic.parts for moment in part.moments],
         symbols=_SYMBOLS,
