@@ -113,7 +113,7 @@ class SentGoal:
         if self.cancel_accepted:
             return ""
         if self.cancel_accepted is None and self.status is None:
-            return f"the cancel request was not answered; {self.unread} feedback messages came after it"
+            return f"the cancel request was not answered; feedback messages after it: {self.unread}"
         return f"the cancel request was not accepted; status {status_text(self.status)}"
 
     @property

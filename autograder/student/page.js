@@ -27,6 +27,21 @@
     said.textContent = text;
   }
 
+  // The notebook that is open in JupyterLab is marked, and scrolled to when it is opened. A terminal changes nothing.
+  let open;
+  function markOpen() {
+    const path = lab?.current() ?? open;
+    for (const link of map.querySelectorAll("a.title")) {
+      if (link.dataset.path !== path) {
+        link.removeAttribute("aria-current");
+        continue;
+      }
+      link.setAttribute("aria-current", "true");
+      if (path !== open) link.closest("li").scrollIntoView({ block: "center" });
+    }
+    open = path;
+  }
+
   const points = () => [...map.querySelectorAll(".sum strong")].map(one => one.textContent).join(", ");
 
   async function refresh() {
@@ -39,6 +54,7 @@
     const before = points();
     refresh.last = fresh.innerHTML;
     map.innerHTML = fresh.innerHTML;
+    markOpen();
     // What was begun anew has no button for that any more: its title is beside it.
     const beside = focused && (document.getElementById(focused) || document.getElementById(focused.replace("reset-", "open-")));
     beside?.focus({ preventScroll: true });
@@ -109,7 +125,11 @@
 
   said.addEventListener("click", () => say("", false));
   document.documentElement.classList.toggle("in-panel", Boolean(lab));
-  if (lab) followTheme();
+  if (lab) {
+    followTheme();
+    lab.onCurrent(markOpen);
+    markOpen();
+  }
   for (const kind of ["visibilitychange", "pageshow", "focus"]) {
     (kind === "visibilitychange" ? document : window).addEventListener(kind, look);
   }

@@ -71,7 +71,7 @@ def test_page_notebook_check_tick_reset_end(page: Page, lab: str, chapters: Path
     page.goto(lab.format(""))
     address = page.url.partition("course")[0]
     expect(page.locator("h1")).to_have_text("Course")
-    expect(page.locator(".sum")).to_contain_text(re.compile(r"0 of \d+ points"))
+    expect(page.locator(".sum").first).to_contain_text(re.compile(r"0 of \d+ points"))
     # By the keyboard alone: the first stop is the button that leads on.
     page.keyboard.press("Tab")
     expect(page.locator("#continue")).to_be_focused()
@@ -123,14 +123,22 @@ def test_page_notebook_check_tick_reset_end(page: Page, lab: str, chapters: Path
     assert "Hello, world!" in copy.read_text()
     assert (chapters / NOTEBOOK).read_bytes() == (ROOT / "chapters" / NOTEBOOK).read_bytes()
 
-    # A notebook from the panel opens beside the others, in the same tab of the browser.
-    panel.locator("#read-inspecting_actions").click()
-    expect(panel.locator("#read-inspecting_actions")).to_have_attribute("aria-pressed", "true")
-    panel.locator("#open-inspecting_actions").click()
-    expect(page.locator(".jp-NotebookPanel:not(.lm-mod-hidden)")).to_contain_text("Inspecting actions")
+    # A notebook from the panel opens beside the others, in the same tab of the browser. The panel marks the open one,
+    # and scrolls to it.
+    expect(panel.locator("[aria-current]")).to_have_id("open-lab_1_2")
+    panel.locator("#open-lab_2_3").click()
+    expect(page.locator(".jp-NotebookPanel:not(.lm-mod-hidden)")).to_contain_text("Python that waits")
+    expect(panel.locator("[aria-current]")).to_have_id("open-lab_2_3")
+    look(page, "course-panel-chapter-2")
+    page.get_by_role("tab", name="lab_1_2.ipynb").click()
+    expect(panel.locator("[aria-current]")).to_have_id("open-lab_1_2")
+    expect(panel.locator("#open-lab_1_2")).to_be_in_viewport()
+    expect(panel.locator("#open-lab_2_3")).not_to_be_in_viewport()
 
-    expect(panel.locator(".certificate")).to_have_count(0)
+    # The chapter that was begun anew has no certificate, and the other one still has its own.
+    expect(panel.locator(".certificate")).to_have_count(1)
     all_but("", chapters)
+    expect(panel.locator(".certificate")).to_have_count(2)
     expect(panel.locator(".certificate").first).to_contain_text("It is not a grade.")
     page.goto(f"{address}course")
     with page.expect_download() as download:

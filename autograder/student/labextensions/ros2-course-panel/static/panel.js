@@ -53,6 +53,8 @@ window._JUPYTERLAB["ros2-course-panel"] = (() => {
       [...app.shell.widgets("main")].map(one => one.context).filter(context => context?.path === path);
     return {
       isSeen: () => widget.isVisible,
+      current: () => app.shell.currentWidget?.context?.path,
+      onCurrent: told => app.shell.currentChanged?.connect(told),
       open: path => {
         if (narrow.matches) app.shell.collapseLeft();
         return app.commands.execute("docmanager:open", { path });
