@@ -123,8 +123,8 @@ BUILT = (
 )
 """Exercises whose answers are built or launched: seven seconds of a processor each, where others take two."""
 DRAWS = (
-    Draw(f"{_LIVE}[", 4, "/"),
-    *(Draw(f"{_LIVE}[{exercise}/", 2) for exercise in BUILT),
+    Draw(f"{_LIVE}[", 2, "/"),
+    *(Draw(f"{_LIVE}[{exercise}/", 1) for exercise in BUILT),
     Draw("tests/attacks/test_attacks.py::test_it_is_defeated[", 1, "-"),
     Draw("tests/test_left_behind.py::test_everything_ends_with_the_command[", 1, "-"),
     Draw("tests/grading/day/test_killed_at_random.py::test_a_command_is_ended_and_goes_on[3-", 1),

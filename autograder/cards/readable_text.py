@@ -147,7 +147,7 @@ def _cut(text: str, limit: int, mark: str) -> str:
 
 
 TRACEBACK = "Traceback (most recent call last)"
-_FRAME = re2.compile(r'^ +File "(?P<file>[^"]*)", line (?P<line>\d+)')
+_FRAME = re2.compile(r'^ +File "(?P<file>[^"]*)", line (?P<line>\d+)(?:, in (?P<function>\w+))?')
 _LIBRARIES = ("/site-packages/", "/lib/python3", "/opt/ros/", "<frozen")
 _BUILT = re2.compile(r"/install/(?:[^/.]+/)?lib/python3[^/]*/site-packages/")
 """Matches the folder into which a build installs a workspace's modules, which the student wrote."""
@@ -170,7 +170,8 @@ class TracebackLine:
     """The student's line in which a program failed.
 
     Attributes:
-        where: The position, such as ``"Line 11 of your cell"``, or the line of a file.
+        where: The position, such as ``"Line 11 of your cell"``, or the line of a file. If code of several cells led to
+            it, the cells are named by their functions.
         quote: The text of the line without indentation; empty if unknown.
         error: The exception, such as ``"AttributeError: 'Talker' object has no attribute 'nmae'"``.
     """
@@ -203,22 +204,35 @@ def students_line(detail: str, advice: str = "") -> TracebackLine | None:
         starts = [0]
     if not starts or error.startswith(TRACEBACK):
         return None
-    found: tuple[str, str, str] | None = None
+    found: tuple[re2.Match[str], str] | None = None
+    caller: re2.Match[str] | None = None
     for number in range(starts[-1], len(lines)):
         frame = _FRAME.match(lines[number])
         if frame and _is_students(frame["file"]):
             after = lines[number + 1] if number + 1 < len(lines) else ""
             quote = after.strip() if after.startswith("    ") and not _FRAME.match(after) else ""
-            if found is None or not found[2] or found[2] not in advice:
-                found = (frame["file"], frame["line"], quote)
+            if found is None or not found[1] or found[1] not in advice:
+                caller = found[0] if found and found[0]["file"] != frame["file"] else caller
+                found = (frame, quote)
         elif frame and _CALLED_BY_ROS in frame["file"]:
             # rclpy called what follows, so the line found so far only spins the node.
-            found = None
+            found = caller = None
     if found is None:
         return None
-    file, line, quote = found
-    of = "your cell" if any(part in file for part in _CELL_FILES) else file.rpartition("/")[2]
-    return TracebackLine(f"Line {line} of {of}", quote, error)
+    frame, quote = found
+    cells = [one for one in (caller, frame) if one and _is_cell(one) and one["function"]]
+    if caller is None or len(cells) < 2:
+        return TracebackLine(f"Line {frame['line']} of {_place(frame)}", quote, error)
+    called = f"called in line {caller['line']} of the cell with {caller['function']}"
+    return TracebackLine(f"Line {frame['line']} of the cell with {frame['function']}, {called}", quote, error)
+
+
+def _is_cell(frame: re2.Match[str]) -> bool:
+    return any(part in frame["file"] for part in _CELL_FILES)
+
+
+def _place(frame: re2.Match[str]) -> str:
+    return "your cell" if _is_cell(frame) else frame["file"].rpartition("/")[2]
 
 
 def _is_students(file: str) -> bool:

@@ -157,7 +157,7 @@ def hand_out(
         raise CannotHandOut(f"{root} has no notebook yet: there is nothing to hand out")
     files = dict(_files(root, chapters, with_solutions=with_solutions))
     words = _OF_A_CLONE if "course" in files else _OF_A_WHEEL
-    files["README.md"] = README.format(title=chapters[0].title, **words).encode()
+    files["README.md"] = README.format(title=" · ".join(one.title for one in chapters), **words).encode()
     write = _pack if as_zip else _copy
     write(place, files)
     sizes = [

@@ -87,9 +87,25 @@ def test_the_line_that_the_advice_quotes_is_shown_and_not_a_given_functions() ->
         students_line(detail, "In `first = ask(client, node, a, b)`, they are swapped."),
     )
     assert given is not None
-    assert given.where == "Line 6 of your cell"
+    assert given.where == "Line 6 of the cell with ask, called in line 7 of the cell with add_three_ints"
     assert own is not None
     assert (own.where, own.quote) == (
         "Line 7 of your cell",
         "first = ask(client, node, a, b)",
     )
+
+
+def test_of_two_cells_each_is_named_by_its_function() -> None:
+    text = (
+        "Traceback (most recent call last):\n"
+        '  File "/lib/rclpy/task.py", line 9, in __call__\n    self.handler()\n'
+        '  File "/tmp/ipykernel_1/11.py", line 6, in act\n    seen = observe(self.scan)\n'
+        '  File "/tmp/ipykernel_1/22.py", line 3, in observe\n    ahead = scan.ranges[0]\n'
+        "AttributeError: 'NoneType' object has no attribute 'ranges'"
+    )
+    where = "Line 3 of the cell with observe, called in line 6 of the cell with act"
+    error = "AttributeError: 'NoneType' object has no attribute 'ranges'"
+    assert students_line(text) == TracebackLine(where, "ahead = scan.ranges[0]", error)
+    alone = students_line(text.replace("/22.py", "/11.py"))
+    assert alone is not None
+    assert alone.where == "Line 3 of your cell"
