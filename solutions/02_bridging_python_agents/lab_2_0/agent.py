@@ -27,11 +27,11 @@ So a new agent drives at the first wall, and one that has seen the last wall tur
 
 
 def observation(number: int, wall: str, random: Random) -> list[float]:
-    """Return what is seen: more room on the left and on the right by turns; at the last wall, as much on both."""
+    """Return what is seen: more room on the left, then more on the right, and so on; at the last wall, equal room."""
     sides = sorted(random.sample((0.5, 0.9, 1.4, 2.0), 2), reverse=number % 2 == 0)
     if number == len(COURSE) - 1:
         sides = [1.0, 1.0]
-    return [random.uniform(*AHEAD[wall]), *sides]
+    return [round(random.uniform(*AHEAD[wall]), 2), *sides]
 
 
 EXERCISE = Returns(

@@ -18,8 +18,8 @@ MISSION = (
 def mission(random: Random) -> list[list[Any]]:
     """Draw a home and a lamp, and what a robot sees that faces the place next to it, or looks elsewhere, by turns."""
     places = {
-        "home": (random.uniform(0.5, 1.5), random.uniform(0.5, 3.5)),
-        "lamp": (random.uniform(4.0, 5.5), random.uniform(0.5, 3.5)),
+        "home": (round(random.uniform(0.5, 1.5), 2), round(random.uniform(0.5, 3.5), 2)),
+        "lamp": (round(random.uniform(4.0, 5.5), 2), round(random.uniform(0.5, 3.5), 2)),
     }
     seen: list[list[Any]] = []
     for number, (place, near) in enumerate(MISSION):
@@ -27,7 +27,8 @@ def mission(random: Random) -> list[list[Any]]:
         off = random.choice((-1, 1)) * (random.uniform(0.8, 2.5) if number % 2 else random.uniform(0.05, 0.2))
         (x, y), heading = places[place], remainder(around + pi + off, tau)
         lamp = list(places["lamp"]) if number > 1 else None
-        seen.append([x + away * cos(around), y + away * sin(around), heading, lamp])
+        pose = (x + away * cos(around), y + away * sin(around), heading)
+        seen.append([*(round(number, 2) for number in pose), lamp])
     return seen
 
 
