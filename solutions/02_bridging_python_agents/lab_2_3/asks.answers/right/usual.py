@@ -27,7 +27,7 @@ class Heart(Node):
         self.told.publish(String(data=self.answers[-1]))
 
 
-class Guided(Heart):
+class AskingHeart(Heart):
     """Can ask where the door is."""
 
     def __init__(self) -> None:
@@ -39,7 +39,7 @@ class Guided(Heart):
         """Answer a question: a subclass does it."""
 
 
-class Asker(Guided):
+class Asker(AskingHeart):
     """Asks without waiting."""
 
     def on_ask(self, number: Int32) -> None:
