@@ -8,7 +8,8 @@ A class or function is out of date if its cell has failed or now defines other n
 a ``SyntaxError``, the class from the previous run of the cell still exists, and a check would judge this old code. If
 the cell never succeeded, there is no class, and the check cell fails with a misleading ``NameError``. If a class was
 renamed, it also exists under the old name, and a check of the old name would pass although no cell contains this code
-any more.
+any more. If a class was corrected, the classes that other cells have derived from it before are still derived from the
+class as it was.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ from __future__ import annotations
 import dis
 import hashlib
 import importlib
+import linecache
 import re  # noqa: TID251  (a student's cells, in the student's kernel)
 import traceback
 from dataclasses import dataclass
@@ -113,6 +115,8 @@ def raise_if_stale(subject: Any) -> None:
             raise StaleCodeError(
                 f"{why} The notebook still has an older {name}. Correct that cell and run it, then check again."
             )
+    if why := _cells.why_older_than_its_parts(subject):
+        raise StaleCodeError(why)
 
 
 _ENTRY_POINTS = "entry_points"
@@ -160,6 +164,18 @@ class _FailedCells:
             return ""
         instead = f", it defines {' and '.join(now)}" if now else ""
         return f"Your cell does not define {name} any more{instead}. If another cell defines {name} now, run that one."
+
+    def why_older_than_its_parts(self, subject: Any) -> str:
+        """Return which class the subject is made from that has been corrected since; empty if there is none."""
+        for made in filter(_is_of_a_cell, getattr(subject, "__mro__", ())):
+            for part in filter(_is_of_a_cell, (*made.__bases__, *vars(made).values())):
+                now = self._shell.user_ns.get(part.__name__)
+                if _is_of_a_cell(now) and now not in subject.__mro__ and _text_of(now) != _text_of(part):
+                    return (
+                        f"{made.__name__} is made from {part.__name__}, and still from an older one: the cell with "
+                        f"{part.__name__} ran later. Run the cell with {made.__name__}, then check again."
+                    )
+        return ""
 
     def _cell_begins(self, info: Any) -> None:
         self._source = info.raw_cell or ""
@@ -261,6 +277,16 @@ def names_read(subject: Any) -> set[str]:
         found |= {str(step.argval) for step in dis.get_instructions(code) if step.opname == "LOAD_GLOBAL"}
         codes += [inner for inner in code.co_consts if isinstance(inner, CodeType)]
     return found
+
+
+def _is_of_a_cell(value: Any) -> bool:
+    return isinstance(value, type) and value.__module__ == "__main__" and value.__qualname__ == value.__name__
+
+
+def _text_of(made: type) -> str:
+    """Return the text of the cells that define the methods of a class; empty if it has none."""
+    files = {function.__code__.co_filename for function in functions_of(made)}
+    return "".join("".join(linecache.getlines(file)) for file in sorted(files))
 
 
 _cells = _FailedCells(notebook_shell()) if notebook_shell() is not None else None

@@ -86,3 +86,26 @@ def test_what_the_checked_function_uses_must_be_in_a_cell_too(notebook: Notebook
 def test_a_name_that_is_defined_elsewhere_is_judged(notebook: Notebook, cells: list[tuple[str, str]]) -> None:
     shown = checked(notebook, *cells)
     assert (shown.error, shown.value) == (None, "0.0")
+
+
+BASE, BETTER = (f"class TalkerBase:\n    def tell(self):\n        return {word}" for word in ("1", "2"))
+
+
+@pytest.mark.parametrize("derived", ["class Talker(TalkerBase): ...", "class Talker:\n    kind = TalkerBase"])
+def test_a_class_made_from_one_that_was_corrected_later_is_not_judged(
+    notebook: Notebook, derived: str
+) -> None:
+    shown = checked(notebook, ("base", BASE), ("derived", derived), ("base", BETTER))
+    assert shown.error is not None
+    assert "still from an older one" in shown.error
+    assert "Run the cell with Talker" in shown.error
+    assert checked(notebook, ("base", BASE), ("base", BETTER), ("derived", derived)).error is None
+
+
+@pytest.mark.parametrize("again", [BASE, "class TalkerBase(TalkerBase): ..."])
+def test_a_cell_that_ran_again_unchanged_or_builds_on_its_own_class_hinders_no_check(
+    notebook: Notebook, again: str
+) -> None:
+    cells = [("base", BASE), ("derived", "class Talker(TalkerBase): ..."), ("base", again)]
+    assert checked(notebook, *cells[:2], ("base", BASE)).error is None
+    assert checked(notebook, cells[0], cells[2], cells[1]).error is None

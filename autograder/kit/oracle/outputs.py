@@ -63,9 +63,9 @@ class Output:
             return f"Keeps the rate on {self.name}"
         if self.kind is Kind.RETURNED:
             return "Returns the right values"
-        # Every message of std_msgs has a field named data, so this name says nothing on a card.
-        what = " and ".join(path for path in self.paths if path != "data")
-        return f"Says the right {what or 'value'} on {self.name}"
+        # Every message of std_msgs has only a field named data, so this name alone says nothing on a card.
+        what = "value" if self.paths == ("data",) else " and ".join(self.paths)
+        return f"Says the right {what} on {self.name}"
 
     def values(self, events: Sequence[Event]) -> list[list[Any]]:
         """Return the fields that are compared, for each message or answer among the events."""
@@ -83,7 +83,7 @@ class Output:
             return has_rate(seen.of("message", self.name), self.period, self._rate(seen))
         mine, theirs = self._rows(seen), self._rows(expected)
         both = min(len(mine), len(theirs))
-        differs = next((n for n in range(both) if not same(mine[n][0], theirs[n][0], self.tolerance)), both)
+        differs = self._parting(mine, theirs)
         if self.kind is Kind.LIST:
             # The messages before the judge stepped the clock do not count: how many came depends on the machine.
             stepped = [
@@ -101,12 +101,19 @@ class Output:
         if theirs and differs == len(theirs):
             return Finding(True, right := f"the same as the solution in all {len(theirs)} steps", right)
         due, came = (
-            f"{self._in_words(rows[differs][0])} {rows[differs][1]}"
+            f"{self._in_words(rows[differs][0], others[differs][0] if differs < both else ())} {rows[differs][1]}"
             if differs < len(rows)
             else "nothing more"
-            for rows in (theirs, mine)
+            for rows, others in ((theirs, mine), (mine, theirs))
         )
         return Finding(False, due, came if differs < len(mine) else "nothing came from then on")
+
+    def parts_at(self, seen: Part, expected: Part) -> Event | None:
+        """Return what was noted in the first step in which the subject's outputs are others; None if there is none."""
+        if self.kind is not Kind.STEPS:
+            return None
+        noted = seen.of("noted", self.name)
+        return next(iter(noted[self._parting(self._rows(seen), self._rows(expected)) :]), None)
 
     def is_undeclared(self, seen: Part, _: Part) -> bool:
         """Return True if the subject has no parameter of this name."""
@@ -120,6 +127,12 @@ class Output:
     def _rate(self, seen: Part) -> Rate | None:
         return rate_of(seen.of("message", self.name), self.period, may_vary=True)
 
+    def _parting(self, mine: Sequence[Any], theirs: Sequence[Any]) -> int:
+        """Return the index of the first row that differs; the number of compared rows if none does."""
+        pairs = enumerate(zip(mine, theirs, strict=False))
+        apart = (number for number, (one, other) in pairs if not same(one[0], other[0], self.tolerance))
+        return next(apart, min(len(mine), len(theirs)))
+
     def _rows(self, part: Part) -> list[tuple[Any, str]]:
         """Return what is compared, in order: the values of each step with its words, or each message of a list."""
         noted = part.of("noted", self.name)
@@ -127,14 +140,32 @@ class Output:
             return [(values, "") for event in noted for values in event.data["values"]]
         return [(event.data["values"], _when(event)) for event in noted]
 
-    def _in_words(self, listed: Sequence[Sequence[Any]]) -> str:
+    def _in_words(self, listed: Sequence[Sequence[Any]], others: Sequence[Sequence[Any]] = ()) -> str:
         if self.kind is Kind.PARAMETER:
             return "; ".join(map(parameter_in_words, listed)) or "nothing"
-        named = ["" if path == "data" else f"{path} = " for path in self.paths]
-        told = [", ".join(n + in_words([v]) for n, v in zip(named, values, strict=True)) for values in listed]
+        named = ["" if self.paths == ("data",) else f"{path} = " for path in self.paths]
+        told = [
+            ", ".join(n + in_words([_shown(*pair)]) for n, *pair in zip(named, values, other, strict=True))
+            for values, other in zip(listed, [*others, *listed[len(others) :]], strict=False)
+        ]
         return "; ".join(told) or "nothing"
 
 
 def _when(noted: Event) -> str:
     step, given = noted.data["step"], noted.data["given"]
     return f"after step {step} ({given})" if step else "at the start"
+
+
+LONG = 8
+"""The maximum length of a list that a card shows whole."""
+
+
+def _shown(value: Any, other: Any) -> Any:
+    """Return a value for the card: a number with four decimals, and of a long list the first item that differs."""
+    if all(isinstance(one, (list, tuple)) and len(one) > LONG for one in (value, other)):
+        pairs = enumerate(zip(value, other, strict=False))
+        number = next((number for number, (one, two) in pairs if one != two), None)
+        return value if number is None else f"{_shown(value[number], None)} at index {number}"
+    if isinstance(value, (list, tuple)):
+        return [_shown(one, None) for one in value]
+    return round(value, 4) if isinstance(value, float) else value

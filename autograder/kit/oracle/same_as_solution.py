@@ -24,6 +24,7 @@ from autograder.kit.mistakes.crashes import CRASHES, OTHER_CRASHES
 from autograder.kit.model import Advice, Finding, Mistake
 from autograder.kit.oracle.goal_sender import GoalSender
 from autograder.kit.oracle.outputs import Kind, Output
+from autograder.kit.oracle.standing_clock import KEY, noted_before, on_another_clock
 from autograder.kit.oracle.steps import Goal, Serves, Sets, Step, To, Turn, parameter_value
 from autograder.kit.recipes.own_scenario import ENDPOINTS, QUIET, Met, OwnScenario, meet
 
@@ -83,12 +84,17 @@ class _Drawn(OwnScenario):
         proven = Mistake(
             "variant", lambda evidence: self._same_as_a_variant(evidence, simulated=True), certain=True
         )
+        clock = Mistake(
+            KEY,
+            lambda evidence: on_another_clock(self._outputs, evidence.main, self.expected(evidence)),
+            certain=True,
+        )
         likely = Mistake("variant", self._same_as_a_variant)
         if not self.roles:  # plain Python, which has no node
             return (*CRASHES, *OTHER_CRASHES, OWN, proven, likely)
         ladder = super().ladder
         at = ladder.index(unfinished.NEVER_CONSTRUCTED)
-        return (*ladder[:at], proven, likely, *ladder[at:])
+        return (*ladder[:at], proven, clock, likely, *ladder[at:])
 
     def _same_as_a_variant(self, evidence: Evidence, *, simulated: bool = False) -> Advice | None:
         mine, due = evidence.main, self.expected(evidence)
@@ -145,8 +151,6 @@ class SameAsSolution:
             topics, the period is the student's.
         pause: Seconds of the subject's time after each input.
         tolerance: The absolute or relative tolerance for numbers.
-        robots_clock: True if the task demands the robot's clock for all that time alone decides. What a node does in
-            simulated time is then proven, even if another clock makes it right in real time.
         roles: The roles of the subject's endpoints, the most telling first.
         points: The points of the exercise. All criteria are worth the same.
 
@@ -181,7 +185,6 @@ class SameAsSolution:
         rates: Mapping[str, float] = NOTHING,
         pause: float = PAUSE,
         tolerance: float = TOLERANCE,
-        robots_clock: bool = False,
         roles: Sequence[str] = ("publisher", "subscription"),
         points: float = POINTS,
     ) -> None:
@@ -200,7 +203,10 @@ class SameAsSolution:
             for name, paths in outputs.items()
         ]
         self._outputs += [Output(name, (), Kind.RATE, tolerance, period) for name, period in rates.items()]
-        is_timed = not robots_clock and any(isinstance(step, (int, float)) for step in gives(Random(0)))
+        steps = gives(Random(0))
+        # A clock that stands still tells which clock a node asks. Then no other clock makes it right.
+        stands = any(isinstance(step, To) and step.stands for step in steps)
+        is_timed = not stands and any(isinstance(step, (int, float)) for step in steps)
         drawn = _Drawn(self._scenario, self._outputs, roles, is_timed=is_timed)
         self._draft = Draft(exercise_id, title, task, drawn, points=points)
         if late_after:
@@ -289,6 +295,8 @@ class SameAsSolution:
                 return False
         if bench.pace is Pace.FAST and not isinstance(step, (int, float)):
             bench.settle()
+            if isinstance(step, To):
+                bench.wait_until(lambda _: False, step.stands)
         if not bench.run_time(step if isinstance(step, (int, float)) else self._pause):
             return False
         turns.append(turn)
@@ -305,9 +313,8 @@ class SameAsSolution:
         """
         seen, step = bench.seen(), turn.step
         events = turn.events(seen, following, by_time=bench.pace is Pace.REAL_TIME)
-        given = f"{step:g} s without an input" if isinstance(step, (int, float)) else step.name
-        if isinstance(step, Goal):
-            given = str(step)
+        given = f"{step:g} s without an input" if isinstance(step, (int, float)) else str(step)
+        stood = {"stood": step.stands} if isinstance(step, To) and step.stands else {}
         # The words of a refusal are the student's own, so only the presence of a reason is compared.
         if isinstance(step, Sets):
             given = f"{step.parameter} = {step.value}"
@@ -321,7 +328,9 @@ class SameAsSolution:
                 values = step.outcomes(replace(seen, events=seen.events[:until]), output.paths)
             elif output.name not in self._every:
                 values = values[-1:]
-            bench.note(output.name, step=turn.number, given=given, values=values)
+            if stood and bench.before:
+                values = noted_before(bench.before.part(seen.name), output.name, turn.number, values)
+            bench.note(output.name, step=turn.number, given=given, values=values, **stood)
 
     def _given(self, met: Met, step: To | Sets | Goal) -> bool:
         """Give the subject an input. Return False if it should answer and does not."""

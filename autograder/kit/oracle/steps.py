@@ -29,10 +29,17 @@ class To(NamedTuple):
     Attributes:
         name: The name of the topic or service, such as ``"/left"``.
         value: The value of the field ``data``; a dictionary is a whole message or request.
+        stands: Seconds of wall time for which the subject's clock stands still after the input. A node that asks
+            another clock for the time then shows it, however busy the machine is.
     """
 
     name: str
     value: Any
+    stands: float = 0.0
+
+    def __str__(self) -> str:
+        """Return the input in words, for the card."""
+        return self.name + (f", then {self.stands:g} s while the robot's time stood" if self.stands else "")
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,7 @@ from random import Random
 
 from autograder.kit.counterparts import Qos
 from autograder.kit.draft import Draft
-from autograder.kit.quests.quest import Quest
+from autograder.kit.quests.quest import Quest, Searches
 from autograder.kit.quests.robot import Robot
 
 NAMES, KIND = ("arm", "base", "camera", "display", "gripper", "map", "planner"), "sensor_msgs/msg/LaserScan"
@@ -37,11 +37,24 @@ def robot(random: Random, number: int, talk: list[Qos], hear: list[Qos], deaf: Q
     return Robot(asked=(topic,), answer={"node": rest[0]}, nodes=nodes)
 
 
+def hears_well(seen: Searches, _: Searches) -> str:
+    """Return a subscriber that was named and is not deaf; empty if there is none."""
+    named = [(search.robot.nodes, name) for search in seen.values() for name in search.astray]
+    return next((name for nodes, name in named if "subscribes" in nodes.get(f"/{name.strip('/')}", {})), "")
+
+
 quest = Quest(robots)
 finds = Draft(
     "lab_2_1.deaf", "Lab 2.1 · Who is deaf", "Find the node that cannot hear a topic's publisher.", quest
 )
 finds.asks("node", "Finds the node that cannot hear", quest.finds("node"))
+finds.knows(
+    "hears_well",
+    hears_well,
+    "Your answer names {}, which subscribes to the topic, and hears its publishers.",
+    "Pass the publisher's qos_profile first, then the subscriber's, to qos_check_compatible, and look for ERROR: only "
+    "a subscriber that asks for more than is offered hears nothing. Another QoS alone is no error.",
+)
 EXERCISE = finds.exercise(
     arguments="a topic",
     sample_arguments=("/nothing",),

@@ -7,11 +7,10 @@ from autograder.kit.oracle.same_as_solution import SameAsSolution, To
 WALL = {"far": (0.95, 3.0), "near": (0.1, 0.65)}
 
 
-def scan(wall: str, random: Random) -> To:
+def scan(wall: str, random: Random, stands: float = 0.0) -> To:
     """Return a scan with a wall ahead, and others around."""
-    return To(
-        "/scan", {"ranges": [random.uniform(*WALL[wall]), *(random.uniform(0.1, 3.0) for _ in range(35))]}
-    )
+    ranges = [random.uniform(*WALL[wall]), *(random.uniform(0.1, 3.0) for _ in range(35))]
+    return To("/scan", {"ranges": ranges}, stands)
 
 
 EXERCISE = SameAsSolution(
@@ -19,14 +18,14 @@ EXERCISE = SameAsSolution(
     "Lab 2.1 · Fresh or old",
     "Say how old the newest scan is, and drive only while it is fresh and the wall ahead is far.",
     gives=lambda random: [
-        *(0.6, scan("far", random), scan("near", random), scan("far", random), 1.3, scan("near", random)),
+        *(0.6, scan("far", random), scan("near", random), scan("far", random, stands=1.2), 1.3),
+        scan("near", random),
         *(scan("far", random), scan("far", random), 1.4, 0.6, scan("far", random)),
     ],
     tells={"/known": "data", "/cmd_vel": "linear.x"},
     rates={"/known": 0.2, "/cmd_vel": 0.2},
     qos=["/scan"],
     pause=0.6,
-    robots_clock=True,
 ).exercise(
     text={
         "returns `nothing` as long as no scan has come": "known",

@@ -5,10 +5,11 @@ from random import Random
 from autograder.kit.oracle.same_as_solution import SameAsSolution, To
 
 
-def command(random: Random, *, turns: bool = False) -> To:
+def command(random: Random, *, turns: bool = False, stands: float = 0.0) -> To:
     """Return a command below the limits, which drives, or only turns."""
     forward = 0.0 if turns else random.uniform(0.1, 0.4)
-    return To("/agent_vel", {"linear": {"x": forward}, "angular": {"z": random.uniform(0.1, 0.9)}})
+    twist = {"linear": {"x": forward}, "angular": {"z": random.uniform(0.1, 0.9)}}
+    return To("/agent_vel", twist, stands)
 
 
 EXERCISE = SameAsSolution(
@@ -17,7 +18,9 @@ EXERCISE = SameAsSolution(
     "Stop the robot once when no command has come for half a second.",
     gives=lambda random: [
         1.1,
-        *(command(random, turns=turns) for turns in (False, False, False, True)),
+        *(command(random) for _ in range(2)),
+        command(random, stands=0.7),
+        command(random, turns=True),
         0.45,
         1.4,
         *(command(random) for _ in range(3)),
@@ -29,7 +32,6 @@ EXERCISE = SameAsSolution(
     tells={"/cmd_vel": ("linear.x", "angular.z")},
     every=True,
     pause=0.3,
-    robots_clock=True,
 ).exercise(
     text={
         "Each command is handed on as before": "cmd_vel",

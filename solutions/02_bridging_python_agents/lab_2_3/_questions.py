@@ -12,6 +12,7 @@ def place(random: Random) -> dict[str, object]:
     return {"success": True, "message": f"{random.choice(PLACES)}, {random.randrange(100)} m"}
 
 
-def questions(random: Random, count: int) -> list[To]:
-    """Return questions with other numbers each time."""
-    return [To("/ask", number) for number in random.sample(range(1, 100), count)]
+def questions(random: Random, count: int, stands: float = 0.0) -> list[To]:
+    """Return questions with other numbers each time; after the last one, the robot's time may stand still."""
+    *first, last = random.sample(range(1, 100), count)
+    return [*(To("/ask", number) for number in first), To("/ask", last, stands)]

@@ -8,12 +8,11 @@ EXERCISE = SameAsSolution(
     "lab_2_3.patience",
     "Lab 2.3 · What never comes",
     "Give a question up after two seconds, and say so.",
-    gives=lambda random: [*questions(random, 2), 1.0, *questions(random, 2), 3.2],
+    gives=lambda random: [*questions(random, 2, stands=2.2), 1.0, *questions(random, 2), 3.2],
     tells={"/told": "data", "/beat": "data"},
     serves={"/where": Serves(place, late={2: 2.7}, never={1, 4})},
     every=("/told",),
     pause=0.7,
-    robots_clock=True,
     roles=("publisher", "subscription", "client"),
 ).exercise(
     text={

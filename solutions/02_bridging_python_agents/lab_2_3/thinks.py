@@ -11,8 +11,10 @@ def decision(random: Random) -> dict[str, object]:
 
 
 def steps(random: Random) -> list[To | float]:
-    """Return observations with growing numbers: one alone, three in a row, and two of which the first is old."""
-    first, *row, fifth, sixth = (To("/seen", number) for number in sorted(random.sample(range(1, 100), 6)))
+    """Return observations: one alone, three in a row, and two of which the first is old. Some numbers fall."""
+    low, *rest = sorted(random.sample(range(1, 100), 6))
+    numbers = [rest[0], *reversed(rest[1:4]), low, rest[4]]
+    first, *row, fifth, sixth = (To("/seen", number) for number in numbers)
     return [first, 1.6, *row, 2.1, fifth, 0.6, sixth, 1.6]
 
 
