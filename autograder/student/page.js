@@ -37,7 +37,7 @@
         continue;
       }
       link.setAttribute("aria-current", "true");
-      if (path !== open) link.closest("li").scrollIntoView({ block: "center" });
+      if (path !== open) link.closest("li").scrollIntoView({ block: "nearest" });
     }
     open = path;
   }
