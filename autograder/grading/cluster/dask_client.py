@@ -98,23 +98,27 @@ class _Carrier:
 
     async def serve(self) -> None:
         """Carry out commands and report workers until the connection to the grader or to the scheduler ends."""
-        serving = [asyncio.create_task(part) for part in (self._take_commands(), self._watch_workers())]
+        commands = asyncio.to_thread(self._take_commands, asyncio.get_running_loop())
+        serving = [asyncio.ensure_future(commands), asyncio.create_task(self._watch_workers())]
         await asyncio.wait(serving, return_when=asyncio.FIRST_COMPLETED)
         for part in serving:
             part.cancel()
 
-    async def _take_commands(self) -> None:
-        """Carry out the grader's commands until the connection ends."""
-        while True:
-            try:
-                line = await asyncio.to_thread(self._grader.hear_json)
-            except Hangup:
-                return
-            command = msgspec.json.decode(line, type=Command)
-            if isinstance(command, Give):
-                self._start(self._give(command))
-            else:
-                self._drop(command.number)
+    def _take_commands(self, loop: asyncio.AbstractEventLoop) -> None:
+        """Let the loop carry out the grader's commands until the connection ends.
+
+        This runs in a thread of its own, because the grader waits until a command is read before it reads messages.
+        """
+        with contextlib.suppress(Hangup):
+            while True:
+                command = msgspec.json.decode(self._grader.hear_json(), type=Command)
+                loop.call_soon_threadsafe(self._obey, command)
+
+    def _obey(self, command: Command) -> None:
+        if isinstance(command, Give):
+            self._start(self._give(command))
+        else:
+            self._drop(command.number)
 
     async def _watch_workers(self) -> None:
         """Report to the grader which workers join and leave. For this, read the scheduler's list after each event."""
