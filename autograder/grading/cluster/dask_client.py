@@ -91,8 +91,8 @@ class _Carrier:
         self._client, self._grader = client, grader
         self._batch = uuid.uuid4().hex[:12]
         self._workers: set[str] = set()
-        self._futures: dict[int, Any] = {}
-        self._given: dict[int, str] = {}
+        self._given: dict[int, tuple[str, Any]] = {}
+        """The worker and the future of each order without an answer."""
         self._running: set[asyncio.Task[None]] = set()
         self._changed = asyncio.Event()
 
@@ -139,8 +139,8 @@ class _Carrier:
         """Report the workers that have left, and return the address, name and number of threads of each new worker."""
         workers = (await self._client.scheduler.identity())["workers"]
         for address in self._workers - workers.keys():
-            for number, worker_address in list(self._given.items()):
-                if worker_address == address:
+            for number, (worker, _) in list(self._given.items()):
+                if worker == address:
                     self._drop(number)
             _tell(self._grader, Left(address))
         new = [
@@ -186,12 +186,12 @@ class _Carrier:
             pure=False,
             retries=0,
         )
-        self._futures[give.number], self._given[give.number] = future, give.worker
+        self._given[give.number] = order = give.worker, future
         try:
             news: News = await self._answer(give.number, key, future)
         except Exception as error:
             news = Failed(give.number, _first_line(error))
-        if self._futures.get(give.number) is future:
+        if self._given.get(give.number) is order:
             _tell(self._grader, news)
             self._drop(give.number)
 
@@ -213,9 +213,8 @@ class _Carrier:
         return Answered(number, data)
 
     def _drop(self, number: int) -> None:
-        self._given.pop(number, None)
-        future = self._futures.pop(number, None)
-        if future is not None:
+        if number in self._given:
+            _, future = self._given.pop(number)
             future.release()
 
     def _start(self, doing: Any) -> None:

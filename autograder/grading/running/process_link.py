@@ -10,7 +10,6 @@ import contextlib
 import os
 import socket
 import sys
-import threading
 from typing import TYPE_CHECKING, Self
 
 import msgspec
@@ -43,8 +42,6 @@ class ProcessLink:
 
     def __init__(self, *words: str, scratch: Path | None) -> None:
         self._words, self._scratch = words, scratch
-        self._changing = threading.Lock()
-        self._stopped = False
         self._silent_starts = 0
 
     def __enter__(self) -> Self:
@@ -54,20 +51,21 @@ class ProcessLink:
         return self
 
     def __exit__(self, *_: object) -> None:
-        self.stop()
         self._end()
         self._log.close()
 
     def say(self, command: Command) -> None:
         """Send a command. This raises no error if the process has ended: :meth:`hear` then reports its end.
 
-        The process reads commands at any time, also while it waits until :meth:`hear` takes its messages.
+        The process reads commands at any time, even while its own messages wait to be read.
         """
         with contextlib.suppress(Hangup):
             self._lines.say_json(msgspec.json.encode(command))
 
     def hear(self, within: float | None) -> News | None:
         """Return the next message; None if no message came in time.
+
+        If the process has ended and may be started again, this starts it and returns ``Left``.
 
         Args:
             within: The number of seconds to wait; None to wait without limit.
@@ -78,17 +76,17 @@ class ProcessLink:
         except Silent:
             return None
         except Hangup:
-            return self._lost(f"its process ended{self._last_words()}")
+            reason = f"its process ended{self._last_words()}"
         except (msgspec.MsgspecError, ValueError, MemoryError) as error:
-            return self._lost(f"the process sent an invalid message: {error}")
-        self._silent_starts = 0
-        return self._lost("") if self._stopped else news
-
-    def stop(self) -> None:
-        """End the dispatcher's work: :meth:`hear` returns ``Broken`` from now on. Any thread may call this."""
-        with self._changing:
-            self._stopped = True
-            self._lines.close()
+            reason = f"the process sent an invalid message: {error}"
+        else:
+            self._silent_starts = 0
+            return news
+        if self._silent_starts >= _STARTS or self._scratch is None:
+            return Broken(reason)
+        self._end()
+        self._start()
+        return Left(ADDRESS, reason)
 
     def _start(self) -> None:
         self._silent_starts += 1
@@ -115,17 +113,6 @@ class ProcessLink:
         self._lines.close()
         if self._scratch is not None and self._process.returncode != 0:
             end_processes_in(self._scratch)  # the process may have left processes of submissions
-
-    def _lost(self, reason: str) -> News:
-        """Start the process again if that makes sense, and return the news about its end."""
-        with self._changing:
-            if self._stopped:
-                return Broken("the run was stopped")
-            if self._silent_starts >= _STARTS or self._scratch is None:
-                return Broken(reason)
-            self._end()
-            self._start()
-        return Left(ADDRESS, reason)
 
     def _last_words(self) -> str:
         with contextlib.suppress(ValueError, OSError):

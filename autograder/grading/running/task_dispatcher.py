@@ -12,8 +12,9 @@ import bisect
 import itertools
 import operator
 import time
+from collections import deque
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 import msgspec
 
@@ -45,7 +46,7 @@ if TYPE_CHECKING:
 
     from autograder.execution.executed_cells import Execution
     from autograder.grading.grading_task import Task
-    from autograder.grading.running.worker_messages import Command
+    from autograder.grading.running.process_link import ProcessLink
 
 
 ATTEMPTS = 3
@@ -109,48 +110,35 @@ class Done:
     execution: Execution
 
 
-class Link(Protocol):
-    """The connection between the dispatcher and the workers."""
-
-    def say(self, command: Command) -> None:
-        """Send a command. This raises no error if the connection is broken: :meth:`hear` then returns ``Broken``."""
-
-    def hear(self, within: float | None) -> News | None:
-        """Wait at most ``within`` seconds (None: without limit) for the next message. Return None if none came."""
-
-    def stop(self) -> None:
-        """Make :meth:`hear` return ``Broken`` from now on. Any thread may call this."""
-
-
 class Dispatcher:
     """Gives the tasks of one batch to workers.
 
     Args:
+        link: The connection to the workers.
         address: The address of the cluster's scheduler, for messages; empty for this machine.
         judge: The Python class of the judge, as ``module:class``.
         boxed: True if tasks run in sandboxes. Workers that cannot make sandboxes are then rejected.
         tell: Called with sentences for the instructor, for example that a worker was rejected and why.
-        return_seconds: Seconds to wait for a worker if none is left.
     """
 
     def __init__(
         self,
-        link: Link,
+        link: ProcessLink,
         address: str,
         *,
         judge: str,
         boxed: bool,
         tell: Callable[[str], None],
-        return_seconds: float = _RETURN_SECONDS,
     ) -> None:
         self._link, self._address = link, address
         self._judge, self._boxed, self._tell = judge, boxed, tell
-        self._return_seconds = return_seconds
         self._workers: dict[str, _Worker] = {}
         self._refused: dict[str, str] = {}
         self._waiting: list[_Job] = []
         self._flights: dict[int, _Flight] = {}
-        self._done: list[Done] = []
+        self._done: deque[Done] = deque()
+        self._last_left = time.monotonic()
+        """The time when a worker was last lost; before that, the time when the work began."""
         self._number = 0
 
     def await_workers(self) -> None:
@@ -171,6 +159,8 @@ class Dispatcher:
     ) -> Generator[Done, None, None]:
         """Execute tasks on the workers, and yield results as they are ready.
 
+        Before each result, every free slot gets a task. So the workers are busy while the caller stores the result.
+
         Args:
             tasks: The tasks in the order in which they begin. The next task is taken when a worker has a free slot.
             on_start: Called when a task is given to a worker for the first time.
@@ -180,29 +170,40 @@ class Dispatcher:
                 new worker came in time.
         """
         jobs = (_Job(task) for task in tasks)
-        return_until: float | None = None
         while True:
             self._give_out(jobs, on_start)
-            if not (self._flights or self._waiting):
+            if not (self._done or self._flights or self._waiting):
                 return
-            # Without workers the run goes on for a while, because a worker that was started again needs some seconds.
-            if self._workers:
-                return_until = None
-            elif return_until is None:
-                return_until = time.monotonic() + self._return_seconds
-            deadlines = [flight.deadline for flight in self._flights.values()]
-            deadlines += [] if return_until is None else [return_until]
-            self._take_in(self._link.hear(min(deadlines) - time.monotonic() if deadlines else None))
-            now = time.monotonic()
-            if return_until is not None and now >= return_until and not self._workers:
-                raise GradingError(f"{self._why_no_worker()} What was graded so far is kept.")
-            self._give_up_on_silent(now)
-            while self._done:
-                yield self._done.pop()
+            within = 0.0 if self._done else self._patience()
+            if self._done:
+                yield self._done.popleft()
+            try:
+                self._take_in_all(within)
+            except GradingError:
+                yield from self._done  # these results came before the workers were lost
+                raise
 
-    def stop(self) -> None:
-        """End :meth:`execute_all`, which another thread runs. The dispatcher cannot be used afterwards."""
-        self._link.stop()
+    def _patience(self) -> float | None:
+        """Return the number of seconds in which a message has to come; None without limit."""
+        deadlines = [flight.deadline for flight in self._flights.values()]
+        if not self._workers:  # a worker that is started again needs some seconds
+            deadlines.append(self._last_left + _RETURN_SECONDS)
+        return min(deadlines) - time.monotonic() if deadlines else None
+
+    def _take_in_all(self, within: float | None) -> None:
+        """Take in every message that has come. Wait for the first for ``within`` seconds; None without limit.
+
+        Raises:
+            GradingError: The workers are lost.
+        """
+        news = self._link.hear(within)
+        while news is not None:
+            self._take_in(news)
+            news = self._link.hear(0.0)
+        now = time.monotonic()
+        if not self._workers and now >= self._last_left + _RETURN_SECONDS:
+            raise GradingError(f"{self._why_no_worker()} What was graded so far is kept.")
+        self._give_up_on_silent(now)
 
     def _give_out(self, jobs: Iterator[_Job], on_start: Callable[[Task], None]) -> None:
         """Give a task to every free slot. No tasks are queued at a worker: they would be lost if the worker ended."""
@@ -319,6 +320,7 @@ class Dispatcher:
     def _forget(self, address: str, reason: str) -> None:
         self._refused.pop(address, None)
         worker = self._workers.pop(address, None)
+        self._last_left = time.monotonic()
         for number in sorted(worker.flights) if worker else ():
             self._lost(number, reason)
 
