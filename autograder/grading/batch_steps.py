@@ -52,7 +52,7 @@ class Batch:
 
     Args:
         directory: The class, which this process has locked.
-        asked: What the instructor asked for.
+        asked: The choices of the instructor for the run.
         backend: Finds the workers that execute tasks.
         stack: Ends what the run began.
 

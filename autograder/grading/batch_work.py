@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class AskedFor:
-    """What the instructor asked for in a run.
+    """The choices of the instructor for a run.
 
     Attributes:
         assignments: The chosen assignments; all if empty.
