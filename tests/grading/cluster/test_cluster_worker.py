@@ -161,8 +161,7 @@ def test_its_folder_is_its_own_whatever_another_user_has_put_there(
 
         def stop(self) -> None: ...
 
-    monkeypatch.setattr(dask_worker, "_executor", None)
-    monkeypatch.setattr(dask_worker, "_scratch", None)
+    monkeypatch.setattr(dask_worker, "_orders", None)
     monkeypatch.setattr(dask_worker, "Executor", FakeExecutor)
     monkeypatch.setattr(dask_worker, "get_worker", Mock)
     assert [dask_worker.execute(b"one"), dask_worker.execute(b"two")] == [b"one", b"two"]
@@ -170,5 +169,6 @@ def test_its_folder_is_its_own_whatever_another_user_has_put_there(
     assert scratch.parent == tmp_path
     assert not scratch.is_relative_to(guessed)
     assert scratch.stat().st_mode & 0o777 == 0o700
-    dask_worker._Watch().teardown(Mock())
+    assert dask_worker._orders
+    dask_worker._orders.teardown(Mock())
     assert list(tmp_path.iterdir()) == [guessed]
