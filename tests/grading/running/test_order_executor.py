@@ -10,7 +10,8 @@ import sys
 import tempfile
 import time
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
+from unittest.mock import Mock
 
 import msgspec
 import psutil
@@ -22,7 +23,7 @@ from autograder.boxes.run_limits import Ended
 from autograder.execution.executed_cells import Cell, CellCheck, CellRun, Execution
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.grading_task import Task
-from autograder.grading.running import execution_backends
+from autograder.grading.running import execution_backends, order_executor
 from autograder.grading.running.task_execution import _a_check_was_stopped
 from autograder.grading.running.worker_messages import ADDRESS, Give, Order
 
@@ -240,6 +241,33 @@ def test_fork_servers_that_die_are_started_anew(tiny: TinyClass, with_fake_judge
     _, said = batch.communicate(timeout=180)
     assert batch.returncode == 0, said.decode()
     assert tiny.scores("ada") == {TALKER: 10, LISTENER: 9}
+
+
+@pytest.mark.parametrize("when", ["canceled meanwhile", "stopped meanwhile", "stopped before"])
+def test_an_order_that_is_ended_before_it_has_boxes_ends_as_soon_as_it_has_them(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, when: str
+) -> None:
+    executor = order_executor.Executor(tmp_path)
+    monkeypatch.setattr(order_executor, "LAST_SECONDS", 0.0)
+    monkeypatch.setattr(executor, "fork_servers", Mock())
+    boxes = [Mock(), Mock()]
+    ends = {"canceled meanwhile": lambda: executor.cancel("1"), "stopped meanwhile": executor.stop}
+
+    def execute(*arguments: Any) -> Execution:
+        ends.pop(when, lambda: None)()
+        arguments[-1](boxes[0])
+        return Execution(())
+
+    monkeypatch.setattr(order_executor, "execute", execute)
+    if when == "stopped before":
+        executor.stop()
+    task = msgspec.json.encode(Task("ada", "lab", "lab", (), "0", "1"))
+    order = msgspec.json.encode(Order(msgspec.Raw(task), "a:B"))
+    executor.execute("1", order)
+    boxes[0].abandon.assert_called_once_with()
+    boxes.pop(0)
+    executor.execute("1", order)
+    assert boxes[0].abandon.called == when.startswith("stopped"), "a cancel ends one order"
 
 
 EXECUTOR = """
