@@ -272,6 +272,12 @@ class Dispatcher:
                     )
                 self._refuse(address, name, why)
             case Left(address, reason):
+                worker = self._workers.get(address)
+                if worker is not None and worker.flights:
+                    called = _called(address, worker.name)
+                    self._tell(
+                        f"The worker {called} has ended: the notebooks that it was executing run again."
+                    )
                 self._forget(address, reason or "the worker ended while it ran this submission")
             case Answered(number, data) if number in self._flights:
                 self._answered(number, data)
@@ -312,7 +318,7 @@ class Dispatcher:
             self._workers[address] = _Worker(name, offer.slots)
 
     def _refuse(self, address: str, name: str, reason: str) -> None:
-        called = paragraph(address if name == address else f"{name[:100]} ({address})", LONGEST_WORDS)
+        called = _called(address, name)
         reason = paragraph(reason, LONGEST_WORDS)
         self._refused[address] = f"{called}: {reason}"
         self._tell(f"The worker {called} gets no work: {reason}.")
@@ -408,3 +414,8 @@ class Dispatcher:
             )
         reasons = "\n".join(f"  {reason}" for reason in self._refused.values())
         return f"No worker of the Dask scheduler at {self._address} can be given work:\n{reasons}"
+
+
+def _called(address: str, name: str) -> str:
+    """Return the name and the address of a worker for a message."""
+    return paragraph(address if name == address else f"{name[:100]} ({address})", LONGEST_WORDS)

@@ -108,10 +108,12 @@ def test_a_worker_that_leaves_costs_only_its_tasks_again(tasks: list[Task]) -> N
         return honest(give, task)
 
     link.answer = answer
-    dispatcher = make_dispatcher(link)
+    told: list[str] = []
+    dispatcher = make_dispatcher(link, told)
     dispatcher.await_workers()
     done = list(dispatcher.execute_all(tasks))
     assert students(done) == [task.student for task in tasks]
+    assert told == ["The worker name-b (b) has ended: the notebooks that it was executing run again."]
     assert len(link.given) == len(tasks) + 2
     lost = [give for give in link.given if give.worker == "b"]
     again = [give for give in link.given[link.given.index(lost[-1]) :] if give.worker == "a"]
