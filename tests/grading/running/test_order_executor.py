@@ -25,7 +25,8 @@ from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.grading_task import Task
 from autograder.grading.running import execution_backends, order_executor
 from autograder.grading.running.task_execution import _a_check_was_stopped
-from autograder.grading.running.worker_messages import ADDRESS, Give, Order
+from autograder.grading.running.worker_messages import ADDRESS, Answered, Drop, Give, Joined, News, Order
+from autograder.messages.json_lines import Lines
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -299,6 +300,47 @@ def test_an_executor_that_waits_for_what_never_comes_ends_with_its_batch(tmp_pat
         grader.sendall(msgspec.json.encode(Give(1, ADDRESS, order)) + b"\n")
         assert executor.stdout.readline() == b"at work\n"
         grader.close()
+        assert executor.wait(60.0) == 0
+    finally:
+        executor.kill()
+        executor.wait()
+
+
+DROPPED = """
+import sys, threading
+from types import SimpleNamespace
+from autograder.grading.running import order_executor as executor
+def execute(task, judge, scratch, addresses, began):
+    ended = threading.Event()
+    began(SimpleNamespace(abandon=ended.set))
+    print("at work", flush=True)
+    ended.wait(120)
+    raise RuntimeError("the boxes are gone" if ended.is_set() else "still at work")
+executor.execute = execute
+executor.Executor.fork_servers = lambda *_, **__: None
+executor.main([sys.argv[1], "1"])
+"""
+
+
+def test_an_order_that_is_dropped_ends(tmp_path: Path) -> None:
+    grader, its_own = socket.socketpair()
+    with its_own:
+        executor = subprocess.Popen(
+            [sys.executable, "-c", DROPPED, str(tmp_path)], stdin=its_own.fileno(), stdout=subprocess.PIPE
+        )
+    lines = Lines(grader)
+    try:
+        assert executor.stdout
+        assert isinstance(msgspec.json.decode(lines.hear_json(60.0), type=News), Joined)
+        task = msgspec.json.encode(Task("ada", "lab", "lab", (), "0", "1"))
+        order = msgspec.json.encode(Order(msgspec.Raw(task), "a:B"))
+        lines.say_json(msgspec.json.encode(Give(1, ADDRESS, order)))
+        assert executor.stdout.readline() == b"at work\n"
+        lines.say_json(msgspec.json.encode(Drop(1)))
+        news = msgspec.json.decode(lines.hear_json(60.0), type=News)
+        assert isinstance(news, Answered)
+        assert b"the boxes are gone" in news.data
+        lines.close()
         assert executor.wait(60.0) == 0
     finally:
         executor.kill()
