@@ -312,9 +312,9 @@ from types import SimpleNamespace
 from autograder.grading.running import order_executor as executor
 def execute(task, judge, scratch, addresses, began):
     ended = threading.Event()
-    began(SimpleNamespace(abandon=ended.set))
+    began(SimpleNamespace(abandon=lambda: ended.set() or print("abandoned", flush=True)))
     print("at work", flush=True)
-    ended.wait(120)
+    ended.wait(10)
     raise RuntimeError("the boxes are gone" if ended.is_set() else "still at work")
 executor.execute = execute
 executor.Executor.fork_servers = lambda *_, **__: None
@@ -322,7 +322,8 @@ executor.main([sys.argv[1], "1"])
 """
 
 
-def test_an_order_that_is_dropped_ends(tmp_path: Path) -> None:
+@pytest.mark.parametrize("dropped", [True, False])
+def test_an_order_ends_when_it_is_dropped_and_when_the_grader_is_gone(tmp_path: Path, dropped: bool) -> None:
     grader, its_own = socket.socketpair()
     with its_own:
         executor = subprocess.Popen(
@@ -336,11 +337,13 @@ def test_an_order_that_is_dropped_ends(tmp_path: Path) -> None:
         order = msgspec.json.encode(Order(msgspec.Raw(task), "a:B"))
         lines.say_json(msgspec.json.encode(Give(1, ADDRESS, order)))
         assert executor.stdout.readline() == b"at work\n"
-        lines.say_json(msgspec.json.encode(Drop(1)))
-        news = msgspec.json.decode(lines.hear_json(60.0), type=News)
-        assert isinstance(news, Answered)
-        assert b"the boxes are gone" in news.data
+        if dropped:
+            lines.say_json(msgspec.json.encode(Drop(1)))
+            news = msgspec.json.decode(lines.hear_json(60.0), type=News)
+            assert isinstance(news, Answered)
+            assert b"the boxes are gone" in news.data
         lines.close()
+        assert executor.stdout.readline() == b"abandoned\n"
         assert executor.wait(60.0) == 0
     finally:
         executor.kill()
