@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Protocol
 
 import msgspec
 
+from autograder.boxes.admission import NotAdmitted
 from autograder.boxes.box_connection import NoSandbox
 from autograder.boxes.limit_guards import INTERVAL
 from autograder.boxes.run_limits import Ended, wall_time
@@ -121,7 +122,8 @@ class Kernel:
         # A desk that a student's message has taken over may stop reading: sending an order must not block forever.
         own.settimeout(_DESK_SECONDS)
         self._desk_says = own
-        self._lines = Lines(own, MOST_ESCAPED * self._limits.notebook_output_bytes + FURTHER_BYTES)
+        self._longest = MOST_ESCAPED * self._limits.notebook_output_bytes + FURTHER_BYTES
+        self._lines = Lines(own, self._longest)
         given = (shell.fileno(), iopub.fileno(), log, orders.fileno())
         channels = Channels(sockets, secrets.token_hex(32), *given)
         with contextlib.ExitStack() as started:
@@ -256,7 +258,7 @@ class Kernel:
                 return answer.said
             except Silent:
                 pass
-            except (Hangup, ValueError) as error:
+            except (Hangup, NotAdmitted) as error:
                 self._desk_ended(error)
                 return None
             if self._guard.exceeded() and of_living:
@@ -272,10 +274,11 @@ class Kernel:
         Raises:
             Silent: The desk has not answered yet.
             Hangup: The desk has ended, or has sent too much.
-            ValueError: The message is not a valid answer.
+            NotAdmitted: The message is not a valid answer.
         """
         line = self._lines.hear_json(0.0)
-        answer = admitted_answer(line, range(self._answered + 1, self._sent + 1), self._cells)
+        orders = range(self._answered + 1, self._sent + 1)
+        answer = admitted_answer(line, self._longest, orders, self._cells)
         self._answered = answer.number
         for cell, outputs in answer.outputs.items():
             self._outputs.put(cell, msgspec.to_builtins(outputs))

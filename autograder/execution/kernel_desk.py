@@ -53,16 +53,15 @@ def prepare() -> None:
     msgspec.json.encode(DeskAnswer(0, Said.DONE, {}))
 
 
-def run(call: Mapping[str, Any], descriptors: Sequence[int]) -> None:
+def serve(descriptors: Sequence[int], **words: Any) -> None:
     """Carry out the grader's orders until the grader closes the connection.
 
     Args:
-        call: The fields of :class:`Setting`.
         descriptors: The socket for the orders.
+        words: The fields of :class:`Setting`.
     """
-    setting = Setting(**call)
     with contextlib.suppress(Hangup):
-        desk = _Desk(setting, socket.socket(fileno=descriptors[0]))
+        desk = _Desk(Setting(**words), socket.socket(fileno=descriptors[0]))
         filter_system_calls(filter_for_desks(), every_thread=True)
         desk.serve()
 

@@ -13,6 +13,7 @@ from typing import Annotated, Literal
 
 import msgspec
 
+from autograder.boxes.admission import NotAdmitted, admitted
 from autograder.execution.executed_cells import TRACEBACK_LINES
 
 MOST_ESCAPED = 8
@@ -128,21 +129,19 @@ class DeskAnswer(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     outputs: Mapping[int, Sequence[Stream | Display | Result | ErrorOutput]]
 
 
-def admitted_answer(line: bytes, orders: range, cells: Collection[int]) -> DeskAnswer:
+def admitted_answer(line: bytes, most: int, orders: range, cells: Collection[int]) -> DeskAnswer:
     """Check an answer of the desk, and return it.
 
     Args:
         line: The line that the desk sent.
+        most: The maximum size of the line in bytes.
         orders: The numbers of the orders that wait for an answer.
         cells: The indexes of the cells that were executed.
 
     Raises:
-        ValueError: The line is not an answer to one of these orders.
+        NotAdmitted: The line is not an answer to one of these orders.
     """
-    try:
-        answer = msgspec.json.decode(line, type=DeskAnswer)
-    except RecursionError as error:
-        raise ValueError("it is nested too deeply") from error
+    answer: DeskAnswer = admitted(line, DeskAnswer, most)
     if answer.number not in orders or not all(cell in cells for cell in answer.outputs):
-        raise ValueError("it belongs to another order or cell")
+        raise NotAdmitted("it belongs to another order or cell")
     return answer

@@ -9,7 +9,7 @@ import contextlib
 import itertools
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Self
+from typing import TYPE_CHECKING, Any, Self
 
 from autograder.boxes.boxed_processes import ForkedProcess
 from autograder.boxes.limit_guards import BoxGuard, NoGuard
@@ -128,7 +128,7 @@ class BoxedProcesses:
             [channels.shell, channels.iopub, channels.log],
             cwd=WORK,
             environment=box_environment(self._variables),
-            call={"key": channels.key, "address": str(channels.folder / "k")},
+            call=_kernel_request(channels),
         )
 
     def start_desk(self, channels: Channels) -> ForkedProcess:
@@ -192,7 +192,7 @@ class UnboxedProcesses:
             cwd=str(self._cwd),
             environment=kernel_environment(self.folder, self._variables),
             boxed=False,
-            call={"key": channels.key, "address": str(channels.folder / "k")},
+            call=_kernel_request(channels),
         )
         return self._start(self._addresses.kernels, entrance, [channels.shell, channels.iopub, channels.log])
 
@@ -222,6 +222,10 @@ class UnboxedProcesses:
         pass
 
 
+def _kernel_request(channels: Channels) -> dict[str, Any]:
+    return {"request": "kernel", "words": {"key": channels.key, "address": str(channels.folder / "k")}}
+
+
 def _desk_entrance(channels: Channels, folder: Path, limits: Limits, *, boxed: bool) -> Entrance:
     """Return the settings with which a kernel's desk starts. ``folder`` is that of the sockets, as the desk sees it."""
     setting = Setting(
@@ -237,7 +241,7 @@ def _desk_entrance(channels: Channels, folder: Path, limits: Limits, *, boxed: b
         environment=base_environment(),
         boxed=boxed,
         rlimits=limits.of_the_desk,
-        call=asdict(setting),
+        call={"request": "desk", "words": asdict(setting)},
         reader_seconds=int(limits.cpu_seconds),
         filters_itself=True,
     )

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 
 from autograder import standard_output
 from autograder.grading.classes.class_directory import ClassDirectory
+from autograder.grading.collecting.archive_unpacking import is_archive
 from autograder.grading.collecting.collected_csv import Table
 from autograder.grading.collecting.collected_files import SHORT_KEY, Arrival, Delivery, Inbox, LineState
-from autograder.grading.collecting.download_desk_process import is_archive
 from autograder.grading.collecting.downloaded_files import (
     Archives,
     File,
