@@ -203,7 +203,7 @@ def test_an_archive_that_took_over_the_program_reaches_nothing(archives: Archive
 
 @pytest.mark.usefixtures("taken_over")
 @pytest.mark.parametrize(
-    "text", [b"no line\n", b'{"names": 3}\n', b'{"names": [], "size": -5}\n', b"\n" * 5, *NO_JSON]
+    "text", [b"no line\n", b'{"names": 3}\n', b'{"names": [], "size": -5}\n', b'["a"]', b"\n" * 5, *NO_JSON]
 )
 def test_what_a_desk_writes_is_not_believed(archives: Archives, tmp_path: Path, text: bytes) -> None:
     assert not [one for one in within(archives, tmp_path, text).values() if isinstance(one, bytes) and one]
