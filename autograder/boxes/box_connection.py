@@ -195,7 +195,7 @@ class Supervision:
             self._channel.close()
             raise
 
-    def start(
+    def _start(
         self, name: str, descriptors: Sequence[int] = (), *, guarded: bool = False, **words: Any
     ) -> Box:
         """Start a box.
@@ -236,7 +236,7 @@ class Supervision:
             return self._ended[name]
 
     def abandon(self) -> None:
-        """Make the supervisor end all boxes, but do not wait. Any thread may call this, even if another one waits."""
+        """End all boxes, but do not wait. Any thread may call this; threads that use a box see that it is lost."""
         self._channel.hang_up()
 
     def close(self) -> None:
@@ -250,6 +250,12 @@ class Supervision:
             self._channel.close()
             close_all([box.pidfd for box in self._boxes.values()])
             self._boxes.clear()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
 
     def _ask(
         self, expected: str, descriptors: Sequence[int] = (), **message: Any

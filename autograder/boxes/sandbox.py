@@ -19,7 +19,7 @@ import json
 import os
 import shutil
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any
 
 from autograder.boxes.box_connection import Box, NoSandbox, Supervision, close_all
 from autograder.boxes.box_supervisor import bubblewrap, furnish
@@ -49,7 +49,7 @@ _SCRATCH_INODES = 200_000
 _OUTPUT_BYTES = 1_000_000
 
 
-class Enclosure:
+class Enclosure(Supervision):
     """The network, the scratch (a file system in memory) and the boxes of one submission.
 
     Several threads may use an enclosure.
@@ -80,7 +80,7 @@ class Enclosure:
         self._scratch.mkdir(parents=True)
         self._guard = guard
         self._commands = itertools.count(1)
-        self._supervision = Supervision(
+        super().__init__(
             supervisors,
             scratch=str(self._scratch),
             size=scratch_bytes,
@@ -108,7 +108,7 @@ class Enclosure:
         Raises:
             NoSandbox: The box could not be made.
         """
-        return self._supervision.start(
+        return self._start(
             name,
             guarded=guarded,
             arguments=box_arguments(self._scratch, binds, scratch_visible=scratch),
@@ -200,7 +200,7 @@ class Enclosure:
         reading, writing = os.pipe()
         nothing = os.open(os.devnull, os.O_RDONLY)
         try:
-            box = self._supervision.start(
+            box = self._start(
                 self._next_name(),
                 [nothing, writing, writing],
                 arguments=[*words, "--chdir", str(cwd)],
@@ -258,20 +258,6 @@ class Enclosure:
         finally:
             os.close(writing)
         return WarmCommand(process, reading, box.pid)
-
-    def abandon(self) -> None:
-        """End all boxes, but do not wait. Any thread may call this; threads that use a box see that it is lost."""
-        self._supervision.abandon()
-
-    def close(self) -> None:
-        """End all boxes, and wait until none of their processes is alive. This may be called twice."""
-        self._supervision.close()
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.close()
 
     def _next_name(self) -> str:
         return f"command {next(self._commands)}"

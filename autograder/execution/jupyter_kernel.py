@@ -13,7 +13,7 @@ import select
 import signal
 import socket
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 import msgspec
 
@@ -34,11 +34,10 @@ from autograder.messages.json_lines import Hangup, Lines, Silent, TooLong
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from autograder.boxes.boxed_processes import ForkedProcess
-    from autograder.boxes.limit_guards import Guard
-    from autograder.boxes.run_limits import Left, Limits
+    from autograder.boxes.run_limits import Left
     from autograder.execution.executed_cells import NotebookOutputs
     from autograder.execution.kernel_desk_messages import DeskAnswer
+    from autograder.execution.notebook_processes import NotebookProcesses
 
 
 SHELL, IOPUB = 1, 2
@@ -70,31 +69,6 @@ class Channels:
     iopub: int
     log: int
     orders: int
-
-
-class NotebookProcesses(Protocol):
-    """The part of :class:`autograder.execution.notebook_processes.BoxedProcesses` that a kernel needs.
-
-    Attributes:
-        folder: The notebook's folder, in which a folder for the kernel's sockets is made. Only the desk's box sees
-            the sockets. The path must be short, because the name of a Unix socket has at most 107 characters.
-    """
-
-    folder: Path
-    limits: Limits
-
-    @property
-    def guard(self) -> Guard:
-        """Reports if a limit of the box is exceeded."""
-        ...
-
-    def start_kernel(self, channels: Channels) -> ForkedProcess:
-        """Start the kernel's process."""
-        ...
-
-    def start_desk(self, channels: Channels) -> ForkedProcess:
-        """Start the process of the kernel's desk."""
-        ...
 
 
 class Kernel:

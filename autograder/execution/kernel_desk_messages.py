@@ -7,7 +7,6 @@ desk. The grader therefore uses an answer only if it has exactly the form that i
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence  # noqa: TC003  (msgspec reads the annotations)
-from dataclasses import dataclass
 from enum import StrEnum
 from typing import Annotated, Literal
 
@@ -20,24 +19,6 @@ MOST_ESCAPED = 8
 """The maximum number of bytes in an answer for each byte of output. In JSON, a control character takes six bytes."""
 FURTHER_BYTES = 1_000_000
 """The maximum number of bytes in an answer in addition to the outputs."""
-
-
-@dataclass(frozen=True)
-class Setting:
-    """The settings that a desk gets when it starts.
-
-    Attributes:
-        address: The first part of the paths of the kernel's sockets; a number follows.
-        key: The key that signs the messages.
-        message_bytes: This and the following fields are those of :class:`autograder.boxes.run_limits.Limits`.
-    """
-
-    address: str
-    key: str
-    message_bytes: int
-    flood_bytes: int
-    cell_output_bytes: int
-    notebook_output_bytes: int
 
 
 class Do(StrEnum):

@@ -23,7 +23,6 @@ from autograder.boxes.visible_host import (
     box_environment,
     kernel_environment,
 )
-from autograder.execution.kernel_desk_messages import Setting
 from autograder.messages.judge_messages import SOCKET_VARIABLE
 from autograder.safe_files import write_files
 
@@ -128,7 +127,7 @@ class BoxedProcesses:
             [channels.shell, channels.iopub, channels.log],
             cwd=WORK,
             environment=box_environment(self._variables),
-            call=_kernel_request(channels),
+            call=_request("kernel", channels, channels.folder),
         )
 
     def start_desk(self, channels: Channels) -> ForkedProcess:
@@ -192,7 +191,7 @@ class UnboxedProcesses:
             cwd=str(self._cwd),
             environment=kernel_environment(self.folder, self._variables),
             boxed=False,
-            call=_kernel_request(channels),
+            call=_request("kernel", channels, channels.folder),
         )
         return self._start(self._addresses.kernels, entrance, [channels.shell, channels.iopub, channels.log])
 
@@ -222,26 +221,25 @@ class UnboxedProcesses:
         pass
 
 
-def _kernel_request(channels: Channels) -> dict[str, Any]:
-    return {"request": "kernel", "words": {"key": channels.key, "address": str(channels.folder / "k")}}
+def _request(name: str, channels: Channels, folder: Path, **words: Any) -> dict[str, Any]:
+    """Return what a fork is asked to be. ``folder`` is that of the kernel's sockets, as the fork sees it."""
+    return {"request": name, "words": {"address": str(folder / "k"), "key": channels.key, **words}}
 
 
 def _desk_entrance(channels: Channels, folder: Path, limits: Limits, *, boxed: bool) -> Entrance:
     """Return the settings with which a kernel's desk starts. ``folder`` is that of the sockets, as the desk sees it."""
-    setting = Setting(
-        str(folder / "k"),
-        channels.key,
-        limits.message_bytes,
-        limits.flood_bytes,
-        limits.cell_output_bytes,
-        limits.notebook_output_bytes,
-    )
     return Entrance(
         cwd="/",
         environment=base_environment(),
         boxed=boxed,
         rlimits=limits.of_the_desk,
-        call={"request": "desk", "words": asdict(setting)},
+        call=_request("desk", channels, folder, limits=asdict(limits)),
         reader_seconds=int(limits.cpu_seconds),
         filters_itself=True,
     )
+
+
+NotebookProcesses = BoxedProcesses | UnboxedProcesses
+"""What starts the processes of a notebook. The path of ``folder`` must be short, because the name of a Unix socket has
+at most 107 characters.
+"""

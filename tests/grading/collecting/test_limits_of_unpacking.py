@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import io
+import os
 import shutil
 import tarfile
 import zipfile
@@ -15,7 +16,7 @@ import pytest
 from downloads import zipped
 
 from autograder.boxes import reading_desks as desk_of_boxes
-from autograder.boxes.reading_desks import Desk
+from autograder.boxes.reading_desks import Desk, in_memory
 from autograder.boxes.sandbox import why_impossible
 from autograder.grading.collecting import downloaded_files
 from autograder.grading.collecting.downloaded_files import Archives, File, NotTaken, Room, read_list
@@ -194,6 +195,13 @@ def taken_over(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     monkeypatch.setattr(desk, "_desk", hostile)
     yield
     hostile.close()
+
+
+@pytest.mark.usefixtures("taken_over")
+def test_an_answer_has_no_byte_more_than_it_may_have() -> None:
+    with in_memory(b"x" * 200) as source, in_memory() as answer:
+        desk.ask("list", source, answer, most=99, seconds=5)
+        assert os.fstat(answer).st_size == 99
 
 
 @pytest.mark.usefixtures("taken_over")

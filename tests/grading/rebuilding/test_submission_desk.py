@@ -207,15 +207,17 @@ def test_a_lost_desk_is_no_file_s_fault(monkeypatch: pytest.MonkeyPatch) -> None
 
     def ask(self: Desk, request: str, source: int, answer: int, **_: object) -> None:
         if request == "submission":
-            os.write(answer, b"a part of an answer")
             if lost:
+                os.read(source, 10)
+                os.write(answer, b"a part of an answer" * 1_000)
                 raise lost.pop()
-            os.ftruncate(answer, 0)
-            os.lseek(answer, 0, os.SEEK_SET)
             os.write(answer, answer_to(os.read(source, 1_000)))
 
+    read_notebook(notebook(""))
+    first = file_desk.desk._desk
     monkeypatch.setattr(Desk, "ask", ask)
-    assert read_notebook(notebook(""))[1] == 0
+    assert read_notebook(notebook("of another student"))[1] == 0
+    assert file_desk.desk._desk not in (first, None), "a lost desk is not asked again"
     lost = [ChannelClosed("killed")] * 9
     with pytest.raises(GradingError, match=r"killed.*short of memory"):
         read_notebook(notebook(""))
