@@ -18,6 +18,7 @@ import itertools
 import json
 import os
 import shutil
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -116,37 +117,20 @@ class Enclosure(Supervision):
             **(self._guarded() if guarded else {}),
         )
 
-    def enter(
-        self,
-        box: Box,
-        server: str,
-        descriptors: Sequence[int],
-        *,
-        cwd: Path,
-        environment: Mapping[str, str],
-        call: Mapping[str, Any] | None = None,
-        rlimits: Mapping[str, int] | None = None,
-    ) -> ForkedProcess:
+    def enter(self, box: Box, server: str, descriptors: Sequence[int], entrance: Entrance) -> ForkedProcess:
         """Let a fork server fork a process that enters a box, and return the process.
 
         Args:
             box: A box of this enclosure.
             server: The socket address of the fork server.
             descriptors: File descriptors for the process. The caller keeps its own copies.
-            environment: All environment variables.
-            call: The argument for the ``run`` function of the fork server's module.
-            rlimits: Limits for a process in a box without a guard (setrlimit(2)).
+            entrance: The settings of the process. In a guarded box, the limits of the guard replace the limits in them.
 
         Raises:
             ChannelClosed: The fork server has ended, or its child could not enter the box.
         """
-        entrance = Entrance(
-            cwd=str(cwd),
-            environment=environment,
-            boxed=True,
-            call=call or {},
-            **(self._guarded() if box.guarded else {"rlimits": rlimits or {}}),
-        )
+        if box.guarded:
+            entrance = replace(entrance, **self._guarded())
         return ForkedProcess(server, entrance, descriptors, box)
 
     def run(
@@ -243,14 +227,9 @@ class Enclosure(Supervision):
         box = self.box(self._next_name(), [*binds, *links], scratch=False, guarded=True)
         reading, writing = os.pipe()
         try:
-            process = self.enter(
-                box,
-                programs,
-                [writing],
-                cwd=cwd,
-                environment={**environment, "PWD": str(cwd)},
-                call={"words": list(words)},
-            )
+            variables = {**environment, "PWD": str(cwd)}
+            entrance = Entrance(str(cwd), variables, boxed=True, call={"words": list(words)})
+            process = self.enter(box, programs, [writing], entrance)
         except BaseException:
             os.close(reading)
             box.end()

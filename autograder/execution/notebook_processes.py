@@ -121,20 +121,16 @@ class BoxedProcesses:
         """Start the kernel: a child of the fork server enters the student's box."""
         box = self.enclosure.box(_STUDENT, [Bind(self.shared, SHARED_FOLDER)], guarded=True)
         self.guard.watch(box.pid)
-        return self.enclosure.enter(
-            box,
-            self._addresses.kernels,
-            [channels.shell, channels.iopub, channels.log],
-            cwd=WORK,
-            environment=box_environment(self._variables),
-            call=_request("kernel", channels, channels.folder),
-        )
+        call = _request("kernel", channels, channels.folder)
+        entrance = Entrance(str(WORK), box_environment(self._variables), boxed=True, call=call)
+        descriptors = [channels.shell, channels.iopub, channels.log]
+        return self.enclosure.enter(box, self._addresses.kernels, descriptors, entrance)
 
     def start_desk(self, channels: Channels) -> ForkedProcess:
         """Start the kernel's desk: another child of the same fork server enters a separate box."""
         box = self.enclosure.box("desk", [Bind(channels.folder, DESK_FOLDER)], scratch=False)
         entrance = _desk_entrance(channels, DESK_FOLDER, self.limits, boxed=True)
-        return ForkedProcess(self._addresses.kernels, entrance, [channels.orders], box)
+        return self.enclosure.enter(box, self._addresses.kernels, [channels.orders], entrance)
 
     def start_judge(self, listener: int, orders: int, *, of_programs: bool = False) -> ForkedProcess:
         """Start a judge: a child of the judges' fork server enters a box that is made for it.
@@ -147,14 +143,9 @@ class BoxedProcesses:
         enclosure = self.programs if of_programs else self.enclosure
         name = f"{_JUDGE} {next(self._judges)}"
         box = enclosure.box(name, [Bind(path) for path in self._setting.judges_folders], scratch=False)
-        return enclosure.enter(
-            box,
-            self._addresses.judges,
-            [listener, orders],
-            cwd=HOME,
-            environment=box_environment(self._setting.judges_variables),
-            rlimits=self.limits.of_the_judge,
-        )
+        environment = box_environment(self._setting.judges_variables)
+        entrance = Entrance(str(HOME), environment, boxed=True, rlimits=self.limits.of_the_judge)
+        return enclosure.enter(box, self._addresses.judges, [listener, orders], entrance)
 
     def __enter__(self) -> Self:
         return self
@@ -187,12 +178,9 @@ class UnboxedProcesses:
 
     def start_kernel(self, channels: Channels) -> ForkedProcess:
         """Start the kernel as a fork of the fork server."""
-        entrance = Entrance(
-            cwd=str(self._cwd),
-            environment=kernel_environment(self.folder, self._variables),
-            boxed=False,
-            call=_request("kernel", channels, channels.folder),
-        )
+        environment = kernel_environment(self.folder, self._variables)
+        call = _request("kernel", channels, channels.folder)
+        entrance = Entrance(str(self._cwd), environment, boxed=False, call=call)
         return self._start(self._addresses.kernels, entrance, [channels.shell, channels.iopub, channels.log])
 
     def start_desk(self, channels: Channels) -> ForkedProcess:
@@ -204,9 +192,7 @@ class UnboxedProcesses:
         """Start a judge as a fork of the judges' fork server."""
         del of_programs
         environment = kernel_environment(self.folder / "of-the-judge", self._judges_variables)
-        entrance = Entrance(
-            cwd=str(self.folder), environment=environment, boxed=False, rlimits=self.limits.of_the_judge
-        )
+        entrance = Entrance(str(self.folder), environment, boxed=False, rlimits=self.limits.of_the_judge)
         return self._start(self._addresses.judges, entrance, [listener, orders])
 
     def _start(self, server: str, entrance: Entrance, descriptors: Sequence[int]) -> ForkedProcess:
