@@ -133,15 +133,7 @@ class Enclosure(Supervision):
             entrance = replace(entrance, **self._guarded())
         return ForkedProcess(server, entrance, descriptors, box)
 
-    def run(
-        self,
-        command: Sequence[str],
-        *,
-        limit: float,
-        binds: Sequence[Bind] = (),
-        cwd: Path = WORK,
-        output_bytes: int = _OUTPUT_BYTES,
-    ) -> Finished:
+    def run(self, command: Sequence[str], *, limit: float, **settings: Any) -> Finished:
         """Run a command in a new box, and wait for the command to end. When this returns, the whole box has ended.
 
         The box is killed after ``limit`` seconds of wall time. The other arguments are those of :meth:`start`.
@@ -149,7 +141,7 @@ class Enclosure(Supervision):
         Raises:
             NoSandbox: The box could not be made.
         """
-        with self.start(command, binds=binds, cwd=cwd, output_bytes=output_bytes) as running:
+        with self.start(command, **settings) as running:
             return running.wait(limit)
 
     def start(
