@@ -25,9 +25,9 @@ from autograder.boxes import desk_program
 from autograder.boxes.admission import NotAdmitted, admitted
 from autograder.boxes.box_connection import ChannelClosed, NoSandbox
 from autograder.boxes.boxed_processes import ForkedProcess
-from autograder.boxes.fork_server import BESIDE, FOLDER_PREFIX, INSIDE, SUPERVISOR_MODULE, ForkServer
+from autograder.boxes.fork_server import FOLDER_PREFIX, INSIDE, ForkServer
 from autograder.boxes.process_isolation import Entrance
-from autograder.boxes.sandbox import Enclosure
+from autograder.boxes.sandbox import lone_enclosure
 from autograder.boxes.visible_host import base_environment
 from autograder.safe_files import HeldFolder
 
@@ -135,12 +135,8 @@ def _box_in(folder: Path, started: contextlib.ExitStack) -> Box | None:
     """Return the box for desk processes, or None if none can be made here. The box ends when ``started`` is closed."""
     if shutil.which("bwrap") is None:
         return None
-    supervisors = ForkServer(BESIDE, SUPERVISOR_MODULE, folder / "supervisors")
-    started.callback(supervisors.stop)
     with contextlib.suppress(NoSandbox):
-        return started.enter_context(Enclosure(supervisors.address, folder / "box")).box(
-            "desk", scratch=False
-        )
+        return started.enter_context(lone_enclosure(folder)).box("desk", scratch=False)
     return None
 
 

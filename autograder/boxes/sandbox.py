@@ -13,6 +13,7 @@ processes in its boxes end and the scratch is removed.
 
 from __future__ import annotations
 
+import contextlib
 import functools
 import itertools
 import json
@@ -42,7 +43,7 @@ from autograder.boxes.visible_host import (
 from autograder.safe_files import HeldFolder, write_files
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
 
 
 _SCRATCH_BYTES = 1_000_000_000
@@ -243,6 +244,21 @@ class Enclosure(Supervision):
         }
 
 
+@contextlib.contextmanager
+def lone_enclosure(folder: Path) -> Iterator[Enclosure]:
+    """Make an enclosure with a fork server of its own, in an existing folder that nothing else uses.
+
+    Raises:
+        NoSandbox: The supervisor could not make the namespaces.
+    """
+    supervisors = ForkServer(BESIDE, SUPERVISOR_MODULE, folder / "supervisors")
+    try:
+        with Enclosure(supervisors.address, folder / "box") as enclosure:
+            yield enclosure
+    finally:
+        supervisors.stop()
+
+
 class OneCommandBox:
     """Gives this process a new network, and each start of a command a separate box in that network.
 
@@ -328,18 +344,14 @@ def why_impossible() -> str:
     if shutil.which("bwrap") is None:
         return "bubblewrap is not installed. On Debian or Ubuntu, type: sudo apt-get install -y bubblewrap"
     with HeldFolder("autograder-try-") as held:
-        folder = held.path
-        supervisors = ForkServer(BESIDE, SUPERVISOR_MODULE, folder / "supervisors")
         try:
-            with Enclosure(supervisors.address, folder / "try") as enclosure:
+            with lone_enclosure(held.path) as enclosure:
                 done = enclosure.run(["/bin/sh", "-c", f"test -d {HOME}"], limit=20.0)
             if done.returncode == 0:
                 return ""
             return f"a program in a box ended with {done.output.decode()[-300:]!r}"
         except (NoSandbox, OSError) as error:
             return f"{_reason(str(error))} ({error})"
-        finally:
-            supervisors.stop()
 
 
 def _reason(error: str) -> str:

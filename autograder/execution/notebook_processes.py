@@ -85,7 +85,6 @@ class BoxedProcesses:
     def __init__(self, addresses: Addresses, setting: NotebookSetting) -> None:
         self._addresses, self._setting = addresses, setting
         self.folder, self.limits = setting.folder, setting.limits
-        self._open = contextlib.ExitStack()
         self._judges = itertools.count(1)
         self.shared = self.folder / "run"
         """The folder that the student's box sees, read-only, at the path ``SHARED_FOLDER``."""
@@ -94,23 +93,21 @@ class BoxedProcesses:
         """The path of the judge's socket, as the grader sees it."""
         self._variables = {**setting.variables, SOCKET_VARIABLE: str(SHARED_FOLDER / _JUDGE)}
         self.guard = BoxGuard(self.limits)
-        self._open.callback(self.guard.close)
-        try:
-            self.enclosure = self._open.enter_context(
+        with contextlib.ExitStack() as started:
+            started.callback(self.guard.close)
+            self.enclosure = started.enter_context(
                 Enclosure(
                     addresses.supervisors, self.folder / "box", files=setting.files, guard=self.guard,
                     scratch_bytes=self.limits.scratch_bytes, scratch_inodes=self.limits.scratch_files,
                 )
             )  # fmt: skip
-            self.programs = self.enclosure if not setting.programs else self._open.enter_context(
+            self.programs = self.enclosure if not setting.programs else started.enter_context(
                 Enclosure(
                     addresses.supervisors, self.folder / "programs", guard=self.guard,
                     scratch_bytes=_PROGRAMS_SCRATCH_BYTES, scratch_inodes=_PROGRAMS_SCRATCH_FILES,
                 )
             )  # fmt: skip
-        except BaseException:
-            self._open.close()
-            raise
+            self._open = started.pop_all()
 
     def abandon(self) -> None:
         """End all boxes, and do not wait. Any thread may call this. Threads that wait for a box see that it is lost."""

@@ -17,6 +17,7 @@ from hypothesis import strategies as st
 from tiny_class import LISTENER, TALKER, FakeEngine, TinyClass
 
 from autograder.boxes import reading_desks as desk_of_boxes
+from autograder.boxes import sandbox
 from autograder.boxes.admission import NotAdmitted, admitted
 from autograder.boxes.box_connection import ChannelClosed
 from autograder.boxes.reading_desks import Desk, KeptDesk
@@ -240,7 +241,7 @@ def test_a_desk_that_cannot_be_started_leaves_no_process_and_no_folder(
         raise OSError("AF_UNIX path too long")
 
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
-    monkeypatch.setattr(desk_of_boxes, "Enclosure", too_long)
+    monkeypatch.setattr(sandbox, "Enclosure", too_long)
     with pytest.raises(OSError, match="too long"):
         Desk(READERS, HOSTILE, {"PYTHONPATH": str(ROOT)})
     assert not list(tmp_path.iterdir())
