@@ -223,6 +223,6 @@ def _desk_entrance(channels: Channels, folder: Path, limits: Limits, *, boxed: b
 
 
 NotebookProcesses = BoxedProcesses | UnboxedProcesses
-"""What starts the processes of a notebook. The path of ``folder`` must be short, because the name of a Unix socket has
+"""The two kinds of processes of a notebook. The path of ``folder`` must be short, because the name of a Unix socket has
 at most 107 characters.
 """
