@@ -170,7 +170,9 @@ class KeptDesk:
         """
         with in_memory(data) as source, in_memory() as answer:
             self.ask(request, source, answer, most=most + 1, seconds=seconds, **words)
-            return admitted(os.pread(answer, most + 1, 0), kind, most)
+            # os.pread allocates as many bytes as are asked for, so do not ask for more than there are.
+            size = min(os.fstat(answer).st_size, most + 1)
+            return admitted(os.pread(answer, size, 0), kind, most)
 
     def ask(self, request: str, source: int, answer: int, *, most: int, seconds: int, **words: Any) -> None:
         """Do the same as :meth:`Desk.ask`. If the desk is lost, start another desk and try again.

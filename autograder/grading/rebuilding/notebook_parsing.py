@@ -21,7 +21,6 @@ from autograder.grading.rebuilding.submitted_notebook import (
     BASE64,
     LONGEST_NAME,
     LONGEST_REASON,
-    MAX_BYTES,
     MAX_CELL_CHARACTERS,
     MAX_CELLS,
     MAX_CHARACTERS,
@@ -158,7 +157,7 @@ def read(file: IO[bytes]) -> Iterator[bytes]:
     """Yield the answer about the file of a student."""
     # No garbage collection: a desk process frees nothing before it ends, so searches for garbage only take time.
     gc.disable()
-    yield answer_to(os.pread(file.fileno(), MAX_BYTES, 0))
+    yield answer_to(os.pread(file.fileno(), file.seek(0, os.SEEK_END), 0))
 
 
 def answer_to(data: bytes) -> bytes:

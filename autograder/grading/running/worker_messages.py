@@ -156,7 +156,7 @@ def admitted_offer(data: bytes) -> Offer:
     """
     offer: Offer = admitted(data, Offer, LARGEST_OFFER)
     if not 1 <= offer.slots <= _MOST_SLOTS:
-        raise NotAdmitted(f"it says that {offer.slots} notebooks can be executed at the same time")
+        raise NotAdmitted(f"it offers to execute {offer.slots} notebooks at the same time")
     return offer
 
 

@@ -237,7 +237,7 @@ def test_a_worker_that_falls_silent_is_turned_out(tasks: list[Task], monkeypatch
             Offer("here", 2, obstacle="bubblewrap is missing"),
             "no sandbox: bubblewrap is missing",
         ),
-        (Offer("here", 0, obstacle=""), "the worker offers to execute 0 notebooks"),
+        (Offer("here", 0, obstacle=""), "it offers to execute 0 notebooks"),
     ],
 )
 def test_a_worker_that_does_not_fit_is_refused_by_name_and_the_others_go_on(
