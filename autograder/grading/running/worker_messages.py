@@ -169,7 +169,7 @@ def admitted_execution(data: bytes, task: Task) -> Execution:
     execution: Execution = admitted(data, Execution, LARGEST_ANSWER)
     if len(execution.cells) not in ({len(task.cells), 0} if execution.trouble else {len(task.cells)}):
         raise NotAdmitted(f"it has {len(execution.cells)} cells, and the notebook has {len(task.cells)}")
-    checks = {index: cell.check for index, cell in enumerate(task.cells) if cell.check is not None}
+    checks = task.checks
     if execution.verdicts.keys() != checks.keys():
         raise NotAdmitted("it has verdicts on other checks than the notebook has")
     for index, check in checks.items():
