@@ -93,15 +93,6 @@ class Channel:
         message: dict[str, Any] = json.loads(data)
         return message, descriptors
 
-    @property
-    def hung_up(self) -> bool:
-        """True if the other end has closed, even if messages from it are still unread."""
-        if self._socket.fileno() < 0:
-            return False
-        poll = select.poll()
-        poll.register(self._socket, 0)
-        return bool(poll.poll(0))
-
     def hang_up(self) -> None:
         """End the connection for both ends. Any thread may call this, even while another thread waits for a message."""
         with contextlib.suppress(OSError):
@@ -218,7 +209,12 @@ class Supervision:
 
     @property
     def lost(self) -> bool:
-        return self._channel.hung_up
+        """True if the supervisor has ended, even if messages from it are still unread."""
+        if self._channel.fileno() < 0:
+            return False
+        poll = select.poll()
+        poll.register(self._channel, 0)
+        return bool(poll.poll(0))
 
     def end(self, name: str) -> int:
         with self._turn:

@@ -77,17 +77,14 @@ class Desk:
             started.callback(server.stop)
             self._address = server.address
             self._box = _box_in(folder.path, started)
+            self.is_boxed = self._box is not None
+            """True if a box could be made here."""
             with in_memory() as nothing:
                 try:
                     self.ask(desk_program.REHEARSAL, nothing, nothing, most=0, seconds=_REHEARSAL_SECONDS)
                 except NotAdmitted as error:
                     raise ChannelClosed(f"not even a sample ({error})") from error
             self._open = started.pop_all()
-
-    @property
-    def is_boxed(self) -> bool:
-        """True if a box could be made here."""
-        return self._box is not None
 
     def ask(self, request: str, source: int, answer: int, *, most: int, seconds: int, **words: Any) -> None:
         """Let a desk process read a file and write its answer into another file. The answer is not checked here.
