@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
     from pathlib import Path
 
-    from autograder.grading.class_records import Entered, RunCell
+    from autograder.grading.class_records import Attempt, RunCell
 
 
 FOLDER = "appeals"
@@ -98,7 +98,7 @@ def _before(cells: list[RunCell], exercise_id: str) -> Iterator[AppealedCell]:
 
 def _why_nothing(
     directory: ClassDirectory,
-    entered: Mapping[tuple[str, str], Entered],
+    entered: Mapping[tuple[str, str], Attempt],
     student: str,
     exercise_id: str,
     again: str,

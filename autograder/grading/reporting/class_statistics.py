@@ -10,9 +10,8 @@ from typing import TYPE_CHECKING
 from autograder.grading.table.rows import EXCUSED, LATE, NOT_SUBMITTED, columns
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Sequence
 
-    from autograder.grading.class_records import Attempt
     from autograder.grading.class_store import ClassStore
     from autograder.grading.reporting.class_table import ClassTable
     from autograder.grading.table.rows import Row
@@ -204,46 +203,3 @@ def mistakes(table: ClassTable) -> list[MistakeFigures]:
         for (assignment, exercise, key), rows in found.items()
     ]
     return sorted(figures, key=lambda one: (-len(one.students), one.exercise, one.key))
-
-
-@dataclass(frozen=True)
-class AttemptProgress:
-    """A student's points from the judge in the first and the last attempt at an assignment.
-
-    Attributes:
-        student: The student's id.
-        assignment: The assignment's name.
-        attempts: The number of different submissions that were graded.
-        first: The points of the first attempt.
-        last: The points of the last attempt.
-        max_score: The maximum points that the judge gives.
-    """
-
-    student: str
-    assignment: str
-    attempts: int
-    first: float
-    last: float
-    max_score: float
-
-
-def progress(student: str, attempts: Iterable[Attempt]) -> list[AttemptProgress]:
-    """Return a student's progress in each assignment that the student submitted again after a change.
-
-    Args:
-        student: The student's id.
-        attempts: All graded attempts of the student, oldest first. But only attempts with the same version of the
-            course as the last attempt are used, because other attempts are not comparable.
-    """
-    found: dict[str, list[Attempt]] = defaultdict(list)
-    for attempt in attempts:
-        found[attempt.assignment].append(attempt)
-    shown = []
-    for assignment, all_of_it in found.items():
-        same = [one for one in all_of_it if one.course == all_of_it[-1].course]
-        works = len({one.made_from.handed_in for one in same})
-        first, last = (sum(row.score for row in one.rows) for one in (same[0], same[-1]))
-        if works > 1:
-            most = sum(row.max_score for row in same[-1].rows)
-            shown.append(AttemptProgress(student, assignment, works, first, last, most))
-    return shown

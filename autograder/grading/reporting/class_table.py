@@ -222,25 +222,6 @@ class Difference:
         return f"{self.student}  {self.exercise}  {points}{words}{f', {self.note}' if self.note else ''}"
 
 
-def _differences(before: Iterable[Row], after: Iterable[Row]) -> list[Difference]:
-    """Return the differences between the rows of two tables, sorted by student, assignment and exercise."""
-    earlier = {(row.student, row.assignment, row.exercise): row for row in before}
-    later = {(row.student, row.assignment, row.exercise): row for row in after}
-    found = []
-    for key in sorted({*earlier, *later}):
-        old, new = earlier.get(key), later.get(key)
-        difference = Difference(
-            *key,
-            old.shown_score if old else None,
-            new.shown_score if new else None,
-            old.diagnosis if old else "",
-            new.diagnosis if new else "",
-        )
-        if (difference.before, difference.diagnosis_before) != (difference.after, difference.diagnosis_after):
-            found.append(difference)
-    return found
-
-
 def compare(store: ClassStore, before: str = "", after: str = "") -> tuple[str, str, list[Difference]]:
     """Compare the results of two runs of a class.
 
@@ -261,12 +242,9 @@ def compare(store: ClassStore, before: str = "", after: str = "") -> tuple[str, 
             "There is nothing to compare yet: this class does not have two runs with different results."
         )
     before, after = before or names[-2], after or names[-1]
-    tables = []
     for name in (before, after):
-        rows = store.run(name)
-        if rows is None:
+        if name not in names:
             raise GradingError(
                 f"Run {name} does not exist. The runs are: {', '.join(names[-10:]) or 'none'}."
             )
-        tables.append(rows)
-    return before, after, _differences(*tables)
+    return before, after, [Difference(*row) for row in store.differences(before, after)]

@@ -108,7 +108,7 @@ def _page(
         items=figures.items(table, store),
         mistakes=figures.mistakes(table),
         times=_times(directory, table),
-        progress=_progress(store, table),
+        progress=[one for one in store.progress() if one.student in people],
         remarks=remarks_on(table.rows),
         names=names,
     )
@@ -145,12 +145,6 @@ def _cell(row: Row | None) -> str:
     if row is None or row.is_blank:
         return "excused" if row and row.state == EXCUSED else "–"
     return f"{row.score:g}{row.mark}"
-
-
-def _progress(store: ClassStore, table: ClassTable) -> list[figures.AttemptProgress]:
-    """Return the progress of students over several attempts, those with the greatest improvement first."""
-    found = [one for student in table.students for one in figures.progress(student, store.attempts(student))]
-    return sorted(found, key=lambda one: one.first - one.last)
 
 
 def _times(directory: ClassDirectory, table: ClassTable) -> list[dict[str, object]]:

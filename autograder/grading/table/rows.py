@@ -36,7 +36,8 @@ LATE = "late"
 DROPPED = "dropped"
 """The value of ``exercise`` in a row that subtracts the points of a dropped assignment."""
 NO_EXERCISE = (LATE, DROPPED)
-_NOTHING_JUDGED = (NOT_SUBMITTED, NOT_GRADED, EXCUSED, State.NOT_CHECKED)
+NOTHING_JUDGED = (NOT_SUBMITTED, NOT_GRADED, EXCUSED, State.NOT_CHECKED)
+"""The states in which the judge gave no points."""
 
 
 @dataclass(frozen=True)
@@ -79,7 +80,7 @@ class Row:
     @property
     def is_blank(self) -> bool:
         """True if the row has no points yet, which is different from zero points."""
-        return self.state in _NOTHING_JUDGED and self.by_hand is None and not self.extra
+        return self.state in NOTHING_JUDGED and self.by_hand is None and not self.extra
 
     @property
     def is_unchecked(self) -> bool:
