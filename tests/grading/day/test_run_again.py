@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import contextlib
-from dataclasses import replace
 import io
 import json
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import nbformat
