@@ -13,12 +13,12 @@ import contextlib
 import sqlite3
 from dataclasses import replace
 from datetime import UTC, datetime
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self, TypeVar
 
 import msgspec
 
 from autograder.execution.executed_cells import Execution
-from autograder.grading import store_queries
 from autograder.grading.class_records import Attempt, AttemptProgress, KeptEvidence, Origin, ResultKey
 from autograder.grading.grading_errors import DiskFull, StoreTrouble, is_disk_full, said_by_database
 from autograder.grading.store_tables import bring_up_to_date
@@ -32,6 +32,9 @@ if TYPE_CHECKING:
     from autograder.grading.grading_task import Task
 
 NAME = "class.db"
+_SQL = Path(__file__).with_name("class_queries.sql").read_text(encoding="utf-8")
+_QUERIES = dict(part.split("\n", 1) for part in _SQL.split("-- query: ")[1:])
+"""The queries in ``class_queries.sql`` by name."""
 _NOT_ENTERED = (
     "task NOT IN (SELECT value FROM attempt AS a, json_each(CAST(a.tasks AS TEXT))"
     " WHERE a.entered AND a.student = evidence.student AND a.assignment = evidence.assignment)"
@@ -183,7 +186,7 @@ class ClassStore:
         """Return the attempts whose results are in the gradebook, by student and assignment."""
         found = {}
         for student, at, assignment, course, key, report, tasks, scores, shown in self._rows(
-            store_queries.ENTERED
+            _QUERIES["entered"]
         ):
             attempt = _attempt(student, at, assignment, course, key, report)
             parts = _decoded(tasks, dict[str, str]), _decoded(scores, dict[str, dict[str, float]])
@@ -194,19 +197,19 @@ class ClassStore:
     def attempts(self, student: str) -> list[Attempt]:
         """Return all attempts of a student with what ``attempts`` shows of them, oldest first."""
         found = []
-        for *fields, earlier in self._rows(store_queries.ATTEMPTS, student):
+        for *fields, earlier in self._rows(_QUERIES["attempts"], student):
             if attempt := _attempt(student, *fields):
                 found.append(replace(attempt, earlier=_decoded(earlier or "", ResultKey)))
         return found
 
     def last_key(self, submission: Submission) -> ResultKey | None:
         """Return the key of the newest attempt of a submission; None if it was never graded."""
-        rows = self._rows(store_queries.LAST_KEY, submission.student, submission.assignment)
+        rows = self._rows(_QUERIES["last_key"], submission.student, submission.assignment)
         return _decoded(rows[0][0], ResultKey) if rows else None
 
     def progress(self) -> list[AttemptProgress]:
         """Return the progress in each submission that changed between attempts, the greatest improvement first."""
-        return [AttemptProgress(*row) for row in self._rows(store_queries.PROGRESS)]
+        return [AttemptProgress(*row) for row in self._rows(_QUERIES["progress"])]
 
     def rename(self, ids: Mapping[str, str]) -> None:
         """Give students other ids. If a student had both ids, the results under the new one stay.
@@ -248,7 +251,7 @@ class ClassStore:
 
         Each is a student, an assignment, an exercise, the points before and after, and the diagnosis before and after.
         """
-        return self._rows(store_queries.DIFFERENCES, before, after)
+        return self._rows(_QUERIES["differences"], before, after)
 
     # -- sources
 

@@ -37,7 +37,7 @@ DROPPED = "dropped"
 """The value of ``exercise`` in a row that subtracts the points of a dropped assignment."""
 NO_EXERCISE = (LATE, DROPPED)
 NOTHING_JUDGED = (NOT_SUBMITTED, NOT_GRADED, EXCUSED, State.NOT_CHECKED)
-"""The states in which the judge gave no points."""
+"""The states in which the judge gave no points. The query ``differences`` in ``class_queries.sql`` has them, too."""
 
 
 @dataclass(frozen=True)

@@ -1,23 +1,22 @@
-"""The questions that commands ask about the attempts and the runs in a class's store, as SQL statements."""
+-- What commands ask about the attempts and the runs in a class's store. ClassStore reads each query by its name.
 
-from autograder.grading.table.rows import NOTHING_JUDGED
-
-ENTERED = """
+-- query: entered
+-- The attempts whose results are in the gradebook.
 SELECT student, at, assignment, course, made_from, report, tasks, scores, shown
-FROM attempt WHERE entered ORDER BY number
-"""
-"""The attempts whose results are in the gradebook."""
+FROM attempt WHERE entered ORDER BY number;
 
-ATTEMPTS = """
+-- query: attempts
+-- The attempts of a student, each with the key of the attempt before it at the same assignment.
 SELECT at, assignment, course, made_from, report, lag(made_from) OVER (PARTITION BY assignment ORDER BY number)
-FROM attempt WHERE student = ? ORDER BY number
-"""
-"""The attempts of a student, each with the key of the attempt before it at the same assignment."""
+FROM attempt WHERE student = ? ORDER BY number;
 
-LAST_KEY = "SELECT made_from FROM attempt WHERE (student, assignment) = (?, ?) ORDER BY number DESC LIMIT 1"
-"""The key of the newest attempt of a submission."""
+-- query: last_key
+-- The key of the newest attempt of a submission.
+SELECT made_from FROM attempt WHERE (student, assignment) = (?, ?) ORDER BY number DESC LIMIT 1;
 
-PROGRESS = """
+-- query: progress
+-- The progress in each submission that changed between attempts, the greatest improvement first. Only attempts with the
+-- same version of the course as the last attempt are used, because other attempts are not comparable.
 WITH course_of AS (
     SELECT student, assignment, course, max(number) FROM attempt GROUP BY student, assignment
 ), judged AS (
@@ -32,17 +31,14 @@ WITH course_of AS (
 )
 SELECT progress.student, progress.assignment, attempts, before.score, after.score, after.max_score
 FROM progress JOIN judged AS before ON before.number = first JOIN judged AS after ON after.number = last
-ORDER BY before.score - after.score, progress.student, first
-"""
-"""The progress in each submission that changed between attempts, the greatest improvement first. Only attempts with the
-same version of the course as the last attempt are used, because other attempts are not comparable.
-"""
+ORDER BY before.score - after.score, progress.student, first;
 
-DIFFERENCES = f"""
+-- query: differences
+-- The results that differ between two runs. A result has points if Row.shown_score in table/rows.py has some.
 WITH result AS (
     SELECT run.name, json_extract(value, '$.student') AS student, json_extract(value, '$.assignment') AS assignment,
         json_extract(value, '$.exercise') AS exercise, json_extract(value, '$.diagnosis') AS diagnosis,
-        CASE WHEN json_extract(value, '$.state') IN {tuple(map(str, NOTHING_JUDGED))}
+        CASE WHEN json_extract(value, '$.state') IN ('not_submitted', 'not_graded', 'excused', 'not_checked')
             AND json_extract(value, '$.by_hand') IS NULL AND NOT json_extract(value, '$.extra')
         THEN NULL ELSE json_extract(value, '$.score') END AS score
     FROM run, json_each(CAST(report AS TEXT)) WHERE run.name IN (?1, ?2)
@@ -53,6 +49,4 @@ SELECT student, assignment, exercise,
     coalesce(max(diagnosis) FILTER (WHERE name = ?2), '') AS diagnosis_after
 FROM result GROUP BY student, assignment, exercise
 HAVING (score_before, diagnosis_before) IS NOT (score_after, diagnosis_after)
-ORDER BY student, assignment, exercise
-"""
-"""The results that differ between two runs. A result has points as in :attr:`Row.shown_score`."""
+ORDER BY student, assignment, exercise;
