@@ -185,13 +185,11 @@ class ClassStore:
     def entered(self) -> dict[tuple[str, str], Attempt]:
         """Return the attempts whose results are in the gradebook, by student and assignment."""
         found = {}
-        for student, at, assignment, course, key, report, tasks, scores, shown in self._rows(
-            _QUERIES["entered"]
-        ):
-            attempt = _attempt(student, at, assignment, course, key, report)
-            parts = _decoded(tasks, dict[str, str]), _decoded(scores, dict[str, dict[str, float]])
-            if attempt and None not in parts:
-                found[student, assignment] = replace(attempt, tasks=parts[0], scores=parts[1], shown=shown)
+        for student, at, assignment, *blobs, tasks, scores, shown in self._rows(_QUERIES["entered"]):
+            attempt = _attempt(student, at, assignment, *blobs)
+            hashes, points = _decoded(tasks, dict[str, str]), _decoded(scores, dict[str, dict[str, float]])
+            if attempt and hashes is not None and points is not None:
+                found[student, assignment] = replace(attempt, tasks=hashes, scores=points, shown=shown)
         return found
 
     def attempts(self, student: str) -> list[Attempt]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import re2
@@ -20,30 +20,19 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Sequence
 
     from autograder.grading.classes.class_directory import ClassDirectory
-    from autograder.grading.collecting.collected_files import Inbox
     from autograder.grading.collecting.submitted_folder import Submitted
 
 
 _Why = tuple[Line, LineState, str]
 
 
-@dataclass(frozen=True)
-class ClassFolders:
-    """The folders of a class whose contents decide which of a student's files is graded.
+def decide(lines: Iterable[Line], submitted: Submitted) -> list[Line]:
+    """Return the lines with a state and a reason. The work of a group becomes one line for each student.
 
-    Attributes:
-        directory: The class, with the notebooks that were handed out.
-        inbox: The inbox, with the bytes of the files.
-        submitted: The folder ``submitted``, with the files that are graded so far.
+    Args:
+        lines: The lines of all files.
+        submitted: The folder with the files that are graded so far.
     """
-
-    directory: ClassDirectory
-    inbox: Inbox
-    submitted: Submitted
-
-
-def decide(lines: Iterable[Line], folders: ClassFolders) -> list[Line]:
-    """Return the lines with a state and a reason. The work of a group becomes one line for each student."""
     decided: list[Line] = []
     soft: list[Line] = []
     by_place: dict[Place, list[Line]] = defaultdict(list)
@@ -61,7 +50,7 @@ def decide(lines: Iterable[Line], folders: ClassFolders) -> list[Line]:
     for place, files in by_place.items():
         decided += [
             replace(line, state=state, reason=reason)
-            for line, state, reason in _of_notebook(place, files, folders)
+            for line, state, reason in _of_notebook(place, files, submitted)
         ]
     handed_in = {
         (one.student, one.assignment) for one in decided if one.state in (LineState.PLACED, LineState.EARLIER)
@@ -92,10 +81,10 @@ def cell_in(reason: str) -> str:
     return found[1] if found else ""
 
 
-def _of_notebook(place: Place, files: list[Line], folders: ClassFolders) -> Iterator[_Why]:
+def _of_notebook(place: Place, files: list[Line], submitted: Submitted) -> Iterator[_Why]:
     """Yield, for each file that a student handed in for one notebook, its state and the reason for that state."""
     by_hand = [one for one in files if one.is_by_hand]
-    present = [one for one in by_hand if folders.submitted.content(place) == one.content]
+    present = [one for one in by_hand if submitted.content(place) == one.content]
     chosen = present or [one for one in files if one.use == "yes"]
     pool = chosen or [one for one in files if not one.is_by_hand]
     for sift in () if chosen else (_ambiguous_names, _unreadable):
@@ -103,12 +92,12 @@ def _of_notebook(place: Place, files: list[Line], folders: ClassFolders) -> Iter
         yield from ((one, LineState.NOT_PLACED, reason) for one, reason in doubts)
         doubtful = {one.key for one, _ in doubts}
         pool = [one for one in pool if one.key not in doubtful]
-    best, others = _best(place, pool, folders) if pool else (None, [])
+    best, others = _best(place, pool, submitted) if pool else (None, [])
     yield from others
     if best:
         # If a person corrected the file in ``submitted``, the student's own time of handing in still applies.
         times = [one.when for one in files if one.when and present]
-        yield _timed(replace(best, when=best.when or max(times, default=None)), files, folders)
+        yield _timed(replace(best, when=best.when or max(times, default=None)), files, submitted)
     why = "the file was in submitted before: write yes under use to put it there again"
     if chosen:
         put_there = "was put into the folder submitted by hand, and is graded"
@@ -118,12 +107,12 @@ def _of_notebook(place: Place, files: list[Line], folders: ClassFolders) -> Iter
         yield (one, LineState.UNCHANGED, "") if is_same else (one, LineState.EARLIER, why)
 
 
-def _timed(best: Line, files: Sequence[Line], folders: ClassFolders) -> _Why:
+def _timed(best: Line, files: Sequence[Line], submitted: Submitted) -> _Why:
     """Return the file to grade with the first time at which the same bytes came, unless a person wrote another one."""
     first = min((one.first for one in files if one.first and one.content == best.content), default=None)
     if not best.when or not first or first >= best.when or best.time_from == "handed_in":
         return best, LineState.PLACED, ""
-    again = in_zone(best.when, folders.directory.time_zone)
+    again = in_zone(best.when, submitted.directory.time_zone)
     reason = f"the same bytes were handed in again on {again}: the first time counts"
     return replace(best, when=first), LineState.PLACED, reason
 
@@ -162,7 +151,7 @@ def _unreadable(place: Place, pool: Sequence[Line]) -> list[tuple[Line, str]]:
     return [(one, f"{one.unreadable} {what_to_do}") for one in pool if one.unreadable]
 
 
-def _best(place: Place, files: Sequence[Line], folders: ClassFolders) -> tuple[Line | None, list[_Why]]:
+def _best(place: Place, files: Sequence[Line], submitted: Submitted) -> tuple[Line | None, list[_Why]]:
     """Return the file to grade, or None if a person has to choose; and the decisions about the other files.
 
     The file with the newest time of handing in is graded. If the times are equal or unknown, a file with answers is
@@ -170,11 +159,11 @@ def _best(place: Place, files: Sequence[Line], folders: ClassFolders) -> tuple[L
     last, the file with the highest number from the system. If several different files are left, the file that is
     already in ``submitted`` is graded again.
     """
-    there = folders.submitted.content(place)
+    there = submitted.content(place)
     contents = {one.content for one in files}
     work = {
         one.content: len(contents) == 1
-        or _has_work(folders.directory, one.assignment, one.notebook, folders.inbox.read(one.content))
+        or _has_work(submitted.directory, one.assignment, one.notebook, submitted.inbox.read(one.content))
         for one in files
     }
     timed = [one for one in files if one.when]
@@ -195,7 +184,7 @@ def _best(place: Place, files: Sequence[Line], folders: ClassFolders) -> tuple[L
         )
         return None, [(one, LineState.NOT_PLACED, reason) for one in files]
     others: list[_Why] = []
-    at = f", handed in {in_zone(first.when, folders.directory.time_zone)}" if first.when else ""
+    at = f", handed in {in_zone(first.when, submitted.directory.time_zone)}" if first.when else ""
     for one in (one for one in files if one is not first):
         is_older = work[one.content] < work[first.content] or (
             one.lms == first.lms and 0 < one.order < first.order
