@@ -7,7 +7,7 @@ from collections import defaultdict
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from autograder.grading.table.rows import EXCUSED, LATE, NOT_SUBMITTED, columns
+from autograder.grading.table.rows import EXCUSED, LATE, NOT_SUBMITTED, columns, grouped
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -29,9 +29,9 @@ def handed_in(table: ClassTable) -> list[str]:
     ]
 
 
-def totals(table: ClassTable) -> list[float]:
-    """Return the total points of each student who has points."""
-    return [points for student in handed_in(table) if (points := table.score(student)) is not None]
+def totals(table: ClassTable) -> dict[str, float]:
+    """Return the total points of each student who has points, by the student's id."""
+    return {student: points for student in handed_in(table) if (points := table.score(student)) is not None}
 
 
 _BANDS = 10
@@ -55,9 +55,7 @@ class Band:
 def bands(table: ClassTable) -> list[Band]:
     """Return the distribution of total points in ten bands, without students who have no points."""
     found: dict[int, list[str]] = defaultdict(list)
-    for student in handed_in(table):
-        if (points := table.score(student)) is None:
-            continue
+    for student, points in totals(table).items():
         most = sum(row.max_score for row in table.of(student))
         share = points / most if most else 0.0
         found[max(0, min(_BANDS - 1, int(share * _BANDS + 1e-9)))].append(student)
@@ -191,10 +189,8 @@ class MistakeFigures:
 
 def mistakes(table: ClassTable) -> list[MistakeFigures]:
     """Return the recognized mistakes with the students who made them, the most common mistake first."""
-    found: dict[tuple[str, str, str], list[Row]] = defaultdict(list)
-    for row in table.rows:
-        if row.diagnosis:
-            found[row.assignment, row.exercise, row.diagnosis].append(row)
+    diagnosed = [row for row in table.rows if row.diagnosis]
+    found = grouped(diagnosed, lambda row: (row.assignment, row.exercise, row.diagnosis))
     names = columns(table.rows)
     figures = [
         MistakeFigures(

@@ -12,7 +12,7 @@ from autograder.grading.collecting.collected_csv import Table, Waiting
 from autograder.grading.grading_errors import GradingError, MasterUnusable
 from autograder.grading.reporting.gradebook_layouts import LAYOUTS
 from autograder.grading.table.roster import Roster, Student
-from autograder.grading.table.rows import DROPPED, EXCUSED, NOT_SUBMITTED, Row, total
+from autograder.grading.table.rows import DROPPED, EXCUSED, NOT_SUBMITTED, Row, grouped, total
 from autograder.grading.table.student_list import read_roster
 from autograder.grading.table.weighted_rows import read_what_counts, true_rows
 from autograder.grading.tasks.result_keys import ResultKeys
@@ -50,10 +50,7 @@ class ClassTable:
 
     @functools.cached_property
     def _of_student(self) -> dict[str, list[Row]]:
-        found: dict[str, list[Row]] = {}
-        for row in self.rows:
-            found.setdefault(row.student, []).append(row)
-        return found
+        return grouped(self.rows, lambda row: row.student)
 
     @functools.cached_property
     def students(self) -> list[str]:
