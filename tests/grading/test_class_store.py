@@ -217,14 +217,17 @@ def test_a_difference_has_the_points_that_are_shown(store: ClassStore) -> None:
             ("ada", "ben"), states, (None, 0.0, 3.0), (0.0, 0.5)
         )
     ]
-    for table in ([], some, [replace(row, diagnosis="slow") for row in some], some[1:]):
+    fewer = [replace(row, score=1) for row in some]
+    for table in ([], some, [replace(row, diagnosis="slow") for row in some], fewer, some[1:]):
         store.keep_run("v1", table)
-    empty, first, slow, last = store.runs()
+    empty, first, slow, less, last = store.runs()
     given = {(row.student, row.assignment, row.exercise): row for row in some}
     expected = [(*key, None, row.shown_score, "", "") for key, row in given.items() if not row.is_blank]
     assert store.differences(empty, first) == sorted(expected)
     assert {one[5:] for one in store.differences(first, slow)} == {("", "slow")}
     assert store.differences(first, first) == []
+    assert {one[3:5] for one in store.differences(first, less)} == {(3, 1)}
+    assert {one[3:5] for one in store.differences(less, first)} == {(1, 3)}
     gone = some[0]
     assert [one[:3] for one in store.differences(first, last)] == [
         key for key in [(gone.student, "lab", gone.exercise)] if not gone.is_blank
