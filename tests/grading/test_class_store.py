@@ -247,6 +247,13 @@ def test_the_progress_is_that_of_changed_work_with_one_version_of_the_course(sto
     assert store.last_key(submission()) == ResultKey("work 2")
 
 
+def test_the_attempt_before_is_that_at_the_same_assignment(store: ClassStore) -> None:
+    for number, assignment in enumerate(("lab", "quiz", "lab", "quiz")):
+        store.enter(submission(assignment=assignment), entered(number, assignment=assignment))
+    keys = [None, None, ResultKey("work 0"), ResultKey("work 1")]
+    assert [one.earlier for one in store.attempts("ada")] == keys
+
+
 def test_of_a_student_with_two_ids_the_new_one_keeps_its_grade(store: ClassStore) -> None:
     for number, student in enumerate(("eve", "ada")):
         store.enter(submission(student), entered(number, student))
