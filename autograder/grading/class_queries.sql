@@ -2,12 +2,13 @@
 
 -- query: entered
 -- The attempts whose results are in the gradebook.
-SELECT student, at, assignment, course, made_from, report, tasks, scores, shown
+SELECT student, assignment, at, course, shown, made_from, report, tasks, scores, NULL
 FROM attempt WHERE entered ORDER BY number;
 
 -- query: attempts
 -- The attempts of a student, each with the key of the attempt before it at the same assignment.
-SELECT at, assignment, course, made_from, report, lag(made_from) OVER (PARTITION BY assignment ORDER BY number)
+SELECT student, assignment, at, course, shown, made_from, report, tasks, scores,
+    lag(made_from) OVER (PARTITION BY assignment ORDER BY number)
 FROM attempt WHERE student = ? ORDER BY number;
 
 -- query: last_key

@@ -71,7 +71,7 @@ class Attempt:
         course: The version of the course that judged the submission.
         rows: The judge's results, as rows of the report.
         earlier: The key of the student's attempt before this one at the same assignment; None if this is the first, or
-            if it was not asked for.
+            if only the attempts in the gradebook were asked for.
         tasks: The hash of each notebook's task, from :meth:`autograder.grading.grading_task.Task.key`.
         scores: The points of each check cell, by notebook and grade_id.
         shown: The hash of the gradebook's entry from which the feedback pages were made; empty without pages.

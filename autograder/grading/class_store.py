@@ -184,21 +184,12 @@ class ClassStore:
 
     def entered(self) -> dict[tuple[str, str], Attempt]:
         """Return the attempts whose results are in the gradebook, by student and assignment."""
-        found = {}
-        for student, at, assignment, *blobs, tasks, scores, shown in self._rows(_QUERIES["entered"]):
-            attempt = _attempt(student, at, assignment, *blobs)
-            hashes, points = _decoded(tasks, dict[str, str]), _decoded(scores, dict[str, dict[str, float]])
-            if attempt and hashes is not None and points is not None:
-                found[student, assignment] = replace(attempt, tasks=hashes, scores=points, shown=shown)
-        return found
+        found = {tuple(row[:2]): _attempt(*row) for row in self._rows(_QUERIES["entered"])}
+        return {key: attempt for key, attempt in found.items() if attempt}
 
     def attempts(self, student: str) -> list[Attempt]:
-        """Return all attempts of a student with what ``attempts`` shows of them, oldest first."""
-        found = []
-        for *fields, earlier in self._rows(_QUERIES["attempts"], student):
-            if attempt := _attempt(student, *fields):
-                found.append(replace(attempt, earlier=_decoded(earlier or "", ResultKey)))
-        return found
+        """Return all attempts of a student, oldest first."""
+        return list(filter(None, (_attempt(*row) for row in self._rows(_QUERIES["attempts"], student))))
 
     def last_key(self, submission: Submission) -> ResultKey | None:
         """Return the key of the newest attempt of a submission; None if it was never graded."""
@@ -326,13 +317,27 @@ class ClassStore:
             raise
 
 
-def _attempt(student: str, at: str, assignment: str, course: str, *blobs: bytes) -> Attempt | None:
+def _attempt(
+    student: str,
+    assignment: str,
+    at: str,
+    course: str,
+    shown: str,
+    key: bytes,
+    report: bytes,
+    tasks: bytes,
+    scores: bytes,
+    earlier: bytes | None,
+) -> Attempt | None:
     """Return an attempt; None if its data is damaged. The rows may have an earlier id of the student."""
-    key, rows = _decoded(blobs[0], ResultKey), _decoded(blobs[1], tuple[Row, ...])
-    if key is None or rows is None:
+    made_from, rows = _decoded(key, ResultKey), _decoded(report, tuple[Row, ...])
+    hashes, points = _decoded(tasks, dict[str, str]), _decoded(scores, dict[str, dict[str, float]])
+    if made_from is None or rows is None or hashes is None or points is None:
         return None
     own = tuple(replace(row, student=student) for row in rows)
-    return Attempt(datetime.fromisoformat(at), assignment, key, course, own)
+    before = _decoded(earlier or b"", ResultKey)
+    when = datetime.fromisoformat(at)
+    return Attempt(when, assignment, made_from, course, own, before, hashes, points, shown)
 
 
 def _decoded(
