@@ -260,13 +260,6 @@ def test_the_process_with_the_gradebook_imports_nothing_that_executes_a_submissi
     assert "autograder.grading.running.order_executor" not in reached
 
 
-def test_a_task_gets_its_judge_from_the_executor() -> None:
-    importing = [
-        name for path, _, name in imports(PACKAGE / "grading/running") if path.stem == "task_execution"
-    ]
-    assert [name for name in importing if name.startswith("autograder.judge")] == []
-
-
 def test_the_grader_reads_no_master() -> None:
     """Reading one loads Jupytext, which takes a tenth of a second in each process that grades."""
     graph = {module: _runs(path, module, types=False) for module, path in _modules(PACKAGE).items()}

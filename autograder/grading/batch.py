@@ -105,20 +105,9 @@ def grade(
         execution_backends.remove_leftovers(directory)
         roster = read_roster(directory)
         in_sections = roster.of_sections(sections) if sections else ()
-        asked = AskedFor(assignments, [*students, *in_sections])
+        asked = AskedFor(assignments, [*students, *in_sections], again, feedback, dry_run)
         store = stack.enter_context(ClassStore(directory))
-        batch = Batch(
-            directory,
-            store,
-            console,
-            roster,
-            asked,
-            backend,
-            stack,
-            again=again,
-            feedback=feedback,
-            dry_run=dry_run,
-        )
+        batch = Batch(directory, store, console, roster, asked, backend, stack)
         handed_on: Any = ()
         for step in FLOW:
             handed_on = step(batch, handed_on)

@@ -8,7 +8,7 @@ import time
 from collections import Counter
 from typing import TYPE_CHECKING
 
-from autograder.grading.batch_work import Work, due_dates, find_work, without_grade, would_change
+from autograder.grading.batch_work import due_dates, find_work, without_grade, would_change
 from autograder.grading.class_checks import changed_master_warnings, limits_of
 from autograder.grading.classes import gradebook_reading
 from autograder.grading.classes.gradebook_reading import SubmissionEntry
@@ -42,6 +42,7 @@ if TYPE_CHECKING:
     from autograder.grading.running.task_dispatcher import Done
     from autograder.grading.table.roster import Roster
     from autograder.grading.table.rows import Row
+    from autograder.grading.tasks.submission_work import Work
 
 
 class Batch:
@@ -51,12 +52,9 @@ class Batch:
 
     Args:
         directory: The class, which this process has locked.
-        asked: The chosen assignments and students.
+        asked: The choices of the instructor for the run.
         backend: Finds the workers that execute tasks.
         stack: Ends what the run began.
-        again: True to execute every notebook again.
-        feedback: True to make feedback pages.
-        dry_run: True to leave the gradebook unchanged.
 
     Raises:
         MasterUnusable: No assignment of the class can be graded.
@@ -71,21 +69,12 @@ class Batch:
         asked: AskedFor,
         backend: contextlib.AbstractContextManager[Execute],
         stack: contextlib.ExitStack,
-        *,
-        again: bool,
-        feedback: bool,
-        dry_run: bool,
     ) -> None:
         self._began = time.monotonic()
         self._backend, self._stack = backend, stack
         self._execute: Execute | None = None
-        self._again = again
-        self._roster = roster
-        self._asked = asked
-        self._dry_run = dry_run
-        self._directory = directory
-        self._store = store
-        self._console = console
+        self._directory, self._store, self._console = directory, store, console
+        self._roster, self._asked = roster, asked
         self._keys = ResultKeys(directory)
         # Read before any step, so that a class without a usable source is refused while it is unchanged.
         self._released = released = read_released(directory, store, self._keys)
@@ -96,7 +85,6 @@ class Batch:
         self._problems: list[str] = []
         self._notices: list[str] = []
         self._timings = Timings()
-        self._feedback = feedback
         self._run_again: Counter[str] = Counter()
         self._reused = 0
         self._written = 0
@@ -120,7 +108,7 @@ class Batch:
         if asked or not assignments:
             check_release(self._directory, asked)
         # A dry run changes neither the gradebook nor the folder ``submitted``.
-        if not self._dry_run:
+        if not self._asked.dry_run:
             enter_roster(self._directory)
             self._notices += rename_decomposed_folders(self._directory)
         beside, notices = misplaced_files(self._directory)
@@ -146,7 +134,7 @@ class Batch:
                 f"students.csv does not list these students, so this work is not graded: {names}. To grade it anyway, "
                 f"add --student {unlisted[0].submission.student}"
             )
-        if self._again:
+        if self._asked.again:
             self._store.forget_results(work.submission for work in works)
             return works
         for work in works:
@@ -166,7 +154,7 @@ class Batch:
     def take_back(self, works: list[Work]) -> list[Work]:
         """Set to zero the grades of all submissions that still have to be graded."""
         unsettled = [work.submission for work in works if not work.written]
-        if unsettled and not self._dry_run:
+        if unsettled and not self._asked.dry_run:
             self._writer.take_back(unsettled)
         return works
 
@@ -189,7 +177,7 @@ class Batch:
         longest = limits_of(self._directory).longest
         with BatchProgress(self._console, missing, longest=longest) as progress:
             self._timings.first_started = time.monotonic() - self._began
-            results = self._execute(tasks, lambda task: progress.started(task.label))
+            results = self._execute(tasks, on_start=lambda task: progress.started(task.label))
             with contextlib.closing(results):
                 for done in results:
                     self._timings.last_ended = time.monotonic() - self._began
@@ -230,11 +218,11 @@ class Batch:
         """
         for work in works:
             if work.written:
-                if not self._dry_run:
+                if not self._asked.dry_run:
                     yield work, self._penalized(work)
                 continue
             rows = tuple(row for pair in work.pairs for row in rows_of(*pair))
-            if self._dry_run:
+            if self._asked.dry_run:
                 work.rows = rows
             elif self._write(work, rows):
                 yield work, gradebook_reading.read_entry(self._directory.gradebook_url, *work.key)
@@ -247,7 +235,7 @@ class Batch:
             is_shown = work.shown == entry.shown() and self._directory.has_pages(
                 work.submission, work.notebooks
             )
-            if self._feedback and not is_shown:
+            if self._asked.feedback and not is_shown:
                 self._make_pages(work, entry)
             yield work
 
@@ -279,7 +267,7 @@ class Batch:
         )
         self._notices += self._roster.notices(self._directory.assignments(), entries, self._roster.students)
         changes: list[Difference] = []
-        if self._dry_run:
+        if self._asked.dry_run:
             changes = would_change(self._directory, self._works, entries, self._cells)
         else:
             write_csv(self._directory.path / "grades.csv", rows)
@@ -290,7 +278,7 @@ class Batch:
             refused=tuple(one for one in self._refused if self._asked.tells_of(one, self._directory.path)),
             problems=tuple(self._problems),
             notices=tuple(self._notices),
-            would_change=tuple(changes) if self._dry_run else None,
+            would_change=tuple(changes) if self._asked.dry_run else None,
             executed=self._run_again.total(),
             run_again={why: count for why, count in self._run_again.items() if why},
             reused=self._reused,
@@ -315,7 +303,7 @@ class Batch:
         earlier = self._store.last_key(work.submission)
         if earlier is None:
             return ""
-        nothing = "--again was given" if self._again else "its result was not kept"
+        nothing = "--again was given" if self._asked.again else "its result was not kept"
         return work.made_from.changes_since(earlier) or nothing
 
     def _take_stored_results(self, work: Work) -> None:
@@ -345,7 +333,7 @@ class Batch:
                 if self._keys.of(work.submission) != work.made_from:
                     # The files changed during the run, so the tasks may have been made from other files.
                     raise NotWritten(f"{'/'.join(work.key)} was changed while it was graded: grade it again")
-                self._writer.write(work.submission, work.made_from, work.pairs, work.rebuilt, rows)
+                self._writer.write(work, rows)
         except NotWritten as error:
             if is_disk_full(error):
                 raise

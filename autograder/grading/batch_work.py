@@ -1,9 +1,9 @@
-"""Finds the submissions to grade in a run, holds the state of each, and computes what a dry run reports."""
+"""Finds the submissions to grade in a run, and computes what a dry run reports."""
 
 from __future__ import annotations
 
 import contextlib
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from datetime import UTC
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -16,18 +16,15 @@ from autograder.grading.grading_errors import MasterUnusable, check_known, cours
 from autograder.grading.reporting.class_table import Difference
 from autograder.grading.table.rows import LATE, Row
 from autograder.grading.tasks.submission_times import handed_in_at, is_not_believed
+from autograder.grading.tasks.submission_work import Work
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
     from datetime import datetime
 
-    from nbformat import NotebookNode
-
-    from autograder.execution.executed_cells import Execution
-    from autograder.grading.class_records import ResultKey
-    from autograder.grading.classes.class_directory import ClassDirectory, Submission
+    from autograder.grading.classes.class_directory import ClassDirectory
     from autograder.grading.classes.gradebook_reading import Entries
-    from autograder.grading.grading_task import GradedCell, Task
+    from autograder.grading.grading_task import GradedCell
     from autograder.grading.table.roster import Roster
     from autograder.grading.tasks.result_keys import ResultKeys
     from autograder.grading.tasks.source_points import Released
@@ -35,15 +32,21 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class AskedFor:
-    """The assignments and students that the instructor chose for a run.
+    """The choices of the instructor for a run.
 
     Attributes:
         assignments: The chosen assignments; all if empty.
         students: The chosen students; all if empty.
+        again: True to execute every notebook again.
+        feedback: True to make feedback pages.
+        dry_run: True to leave the gradebook unchanged.
     """
 
     assignments: Sequence[str]
     students: Sequence[str]
+    again: bool = False
+    feedback: bool = True
+    dry_run: bool = False
 
     def has(self, student: str, assignment: str) -> bool:
         """Return True if the submission of a student for an assignment is chosen."""
@@ -60,45 +63,6 @@ class AskedFor:
         return (not self.students or parts[0] in self.students) and (
             not self.assignments or len(parts) < 3 or parts[1] in self.assignments
         )
-
-
-@dataclass
-class Work:
-    """The state of a submission during a run.
-
-    Attributes:
-        made_from: The key that its result has if it is made from the files at the beginning of the run.
-        notebooks: The names of the assignment's notebooks.
-        results: The results by notebook, until they are entered into the gradebook.
-        rebuilt: The rebuilt notebooks that are executed or have results, until the results are entered.
-        rows: The results as rows of the report; None if the submission has not been graded yet.
-        written: True if the gradebook contains these results.
-        shown: The hash of the gradebook's entry from which the feedback pages were made; empty without pages.
-    """
-
-    submission: Submission
-    made_from: ResultKey
-    notebooks: Sequence[str]
-    results: dict[str, tuple[Task, Execution]] = field(default_factory=dict)
-    rebuilt: dict[str, NotebookNode] = field(default_factory=dict)
-    rows: tuple[Row, ...] | None = None
-    written: bool = False
-    shown: str = ""
-
-    @property
-    def key(self) -> tuple[str, str]:
-        """The student and the assignment, which together identify the submission in the gradebook."""
-        return self.submission.student, self.submission.assignment
-
-    @property
-    def complete(self) -> bool:
-        """True if each notebook of the submission has a result."""
-        return len(self.results) == len(self.notebooks)
-
-    @property
-    def pairs(self) -> list[tuple[Task, Execution]]:
-        """The tasks with their results, in the order of the notebooks."""
-        return [self.results[notebook] for notebook in self.notebooks]
 
 
 @dataclass(frozen=True)

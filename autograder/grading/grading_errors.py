@@ -141,13 +141,10 @@ _STORE_ADVICE = {
 
 def is_disk_full(error: BaseException | None) -> bool:
     """Return True if ``error`` was caused by a full disk or an exhausted quota."""
-    while error is not None:
-        if isinstance(error, OSError) and error.errno in (errno.ENOSPC, errno.EDQUOT):
-            return True
-        if "disk is full" in str(error) and type(error).__module__.startswith(("sqlite3", "sqlalchemy")):
-            return True
-        error = error.__cause__ or error.__context__
-    return False
+    return any(
+        one.errno in (errno.ENOSPC, errno.EDQUOT) if isinstance(one, OSError) else "disk is full" in said
+        for one, said in _causes(error)
+    )
 
 
 @contextlib.contextmanager
@@ -213,8 +210,12 @@ def write_output(path: Path, data: bytes, option: str) -> None:
 
 def said_by_database(error: BaseException | None) -> str:
     """Return the database's message if a database error caused ``error``; empty if not."""
+    return next((said[:200] for _, said in _causes(error) if said), "")
+
+
+def _causes(error: BaseException | None) -> Iterator[tuple[BaseException, str]]:
+    """Yield an error and the errors that caused it, each with its text if a database raised it, else with no text."""
     while error is not None:
-        if type(error).__module__.startswith(("sqlite3", "sqlalchemy")):
-            return " ".join(str(getattr(error, "orig", None) or error).split())[:200]
+        is_of_database = type(error).__module__.startswith(("sqlite3", "sqlalchemy"))
+        yield error, " ".join(str(getattr(error, "orig", None) or error).split()) if is_of_database else ""
         error = error.__cause__ or error.__context__
-    return ""

@@ -62,14 +62,17 @@ class Task:
         """Return a hash of the whole task: tasks with the same hash have the same result."""
         return hashlib.sha256(msgspec.json.encode(self, order="deterministic")).hexdigest()
 
+    @property
+    def checks(self) -> dict[int, CellCheck]:
+        """The checks of the notebook, by the index of their cell."""
+        return {index: cell.check for index, cell in enumerate(self.cells) if cell.check is not None}
+
     def without_execution(self) -> Execution:
         """Return the result of a task that cannot be executed: no cell is run, and each check gets zero points."""
+        advice = "Hand in the notebook as JupyterLab saves it."
         verdicts = {
-            index: zero_points(
-                cell.check, UNREADABLE, self.problem, "Hand in the notebook as JupyterLab saves it."
-            )
-            for index, cell in enumerate(self.cells)
-            if cell.check is not None
+            index: zero_points(check, UNREADABLE, self.problem, advice)
+            for index, check in self.checks.items()
         }
         return Execution(cells=(), verdicts=verdicts)
 
@@ -79,9 +82,7 @@ class Task:
         Args:
             reason: Why the grader failed.
         """
-        verdicts = {
-            index: grader_trouble(cell.check, reason) for index, cell in enumerate(self.cells) if cell.check
-        }
+        verdicts = {index: grader_trouble(check, reason) for index, check in self.checks.items()}
         return Execution(cells=(), verdicts=verdicts, trouble=reason)
 
 
@@ -112,16 +113,12 @@ def points(check: CellCheck, verdict: Verdict) -> float:
 def scores_of(task: Task, execution: Execution) -> dict[str, float]:
     """Return the points of each check cell of a task, by grade_id."""
     return {
-        cell.name: points(cell.check, execution.verdicts[index])
-        for index, cell in enumerate(task.cells)
-        if cell.check is not None
+        task.cells[index].name: points(check, execution.verdicts[index])
+        for index, check in task.checks.items()
     }
 
 
 def unchecked(task: Task, execution: Execution) -> set[str]:
     """Return the grade_ids of the check cells that could not be checked."""
-    return {
-        cell.name
-        for index, cell in enumerate(task.cells)
-        if cell.check is not None and execution.verdicts[index].state == State.NOT_CHECKED
-    }
+    states = {task.cells[index].name: execution.verdicts[index].state for index in task.checks}
+    return {name for name, state in states.items() if state == State.NOT_CHECKED}

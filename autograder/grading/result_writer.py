@@ -46,12 +46,12 @@ if TYPE_CHECKING:
     from nbformat import NotebookNode
 
     from autograder.boxes.run_limits import Limits
-    from autograder.grading.class_records import ResultKey
     from autograder.grading.class_store import ClassStore
     from autograder.grading.classes.class_directory import ClassDirectory, Submission
     from autograder.grading.classes.gradebook_reading import SubmissionEntry
     from autograder.grading.grading_task import Task
     from autograder.grading.table.rows import Row
+    from autograder.grading.tasks.submission_work import Work
     from autograder.verdict import Verdict
 
 
@@ -81,64 +81,71 @@ class Writer:
         pairs = [(submission.assignment, submission.student) for submission in submissions]
         gradebook_writing.reset(self._directory.gradebook_url, pairs)
 
-    def write(
-        self,
-        submission: Submission,
-        made_from: ResultKey,
-        results: Sequence[tuple[Task, Execution]],
-        rebuilt: Mapping[str, NotebookNode],
-        rows: tuple[Row, ...],
-    ) -> None:
-        """Convert the submission and enter its grades.
+    def write(self, work: Work, rows: tuple[Row, ...]) -> None:
+        """Convert a submission and enter its grades.
 
         Args:
-            submission: The submission that was executed.
-            made_from: The key of the results.
-            results: Pairs of a task and its result, one for each notebook of the assignment.
-            rebuilt: The rebuilt notebooks that were executed, by name. They get the results as outputs.
+            work: The submission, with a result for each notebook. The results are added to the rebuilt notebooks.
             rows: The results as rows of the report.
 
         Raises:
             NotWritten: Writing failed, or the gradebook contains wrong points afterwards. The grades were set to zero.
             OSError: The disk is full.
         """
+        submission = work.submission
         try:
             with quiet(self._directory.state):
-                self._convert_and_enter(submission, results, rebuilt)
+                self._convert_and_enter(work)
             # Read the points back, because a wrong grade is worse than none.
-            self._verify(submission, results)
+            self._verify(work)
         except Exception as error:
             self.take_back([submission])
             if isinstance(error, NotWritten):
                 raise
             raise NotWritten(f"{submission.student}/{submission.assignment}: {error}") from error
-        tasks = {task.notebook: task.key() for task, _ in results}
-        scores = {task.notebook: scores_of(task, execution) for task, execution in results}
-        now, course = datetime.now(tz=UTC), results[0][0].course
-        attempt = Attempt(now, submission.assignment, made_from, course, rows, tasks=tasks, scores=scores)
+        tasks = {task.notebook: task.key() for task, _ in work.pairs}
+        scores = {task.notebook: scores_of(task, execution) for task, execution in work.pairs}
+        now, course = datetime.now(tz=UTC), work.pairs[0][0].course
+        attempt = Attempt(
+            now, submission.assignment, work.made_from, course, rows, tasks=tasks, scores=scores
+        )
         # If the grader itself failed, the attempt is kept, but the submission is not entered as done: it runs again.
-        self._store.enter(submission, attempt, is_final=not any(one.trouble for _, one in results))
+        self._store.enter(submission, attempt, is_final=not any(one.trouble for _, one in work.pairs))
 
-    def _convert_and_enter(
-        self,
-        submission: Submission,
-        results: Sequence[tuple[Task, Execution]],
-        rebuilt: Mapping[str, NotebookNode],
-    ) -> None:
+    def _convert_and_enter(self, work: Work) -> None:
         """Write the notebooks, then enter the grades.
 
         The notebooks come first because notebooks without grades do no harm, if the grader is interrupted between the
         two steps.
         """
-        folder = self._folder("autograded", submission)
-        _remove(folder)
-        entries = _convert(self._directory, submission, results, rebuilt, folder)
-        url = self._directory.gradebook_url
+        submission, url = work.submission, self._directory.gradebook_url
+        entries = self._convert(work)
         has_due_date = gradebook_writing.enter(
             url, submission.assignment, submission.student, entries, handed_in_at(submission.folder)
         )
         if has_due_date:
             self.assign_penalties(submission)
+
+    def _convert(self, work: Work) -> dict[str, NotebookEntry]:
+        """Write the notebooks of a submission with their results, and return their entries for the gradebook, by name.
+
+        Raises:
+            OSError: A file could not be written.
+        """
+        folder = self._folder("autograded", work.submission)
+        _remove(folder)
+        folder.mkdir(parents=True)
+        for name, data in self._directory.files(work.submission.assignment).items():
+            _write_read_only(folder / name, data)
+        _write_companions(work.submission, folder)
+        entries = {}
+        for task, execution in work.pairs:
+            notebook = _with_results(work.rebuilt[task.notebook], task, execution)
+            # Before the entry is made, because nbgrader, too, cuts outputs before it computes points from them.
+            LimitOutput(config=self._directory.config).preprocess(notebook, {})
+            entries[task.notebook] = replace(_notebook_entry(notebook), unchecked=unchecked(task, execution))
+            _write_read_only(folder / f"{task.notebook}{SUFFIX}", _notebook_text(notebook))
+        return entries
 
     def assign_penalties(self, submission: Submission) -> None:
         """Enter the late penalty of a submission into the gradebook."""
@@ -168,9 +175,9 @@ class Writer:
                 return False
         return self._directory.has_pages(submission, notebooks)
 
-    def _verify(self, submission: Submission, results: Sequence[tuple[Task, Execution]]) -> None:
-        entry = self._entry(submission)
-        for task, execution in results:
+    def _verify(self, work: Work) -> None:
+        entry = self._entry(work.submission)
+        for task, execution in work.pairs:
             for name, score in scores_of(task, execution).items():
                 if entry.judged(task.notebook, name) != score:
                     raise NotWritten(f"{task.label}: the gradebook does not have {score:g} points for {name}")
@@ -214,41 +221,6 @@ def _remove(folder: Path) -> None:
 
 
 _READ_ONLY = 0o444
-
-
-def _convert(
-    directory: ClassDirectory,
-    submission: Submission,
-    results: Sequence[tuple[Task, Execution]],
-    rebuilt: Mapping[str, NotebookNode],
-    folder: Path,
-) -> dict[str, NotebookEntry]:
-    """Write the notebooks of a submission with their results, and return the entries for the gradebook.
-
-    Args:
-        submission: The submission that was executed.
-        results: Pairs of a task and its result, one for each notebook of the assignment.
-        rebuilt: The rebuilt notebooks that were executed, by name.
-        folder: The folder to create for the notebooks. It must not exist yet.
-
-    Returns:
-        The entries by notebook.
-
-    Raises:
-        OSError: A file could not be written.
-    """
-    folder.mkdir(parents=True)
-    for name, data in directory.files(submission.assignment).items():
-        _write_read_only(folder / name, data)
-    _write_companions(submission, folder)
-    entries = {}
-    for task, execution in results:
-        notebook = _with_results(rebuilt[task.notebook], task, execution)
-        # Before the entry is made, because nbgrader, too, cuts outputs before it computes points from them.
-        LimitOutput(config=directory.config).preprocess(notebook, {})
-        entries[task.notebook] = replace(_notebook_entry(notebook), unchecked=unchecked(task, execution))
-        _write_read_only(folder / f"{task.notebook}{SUFFIX}", _notebook_text(notebook))
-    return entries
 
 
 def _write_companions(submission: Submission, folder: Path) -> None:
@@ -348,14 +320,15 @@ def _of_tests(outputs: Sequence[Mapping[str, Any]]) -> Iterator[NotebookNode]:
     """
     for one in outputs:
         if one["output_type"] == "error":
-            text = "\n".join(one["traceback"]) or f"{one['ename']}: {one['evalue']}"
-            yield harmless_output(nbformat_nodes.output(output_type="stream", name="stdout", text=text))
+            yield harmless_output(_printed("\n".join(one["traceback"]) or f"{one['ename']}: {one['evalue']}"))
         elif one["output_type"] == "stream":
-            yield harmless_output(
-                nbformat_nodes.output(output_type="stream", name="stdout", text=one["text"])
-            )
+            yield harmless_output(_printed(one["text"]))
         elif one["output_type"] == "display_data":
             yield harmless_output(nbformat_nodes.output(**one))
+
+
+def _printed(text: str) -> NotebookNode:
+    return nbformat_nodes.output(output_type="stream", name="stdout", text=text)
 
 
 def _remark(node: NotebookNode, cell: Cell, run: CellRun, limits: Limits) -> list[NotebookNode]:
@@ -369,4 +342,4 @@ def _remark(node: NotebookNode, cell: Cell, run: CellRun, limits: Limits) -> lis
         Ended.NOT_RUN: "[this cell was not run]",
     }
     text = words.get(run.ended) if cell.source.strip() else LEFT_OUT if node.source.strip() else None
-    return [nbformat_nodes.output(output_type="stream", name="stdout", text=f"{text}\n")] if text else []
+    return [_printed(f"{text}\n")] if text else []

@@ -6,7 +6,8 @@ import contextlib
 import shutil
 import sqlite3
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Self
+from unittest.mock import Mock
 from zipfile import ZipFile
 
 import pytest
@@ -21,6 +22,7 @@ from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.class_directory import ClassDirectory, switch_sandbox_off
 from autograder.grading.course_version import judged_by
 from autograder.grading.grading_errors import GradingError
+from autograder.grading.grading_task import Task
 from autograder.grading.running import execution_backends, task_execution
 from autograder.judge import evidence_files, one_check
 from autograder.kit.evidence import Event, Evidence, Part
@@ -197,21 +199,29 @@ def test_the_verdict_of_the_evidence_is_the_present_one() -> None:
     assert (found.score, replace(found, seconds=0.0).passed) == (10.0, True)
 
 
+class Flooded:
+    """A judge whose evidence is long."""
+
+    def __init__(self, *_: object, **__: object) -> None: ...
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None: ...
+
+    def open(self, exercise_id: str) -> None: ...
+
+    def close(self) -> Report:
+        return Report(evidence=bytes(40))
+
+
 def test_the_evidence_of_a_notebook_has_an_end_however_many_checks_are_flooded(
-    monkeypatch: pytest.MonkeyPatch,
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    class Flooded(contextlib.nullcontext[None]):
-        def open(self, exercise_id: str) -> None:
-            pass
-
-        def close(self) -> Report:
-            return Report(evidence=bytes(40))
-
-        def __enter__(self) -> Any:
-            return self
-
     monkeypatch.setattr(task_execution, "MOST_EVIDENCE", 100)
-    with task_execution._Judges(lambda _: Flooded(), (), "") as judges:
+    task = Task("ada", "lab", "lab", (), "0", "1")
+    paths = task_execution._Paths(tmp_path, boxed=True, runners=frozenset())
+    with task_execution._Judges(task, f"{__name__}:Flooded", paths, Mock()) as judges:
         for number in range(5):
             judges.open(f"lab.exercise_{number}")
             judges.close()

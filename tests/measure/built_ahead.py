@@ -17,7 +17,6 @@ from autograder.boxes.fork_server import ForkServers
 from autograder.grading.grading_task import Task
 from autograder.grading.new_classes.sample_class import _without_markers
 from autograder.grading.running import task_execution
-from autograder.grading.running.order_executor import judge_kind
 from autograder.grading.running.worker_messages import JUDGE
 from autograder.grading.tasks.task_making import cells_of
 from autograder.judge import controlled_judge
@@ -99,9 +98,7 @@ def _built(task: Task, addresses: Addresses) -> list[PackageFiles]:
         mock.patch.object(GradedBuilds, "_entry", remembering),
         mock.patch.object(task_execution, "build_ahead"),
     ):
-        execution = task_execution.execute(
-            task, Path(scratch), judge_kind(JUDGE, boxed=task.boxed), addresses
-        )
+        execution = task_execution.execute(task, JUDGE, Path(scratch), addresses)
     if execution.trouble:
         raise RuntimeError(f"{task.notebook}: {execution.trouble}")
     return [_files(tree) for tree in trees.values()]

@@ -91,30 +91,34 @@ class _Carrier:
         self._client, self._grader = client, grader
         self._batch = uuid.uuid4().hex[:12]
         self._workers: set[str] = set()
-        self._futures: dict[int, Any] = {}
-        self._given: dict[int, str] = {}
+        self._given: dict[int, tuple[str, Any]] = {}
+        """The worker and the future of each order without an answer."""
         self._running: set[asyncio.Task[None]] = set()
         self._changed = asyncio.Event()
 
     async def serve(self) -> None:
         """Carry out commands and report workers until the connection to the grader or to the scheduler ends."""
-        serving = [asyncio.create_task(part) for part in (self._take_commands(), self._watch_workers())]
+        commands = asyncio.to_thread(self._take_commands, asyncio.get_running_loop())
+        serving = [asyncio.ensure_future(commands), asyncio.create_task(self._watch_workers())]
         await asyncio.wait(serving, return_when=asyncio.FIRST_COMPLETED)
         for part in serving:
             part.cancel()
 
-    async def _take_commands(self) -> None:
-        """Carry out the grader's commands until the connection ends."""
-        while True:
-            try:
-                line = await asyncio.to_thread(self._grader.hear_json)
-            except Hangup:
-                return
-            command = msgspec.json.decode(line, type=Command)
-            if isinstance(command, Give):
-                self._start(self._give(command))
-            else:
-                self._drop(command.number)
+    def _take_commands(self, loop: asyncio.AbstractEventLoop) -> None:
+        """Let the loop carry out the grader's commands until the connection ends.
+
+        This runs in a thread of its own, because the grader waits until a command is read before it reads messages.
+        """
+        with contextlib.suppress(Hangup):
+            while True:
+                command = msgspec.json.decode(self._grader.hear_json(), type=Command)
+                loop.call_soon_threadsafe(self._obey, command)
+
+    def _obey(self, command: Command) -> None:
+        if isinstance(command, Give):
+            self._start(self._give(command))
+        else:
+            self._drop(command.number)
 
     async def _watch_workers(self) -> None:
         """Report to the grader which workers join and leave. For this, read the scheduler's list after each event."""
@@ -135,8 +139,8 @@ class _Carrier:
         """Report the workers that have left, and return the address, name and number of threads of each new worker."""
         workers = (await self._client.scheduler.identity())["workers"]
         for address in self._workers - workers.keys():
-            for number, worker_address in list(self._given.items()):
-                if worker_address == address:
+            for number, (worker, _) in list(self._given.items()):
+                if worker == address:
                     self._drop(number)
             _tell(self._grader, Left(address))
         new = [
@@ -182,12 +186,12 @@ class _Carrier:
             pure=False,
             retries=0,
         )
-        self._futures[give.number], self._given[give.number] = future, give.worker
+        self._given[give.number] = order = give.worker, future
         try:
             news: News = await self._answer(give.number, key, future)
         except Exception as error:
             news = Failed(give.number, _first_line(error))
-        if self._futures.get(give.number) is future:
+        if self._given.get(give.number) is order:
             _tell(self._grader, news)
             self._drop(give.number)
 
@@ -209,9 +213,8 @@ class _Carrier:
         return Answered(number, data)
 
     def _drop(self, number: int) -> None:
-        self._given.pop(number, None)
-        future = self._futures.pop(number, None)
-        if future is not None:
+        if number in self._given:
+            _, future = self._given.pop(number)
             future.release()
 
     def _start(self, doing: Any) -> None:

@@ -116,9 +116,26 @@ def offer(slots: int) -> Offer:
     return Offer(course_version(), slots, why_impossible())
 
 
+class _Orders(WorkerPlugin):
+    """Executes the orders of a Dask worker, and ends the processes of canceled orders, which Dask would let run on."""
+
+    def __init__(self) -> None:
+        self._scratch = HeldFolder("autograder-worker-")
+        self.executor = Executor(self._scratch.path)
+
+    def transition(self, key: Any, start: str, finish: str, **_: Any) -> None:
+        """End an order if it was canceled. Dask calls this when a task of the worker changes its state."""
+        if start == "executing" and finish == "released":
+            self.executor.cancel(key)
+
+    def teardown(self, worker: Worker) -> None:  # noqa: ARG002  (Dask's signature)
+        """End the processes of all orders. Dask calls this when the worker ends."""
+        self.executor.stop()
+        self._scratch.remove()
+
+
 _changing = threading.Lock()
-_scratch: HeldFolder | None = None
-_executor: Executor | None = None
+_orders: _Orders | None = None
 
 
 def execute(data: bytes) -> bytes:
@@ -127,28 +144,11 @@ def execute(data: bytes) -> bytes:
     Args:
         data: An :class:`autograder.grading.running.worker_messages.Order` as JSON.
     """
-    global _scratch, _executor
+    global _orders
     worker = get_worker()
     with _changing:
-        if _executor is None:
-            _scratch = HeldFolder("autograder-worker-")
-            _executor = Executor(_scratch.path)
-            worker.loop.add_callback(worker.plugin_add, plugin=_Watch(), name="autograder")
-        executor = _executor
+        if _orders is None:
+            _orders = _Orders()
+            worker.loop.add_callback(worker.plugin_add, plugin=_orders, name="autograder")
+        executor = _orders.executor
     return executor.execute(str(worker.get_current_task()), data)
-
-
-class _Watch(WorkerPlugin):
-    """Ends the processes of canceled orders, which Dask itself would let run on."""
-
-    def transition(self, key: Any, start: str, finish: str, **_: Any) -> None:
-        """End an order if it was canceled. Dask calls this when a task of the worker changes its state."""
-        if start == "executing" and finish == "released" and _executor is not None:
-            _executor.cancel(key)
-
-    def teardown(self, worker: Worker) -> None:  # noqa: ARG002  (Dask's signature)
-        """End the processes of all orders. Dask calls this when the worker ends."""
-        if _executor is not None:
-            _executor.stop()
-        if _scratch is not None:
-            _scratch.remove()

@@ -101,7 +101,9 @@ _SILENCE = 30.0
 
 
 class BatchProgress:
-    """Counts and shows the notebooks that are done, running, waiting or failed. Any thread may call it.
+    """Counts and shows the notebooks that are done, running, waiting or failed.
+
+    One thread reports what begins and ends. Other threads only show it.
 
     Args:
         total: The number of notebooks to execute.
@@ -131,7 +133,6 @@ class BatchProgress:
         self._clock = clock
         self._began = self._last = clock()
         self._closed = threading.Event()
-        self._lock = threading.Lock()
         # Jupyter gets plain lines like a log file: it would show the control characters that move a terminal's cursor.
         self._lively = console.is_terminal and not console.is_jupyter
         self._bar = Progress(
@@ -164,8 +165,7 @@ class BatchProgress:
         Args:
             label: The name of the notebook.
         """
-        with self._lock:
-            self._running[label] = self._clock()
+        self._running[label] = self._clock()
 
     def finished(self, label: str, failed: bool, note: str = "") -> None:
         """Record that a notebook is done.
@@ -175,41 +175,33 @@ class BatchProgress:
             failed: True if the grader itself failed on the notebook.
             note: A text to show after the notebook's name.
         """
-        with self._lock:
-            self._running.pop(label, None)
-            self._done += 1
-            self._failed += failed
-            self._last = self._clock()
-            self._bar.update(self._task, completed=self._done)
-            step = max(1, self._total // _LINES)
-            line = failed or self._done % step == 0 or self._done == self._total
-            text = f"{self._did} {self._done} of {self._total}: {label}{note}{self._rest()}"
-        if line and not self._lively:
-            plain_line(self._console, text)
+        self._running.pop(label, None)
+        self._done += 1
+        self._failed += failed
+        self._last = self._clock()
+        self._bar.update(self._task, completed=self._done)
+        step = max(1, self._total // _LINES)
+        if not self._lively and (failed or self._done % step == 0 or self._done == self._total):
+            rest = f" ({', '.join(self._now())})" if self._done < self._total else ""
+            plain_line(self._console, f"{self._did} {self._done} of {self._total}: {label}{note}{rest}")
 
     def tell(self) -> None:
         """Print a line about the slowest notebook if it runs longer than estimated."""
-        with self._lock:
-            late = self._is_late() and f"still {', '.join(self._now())}"
-        if late:
-            plain_line(self._console, late)
+        if self._is_late():
+            plain_line(self._console, f"still {', '.join(self._now())}")
 
     def _break_silence(self) -> None:
         while not self._closed.wait(_SILENCE):
             self.tell()
 
-    def _rest(self) -> str:
-        """Return the counts in parentheses, for the end of a line in the log file; empty in the last line."""
-        return f" ({', '.join(self._now())})" if self._done < self._total else ""
-
     def _now(self) -> list[str]:
-        waiting = max(0, self._total - self._done - len(self._running))
-        words = [f"{len(self._running)} running", f"{waiting} waiting"]
+        running = self._running.copy()  # another thread adds and removes notebooks
+        waiting = max(0, self._total - self._done - len(running))
+        words = [f"{len(running)} running", f"{waiting} waiting"]
         if self._failed:
             words.append(f"{self._failed} not checked")
-        if self._is_late():
-            # Copy the dictionary, because other threads add and remove notebooks.
-            label, since = min(self._running.copy().items(), key=lambda one: one[1])
+        if running and self._is_late():
+            label, since = min(running.items(), key=lambda one: one[1])
             seconds = self._clock() - since
             words.append(f"{label} for {_duration(seconds)} now")
             if self._longest is not None and seconds < self._longest:

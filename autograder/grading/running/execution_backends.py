@@ -11,9 +11,7 @@ import contextlib
 import functools
 import importlib.util
 import os
-import queue
 import re  # noqa: TID251  (the text comes from the instructor)
-import threading
 from typing import TYPE_CHECKING
 
 import psutil
@@ -21,7 +19,7 @@ import psutil
 from autograder.boxes.run_limits import BUILD_LIMITS, Limits
 from autograder.grading.grading_errors import GradingError
 from autograder.grading.running.process_link import ProcessLink
-from autograder.grading.running.task_dispatcher import Dispatcher, Done
+from autograder.grading.running.task_dispatcher import Dispatcher
 from autograder.grading.running.worker_messages import JUDGE
 from autograder.safe_files import HeldFolder, sweep
 from environment.installation import installing
@@ -32,10 +30,11 @@ if TYPE_CHECKING:
 
     from autograder.grading.classes.class_directory import ClassDirectory
     from autograder.grading.grading_task import Task
+    from autograder.grading.running.task_dispatcher import Done
 
-    Execute = Callable[[Iterable[Task], Callable[[Task], None]], Generator[Done, None, None]]
-    """Executes tasks in the given order, and yields each result as soon as it is ready. The second argument is called
-    when a task begins.
+    Execute = Callable[..., Generator[Done, None, None]]
+    """Executes tasks in the given order, and yields each result as soon as it is ready. The argument ``on_start`` is
+    called when a task begins.
     """
 
 
@@ -52,12 +51,10 @@ def on_this_machine(directory: ClassDirectory, jobs: int | None, judge: str) -> 
     """
     require_sandbox(directory)
     boxed = not directory.is_sandbox_off
-
-    def execute(tasks: Iterable[Task], on_start: Callable[[Task], None]) -> Generator[Done, None, None]:
-        return execute_all(tasks, scratch.path, jobs, on_start=on_start, judge=judge or JUDGE, boxed=boxed)
-
     with HeldFolder(directory.scratch_prefix) as scratch:
-        yield execute
+        yield functools.partial(
+            execute_all, scratch=scratch.path, workers=jobs, judge=judge or JUDGE, boxed=boxed
+        )
 
 
 @contextlib.contextmanager
@@ -66,17 +63,21 @@ def on_cluster(
 ) -> Iterator[Execute]:
     """Yield a function that executes tasks on the workers of a Dask cluster.
 
+    At the end of the ``with`` block, the tasks that are not finished are canceled within seconds.
+
     Args:
-        scheduler: The scheduler's address.
+        scheduler: The scheduler's address, such as ``tcp://host:8786`` or ``tls://host:8786``.
         judge: The Python class that makes a judge, as ``module:class``; empty for the real judge.
         tell: Called with a sentence for the instructor.
 
     Raises:
-        GradingError: The cluster cannot be used. The message says why.
+        GradingError: No scheduler answers at this address, or no worker can execute tasks.
     """
     boxed = not directory.is_sandbox_off
-    with connected(scheduler, judge=judge or JUDGE, boxed=boxed, tell=tell) as pool:
-        yield functools.partial(dispatch, pool)
+    with ProcessLink("autograder.grading.cluster.dask_client", scheduler, scratch=None) as link:
+        dispatcher = Dispatcher(link, scheduler, judge=judge or JUDGE, boxed=boxed, tell=tell)
+        dispatcher.await_workers()
+        yield dispatcher.execute_all
 
 
 def remove_leftovers(directory: ClassDirectory) -> None:
@@ -112,7 +113,7 @@ def execute_all(
         scratch: The folder in which submissions run. The caller removes it.
         workers: The number of notebooks to execute at the same time; None for the number that :func:`at_once`
             returns.
-        on_start: Called in another thread when a task begins.
+        on_start: Called when a task begins.
         judge: The Python class of the judge, as ``module:class``.
         boxed: True if the tasks are executed in boxes.
     """
@@ -121,7 +122,7 @@ def execute_all(
     # In a process of its own, so that the process with the gradebook loads nothing that executes submissions.
     with ProcessLink("autograder.grading.running.order_executor", *words, scratch=scratch) as machine:
         dispatcher = Dispatcher(machine, "", judge=judge, boxed=boxed, tell=lambda _: None)
-        yield from dispatch(dispatcher, tasks, on_start)
+        yield from dispatcher.execute_all(tasks, on_start)
 
 
 def at_once(processors: int, free_bytes: int) -> int:
@@ -137,64 +138,6 @@ def at_once(processors: int, free_bytes: int) -> int:
 def cores() -> int:
     """Return the number of processors that this process may use."""
     return len(os.sched_getaffinity(0))
-
-
-@contextlib.contextmanager
-def connected(
-    address: str, *, judge: str, boxed: bool, tell: Callable[[str], None] = lambda _: None
-) -> Iterator[Dispatcher]:
-    """Connect to a Dask cluster, and yield a dispatcher that gives tasks to its workers.
-
-    At the end of the ``with`` block, the tasks that are not finished are canceled within seconds.
-
-    Args:
-        address: The scheduler's address, such as ``tcp://host:8786`` or ``tls://host:8786``.
-        judge: The Python class that makes a judge, as ``module:class``.
-        boxed: True to execute tasks in boxes. Workers that cannot make boxes are then rejected.
-        tell: Called with a sentence for the instructor.
-
-    Raises:
-        GradingError: Dask is not installed, no scheduler answers at this address, or no worker can execute tasks.
-    """
-    with ProcessLink("autograder.grading.cluster.dask_client", address, scratch=None) as link:
-        pool = Dispatcher(link, address, judge=judge, boxed=boxed, tell=tell)
-        pool.await_workers()
-        yield pool
-
-
-def dispatch(
-    dispatcher: Dispatcher, tasks: Iterable[Task], on_start: Callable[[Task], None]
-) -> Generator[Done, None, None]:
-    """Let a dispatcher execute tasks in another thread, so that free slots get tasks while the caller stores a result.
-
-    If the caller leaves the loop early, the tasks that still run are ended.
-
-    Args:
-        dispatcher: The dispatcher. It cannot be used afterwards.
-        tasks: The tasks in the order in which they begin. The next task is taken, in the other thread, when a slot is
-            free.
-        on_start: Called in the other thread when a task begins.
-    """
-    results: queue.SimpleQueue[Done | BaseException | None] = queue.SimpleQueue()
-
-    def execute() -> None:
-        try:
-            for done in dispatcher.execute_all(tasks, on_start):
-                results.put(done)
-            results.put(None)
-        except BaseException as error:  # pass the error on, because the caller waits for results
-            results.put(error)
-
-    thread = threading.Thread(target=execute, daemon=True)
-    thread.start()
-    try:
-        while (result := results.get()) is not None:
-            if isinstance(result, BaseException):
-                raise result
-            yield result
-    finally:
-        dispatcher.stop()
-        thread.join()
 
 
 def check_dask() -> None:

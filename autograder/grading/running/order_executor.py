@@ -8,7 +8,7 @@ module is the executor process, which exchanges lines of JSON with the dispatche
 from __future__ import annotations
 
 import contextlib
-import importlib
+import functools
 import sys
 import threading
 import warnings
@@ -20,7 +20,7 @@ import msgspec
 from autograder import course
 from autograder.boxes.fork_server import ForkServers
 from autograder.grading.grading_task import Task
-from autograder.grading.running.task_execution import JudgeKind, execute, runners_of
+from autograder.grading.running.task_execution import execute, ros_variables, runners_of
 from autograder.grading.running.worker_messages import (
     ADDRESS,
     LARGEST_ANSWER,
@@ -34,16 +34,11 @@ from autograder.grading.running.worker_messages import (
     Order,
 )
 from autograder.judge import controlled_judge
-from autograder.judge.machine_fitness import Patience
-from autograder.judge.ros_setup import boxed_ros_environment, lease_domain, ros_environment
 from autograder.messages.json_lines import Hangup, Lines
 from autograder.process_trees import adopt_orphans, end_descendants
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from autograder.boxes.fork_server import Addresses
-    from autograder.boxes.run_limits import Left
     from autograder.execution.notebook_processes import BoxedProcesses, UnboxedProcesses
 
 
@@ -51,35 +46,6 @@ LAST_SECONDS = 10.0
 """Time limit in seconds for the clean-up of the executor process. It matters only if the grader has ended, because a
 grader that still runs kills the process earlier.
 """
-
-
-def judge_kind(name: str, *, boxed: bool) -> JudgeKind:
-    """Return the judge for tasks that run in boxes, or without.
-
-    Args:
-        name: The Python class of the judge, as ``module:class``.
-        boxed: True if judge and subject run in boxes.
-    """
-    module, _, attribute = name.partition(":")
-    return JudgeKind(
-        make=getattr(importlib.import_module(module), attribute),
-        variables=controlled_judge.environment(boxed=boxed),
-        readable=controlled_judge.readable(),
-        ros_variables=_ros_variables(boxed=boxed),
-        # A box has a network of its own, without other nodes, so any domain is free there.
-        lease_domain=(lambda: contextlib.nullcontext(0)) if boxed else lease_domain,
-        patient=_patiently,
-    )
-
-
-def _ros_variables(*, boxed: bool) -> Mapping[str, str]:
-    return boxed_ros_environment() if boxed else ros_environment()
-
-
-def _patiently(seconds: float) -> Left:
-    """Return a function that returns the seconds left of a limit, which gets longer on an overloaded machine."""
-    patience = Patience(seconds)
-    return lambda: patience.left
 
 
 class Executor:
@@ -92,7 +58,9 @@ class Executor:
     def __init__(self, scratch: Path) -> None:
         self._scratch = scratch
         self._changing = threading.Condition()
-        self._running: dict[str, _Running] = {}
+        self._running: dict[str, BoxedProcesses | UnboxedProcesses | None] = {}
+        """The processes of each order, which an order does not have at first."""
+        self._ended: set[str] = set()
         self._fork_servers: dict[bool, ForkServers] = {}
         self._stopped = False
 
@@ -105,16 +73,13 @@ class Executor:
         """
         order = msgspec.json.decode(data, type=Order)
         task = msgspec.json.decode(bytes(order.task), type=Task)
-        running = _Running()
         with self._changing:
-            self._running[key] = running
-            # `stop` ended the orders that it knew; this one came while it did so.
-            if self._stopped:
-                running.end()
+            self._running[key] = None
         try:
-            judge = judge_kind(order.judge, boxed=task.boxed)
             addresses = self.fork_servers(boxed=task.boxed, programs=bool(runners_of(task)))
-            execution = execute(task, self._scratch, judge, addresses, running.began)
+            execution = execute(
+                task, order.judge, self._scratch, addresses, functools.partial(self._began, key)
+            )
             answer = msgspec.json.encode(execution)
         # Whatever failed concerns this order alone: the dispatcher decides whether it runs again.
         except Exception as error:
@@ -122,6 +87,7 @@ class Executor:
         finally:
             with self._changing:
                 self._running.pop(key, None)
+                self._ended.discard(key)
                 self._changing.notify_all()
         if len(answer) > LARGEST_ANSWER:
             return msgspec.json.encode(task.in_trouble(f"its result has {len(answer)} bytes"))
@@ -130,19 +96,32 @@ class Executor:
     def cancel(self, key: str) -> None:
         """End the processes of an order whose answer is no longer needed."""
         with self._changing:
-            running = self._running.get(key)
-        if running is not None:
-            running.end()
+            if key in self._running:
+                self._end(key)
 
     def stop(self) -> None:
         """End the processes of all orders, and the fork servers. An order that comes later fails at once."""
         with self._changing:
             self._stopped = True
-            for running in self._running.values():
-                running.end()
+            for key in self._running:
+                self._end(key)
             self._changing.wait_for(lambda: not self._running, LAST_SECONDS)
             for servers in self._fork_servers.values():
                 servers.stop()
+
+    def _began(self, key: str, processes: BoxedProcesses | UnboxedProcesses) -> None:
+        """Remember the boxes of an order, so that the order can be ended."""
+        with self._changing:
+            self._running[key] = processes
+            # The order may have been canceled before it had boxes, or may have come after `stop`.
+            if self._stopped or key in self._ended:
+                processes.abandon()
+
+    def _end(self, key: str) -> None:
+        """End every process in the boxes of an order, so that the execution of the order fails."""
+        self._ended.add(key)
+        if (processes := self._running[key]) is not None:
+            processes.abandon()
 
     def fork_servers(self, *, boxed: bool, programs: bool = False) -> Addresses:
         """Start the fork servers if they do not run, and return their addresses. Do not wait for their imports.
@@ -159,34 +138,11 @@ class Executor:
                 servers = self._fork_servers[boxed] = ForkServers(
                     controlled_judge.__name__,
                     boxed=boxed,
-                    environment=_ros_variables(boxed=boxed),
+                    environment=ros_variables(boxed=boxed),
                     of_judges=course.variables(),
                     interfaces=course.interface_modules(),
                 )
             return servers.with_programs() if programs else servers.addresses
-
-
-class _Running:
-    """An order that is being executed. Any thread may end it."""
-
-    def __init__(self) -> None:
-        self._changing = threading.Lock()
-        self._processes: BoxedProcesses | UnboxedProcesses | None = None
-        self._ended = False
-
-    def began(self, processes: BoxedProcesses | UnboxedProcesses) -> None:
-        """Remember the boxes of the order, so that :meth:`end` can end them."""
-        with self._changing:
-            self._processes = processes
-            if self._ended:
-                processes.abandon()
-
-    def end(self) -> None:
-        """End every process in the boxes, so that the execution of the order fails."""
-        with self._changing:
-            self._ended = True
-            if self._processes is not None:
-                self._processes.abandon()
 
 
 def main(arguments: list[str]) -> None:

@@ -8,17 +8,15 @@ from __future__ import annotations
 
 import contextlib
 import os
-import queue
 import socket
 import sys
-import threading
 from typing import TYPE_CHECKING, Self
 
 import msgspec
 
 from autograder import course
 from autograder.grading.running.worker_messages import ADDRESS, Broken, Command, Left, News
-from autograder.messages.json_lines import Hangup, Lines
+from autograder.messages.json_lines import Hangup, Lines, Silent
 from autograder.process_trees import end_processes_in, end_soon
 from autograder.safe_files import unnamed_file
 from environment.python_child import python_child
@@ -30,7 +28,6 @@ _GOODBYE_SECONDS = 2.0
 """Seconds after which a process that was asked to end is killed, so that Ctrl-C takes less than three seconds."""
 _STARTS = 3
 """The maximum number of starts in a row of an executor process that ends without having sent a message."""
-_STOPPED = Broken("the run was stopped")
 
 
 class ProcessLink:
@@ -45,46 +42,54 @@ class ProcessLink:
 
     def __init__(self, *words: str, scratch: Path | None) -> None:
         self._words, self._scratch = words, scratch
-        self._news: queue.SimpleQueue[News] = queue.SimpleQueue()
-        self._changing = threading.Lock()
-        self._stopped = False
+        self._silent_starts = 0
 
     def __enter__(self) -> Self:
         # The process prints into a file: a pipe that is not read would fill up and block the process.
         self._log = unnamed_file()
         self._start()
-        threading.Thread(target=self._listen, daemon=True).start()
         return self
 
     def __exit__(self, *_: object) -> None:
-        self.stop()
         self._end()
         self._log.close()
 
     def say(self, command: Command) -> None:
-        """Send a command. This raises no error if the process has ended: :meth:`hear` then reports its end."""
+        """Send a command. This raises no error if the process has ended: :meth:`hear` then reports its end.
+
+        The process reads commands at any time, even while its own messages wait to be read.
+        """
         with contextlib.suppress(Hangup):
             self._lines.say_json(msgspec.json.encode(command))
 
     def hear(self, within: float | None) -> News | None:
         """Return the next message; None if no message came in time.
 
+        If the process has ended and may be started again, this starts it and returns ``Left``.
+
         Args:
             within: The number of seconds to wait; None to wait without limit.
         """
         try:
-            news = self._news.get(timeout=None if within is None else max(0.0, within))
-        except queue.Empty:
+            line = self._lines.hear_json(None if within is None else max(0.0, within))
+            news: News = msgspec.json.decode(line, type=News)
+        except Silent:
             return None
-        return _STOPPED if self._stopped else news
-
-    def stop(self) -> None:
-        """End the dispatcher's work: :meth:`hear` returns ``Broken`` from now on. Any thread may call this."""
-        with self._changing:
-            self._stopped = True
-        self._news.put(_STOPPED)
+        except Hangup:
+            reason = f"its process ended{self._last_words()}"
+        except (msgspec.MsgspecError, ValueError, MemoryError) as error:
+            reason = f"the process sent an invalid message: {error}"
+        else:
+            self._silent_starts = 0
+            return news
+        if self._silent_starts >= _STARTS or self._scratch is None:
+            return Broken(reason)
+        self._end()
+        self._start()
+        return Left(ADDRESS, reason)
 
     def _start(self) -> None:
+        self._silent_starts += 1
         own, its_own = socket.socketpair()
         with its_own:
             child = python_child(
@@ -108,27 +113,6 @@ class ProcessLink:
         self._lines.close()
         if self._scratch is not None and self._process.returncode != 0:
             end_processes_in(self._scratch)  # the process may have left processes of submissions
-
-    def _listen(self) -> None:
-        """Read the process's messages all the time: a process that cannot write does not read commands either."""
-        said_nothing = 0
-        while True:
-            said_nothing += 1
-            try:
-                while True:
-                    self._news.put(msgspec.json.decode(self._lines.hear_json(), type=News))
-                    said_nothing = 0
-            except Hangup:
-                reason = f"its process ended{self._last_words()}"
-            except (msgspec.MsgspecError, ValueError, MemoryError) as error:
-                reason = f"the process sent an invalid message: {error}"
-            with self._changing:
-                if self._stopped or said_nothing >= _STARTS or self._scratch is None:
-                    self._news.put(Broken(reason))
-                    return
-                self._end()
-                self._news.put(Left(ADDRESS, reason))
-                self._start()
 
     def _last_words(self) -> str:
         with contextlib.suppress(ValueError, OSError):

@@ -12,8 +12,9 @@ import bisect
 import itertools
 import operator
 import time
-from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Protocol
+from collections import deque
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import msgspec
 
@@ -21,6 +22,7 @@ from autograder.cards.readable_text import paragraph
 from autograder.command_name import COMMAND
 from autograder.grading.course_version import course_version
 from autograder.grading.grading_errors import GradingError
+from autograder.grading.running.dispatched_tasks import Flight, Job, Worker
 from autograder.grading.running.worker_messages import (
     ADDRESS,
     LONGEST_WORDS,
@@ -45,7 +47,7 @@ if TYPE_CHECKING:
 
     from autograder.execution.executed_cells import Execution
     from autograder.grading.grading_task import Task
-    from autograder.grading.running.worker_messages import Command
+    from autograder.grading.running.process_link import ProcessLink
 
 
 ATTEMPTS = 3
@@ -60,47 +62,6 @@ _MOST_IN_FLIGHT = 2_000
 _MOST_TROUBLES = 3
 
 
-@dataclass
-class _Worker:
-    """A worker whose offer was accepted."""
-
-    name: str
-    slots: int
-    troubles: int = 0
-    """The number of consecutive notebooks that this worker could not execute because the grader itself failed."""
-    flights: set[int] = field(default_factory=set)
-
-
-@dataclass(eq=False)
-class _Job:
-    """A task to execute, with the number of attempts and the workers that have tried it."""
-
-    task: Task
-    attempts: int = 0
-    tried: set[str] = field(default_factory=set)
-    alone: bool = False
-    """True if the previous result was not reliable, so that no other task may run on the worker at the same time."""
-    cpu_seconds: float = 0.0
-    """The processor time of the execution whose result was not reliable, in seconds; 0 if there was none."""
-
-    @property
-    def is_new(self) -> bool:
-        """True if the task was never given to a worker."""
-        return not (self.tried or self.alone)
-
-    @property
-    def turn(self) -> tuple[int, float]:
-        """The place in the queue: tasks to repeat, then new tasks, then tasks to repeat alone, the shortest first."""
-        return (2, self.cpu_seconds) if self.alone else (int(self.is_new), 0.0)
-
-
-@dataclass(frozen=True)
-class _Flight:
-    job: _Job
-    worker: str
-    deadline: float
-
-
 @dataclass(frozen=True)
 class Done:
     """A task with its execution; ``execution.trouble`` says why the task could not be executed, if it could not."""
@@ -109,48 +70,35 @@ class Done:
     execution: Execution
 
 
-class Link(Protocol):
-    """The connection between the dispatcher and the workers."""
-
-    def say(self, command: Command) -> None:
-        """Send a command. This raises no error if the connection is broken: :meth:`hear` then returns ``Broken``."""
-
-    def hear(self, within: float | None) -> News | None:
-        """Wait at most ``within`` seconds (None: without limit) for the next message. Return None if none came."""
-
-    def stop(self) -> None:
-        """Make :meth:`hear` return ``Broken`` from now on. Any thread may call this."""
-
-
 class Dispatcher:
     """Gives the tasks of one batch to workers.
 
     Args:
+        link: The connection to the workers.
         address: The address of the cluster's scheduler, for messages; empty for this machine.
         judge: The Python class of the judge, as ``module:class``.
         boxed: True if tasks run in sandboxes. Workers that cannot make sandboxes are then rejected.
         tell: Called with sentences for the instructor, for example that a worker was rejected and why.
-        return_seconds: Seconds to wait for a worker if none is left.
     """
 
     def __init__(
         self,
-        link: Link,
+        link: ProcessLink,
         address: str,
         *,
         judge: str,
         boxed: bool,
         tell: Callable[[str], None],
-        return_seconds: float = _RETURN_SECONDS,
     ) -> None:
         self._link, self._address = link, address
         self._judge, self._boxed, self._tell = judge, boxed, tell
-        self._return_seconds = return_seconds
-        self._workers: dict[str, _Worker] = {}
+        self._workers: dict[str, Worker] = {}
         self._refused: dict[str, str] = {}
-        self._waiting: list[_Job] = []
-        self._flights: dict[int, _Flight] = {}
-        self._done: list[Done] = []
+        self._waiting: list[Job] = []
+        self._flights: dict[int, Flight] = {}
+        self._done: deque[Done] = deque()
+        self._last_left = time.monotonic()
+        """The time when a worker was last lost; before that, the time when the work began."""
         self._number = 0
 
     def await_workers(self) -> None:
@@ -171,6 +119,8 @@ class Dispatcher:
     ) -> Generator[Done, None, None]:
         """Execute tasks on the workers, and yield results as they are ready.
 
+        Before each result, every free slot gets a task. So the workers are busy while the caller stores the result.
+
         Args:
             tasks: The tasks in the order in which they begin. The next task is taken when a worker has a free slot.
             on_start: Called when a task is given to a worker for the first time.
@@ -179,32 +129,43 @@ class Dispatcher:
             GradingError: The scheduler can no longer be reached, or all workers have ended or were rejected and no
                 new worker came in time.
         """
-        jobs = (_Job(task) for task in tasks)
-        return_until: float | None = None
+        jobs = (Job(task) for task in tasks)
         while True:
             self._give_out(jobs, on_start)
-            if not (self._flights or self._waiting):
+            if not (self._done or self._flights or self._waiting):
                 return
-            # Without workers the run goes on for a while, because a worker that was started again needs some seconds.
-            if self._workers:
-                return_until = None
-            elif return_until is None:
-                return_until = time.monotonic() + self._return_seconds
-            deadlines = [flight.deadline for flight in self._flights.values()]
-            deadlines += [] if return_until is None else [return_until]
-            self._take_in(self._link.hear(min(deadlines) - time.monotonic() if deadlines else None))
-            now = time.monotonic()
-            if return_until is not None and now >= return_until and not self._workers:
-                raise GradingError(f"{self._why_no_worker()} What was graded so far is kept.")
-            self._give_up_on_silent(now)
-            while self._done:
-                yield self._done.pop()
+            within = 0.0 if self._done else self._patience()
+            if self._done:
+                yield self._done.popleft()
+            try:
+                self._take_in_all(within)
+            except GradingError:
+                yield from self._done  # these results came before the workers were lost
+                raise
 
-    def stop(self) -> None:
-        """End :meth:`execute_all`, which another thread runs. The dispatcher cannot be used afterwards."""
-        self._link.stop()
+    def _patience(self) -> float | None:
+        """Return the number of seconds in which a message has to come; None without limit."""
+        deadlines = [flight.deadline for flight in self._flights.values()]
+        if not self._workers:  # a worker that is started again needs some seconds
+            deadlines.append(self._last_left + _RETURN_SECONDS)
+        return min(deadlines) - time.monotonic() if deadlines else None
 
-    def _give_out(self, jobs: Iterator[_Job], on_start: Callable[[Task], None]) -> None:
+    def _take_in_all(self, within: float | None) -> None:
+        """Take in every message that has come. Wait for the first for ``within`` seconds; None without limit.
+
+        Raises:
+            GradingError: The workers are lost.
+        """
+        news = self._link.hear(within)
+        while news is not None:
+            self._take_in(news)
+            news = self._link.hear(0.0)
+        now = time.monotonic()
+        if not self._workers and now >= self._last_left + _RETURN_SECONDS:
+            raise GradingError(f"{self._why_no_worker()} What was graded so far is kept.")
+        self._give_up_on_silent(now)
+
+    def _give_out(self, jobs: Iterator[Job], on_start: Callable[[Task], None]) -> None:
         """Give a task to every free slot. No tasks are queued at a worker: they would be lost if the worker ended."""
         for address, worker in self._workers.items():
             while len(worker.flights) < worker.slots and len(self._flights) < _MOST_IN_FLIGHT:
@@ -216,7 +177,7 @@ class Dispatcher:
                 self._send(job, address, worker)
         self._look_ahead(jobs)
 
-    def _next_for(self, address: str, worker: _Worker, jobs: Iterator[_Job]) -> _Job | None:
+    def _next_for(self, address: str, worker: Worker, jobs: Iterator[Job]) -> Job | None:
         """Return the next task for a worker; None if there is no task for it now.
 
         If a worker ended while it ran a task, the task may be the cause. So a worker runs at most one such task at a
@@ -230,28 +191,28 @@ class Dispatcher:
             self._waiting.remove(job)
         return job
 
-    def _may_run(self, job: _Job, address: str, held: list[_Job]) -> bool:
+    def _may_run(self, job: Job, address: str, held: list[Job]) -> bool:
         """Return True if a worker that runs the tasks ``held`` may run this task at the same time."""
         if any(other.alone or job.alone or (job.tried and other.attempts > 1) for other in held):
             return False
         return address not in job.tried or job.tried >= self._workers.keys()
 
-    def _look_ahead(self, jobs: Iterator[_Job]) -> None:
+    def _look_ahead(self, jobs: Iterator[Job]) -> None:
         """Put the next new task into the queue if it contains no new task, to know whether any are left."""
         if not any(job.is_new for job in self._waiting):
             for job in itertools.islice(jobs, 1):
                 self._wait(job)
 
-    def _wait(self, job: _Job) -> None:
+    def _wait(self, job: Job) -> None:
         bisect.insort(self._waiting, job, key=operator.attrgetter("turn"))
 
-    def _send(self, job: _Job, address: str, worker: _Worker) -> None:
+    def _send(self, job: Job, address: str, worker: Worker) -> None:
         job.attempts += 1
         job.tried.add(address)
         self._number += 1
         # Wait for twice the limit, because the time limits of cells get longer while the machine is overloaded.
         deadline = time.monotonic() + 2 * job.task.limits.longest + _EXTRA_SECONDS
-        self._flights[self._number] = _Flight(job, address, deadline)
+        self._flights[self._number] = Flight(job, address, deadline)
         worker.flights.add(self._number)
         # The student's name is removed, because a worker does not need it.
         task = replace(job.task.beside_others(worker.slots > 1 and not job.alone), student="")
@@ -271,6 +232,12 @@ class Dispatcher:
                     )
                 self._refuse(address, name, why)
             case Left(address, reason):
+                worker = self._workers.get(address)
+                if worker is not None and worker.flights:
+                    called = _called(address, worker.name)
+                    self._tell(
+                        f"The worker {called} has ended: the notebooks that it was executing run again."
+                    )
                 self._forget(address, reason or "the worker ended while it ran this submission")
             case Answered(number, data) if number in self._flights:
                 self._answered(number, data)
@@ -308,10 +275,10 @@ class Dispatcher:
         elif self._boxed and offer.obstacle:
             self._refuse(address, name, f"the worker has no sandbox: {offer.obstacle[:500]}")
         else:
-            self._workers[address] = _Worker(name, offer.slots)
+            self._workers[address] = Worker(name, offer.slots)
 
     def _refuse(self, address: str, name: str, reason: str) -> None:
-        called = paragraph(address if name == address else f"{name[:100]} ({address})", LONGEST_WORDS)
+        called = _called(address, name)
         reason = paragraph(reason, LONGEST_WORDS)
         self._refused[address] = f"{called}: {reason}"
         self._tell(f"The worker {called} gets no work: {reason}.")
@@ -319,6 +286,7 @@ class Dispatcher:
     def _forget(self, address: str, reason: str) -> None:
         self._refused.pop(address, None)
         worker = self._workers.pop(address, None)
+        self._last_left = time.monotonic()
         for number in sorted(worker.flights) if worker else ():
             self._lost(number, reason)
 
@@ -343,7 +311,7 @@ class Dispatcher:
                 f"the worker failed on {worker.troubles} notebooks in a row: {execution.trouble}",
             )
 
-    def _take_result(self, flight: _Flight, execution: Execution) -> None:
+    def _take_result(self, flight: Flight, execution: Execution) -> None:
         """Let the task run again, alone, if its result is not reliable or another worker may succeed; else keep it."""
         job = flight.job
         another_may_do = job.attempts < ATTEMPTS and not job.tried >= self._workers.keys()
@@ -388,7 +356,7 @@ class Dispatcher:
         else:
             self._done.append(Done(job.task, job.task.in_trouble(reason)))
 
-    def _land(self, number: int) -> _Flight:
+    def _land(self, number: int) -> Flight:
         flight = self._flights.pop(number)
         if flight.worker in self._workers:
             self._workers[flight.worker].flights.discard(number)
@@ -406,3 +374,8 @@ class Dispatcher:
             )
         reasons = "\n".join(f"  {reason}" for reason in self._refused.values())
         return f"No worker of the Dask scheduler at {self._address} can be given work:\n{reasons}"
+
+
+def _called(address: str, name: str) -> str:
+    """Return the name and the address of a worker for a message."""
+    return paragraph(address if name == address else f"{name[:100]} ({address})", LONGEST_WORDS)

@@ -7,10 +7,11 @@ from __future__ import annotations
 
 import contextlib
 import functools
+import importlib
 import os
 import shlex
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Self
 
 from autograder import exercises
 from autograder.boxes.box_connection import NoSandbox
@@ -23,6 +24,9 @@ from autograder.execution.notebook_processes import (
     UnboxedProcesses,
 )
 from autograder.execution.notebook_runner import Unfinished, run_notebook
+from autograder.judge import controlled_judge
+from autograder.judge.machine_fitness import Patience
+from autograder.judge.ros_setup import boxed_ros_environment, lease_domain, ros_environment
 from autograder.safe_files import scratch_folder
 from autograder.workspaces.boxed_jobs import BoxedJobs
 from autograder.workspaces.builds import build_cache, students_builds
@@ -32,11 +36,11 @@ from autograder.workspaces.jobs import PlainJobs
 from environment.python_child import python_child
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
     from pathlib import Path
 
     from autograder.boxes.fork_server import Addresses
-    from autograder.boxes.run_limits import Patient
+    from autograder.boxes.run_limits import Left
     from autograder.execution.executed_cells import Cell, Execution
     from autograder.grading.grading_task import Task
     from autograder.verdict import Verdict
@@ -48,39 +52,17 @@ would exceed this size, it is not kept.
 """
 
 
-@dataclass(frozen=True)
-class JudgeKind:
-    """The judge of a task, and the ROS settings with which judge and subject meet.
-
-    Attributes:
-        make: Returns a judge that is not started yet, such as
-            :class:`autograder.judge.controlled_judge.JudgeProcess`. Its arguments are the path of a socket, a seed, and
-            a function that starts the judge's process.
-        variables: The environment variables of the judge.
-        readable: The files outside the package that the judge reads.
-        ros_variables: The environment variables of ROS for the subject, without the domain.
-        lease_domain: Returns a context manager that reserves a ROS domain while its block runs.
-        patient: Turns a time limit into a deadline, which gets later while the machine is overloaded.
-    """
-
-    make: Callable[..., Any]
-    variables: Mapping[str, str]
-    readable: Sequence[Path]
-    ros_variables: Mapping[str, str]
-    lease_domain: Callable[[], contextlib.AbstractContextManager[int]]
-    patient: Patient
-
-
 def execute(
     task: Task,
+    judge: str,
     scratch: Path,
-    judge: JudgeKind,
     addresses: Addresses,
     began: Callable[[BoxedProcesses | UnboxedProcesses], None] = lambda _: None,
 ) -> Execution:
     """Execute one task.
 
     Args:
+        judge: The Python class that makes a judge, as ``module:class``.
         scratch: The folder in which the task gets its own folder.
         addresses: The addresses of the fork servers, which for a boxed task must include the one for supervisors.
         began: Called with the boxes of the task before anything runs in them.
@@ -88,66 +70,57 @@ def execute(
     Raises:
         Exception: The grader itself failed.
     """
-    with contextlib.ExitStack() as stack:
-        folder = stack.enter_context(scratch_folder(scratch))
-        return _execute(task, folder, judge, addresses, stack, began)
-
-
-def _execute(
-    task: Task,
-    folder: Path,
-    judge: JudgeKind,
-    addresses: Addresses,
-    stack: contextlib.ExitStack,
-    began: Callable[[BoxedProcesses | UnboxedProcesses], None],
-) -> Execution:
     # Without a supervisor nothing could make the boxes, and a submission must never run outside of one by mistake.
     if task.boxed and not addresses.supervisors:
         raise NoSandbox("this task must run in a box, but no box can be made here")
-    boxed = task.boxed
-    kind: type[BoxedProcesses] | type[UnboxedProcesses] = BoxedProcesses if boxed else UnboxedProcesses
-    paths = _make_paths(task, folder)
-    # The domain is leased before any process starts, because each of them gets it as an environment variable.
-    domain = str(stack.enter_context(judge.lease_domain()))
-    setting = NotebookSetting(
-        folder,
-        task.limits,
-        task.files,
-        {**judge.ros_variables, "ROS_DOMAIN_ID": domain, **paths.variables()},
-        judges_variables=judge.variables,
-        judges_folders=[*judge.readable, paths.judges_folder],
-        programs=bool(paths.runners),
-    )
-    processes = kind(addresses, setting)
-    stack.enter_context(processes)
-    # From here on an order can be canceled: `began` tells the executor which boxes to end, before they hold a program.
-    began(processes)
-    # The service outlives the notebook and ends before the boxes, in which its builds and programs run.
-    stack.enter_context(_workspace_service(paths, processes, addresses, judge.ros_variables))
+    with contextlib.ExitStack() as stack:
+        paths = _make_paths(task, stack.enter_context(scratch_folder(scratch)))
+        # The domain is leased before any process starts, because each of them gets it as an environment variable. A box
+        # has a network of its own, without other nodes, so any domain is free there.
+        domain = 0 if task.boxed else stack.enter_context(lease_domain())
+        setting = NotebookSetting(
+            paths.folder,
+            task.limits,
+            task.files,
+            {**ros_variables(boxed=task.boxed), "ROS_DOMAIN_ID": str(domain), **paths.variables()},
+            judges_variables=controlled_judge.environment(boxed=task.boxed),
+            judges_folders=[*controlled_judge.readable(), paths.judges_folder],
+            programs=bool(paths.runners),
+        )
+        kind: type[BoxedProcesses] | type[UnboxedProcesses] = (
+            BoxedProcesses if task.boxed else UnboxedProcesses
+        )
+        processes = kind(addresses, setting)
+        stack.enter_context(processes)
+        # From here on an order can be canceled: `began` tells the executor which boxes to end, before they hold a
+        # program.
+        began(processes)
+        # The service outlives the notebook and ends before the boxes, in which its builds and programs run.
+        stack.enter_context(_workspace_service(paths, processes, addresses))
+        judges = _Judges(task, judge, paths, processes)
+        execution = run_notebook(task.cells, judge=judges, processes=processes, patient=_patiently)
+        # A task that ran alone, and not beside others, has had the whole machine: its result counts, whatever happened.
+        short_of_memory = processes.guard.reason() is Ended.OUT_OF_MEMORY
+        crowded_out = task.limits.beside and (
+            short_of_memory or judges.crowded or _a_check_was_stopped(task.cells, execution)
+        )
+        return replace(
+            execution,
+            crowded_out=crowded_out,
+            cpu_seconds=processes.guard.cpu_seconds,
+            evidence=judges.evidence,
+        )
 
-    def new_judge(of_programs: bool) -> Any:
-        start = functools.partial(processes.start_judge, of_programs=of_programs)
-        process = judge.make(processes.judge_socket, seed=task.seed, start=start)
-        process.workspaces = str(paths.judges_socket)
-        process.keeps_evidence = True
-        process.is_boxed = boxed
-        return process
 
-    # The first judge starts while the kernel starts, before a check asks for one: guess from the first check cell
-    # whether the subject will be a program.
-    first_exercise = next(
-        (cell.check.exercise for cell in task.cells if cell.check and not cell.check.asserts), ""
-    )
-    judges = _Judges(new_judge, paths.runners, first_exercise)
-    execution = run_notebook(task.cells, judge=judges, processes=processes, patient=judge.patient)
-    # A task that ran alone, and not beside others, has had the whole machine: its result counts, whatever happened.
-    short_of_memory = processes.guard.reason() is Ended.OUT_OF_MEMORY
-    crowded_out = task.limits.beside and (
-        short_of_memory or judges.crowded or _a_check_was_stopped(task.cells, execution)
-    )
-    return replace(
-        execution, crowded_out=crowded_out, cpu_seconds=processes.guard.cpu_seconds, evidence=judges.evidence
-    )
+def ros_variables(*, boxed: bool) -> Mapping[str, str]:
+    """Return the environment variables of ROS for a subject, without the domain."""
+    return boxed_ros_environment() if boxed else ros_environment()
+
+
+def _patiently(seconds: float) -> Left:
+    """Return a function that returns the seconds left of a limit, which gets longer on an overloaded machine."""
+    patience = Patience(seconds)
+    return lambda: patience.left
 
 
 def _a_check_was_stopped(cells: Sequence[Cell], execution: Execution) -> bool:
@@ -155,9 +128,10 @@ def _a_check_was_stopped(cells: Sequence[Cell], execution: Execution) -> bool:
 
     Usually this means that the machine is busy, because the judge has a shorter limit for each of its waits.
     """
-    judged = [cell.check is not None and not cell.check.asserts for cell in cells]
-    runs = zip(judged, execution.cells, strict=True)
-    return any(is_judged and run.ended is Ended.TIMED_OUT for is_judged, run in runs)
+    return any(
+        cell.check is not None and not cell.check.asserts and run.ended is Ended.TIMED_OUT
+        for cell, run in zip(cells, execution.cells, strict=True)
+    )
 
 
 class _Judges:
@@ -166,36 +140,45 @@ class _Judges:
     :meth:`close` returns None if the notebook never requested the check, and raises an error if the judge failed.
 
     Args:
-        made: Makes a judge that is not started yet: with True for programs, with False for the notebook's own nodes.
-        runners: The exercises whose subjects are programs.
-        first: The exercise of the notebook's first check, for which a judge is started in advance.
+        made: The Python class that makes a judge that is not started yet, such as
+            :class:`autograder.judge.controlled_judge.JudgeProcess`, as ``module:class``.
 
     Attributes:
         evidence: The evidence of the verdicts, by exercise.
         crowded: True if one of the verdicts may be due to a busy machine.
     """
 
-    def __init__(self, made: Callable[[bool], Any], runners: Collection[str], first: str) -> None:
-        self._made, self._runners, self._first = made, runners, first
+    def __init__(
+        self, task: Task, made: str, paths: _Paths, processes: BoxedProcesses | UnboxedProcesses
+    ) -> None:
+        module, _, name = made.partition(":")
+        self._made = getattr(importlib.import_module(module), name)
+        self._task, self._paths, self._processes = task, paths, processes
         self._open = contextlib.ExitStack()
-        self._of_programs = False
         self._asked = ""
         self.evidence: dict[str, bytes] = {}
         self.crowded = False
 
     def __enter__(self) -> Self:
-        self._start(self._first in self._runners)
+        # The first judge starts while the kernel starts, before a check asks for one: guess from the first check cell
+        # whether the subject will be a program.
+        judged = (check.exercise for check in self._task.checks.values() if not check.asserts)
+        self._start(next(judged, "") in self._paths.runners)
         return self
 
     def __exit__(self, *_: object) -> None:
         self._open.close()
 
     def _start(self, of_programs: bool) -> None:
-        self._of_programs = of_programs
-        self._judge = self._open.enter_context(self._made(of_programs))
+        start = functools.partial(self._processes.start_judge, of_programs=of_programs)
+        judge = self._made(self._processes.judge_socket, seed=self._task.seed, start=start)
+        judge.workspaces = str(self._paths.judges_socket)
+        judge.keeps_evidence = True
+        judge.is_boxed = self._task.boxed
+        self._judge, self._of_programs = self._open.enter_context(judge), of_programs
 
     def open(self, exercise_id: str) -> None:
-        of_programs = exercise_id in self._runners
+        of_programs = exercise_id in self._paths.runners
         if of_programs is not self._of_programs:
             self._open.close()
             self._start(of_programs)
@@ -250,7 +233,7 @@ class _Paths:
 
 def runners_of(task: Task) -> frozenset[str]:
     """Return the exercises of a task whose subjects the grader itself builds and starts, as programs."""
-    checks = {cell.check.exercise for cell in task.cells if cell.check and not cell.check.asserts}
+    checks = {check.exercise for check in task.checks.values() if not check.asserts}
     return frozenset(name for name in checks & set(exercises.all_ids()) if exercises.get(name).runner)
 
 
@@ -269,7 +252,6 @@ def _workspace_service(
     paths: _Paths,
     processes: BoxedProcesses | UnboxedProcesses,
     addresses: Addresses,
-    ros_variables: Mapping[str, str],
 ) -> WorkspaceService:
     """Return the workspace service of a notebook, for use in a ``with`` block that lasts as long as the notebook runs.
 
@@ -277,7 +259,6 @@ def _workspace_service(
         paths: The result of :func:`_make_paths`.
         processes: The processes of the notebook, and their boxes.
         addresses: The addresses of the fork servers.
-        ros_variables: The environment variables of ROS.
     """
     folder = paths.folder / "work-of-jobs"
     folder.mkdir()
@@ -296,7 +277,7 @@ def _workspace_service(
         sockets = ServiceSockets(paths.judges_socket, None)
     # PYTHONUNBUFFERED: output comes without delay. PYTHONFAULTHANDLER: a program that hangs can print the stacks of its
     # threads.
-    variables = {**ros_variables, "PYTHONUNBUFFERED": "1", "PYTHONFAULTHANDLER": "1"}
+    variables = {**ros_variables(boxed=paths.boxed), "PYTHONUNBUFFERED": "1", "PYTHONFAULTHANDLER": "1"}
     return WorkspaceService(sockets, jobs, builds, variables, folder, ahead)
 
 

@@ -182,7 +182,7 @@ def admitted(data: bytes, task: Task) -> Execution:
         raise Forged(f"the answer is not an execution: {error}") from error
     if len(execution.cells) not in ({len(task.cells), 0} if execution.trouble else {len(task.cells)}):
         raise Forged(f"the answer has {len(execution.cells)} cells, and the notebook has {len(task.cells)}")
-    checks = {index: cell.check for index, cell in enumerate(task.cells) if cell.check is not None}
+    checks = task.checks
     if execution.verdicts.keys() != checks.keys():
         raise Forged("the answer has verdicts on other checks than the notebook has")
     for index, check in checks.items():

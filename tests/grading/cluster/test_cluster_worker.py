@@ -15,16 +15,17 @@ from dask_cluster import VERSION, DaskCluster
 
 pytest.importorskip("distributed", reason="./course setup --with cluster installs it")
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 from unittest.mock import Mock
 
 from autograder.cli import cli
+from autograder.grading.classes.class_directory import ClassDirectory, switch_sandbox_off
 from autograder.grading.cluster import dask_worker
 from autograder.grading.grading_errors import GradingError
-from autograder.grading.running import task_dispatcher
-from autograder.grading.running.execution_backends import connected
+from autograder.grading.running import execution_backends, task_dispatcher
 
 if TYPE_CHECKING:
+    from contextlib import AbstractContextManager
     from pathlib import Path
 
     from tiny_class import TinyClass
@@ -110,21 +111,28 @@ def certificates(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
 
 @pytest.mark.usefixtures("certificates")
 def test_with_certificates_all_speak_tls_and_who_has_none_stays_outside(
-    monkeypatch: pytest.MonkeyPatch,
+    monkeypatch: pytest.MonkeyPatch, tiny: TinyClass
 ) -> None:
     monkeypatch.setattr(task_dispatcher, "course_version", lambda: VERSION)
-    options: dict[str, Any] = {"judge": "a:B", "boxed": False}
+    switch_sandbox_off(tiny.path)
+    directory = ClassDirectory(tiny.path)
+    told: list[str] = []
+
+    def connected(address: str) -> AbstractContextManager[execution_backends.Execute]:
+        return execution_backends.on_cluster(directory, address, "a:B", told.append)
+
     with DaskCluster("tls") as cluster, cluster.worker("w"):
         assert cluster.address.startswith("tls://")
-        with connected(cluster.address, **options) as workers:
-            assert [worker.name for worker in workers._workers.values()] == ["w"]
+        with connected(cluster.address) as execute:
+            assert list(execute(())) == []
+            assert told == []
         with (
             pytest.raises(GradingError, match="cannot be reached"),
-            connected(cluster.address.replace("tls", "tcp"), **options),
+            connected(cluster.address.replace("tls", "tcp")),
         ):
             pass
         monkeypatch.delenv("DASK_DISTRIBUTED__COMM__TLS__CLIENT__CERT")
-        with pytest.raises(GradingError, match="cannot be reached"), connected(cluster.address, **options):
+        with pytest.raises(GradingError, match="cannot be reached"), connected(cluster.address):
             pass
 
 
@@ -153,8 +161,7 @@ def test_its_folder_is_its_own_whatever_another_user_has_put_there(
 
         def stop(self) -> None: ...
 
-    monkeypatch.setattr(dask_worker, "_executor", None)
-    monkeypatch.setattr(dask_worker, "_scratch", None)
+    monkeypatch.setattr(dask_worker, "_orders", None)
     monkeypatch.setattr(dask_worker, "Executor", FakeExecutor)
     monkeypatch.setattr(dask_worker, "get_worker", Mock)
     assert [dask_worker.execute(b"one"), dask_worker.execute(b"two")] == [b"one", b"two"]
@@ -162,5 +169,6 @@ def test_its_folder_is_its_own_whatever_another_user_has_put_there(
     assert scratch.parent == tmp_path
     assert not scratch.is_relative_to(guessed)
     assert scratch.stat().st_mode & 0o777 == 0o700
-    dask_worker._Watch().teardown(Mock())
+    assert dask_worker._orders
+    dask_worker._orders.teardown(Mock())
     assert list(tmp_path.iterdir()) == [guessed]

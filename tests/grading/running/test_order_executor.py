@@ -10,7 +10,8 @@ import sys
 import tempfile
 import time
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
+from unittest.mock import Mock
 
 import msgspec
 import psutil
@@ -22,9 +23,10 @@ from autograder.boxes.run_limits import Ended
 from autograder.execution.executed_cells import Cell, CellCheck, CellRun, Execution
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.grading_task import Task
-from autograder.grading.running import execution_backends
+from autograder.grading.running import execution_backends, order_executor
 from autograder.grading.running.task_execution import _a_check_was_stopped
-from autograder.grading.running.worker_messages import ADDRESS, Give, Order
+from autograder.grading.running.worker_messages import ADDRESS, Answered, Drop, Give, Joined, News, Order
+from autograder.messages.json_lines import Lines
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -242,6 +244,33 @@ def test_fork_servers_that_die_are_started_anew(tiny: TinyClass, with_fake_judge
     assert tiny.scores("ada") == {TALKER: 10, LISTENER: 9}
 
 
+@pytest.mark.parametrize("when", ["canceled meanwhile", "stopped meanwhile", "stopped before"])
+def test_an_order_that_is_ended_before_it_has_boxes_ends_as_soon_as_it_has_them(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, when: str
+) -> None:
+    executor = order_executor.Executor(tmp_path)
+    monkeypatch.setattr(order_executor, "LAST_SECONDS", 0.0)
+    monkeypatch.setattr(executor, "fork_servers", Mock())
+    boxes = [Mock(), Mock()]
+    ends = {"canceled meanwhile": lambda: executor.cancel("1"), "stopped meanwhile": executor.stop}
+
+    def execute(*arguments: Any) -> Execution:
+        ends.pop(when, lambda: None)()
+        arguments[-1](boxes[0])
+        return Execution(())
+
+    monkeypatch.setattr(order_executor, "execute", execute)
+    if when == "stopped before":
+        executor.stop()
+    task = msgspec.json.encode(Task("ada", "lab", "lab", (), "0", "1"))
+    order = msgspec.json.encode(Order(msgspec.Raw(task), "a:B"))
+    executor.execute("1", order)
+    boxes[0].abandon.assert_called_once_with()
+    boxes.pop(0)
+    executor.execute("1", order)
+    assert boxes[0].abandon.called == when.startswith("stopped"), "a cancel ends one order"
+
+
 EXECUTOR = """
 import sys, threading
 from autograder.grading.running import order_executor as executor
@@ -250,7 +279,6 @@ def execute(*_):
     print("at work", flush=True)
     open(sys.argv[1]).read()  # whoever should clean up waits, too
 executor.execute = execute
-executor.judge_kind = lambda *_, **__: None
 executor.Executor.fork_servers = lambda *_, **__: None
 executor.main([sys.argv[1], "1"])
 """
@@ -272,6 +300,50 @@ def test_an_executor_that_waits_for_what_never_comes_ends_with_its_batch(tmp_pat
         grader.sendall(msgspec.json.encode(Give(1, ADDRESS, order)) + b"\n")
         assert executor.stdout.readline() == b"at work\n"
         grader.close()
+        assert executor.wait(60.0) == 0
+    finally:
+        executor.kill()
+        executor.wait()
+
+
+DROPPED = """
+import sys, threading
+from types import SimpleNamespace
+from autograder.grading.running import order_executor as executor
+def execute(task, judge, scratch, addresses, began):
+    ended = threading.Event()
+    began(SimpleNamespace(abandon=lambda: ended.set() or print("abandoned", flush=True)))
+    print("at work", flush=True)
+    ended.wait(10)
+    raise RuntimeError("the boxes are gone" if ended.is_set() else "still at work")
+executor.execute = execute
+executor.Executor.fork_servers = lambda *_, **__: None
+executor.main([sys.argv[1], "1"])
+"""
+
+
+@pytest.mark.parametrize("dropped", [True, False])
+def test_an_order_ends_when_it_is_dropped_and_when_the_grader_is_gone(tmp_path: Path, dropped: bool) -> None:
+    grader, its_own = socket.socketpair()
+    with its_own:
+        executor = subprocess.Popen(
+            [sys.executable, "-c", DROPPED, str(tmp_path)], stdin=its_own.fileno(), stdout=subprocess.PIPE
+        )
+    lines = Lines(grader)
+    try:
+        assert executor.stdout
+        assert isinstance(msgspec.json.decode(lines.hear_json(60.0), type=News), Joined)
+        task = msgspec.json.encode(Task("ada", "lab", "lab", (), "0", "1"))
+        order = msgspec.json.encode(Order(msgspec.Raw(task), "a:B"))
+        lines.say_json(msgspec.json.encode(Give(1, ADDRESS, order)))
+        assert executor.stdout.readline() == b"at work\n"
+        if dropped:
+            lines.say_json(msgspec.json.encode(Drop(1)))
+            news = msgspec.json.decode(lines.hear_json(60.0), type=News)
+            assert isinstance(news, Answered)
+            assert b"the boxes are gone" in news.data
+        lines.close()
+        assert executor.stdout.readline() == b"abandoned\n"
         assert executor.wait(60.0) == 0
     finally:
         executor.kill()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import threading
+import time
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -23,7 +23,7 @@ from tiny_class import FakeEngine, TinyClass
 
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.grading_errors import GradingError
-from autograder.grading.running import execution_backends, task_dispatcher
+from autograder.grading.running import task_dispatcher
 from autograder.grading.running.task_dispatcher import ATTEMPTS
 from autograder.grading.running.worker_messages import (
     Answered,
@@ -48,6 +48,7 @@ pytestmark = pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning")
 @pytest.fixture(autouse=True)
 def _version(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(task_dispatcher, "course_version", lambda: "here")
+    monkeypatch.setattr(task_dispatcher, "_RETURN_SECONDS", 0.05)
 
 
 @pytest.fixture
@@ -78,8 +79,9 @@ def test_no_more_tasks_are_made_than_are_in_flight(tasks: list[Task]) -> None:
     link = FakeLink(joined("a"), Asked())
     dispatcher = make_dispatcher(link)
     dispatcher.await_workers()
-    for number, _ in enumerate(dispatcher.execute_all(one_by_one())):
-        assert len(made) <= number + 1 + HERE.slots + 1
+    for _ in dispatcher.execute_all(one_by_one()):
+        assert len(made) <= len(link.given) + 1
+        assert len(link.in_flight) <= HERE.slots
     assert len(made) == len(tasks)
 
 
@@ -101,17 +103,21 @@ def test_a_worker_that_leaves_costs_only_its_tasks_again(tasks: list[Task]) -> N
     link = FakeLink(joined("a"), joined("b"), Asked())
 
     def answer(give: Give, task: Task) -> News | None:
-        if give.worker == "b" and len(link.given) <= 4:
-            return Left("b") if give.number == 4 else None
+        if give.worker == "b":
+            return Left("b") if sum(one.worker == "b" for one in link.given) == HERE.slots else None
         return honest(give, task)
 
     link.answer = answer
-    dispatcher = make_dispatcher(link)
+    told: list[str] = []
+    dispatcher = make_dispatcher(link, told)
     dispatcher.await_workers()
     done = list(dispatcher.execute_all(tasks))
     assert students(done) == [task.student for task in tasks]
+    assert told == ["The worker name-b (b) has ended: the notebooks that it was executing run again."]
     assert len(link.given) == len(tasks) + 2
-    assert {give.worker for give in link.given[4:]} == {"a"}
+    lost = [give for give in link.given if give.worker == "b"]
+    again = [give for give in link.given[link.given.index(lost[-1]) :] if give.worker == "a"]
+    assert len(again) == len(lost) == HERE.slots
 
 
 def test_a_task_that_costs_worker_after_worker_is_given_up(tasks: list[Task]) -> None:
@@ -306,7 +312,9 @@ def test_a_worker_that_comes_later_gets_work_too(tasks: list[Task]) -> None:
     assert {give.worker for give in link.given} == {"a", "late"}
 
 
-def test_when_the_last_worker_is_gone_the_batch_waits_a_little_and_then_stops(tasks: list[Task]) -> None:
+def test_when_the_last_worker_is_gone_the_batch_waits_a_little_and_then_stops(
+    tasks: list[Task], monkeypatch: pytest.MonkeyPatch
+) -> None:
     link = FakeLink(joined("a"), Asked())
     link.answer = lambda give, task: honest(give, task) if give.number < 3 else Left("a")
     dispatcher = make_dispatcher(link)
@@ -316,7 +324,8 @@ def test_when_the_last_worker_is_gone_the_batch_waits_a_little_and_then_stops(ta
         done.extend(dispatcher.execute_all(tasks))
     link = FakeLink(joined("a"), Asked())
     link.answer = lambda give, task: honest(give, task) if give.number != 3 else Left("a")
-    dispatcher = make_dispatcher(link, return_seconds=30)
+    monkeypatch.setattr(task_dispatcher, "_RETURN_SECONDS", 30.0)
+    dispatcher = make_dispatcher(link)
     dispatcher.await_workers()
     running = dispatcher.execute_all(tasks)
     assert next(running)
@@ -324,16 +333,37 @@ def test_when_the_last_worker_is_gone_the_batch_waits_a_little_and_then_stops(ta
     assert len(list(running)) == len(tasks) - 1
 
 
-def test_tasks_go_on_while_the_caller_of_a_cluster_holds_a_result(tasks: list[Task]) -> None:
-    dispatcher = make_dispatcher(FakeLink(joined("w")))
+def test_every_free_slot_has_a_task_before_the_caller_gets_a_result(tasks: list[Task]) -> None:
+    link = FakeLink(joined("w"))
+    dispatcher = make_dispatcher(link)
     dispatcher.await_workers()
-    last_began = threading.Event()
+    for _ in dispatcher.execute_all(tasks):
+        assert len(link.in_flight) == HERE.slots or len(link.given) == len(tasks)
 
-    def began(task: Task) -> None:
-        if task == tasks[-1]:
-            last_began.set()
 
-    running = execution_backends.dispatch(dispatcher, tasks, began)
-    next(running)
-    assert last_began.wait(60)
-    running.close()
+def test_a_silent_worker_is_judged_after_all_that_came_while_the_caller_was_busy(
+    tasks: list[Task], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(task_dispatcher, "_EXTRA_SECONDS", 0.2 - 2 * tasks[0].limits.longest)
+    told: list[str] = []
+    link = FakeLink(joined("w"))
+    dispatcher = make_dispatcher(link, told)
+    dispatcher.await_workers()
+    done = []
+    for one in dispatcher.execute_all(tasks):
+        done.append(one)
+        time.sleep(0.25)  # longer than a worker may be silent
+    assert (students(done), told) == ([task.student for task in tasks], [])
+
+
+def test_what_came_before_the_scheduler_was_lost_is_handed_on(tasks: list[Task]) -> None:
+    link = FakeLink(joined("w"))
+    dispatcher = make_dispatcher(link)
+    dispatcher.await_workers()
+    link.answer = lambda give, task: (
+        link.news.append(honest(give, task)) if give.number < 3 else Broken("refused")
+    )
+    done: list[Done] = []
+    with pytest.raises(GradingError, match="cannot be reached"):
+        done.extend(dispatcher.execute_all(tasks))
+    assert students(done) == [task.student for task in tasks[:2]]

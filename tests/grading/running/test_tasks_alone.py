@@ -53,6 +53,7 @@ def said_nothing(give: Give, task: Task, cpu_seconds: float = 0.0) -> News:
 @pytest.fixture(autouse=True)
 def _version(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(task_dispatcher, "course_version", lambda: "here")
+    monkeypatch.setattr(task_dispatcher, "_RETURN_SECONDS", 0.05)
 
 
 @pytest.fixture
