@@ -41,7 +41,7 @@ _SERVED = {
     "program_process": "programs",
     "supervisor": "boxes",
     ".judge.": "judges",
-    "grading.": "desks",
+    "desk_program": "desks",
 }
 """For a part of the name of a fork server's module: the role of its children."""
 _MAKE_CLASS = """

@@ -93,15 +93,6 @@ class Channel:
         message: dict[str, Any] = json.loads(data)
         return message, descriptors
 
-    @property
-    def hung_up(self) -> bool:
-        """True if the other end has closed, even if messages from it are still unread."""
-        if self._socket.fileno() < 0:
-            return False
-        poll = select.poll()
-        poll.register(self._socket, 0)
-        return bool(poll.poll(0))
-
     def hang_up(self) -> None:
         """End the connection for both ends. Any thread may call this, even while another thread waits for a message."""
         with contextlib.suppress(OSError):
@@ -195,7 +186,7 @@ class Supervision:
             self._channel.close()
             raise
 
-    def start(
+    def _start(
         self, name: str, descriptors: Sequence[int] = (), *, guarded: bool = False, **words: Any
     ) -> Box:
         """Start a box.
@@ -218,7 +209,12 @@ class Supervision:
 
     @property
     def lost(self) -> bool:
-        return self._channel.hung_up
+        """True if the supervisor has ended, even if messages from it are still unread."""
+        if self._channel.fileno() < 0:
+            return False
+        poll = select.poll()
+        poll.register(self._channel, 0)
+        return bool(poll.poll(0))
 
     def end(self, name: str) -> int:
         with self._turn:
@@ -236,7 +232,7 @@ class Supervision:
             return self._ended[name]
 
     def abandon(self) -> None:
-        """Make the supervisor end all boxes, but do not wait. Any thread may call this, even if another one waits."""
+        """End all boxes, but do not wait. Any thread may call this; threads that use a box see that it is lost."""
         self._channel.hang_up()
 
     def close(self) -> None:
@@ -250,6 +246,12 @@ class Supervision:
             self._channel.close()
             close_all([box.pidfd for box in self._boxes.values()])
             self._boxes.clear()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
 
     def _ask(
         self, expected: str, descriptors: Sequence[int] = (), **message: Any

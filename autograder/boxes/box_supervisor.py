@@ -87,7 +87,7 @@ class _Supervisor:
             ready, _, _ = select.select(watched, [], [])
             for name, started in list(self._started.items()):
                 if started.end in ready:
-                    self._ended(name)
+                    self._channel.send({"say": "ended", "name": name, "status": self._reap(name)})
             if self._channel in ready:
                 message, descriptors = self._channel.receive()
                 try:
@@ -190,9 +190,6 @@ class _Supervisor:
         """Send a pidfd of the box's first process, which another process uses to enter the box."""
         pidfd = self._started[name].first
         self._channel.send({"say": "started", "name": name, "pid": first}, [pidfd] if pidfd >= 0 else [])
-
-    def _ended(self, name: str) -> None:
-        self._channel.send({"say": "ended", "name": name, "status": self._reap(name)})
 
     def _reap(self, name: str) -> int:
         """Wait until a box ends, and return its exit code."""

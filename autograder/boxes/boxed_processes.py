@@ -137,16 +137,41 @@ class Finished:
     cut: bool
 
 
-class Running:
-    """A command that runs in a box. At the end of the ``with`` block, it and everything that it started are ended."""
+class _Command:
+    """A command in a box. At the end of the ``with`` block, it and everything that it started are ended.
+
+    Args:
+        owner: What ends the command.
+        output: A descriptor from which the output of the command is read.
+        pid: The PID, as seen from the host, of the box's first process.
+    """
+
+    def __init__(self, owner: Box | ForkedProcess, output: int, pid: int) -> None:
+        self._owner, self._output, self.pid = owner, output, pid
+
+    def end(self) -> None:
+        """Kill the command and everything that it started. This may be called twice."""
+        if self._output >= 0:
+            self._owner.end()
+            os.close(self._output)
+            self._output = -1
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.end()
+
+
+class Running(_Command):
+    """A command that bubblewrap has started in a box of its own."""
 
     def __init__(self, box: Box, output: int, most: int) -> None:
-        self._box, self._output, self._most = box, output, most
+        super().__init__(box, output, box.pid)
+        self._box, self._most = box, most
         self._began = time.monotonic()
         self._kept = bytearray()
         self._cut = False
-        self.pid = box.pid
-        """The PID, as seen from outside the box, of the box's first process."""
 
     def read(self, within: float) -> bool:
         """Read available output. Return False once the command has ended.
@@ -206,35 +231,17 @@ class Running:
         """
         signal_group(self.pid, signal.SIGINT)
 
-    def end(self) -> None:
-        """Kill the command and everything that it started. This may be called twice."""
-        if self._output >= 0:
-            self._box.end()
-            os.close(self._output)
-            self._output = -1
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.end()
-
 
 _CLOSING_SECONDS = 10.0
 """Seconds for which a command may still run after it closed its output."""
 
 
-class WarmCommand:
-    """A command that a fork server has forked into a separate box.
-
-    Args:
-        process: The process of the command. The box ends with it.
-        output: A descriptor from which the output of the command is read.
-        pid: The PID of the box's first process, as seen from the host.
-    """
+class WarmCommand(_Command):
+    """A command that a fork server has forked into a separate box. The box ends with the command's process."""
 
     def __init__(self, process: ForkedProcess, output: int, pid: int) -> None:
-        self._process, self._output, self.pid = process, output, pid
+        super().__init__(process, output, pid)
+        self._process = process
 
     def next_output(self, within: float) -> bytes | None:
         """Return new output; see :meth:`Running.next_output`. Once the command has ended, kill what it left running."""
@@ -261,13 +268,6 @@ class WarmCommand:
     def interrupt(self) -> None:
         """Send Ctrl-C as a terminal does: to the whole process group."""
         self._process.interrupt()
-
-    def end(self) -> None:
-        """Kill the command and everything that it started. This may be called twice."""
-        if self._output >= 0:
-            self._process.end()
-            os.close(self._output)
-            self._output = -1
 
 
 def _returncode(status: int) -> int:

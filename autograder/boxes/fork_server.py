@@ -224,10 +224,6 @@ class ForkServer:
         """True if the process still runs."""
         return self._process.poll() is None
 
-    @property
-    def pid(self) -> int:
-        return self._process.pid
-
     def stop(self) -> None:
         """End the server and all its children. This may be called twice."""
         assert self._process.stdin is not None

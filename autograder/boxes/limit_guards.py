@@ -166,10 +166,10 @@ class BoxGuard:
             return Ended.TOO_MANY_PROCESSES
         if use.files > self._limits.all_open_files:
             return Ended.TOO_MANY_FILES
-        network = _network_of(self._first, self._limits.socket_bytes)
-        if network.sockets > self._limits.all_open_files:
+        sockets, waiting = _network_of(self._first, self._limits.socket_bytes)
+        if sockets > self._limits.all_open_files:
             return Ended.TOO_MANY_FILES
-        if network.waiting > self._limits.socket_bytes:
+        if waiting > self._limits.socket_bytes:
             return Ended.OUT_OF_MEMORY
         if _locks_of(self._first, self._limits.file_locks) > self._limits.file_locks:
             return Ended.TOO_MANY_LOCKS
@@ -275,22 +275,11 @@ def _files_of(process: str) -> int:
     return os.stat(folder).st_size or len(os.listdir(folder))  # noqa: PTH116, PTH208 (several times a second)
 
 
-@dataclass(frozen=True)
-class _Network:
-    """The resources of a box's network that belong to no process (proc_pid_net(5)), and often to no cgroup.
+def _network_of(first: int, most: int) -> tuple[int, int]:
+    """Count the sockets of a box's network, and the bytes that wait in them (proc_pid_net(5)).
 
-    Attributes:
-        sockets: The number of sockets, including those that no process has open: a connection has no descriptor until
-            the listening program accepts it.
-        waiting: The number of bytes that wait in the sockets.
-    """
-
-    sockets: int = 0
-    waiting: int = 0
-
-
-def _network_of(first: int, most: int) -> _Network:
-    """Count the sockets of a box's network, and the bytes that wait in them.
+    They belong to no process, and often to no cgroup. Sockets that no process has open count, too: a connection has no
+    descriptor until the listening program accepts it.
 
     Args:
         first: The PID of the box's first process, as seen from the host.
@@ -301,7 +290,7 @@ def _network_of(first: int, most: int) -> _Network:
     sockets = waiting = 0
     try:
         if Path(f"/proc/{first}/ns/net").stat().st_ino == Path("/proc/self/ns/net").stat().st_ino:
-            return _Network()  # the process is about to enter the box
+            return 0, 0  # the process is about to enter the box
         summary = (net / "sockstat").read_text()
         sockets = sum(map(int, _SOCKETS.findall(summary)))
         pages = sum(map(int, _PAGES.findall(summary)))
@@ -312,7 +301,7 @@ def _network_of(first: int, most: int) -> _Network:
         waiting += sum(int(fields[4]) + int(fields[5]) for fields in _rows(net / "netlink"))
     except (OSError, ValueError, IndexError):
         pass  # the process has ended meanwhile
-    return _Network(sockets, waiting)
+    return sockets, waiting
 
 
 def _locks_of(first: int, most: int) -> int:

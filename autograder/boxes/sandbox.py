@@ -13,13 +13,15 @@ processes in its boxes end and the scratch is removed.
 
 from __future__ import annotations
 
+import contextlib
 import functools
 import itertools
 import json
 import os
 import shutil
+from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any
 
 from autograder.boxes.box_connection import Box, NoSandbox, Supervision, close_all
 from autograder.boxes.box_supervisor import bubblewrap, furnish
@@ -41,7 +43,7 @@ from autograder.boxes.visible_host import (
 from autograder.safe_files import HeldFolder, write_files
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
 
 
 _SCRATCH_BYTES = 1_000_000_000
@@ -49,7 +51,7 @@ _SCRATCH_INODES = 200_000
 _OUTPUT_BYTES = 1_000_000
 
 
-class Enclosure:
+class Enclosure(Supervision):
     """The network, the scratch (a file system in memory) and the boxes of one submission.
 
     Several threads may use an enclosure.
@@ -80,7 +82,7 @@ class Enclosure:
         self._scratch.mkdir(parents=True)
         self._guard = guard
         self._commands = itertools.count(1)
-        self._supervision = Supervision(
+        super().__init__(
             supervisors,
             scratch=str(self._scratch),
             size=scratch_bytes,
@@ -108,7 +110,7 @@ class Enclosure:
         Raises:
             NoSandbox: The box could not be made.
         """
-        return self._supervision.start(
+        return self._start(
             name,
             guarded=guarded,
             arguments=box_arguments(self._scratch, binds, scratch_visible=scratch),
@@ -116,48 +118,23 @@ class Enclosure:
             **(self._guarded() if guarded else {}),
         )
 
-    def enter(
-        self,
-        box: Box,
-        server: str,
-        descriptors: Sequence[int],
-        *,
-        cwd: Path,
-        environment: Mapping[str, str],
-        call: Mapping[str, Any] | None = None,
-        rlimits: Mapping[str, int] | None = None,
-    ) -> ForkedProcess:
+    def enter(self, box: Box, server: str, descriptors: Sequence[int], entrance: Entrance) -> ForkedProcess:
         """Let a fork server fork a process that enters a box, and return the process.
 
         Args:
             box: A box of this enclosure.
             server: The socket address of the fork server.
             descriptors: File descriptors for the process. The caller keeps its own copies.
-            environment: All environment variables.
-            call: The argument for the ``run`` function of the fork server's module.
-            rlimits: Limits for a process in a box without a guard (setrlimit(2)).
+            entrance: The settings of the process. In a guarded box, the limits of the guard replace the limits in them.
 
         Raises:
             ChannelClosed: The fork server has ended, or its child could not enter the box.
         """
-        entrance = Entrance(
-            cwd=str(cwd),
-            environment=environment,
-            boxed=True,
-            call=call or {},
-            **(self._guarded() if box.guarded else {"rlimits": rlimits or {}}),
-        )
+        if box.guarded:
+            entrance = replace(entrance, **self._guarded())
         return ForkedProcess(server, entrance, descriptors, box)
 
-    def run(
-        self,
-        command: Sequence[str],
-        *,
-        limit: float,
-        binds: Sequence[Bind] = (),
-        cwd: Path = WORK,
-        output_bytes: int = _OUTPUT_BYTES,
-    ) -> Finished:
+    def run(self, command: Sequence[str], *, limit: float, **settings: Any) -> Finished:
         """Run a command in a new box, and wait for the command to end. When this returns, the whole box has ended.
 
         The box is killed after ``limit`` seconds of wall time. The other arguments are those of :meth:`start`.
@@ -165,7 +142,7 @@ class Enclosure:
         Raises:
             NoSandbox: The box could not be made.
         """
-        with self.start(command, binds=binds, cwd=cwd, output_bytes=output_bytes) as running:
+        with self.start(command, **settings) as running:
             return running.wait(limit)
 
     def start(
@@ -200,7 +177,7 @@ class Enclosure:
         reading, writing = os.pipe()
         nothing = os.open(os.devnull, os.O_RDONLY)
         try:
-            box = self._supervision.start(
+            box = self._start(
                 self._next_name(),
                 [nothing, writing, writing],
                 arguments=[*words, "--chdir", str(cwd)],
@@ -243,14 +220,9 @@ class Enclosure:
         box = self.box(self._next_name(), [*binds, *links], scratch=False, guarded=True)
         reading, writing = os.pipe()
         try:
-            process = self.enter(
-                box,
-                programs,
-                [writing],
-                cwd=cwd,
-                environment={**environment, "PWD": str(cwd)},
-                call={"words": list(words)},
-            )
+            variables = {**environment, "PWD": str(cwd)}
+            entrance = Entrance(str(cwd), variables, boxed=True, call={"words": list(words)})
+            process = self.enter(box, programs, [writing], entrance)
         except BaseException:
             os.close(reading)
             box.end()
@@ -258,20 +230,6 @@ class Enclosure:
         finally:
             os.close(writing)
         return WarmCommand(process, reading, box.pid)
-
-    def abandon(self) -> None:
-        """End all boxes, but do not wait. Any thread may call this; threads that use a box see that it is lost."""
-        self._supervision.abandon()
-
-    def close(self) -> None:
-        """End all boxes, and wait until none of their processes is alive. This may be called twice."""
-        self._supervision.close()
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.close()
 
     def _next_name(self) -> str:
         return f"command {next(self._commands)}"
@@ -284,6 +242,21 @@ class Enclosure:
             "rlimits": self._guard.rlimits,
             "hidden_memory": self._guard.hidden_memory,
         }
+
+
+@contextlib.contextmanager
+def lone_enclosure(folder: Path) -> Iterator[Enclosure]:
+    """Make an enclosure with a fork server of its own, in an existing folder that nothing else uses.
+
+    Raises:
+        NoSandbox: The supervisor could not make the namespaces.
+    """
+    supervisors = ForkServer(BESIDE, SUPERVISOR_MODULE, folder / "supervisors")
+    try:
+        with Enclosure(supervisors.address, folder / "box") as enclosure:
+            yield enclosure
+    finally:
+        supervisors.stop()
 
 
 class OneCommandBox:
@@ -371,18 +344,14 @@ def why_impossible() -> str:
     if shutil.which("bwrap") is None:
         return "bubblewrap is not installed. On Debian or Ubuntu, type: sudo apt-get install -y bubblewrap"
     with HeldFolder("autograder-try-") as held:
-        folder = held.path
-        supervisors = ForkServer(BESIDE, SUPERVISOR_MODULE, folder / "supervisors")
         try:
-            with Enclosure(supervisors.address, folder / "try") as enclosure:
+            with lone_enclosure(held.path) as enclosure:
                 done = enclosure.run(["/bin/sh", "-c", f"test -d {HOME}"], limit=20.0)
             if done.returncode == 0:
                 return ""
             return f"a program in a box ended with {done.output.decode()[-300:]!r}"
         except (NoSandbox, OSError) as error:
             return f"{_reason(str(error))} ({error})"
-        finally:
-            supervisors.stop()
 
 
 def _reason(error: str) -> str:

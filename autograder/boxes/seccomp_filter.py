@@ -261,10 +261,8 @@ def filter_for_readers(machine: str = "") -> bytes:
         machine: The machine as in ``uname -m``; by default this machine.
     """
     machine = machine or platform.machine()
-    if machine not in ARCHITECTURES:
-        return b""
-    decide_on_futex = _where(_FUTEX[machine], _refuse_others(1, _FUTEX_WAKE, errno.EPERM))
-    return _filter_with(machine, _READERS[machine].values(), decide_on_futex)
+    decide_on_futex = _where(_FUTEX.get(machine, 0), _refuse_others(1, _FUTEX_WAKE, errno.EPERM))
+    return _filter_with(machine, [_READERS], decide_on_futex)
 
 
 def filter_for_desks(machine: str = "") -> bytes:
@@ -275,16 +273,17 @@ def filter_for_desks(machine: str = "") -> bytes:
     Args:
         machine: As for :func:`filter_for_boxes`.
     """
-    machine = machine or platform.machine()
+    return _filter_with(machine or platform.machine(), [_READERS, _DESKS])
+
+
+def _filter_with(
+    machine: str, tables: Iterable[Mapping[str, Mapping[str, int]]], decide: Sequence[_Instruction] = ()
+) -> bytes:
+    """Return a filter that refuses every call but those in the tables and those that ``decide`` allows."""
     if machine not in ARCHITECTURES:
         return b""
-    return _filter_with(machine, [*_READERS[machine].values(), *_DESKS[machine].values()])
-
-
-def _filter_with(machine: str, allowed: Iterable[int], decide: Sequence[_Instruction] = ()) -> bytes:
-    """Return a filter that refuses every call but the allowed ones and those that ``decide`` allows."""
     program = _beginning(ARCHITECTURES[machine])
-    for number in sorted(allowed):
+    for number in sorted(number for calls in tables for number in calls[machine].values()):
         program += [(_JUMP_EQUAL, 0, 1, number), (_RETURN, 0, 0, _ALLOW)]
     return _packed([*program, *decide, _fail(errno.EPERM)])
 

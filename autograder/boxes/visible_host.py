@@ -274,11 +274,7 @@ def box_environment(
     return {
         **base_environment(given),
         "USER": USER,
-        "HOME": str(HOME),
-        "TMPDIR": "/tmp",
-        "ROS_LOG_DIR": str(HOME / ".ros" / "log"),
-        "IPYTHONDIR": str(HOME / ".ipython"),
-        "JUPYTER_CONFIG_DIR": str(HOME / ".jupyter"),
+        **_own_folders(HOME, Path("/tmp"), HOME / ".ros" / "log"),
         **(extra or {}),
     }
 
@@ -290,22 +286,27 @@ def kernel_environment(scratch: Path, extra: Mapping[str, str]) -> dict[str, str
         scratch: An existing folder. The folders inside it are created here.
         extra: Variables to set, whatever their values on the host.
     """
-    folders = {
-        "HOME": scratch / "home",
-        "TMPDIR": scratch / "tmp",
-        "ROS_LOG_DIR": scratch / "log",
-        "IPYTHONDIR": scratch / "home" / ".ipython",
-        "JUPYTER_CONFIG_DIR": scratch / "home" / ".jupyter",
-    }
+    folders = _own_folders(scratch / "home", scratch / "tmp", scratch / "log")
     for folder in folders.values():
-        folder.mkdir(parents=True, exist_ok=True)
+        Path(folder).mkdir(parents=True, exist_ok=True)
     return {
         **_kept(os.environ),
-        **{name: str(folder) for name, folder in folders.items()},
+        **folders,
         "PYTHONNOUSERSITE": "1",
         "PYTHONDONTWRITEBYTECODE": "1",
         **extra,
     }
+
+
+def _own_folders(home: Path, temporary: Path, log: Path) -> dict[str, str]:
+    folders = {
+        "HOME": home,
+        "TMPDIR": temporary,
+        "ROS_LOG_DIR": log,
+        "IPYTHONDIR": home / ".ipython",
+        "JUPYTER_CONFIG_DIR": home / ".jupyter",
+    }
+    return {name: str(folder) for name, folder in folders.items()}
 
 
 def _kept(given: Mapping[str, str]) -> dict[str, str]:

@@ -22,7 +22,6 @@ if TYPE_CHECKING:
 
     from autograder.appeals.appeal_file import Appeal
     from autograder.appeals.replaying import Replay
-    from autograder.grading.class_records import Attempt
     from autograder.verdict import Verdict
 
 
@@ -204,10 +203,8 @@ def attempts(folder: Path, student: str, as_json: bool) -> None:
     if as_json:
         print_json({"student": student, "attempts": found})
         return
-    earlier: dict[str, Attempt] = {}
     for attempt in found:
-        print_line(attempt.line(earlier.get(attempt.assignment)))
-        earlier[attempt.assignment] = attempt
+        print_line(attempt.line())
 
 
 @click.command()

@@ -13,10 +13,11 @@ import select
 import signal
 import socket
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 import msgspec
 
+from autograder.boxes.admission import NotAdmitted
 from autograder.boxes.box_connection import NoSandbox
 from autograder.boxes.limit_guards import INTERVAL
 from autograder.boxes.run_limits import Ended, wall_time
@@ -33,11 +34,10 @@ from autograder.messages.json_lines import Hangup, Lines, Silent, TooLong
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from autograder.boxes.boxed_processes import ForkedProcess
-    from autograder.boxes.limit_guards import Guard
-    from autograder.boxes.run_limits import Left, Limits
+    from autograder.boxes.run_limits import Left
     from autograder.execution.executed_cells import NotebookOutputs
     from autograder.execution.kernel_desk_messages import DeskAnswer
+    from autograder.execution.notebook_processes import NotebookProcesses
 
 
 SHELL, IOPUB = 1, 2
@@ -71,31 +71,6 @@ class Channels:
     orders: int
 
 
-class NotebookProcesses(Protocol):
-    """The part of :class:`autograder.execution.notebook_processes.BoxedProcesses` that a kernel needs.
-
-    Attributes:
-        folder: The notebook's folder, in which a folder for the kernel's sockets is made. Only the desk's box sees
-            the sockets. The path must be short, because the name of a Unix socket has at most 107 characters.
-    """
-
-    folder: Path
-    limits: Limits
-
-    @property
-    def guard(self) -> Guard:
-        """Reports if a limit of the box is exceeded."""
-        ...
-
-    def start_kernel(self, channels: Channels) -> ForkedProcess:
-        """Start the kernel's process."""
-        ...
-
-    def start_desk(self, channels: Channels) -> ForkedProcess:
-        """Start the process of the kernel's desk."""
-        ...
-
-
 class Kernel:
     """A running kernel.
 
@@ -121,7 +96,8 @@ class Kernel:
         # A desk that a student's message has taken over may stop reading: sending an order must not block forever.
         own.settimeout(_DESK_SECONDS)
         self._desk_says = own
-        self._lines = Lines(own, MOST_ESCAPED * self._limits.notebook_output_bytes + FURTHER_BYTES)
+        self._longest = MOST_ESCAPED * self._limits.notebook_output_bytes + FURTHER_BYTES
+        self._lines = Lines(own, self._longest)
         given = (shell.fileno(), iopub.fileno(), log, orders.fileno())
         channels = Channels(sockets, secrets.token_hex(32), *given)
         with contextlib.ExitStack() as started:
@@ -256,7 +232,7 @@ class Kernel:
                 return answer.said
             except Silent:
                 pass
-            except (Hangup, ValueError) as error:
+            except (Hangup, NotAdmitted) as error:
                 self._desk_ended(error)
                 return None
             if self._guard.exceeded() and of_living:
@@ -272,10 +248,11 @@ class Kernel:
         Raises:
             Silent: The desk has not answered yet.
             Hangup: The desk has ended, or has sent too much.
-            ValueError: The message is not a valid answer.
+            NotAdmitted: The message is not a valid answer.
         """
         line = self._lines.hear_json(0.0)
-        answer = admitted_answer(line, range(self._answered + 1, self._sent + 1), self._cells)
+        orders = range(self._answered + 1, self._sent + 1)
+        answer = admitted_answer(line, self._longest, orders, self._cells)
         self._answered = answer.number
         for cell, outputs in answer.outputs.items():
             self._outputs.put(cell, msgspec.to_builtins(outputs))

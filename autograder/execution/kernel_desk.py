@@ -20,10 +20,11 @@ from jupyter_client.session import Session
 from zmq.utils.monitor import recv_monitor_message
 
 from autograder.boxes.process_isolation import filter_system_calls
+from autograder.boxes.run_limits import Limits
 from autograder.boxes.seccomp_filter import filter_for_desks
 from autograder.execution.executed_cells import Budget, OutputCollector
 from autograder.execution.jupyter_kernel import IOPUB, SHELL
-from autograder.execution.kernel_desk_messages import DeskAnswer, DeskOrder, Do, Said, Setting
+from autograder.execution.kernel_desk_messages import DeskAnswer, DeskOrder, Do, Said
 from autograder.messages.json_lines import Hangup, Lines
 
 if TYPE_CHECKING:
@@ -53,33 +54,34 @@ def prepare() -> None:
     msgspec.json.encode(DeskAnswer(0, Said.DONE, {}))
 
 
-def run(call: Mapping[str, Any], descriptors: Sequence[int]) -> None:
+def serve(descriptors: Sequence[int], address: str, key: str, limits: Mapping[str, Any]) -> None:
     """Carry out the grader's orders until the grader closes the connection.
 
     Args:
-        call: The fields of :class:`Setting`.
         descriptors: The socket for the orders.
+        address: The first part of the paths of the kernel's sockets; a number follows.
+        key: The key that signs the messages.
+        limits: The fields of the notebook's :class:`Limits`.
     """
-    setting = Setting(**call)
     with contextlib.suppress(Hangup):
-        desk = _Desk(setting, socket.socket(fileno=descriptors[0]))
+        desk = _Desk(address, key, Limits(**limits), socket.socket(fileno=descriptors[0]))
         filter_system_calls(filter_for_desks(), every_thread=True)
         desk.serve()
 
 
 class _Desk:
-    def __init__(self, setting: Setting, orders: socket.socket) -> None:
-        self._setting = setting
-        self._session = Session(key=setting.key.encode(), check_pid=False)
+    def __init__(self, address: str, key: str, limits: Limits, orders: socket.socket) -> None:
+        self._limits = limits
+        self._session = Session(key=key.encode(), check_pid=False)
         self._poller = zmq.Poller()
         context = zmq.Context()
-        self._shell, _ = _connected(context, zmq.DEALER, f"ipc://{setting.address}-{SHELL}")
-        self._iopub, self._kernel_ends = _connected(context, zmq.SUB, f"ipc://{setting.address}-{IOPUB}")
+        self._shell, _ = _connected(context, zmq.DEALER, f"ipc://{address}-{SHELL}")
+        self._iopub, self._kernel_ends = _connected(context, zmq.SUB, f"ipc://{address}-{IOPUB}")
         self._orders, self._order_socket = Lines(orders), orders
         _await_threads(context)
         for source in (self._shell, self._iopub, orders):
             self._poller.register(source, zmq.POLLIN)
-        self._budget = Budget(setting.notebook_output_bytes)
+        self._budget = Budget(limits.notebook_output_bytes)
         self._collectors: dict[int, OutputCollector] = {}
         self._cells: dict[str, int] = {}
         self._changed: set[int] = set()
@@ -108,7 +110,7 @@ class _Desk:
             self._answer(order.number, said)
 
     def _execute(self, order: DeskOrder) -> Said:
-        self._collectors[order.cell] = OutputCollector(self._setting.cell_output_bytes, self._budget)
+        self._collectors[order.cell] = OutputCollector(self._limits.cell_output_bytes, self._budget)
         self._reply, self._idle, self._read = None, False, 0
         content = {
             "code": order.source,
@@ -120,7 +122,7 @@ class _Desk:
         }
         self._current = self._send("execute_request", content)
         self._cells[self._current] = order.cell
-        most = self._setting.flood_bytes
+        most = self._limits.flood_bytes
         if not self._wait(lambda: self._reply is not None or self._read > most):
             return Said.OPEN
         if self._reply is None:
@@ -177,7 +179,7 @@ class _Desk:
     def _take(self, source: zmq.Socket[bytes], frames: list[Any]) -> None:
         size = sum(map(len, frames))
         parts: list[Any] = self._session.feed_identities(frames, copy=False)[1]
-        if source is self._iopub and size > self._setting.message_bytes:
+        if source is self._iopub and size > self._limits.message_bytes:
             request = self._session.unpack(bytes(parts[2])).get("msg_id")
             # A message of an earlier cell does not count for the current one.
             self._read += size if request == self._current else 0

@@ -7,36 +7,18 @@ desk. The grader therefore uses an answer only if it has exactly the form that i
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence  # noqa: TC003  (msgspec reads the annotations)
-from dataclasses import dataclass
 from enum import StrEnum
 from typing import Annotated, Literal
 
 import msgspec
 
+from autograder.boxes.admission import NotAdmitted, admitted
 from autograder.execution.executed_cells import TRACEBACK_LINES
 
 MOST_ESCAPED = 8
 """The maximum number of bytes in an answer for each byte of output. In JSON, a control character takes six bytes."""
 FURTHER_BYTES = 1_000_000
 """The maximum number of bytes in an answer in addition to the outputs."""
-
-
-@dataclass(frozen=True)
-class Setting:
-    """The settings that a desk gets when it starts.
-
-    Attributes:
-        address: The first part of the paths of the kernel's sockets; a number follows.
-        key: The key that signs the messages.
-        message_bytes: This and the following fields are those of :class:`autograder.boxes.run_limits.Limits`.
-    """
-
-    address: str
-    key: str
-    message_bytes: int
-    flood_bytes: int
-    cell_output_bytes: int
-    notebook_output_bytes: int
 
 
 class Do(StrEnum):
@@ -128,21 +110,19 @@ class DeskAnswer(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     outputs: Mapping[int, Sequence[Stream | Display | Result | ErrorOutput]]
 
 
-def admitted_answer(line: bytes, orders: range, cells: Collection[int]) -> DeskAnswer:
+def admitted_answer(line: bytes, most: int, orders: range, cells: Collection[int]) -> DeskAnswer:
     """Check an answer of the desk, and return it.
 
     Args:
         line: The line that the desk sent.
+        most: The maximum size of the line in bytes.
         orders: The numbers of the orders that wait for an answer.
         cells: The indexes of the cells that were executed.
 
     Raises:
-        ValueError: The line is not an answer to one of these orders.
+        NotAdmitted: The line is not an answer to one of these orders.
     """
-    try:
-        answer = msgspec.json.decode(line, type=DeskAnswer)
-    except RecursionError as error:
-        raise ValueError("it is nested too deeply") from error
+    answer: DeskAnswer = admitted(line, DeskAnswer, most)
     if answer.number not in orders or not all(cell in cells for cell in answer.outputs):
-        raise ValueError("it belongs to another order or cell")
+        raise NotAdmitted("it belongs to another order or cell")
     return answer

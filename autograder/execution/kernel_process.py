@@ -25,7 +25,7 @@ from autograder.execution.jupyter_kernel import IOPUB, SHELL
 from autograder.safe_files import HeldFolder
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
 
 _PRELOADED = (
@@ -97,17 +97,23 @@ def _rehearse() -> None:
 
 
 def run(call: Mapping[str, Any], descriptors: Sequence[int]) -> None:
-    """Run a kernel until it is shut down, or run the desk that reads a kernel's messages.
+    """Carry out one of the requests in ``_REQUESTS``.
 
     Args:
-        call: Contains ``key``, with which messages are signed, and ``address``, the first part of the sockets' paths.
-            For a desk, the argument of :func:`autograder.execution.kernel_desk.run`.
-        descriptors: The listening sockets of the shell and iopub channels, and a descriptor for other output. For a
-            desk the socket of its orders.
+        call: Contains ``request``, the name of the request, and ``words``, its further arguments.
+        descriptors: As the request needs them.
     """
-    if len(descriptors) == 1:
-        kernel_desk.run(call, descriptors)
-        return
+    _REQUESTS[call["request"]](descriptors, **call["words"])
+
+
+def _run_kernel(descriptors: Sequence[int], key: str, address: str) -> None:
+    """Run a kernel until it is shut down.
+
+    Args:
+        descriptors: The listening sockets of the shell and iopub channels, and a descriptor for other output.
+        key: The key that signs the messages.
+        address: The first part of the sockets' paths.
+    """
     shell, iopub, log = descriptors
     for standard in (1, 2):
         os.dup2(log, standard)
@@ -117,12 +123,21 @@ def run(call: Mapping[str, Any], descriptors: Sequence[int]) -> None:
     if (numpy_random := sys.modules.get("numpy.random")) is not None:
         numpy_random.seed()
     sys.argv = _arguments()
-    app = _kernel_app(call["key"].encode(), call["address"], {SHELL: shell, IOPUB: iopub})
+    app = _kernel_app(key.encode(), address, {SHELL: shell, IOPUB: iopub})
     app.initialize([])
     app.start()
     # Run the exit hooks, which among other things write the last outputs. An interpreter runs them when it exits, but
     # a fork does not.
     atexit._run_exitfuncs()
+
+
+_REQUESTS: Mapping[str, Callable[..., None]] = {"kernel": _run_kernel, "desk": kernel_desk.serve}
+"""What a fork of this server can be asked to be.
+
+A kernel's desk is not forked by the server of the desks for files (:mod:`autograder.boxes.desk_program`). It needs what
+a kernel has loaded already, ZeroMQ and Jupyter's protocol, on each machine that has kernels. It also needs more system
+calls and a box of its own, which shows the sockets of its kernel only.
+"""
 
 
 def _arguments() -> list[str]:

@@ -9,7 +9,7 @@ import contextlib
 import itertools
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Self
+from typing import TYPE_CHECKING, Any, Self
 
 from autograder.boxes.boxed_processes import ForkedProcess
 from autograder.boxes.limit_guards import BoxGuard, NoGuard
@@ -23,7 +23,6 @@ from autograder.boxes.visible_host import (
     box_environment,
     kernel_environment,
 )
-from autograder.execution.kernel_desk_messages import Setting
 from autograder.messages.judge_messages import SOCKET_VARIABLE
 from autograder.safe_files import write_files
 
@@ -86,7 +85,6 @@ class BoxedProcesses:
     def __init__(self, addresses: Addresses, setting: NotebookSetting) -> None:
         self._addresses, self._setting = addresses, setting
         self.folder, self.limits = setting.folder, setting.limits
-        self._open = contextlib.ExitStack()
         self._judges = itertools.count(1)
         self.shared = self.folder / "run"
         """The folder that the student's box sees, read-only, at the path ``SHARED_FOLDER``."""
@@ -95,23 +93,21 @@ class BoxedProcesses:
         """The path of the judge's socket, as the grader sees it."""
         self._variables = {**setting.variables, SOCKET_VARIABLE: str(SHARED_FOLDER / _JUDGE)}
         self.guard = BoxGuard(self.limits)
-        self._open.callback(self.guard.close)
-        try:
-            self.enclosure = self._open.enter_context(
+        with contextlib.ExitStack() as started:
+            started.callback(self.guard.close)
+            self.enclosure = started.enter_context(
                 Enclosure(
                     addresses.supervisors, self.folder / "box", files=setting.files, guard=self.guard,
                     scratch_bytes=self.limits.scratch_bytes, scratch_inodes=self.limits.scratch_files,
                 )
             )  # fmt: skip
-            self.programs = self.enclosure if not setting.programs else self._open.enter_context(
+            self.programs = self.enclosure if not setting.programs else started.enter_context(
                 Enclosure(
                     addresses.supervisors, self.folder / "programs", guard=self.guard,
                     scratch_bytes=_PROGRAMS_SCRATCH_BYTES, scratch_inodes=_PROGRAMS_SCRATCH_FILES,
                 )
             )  # fmt: skip
-        except BaseException:
-            self._open.close()
-            raise
+            self._open = started.pop_all()
 
     def abandon(self) -> None:
         """End all boxes, and do not wait. Any thread may call this. Threads that wait for a box see that it is lost."""
@@ -122,20 +118,16 @@ class BoxedProcesses:
         """Start the kernel: a child of the fork server enters the student's box."""
         box = self.enclosure.box(_STUDENT, [Bind(self.shared, SHARED_FOLDER)], guarded=True)
         self.guard.watch(box.pid)
-        return self.enclosure.enter(
-            box,
-            self._addresses.kernels,
-            [channels.shell, channels.iopub, channels.log],
-            cwd=WORK,
-            environment=box_environment(self._variables),
-            call={"key": channels.key, "address": str(channels.folder / "k")},
-        )
+        call = _request("kernel", channels, channels.folder)
+        entrance = Entrance(str(WORK), box_environment(self._variables), boxed=True, call=call)
+        descriptors = [channels.shell, channels.iopub, channels.log]
+        return self.enclosure.enter(box, self._addresses.kernels, descriptors, entrance)
 
     def start_desk(self, channels: Channels) -> ForkedProcess:
         """Start the kernel's desk: another child of the same fork server enters a separate box."""
         box = self.enclosure.box("desk", [Bind(channels.folder, DESK_FOLDER)], scratch=False)
         entrance = _desk_entrance(channels, DESK_FOLDER, self.limits, boxed=True)
-        return ForkedProcess(self._addresses.kernels, entrance, [channels.orders], box)
+        return self.enclosure.enter(box, self._addresses.kernels, [channels.orders], entrance)
 
     def start_judge(self, listener: int, orders: int, *, of_programs: bool = False) -> ForkedProcess:
         """Start a judge: a child of the judges' fork server enters a box that is made for it.
@@ -148,14 +140,9 @@ class BoxedProcesses:
         enclosure = self.programs if of_programs else self.enclosure
         name = f"{_JUDGE} {next(self._judges)}"
         box = enclosure.box(name, [Bind(path) for path in self._setting.judges_folders], scratch=False)
-        return enclosure.enter(
-            box,
-            self._addresses.judges,
-            [listener, orders],
-            cwd=HOME,
-            environment=box_environment(self._setting.judges_variables),
-            rlimits=self.limits.of_the_judge,
-        )
+        environment = box_environment(self._setting.judges_variables)
+        entrance = Entrance(str(HOME), environment, boxed=True, rlimits=self.limits.of_the_judge)
+        return enclosure.enter(box, self._addresses.judges, [listener, orders], entrance)
 
     def __enter__(self) -> Self:
         return self
@@ -188,12 +175,9 @@ class UnboxedProcesses:
 
     def start_kernel(self, channels: Channels) -> ForkedProcess:
         """Start the kernel as a fork of the fork server."""
-        entrance = Entrance(
-            cwd=str(self._cwd),
-            environment=kernel_environment(self.folder, self._variables),
-            boxed=False,
-            call={"key": channels.key, "address": str(channels.folder / "k")},
-        )
+        environment = kernel_environment(self.folder, self._variables)
+        call = _request("kernel", channels, channels.folder)
+        entrance = Entrance(str(self._cwd), environment, boxed=False, call=call)
         return self._start(self._addresses.kernels, entrance, [channels.shell, channels.iopub, channels.log])
 
     def start_desk(self, channels: Channels) -> ForkedProcess:
@@ -205,9 +189,7 @@ class UnboxedProcesses:
         """Start a judge as a fork of the judges' fork server."""
         del of_programs
         environment = kernel_environment(self.folder / "of-the-judge", self._judges_variables)
-        entrance = Entrance(
-            cwd=str(self.folder), environment=environment, boxed=False, rlimits=self.limits.of_the_judge
-        )
+        entrance = Entrance(str(self.folder), environment, boxed=False, rlimits=self.limits.of_the_judge)
         return self._start(self._addresses.judges, entrance, [listener, orders])
 
     def _start(self, server: str, entrance: Entrance, descriptors: Sequence[int]) -> ForkedProcess:
@@ -222,22 +204,25 @@ class UnboxedProcesses:
         pass
 
 
+def _request(name: str, channels: Channels, folder: Path, **words: Any) -> dict[str, Any]:
+    """Return what a fork is asked to be. ``folder`` is that of the kernel's sockets, as the fork sees it."""
+    return {"request": name, "words": {"address": str(folder / "k"), "key": channels.key, **words}}
+
+
 def _desk_entrance(channels: Channels, folder: Path, limits: Limits, *, boxed: bool) -> Entrance:
     """Return the settings with which a kernel's desk starts. ``folder`` is that of the sockets, as the desk sees it."""
-    setting = Setting(
-        str(folder / "k"),
-        channels.key,
-        limits.message_bytes,
-        limits.flood_bytes,
-        limits.cell_output_bytes,
-        limits.notebook_output_bytes,
-    )
     return Entrance(
         cwd="/",
         environment=base_environment(),
         boxed=boxed,
         rlimits=limits.of_the_desk,
-        call=asdict(setting),
+        call=_request("desk", channels, folder, limits=asdict(limits)),
         reader_seconds=int(limits.cpu_seconds),
         filters_itself=True,
     )
+
+
+NotebookProcesses = BoxedProcesses | UnboxedProcesses
+"""The two kinds of processes of a notebook. The path of ``folder`` must be short, because the name of a Unix socket has
+at most 107 characters.
+"""

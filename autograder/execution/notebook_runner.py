@@ -20,7 +20,7 @@ import re2
 
 from autograder.boxes.run_limits import Ended, Patient, first_of, wall_time
 from autograder.execution.executed_cells import Cell, CellCheck, CellRun, CellType, Execution, NotebookOutputs
-from autograder.execution.jupyter_kernel import Kernel, KernelFailed, NotebookProcesses
+from autograder.execution.jupyter_kernel import Kernel, KernelFailed
 from autograder.execution.verdicts_without_judge import (
     LIMITS,
     grader_trouble,
@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
     from autograder.boxes.run_limits import Limits
+    from autograder.execution.notebook_processes import NotebookProcesses
 
 
 class Unfinished(RuntimeError):

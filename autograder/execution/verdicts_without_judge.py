@@ -73,6 +73,51 @@ message for the student, and the advice.
 """
 
 
+_LOOP = "Look for a call that waits without a limit or a loop that never ends."
+_CAUSES = {
+    "hung before": (
+        "cell_timed_out",
+        "`{name}` did not end in the cell that begins with “{title}”. This check waited {limit:g} s for it, and it did "
+        "not end here, either.",
+        _LOOP,
+    ),
+    "check too slow": (
+        "cell_timed_out",
+        "The check cell was stopped after {limit:g} s, before the judge had seen enough.",
+        _LOOP,
+    ),
+    "cell too slow": (
+        "cell_timed_out",
+        "The cell that begins with “{title}” was stopped at its time limit, so no check could begin.",
+        "Look for a loop that never ends. To keep a node running, spin it in the background.",
+    ),
+    "cell never ended": (
+        "notebook_timed_out",
+        "The cell that begins with “{title}” did not end within its time limit, nor after an interrupt.",
+        "Look for a loop that never ends. Restart the kernel and run all cells: each must end.",
+    ),
+    "notebook too slow": (
+        "notebook_timed_out",
+        "The notebook's time was over before this check cell could run.",
+        "Look for a loop that never ends. Restart the kernel and run all cells: each must end.",
+    ),
+    "kernel ended": (
+        "kernel_died",
+        "The notebook's kernel ended {place}.",
+        "Look for `exit()`, `quit()` or `os._exit()`, or for something that makes Python crash. Restart the kernel and "
+        "run all cells: that is what the grader does.",
+    ),
+    "not requested": (
+        "not_asked",
+        "The check cell ran, but it never requested its check.",
+        "Make sure that no cell of yours redefines `check`.",
+    ),
+}
+"""For each cause that keeps a judge from its verdict: the key of the diagnosis, what happened, and what the student
+should do now. Errors and the limits of a box have texts of their own.
+"""
+
+
 def zero_points(check: CellCheck, key: str, reason: str, next_step: str, detail: str = "") -> Verdict:
     """Return the verdict of a failed check without criteria.
 
@@ -118,118 +163,74 @@ def without_verdict(
         case Ended.NOT_RUN | Ended.KERNEL_DIED:
             return _kernel_gone(check, run, before)
         case Ended.TIMED_OUT if hung is not None:
-            return zero_points(
-                check,
-                "cell_timed_out",
-                f"`{hung[0]}` did not end in the cell that begins with “{hung[1]}”. "
-                f"This check waited {limit:g} s for it, and it did not end here, either.",
-                "Look for a call that waits without a limit or a loop that never ends.",
-            )
+            return _because(check, "hung before", name=hung[0], title=hung[1], limit=limit)
         case Ended.TIMED_OUT:
-            return zero_points(
-                check,
-                "cell_timed_out",
-                f"The check cell was stopped after {limit:g} s, before the judge had seen enough.",
-                "Look for a call that waits without a limit or a loop that never ends.",
-            )
+            return _because(check, "check too slow", limit=limit)
         case Ended.RAISED:
             return _stopped_by_error(check, run, before)
         case Ended.DONE:
-            return zero_points(
-                check,
-                "not_asked",
-                "The check cell ran, but it never requested its check.",
-                "Make sure that no cell of yours redefines `check`.",
-            )
+            return _because(check, "not requested")
         case limit_exceeded:
-            return _limit_exceeded(check, limit_exceeded, "this check cell")
+            return _limit_exceeded(check, limit_exceeded, None)
+
+
+def _because(check: CellCheck, cause: str, **words: Any) -> Verdict:
+    """Return the verdict for one of ``_CAUSES``. The words, such as a cell's title, are put into its text."""
+    key, reason, next_step = _CAUSES[cause]
+    return zero_points(check, key, reason.format(**words), next_step)
+
+
+def _place(title: str | None) -> str:
+    """Return the words for the cell with this title; for the check cell itself if the title is None."""
+    return "this check cell" if title is None else f"the cell that begins with “{title}”"
+
+
+def _limit_exceeded(check: CellCheck, ended: Ended, title: str | None) -> Verdict:
+    what, next_step = LIMITS[ended]
+    reason = f"In {_place(title)}, the notebook {what}. It was stopped there."
+    return zero_points(check, str(ended), reason, next_step)
 
 
 def _kernel_gone(check: CellCheck, run: CellRun, before: list[tuple[str, CellRun]]) -> Verdict:
     if run.ended is Ended.KERNEL_DIED:
-        place = "while this check cell was running"
-    else:
-        limit = next(((title, cell.ended) for title, cell in before if cell.ended in LIMITS), None)
-        if limit is not None:
-            return _limit_exceeded(check, limit[1], f"the cell that begins with “{limit[0]}”")
-        culprit = next((title for title, cell in before if cell.ended is Ended.KERNEL_DIED), "")
-        if not culprit:
-            return _out_of_time(check, before)
-        place = f"in the cell that begins with “{culprit}”, before this check cell had its turn"
-    return zero_points(
-        check,
-        "kernel_died",
-        f"The notebook's kernel ended {place}.",
-        "Look for `exit()`, `quit()` or `os._exit()`, or for something that makes Python crash. "
-        "Restart the kernel and run all cells: that is what the grader does.",
-    )
-
-
-def _limit_exceeded(check: CellCheck, ended: Ended, place: str) -> Verdict:
-    what, next_step = LIMITS[ended]
-    return zero_points(
-        check, str(ended), f"In {place}, the notebook {what}. It was stopped there.", next_step
-    )
-
-
-def _out_of_time(check: CellCheck, before: list[tuple[str, CellRun]]) -> Verdict:
+        return _because(check, "kernel ended", place="while this check cell was running")
+    for title, cell in before:
+        if cell.ended in LIMITS:
+            return _limit_exceeded(check, cell.ended, title)
+    for title, cell in before:
+        if cell.ended is Ended.KERNEL_DIED:
+            place = f"in {_place(title)}, before this check cell had its turn"
+            return _because(check, "kernel ended", place=place)
     slow = [title for title, cell in before if cell.ended is Ended.TIMED_OUT]
-    reason = "The notebook's time was over before this check cell could run."
-    if slow:
-        reason = f"The cell that begins with “{slow[-1]}” did not end within its time limit, nor after an interrupt."
-    return zero_points(
-        check,
-        "notebook_timed_out",
-        reason,
-        "Look for a loop that never ends. Restart the kernel and run all cells: each must end.",
-    )
+    return _because(check, "cell never ended" if slow else "notebook too slow", title="".join(slow[-1:]))
 
 
 def _stopped_by_error(check: CellCheck, run: CellRun, before: list[tuple[str, CellRun]]) -> Verdict:
     """Return a verdict that names the error that stopped the cell. The cause is often an earlier cell."""
-    title, cause = next(
-        ((title, cell) for title, cell in before if cell.ended in (Ended.RAISED, Ended.TIMED_OUT, *LIMITS)),
-        ("", None),
-    )
-    # An earlier cell that was stopped explains the error here better than the error itself, such as a NameError.
-    if cause is not None and cause.ended in LIMITS:
-        return _limit_exceeded(check, cause.ended, f"the cell that begins with “{title}”")
-    if cause is not None and cause.ended is Ended.TIMED_OUT:
-        return zero_points(
-            check,
-            "cell_timed_out",
-            f"The cell that begins with “{title}” was stopped at its time limit, so no check could begin.",
-            "Look for a loop that never ends. To keep a node running, spin it in the background.",
-        )
     # Of two errors, the first one has to be corrected first: the other may go with it.
-    first = cause or run
-    shortage = next((words for begins, words in _SHORTAGES.items() if first.error.startswith(begins)), None)
-    if shortage is not None:
-        key, what, next_step = shortage
-        place = f"the cell that begins with “{title}”" if cause else "this check cell"
-        return zero_points(
-            check, key, f"In {place}, the notebook {what}.", next_step, _end_of_traceback(first)
-        )
+    stopped = (Ended.RAISED, Ended.TIMED_OUT, *LIMITS)
+    title, first = next((one for one in before if one[1].ended in stopped), (None, run))
+    # An earlier cell that was stopped explains the error here better than the error itself, such as a NameError.
+    if first.ended in LIMITS:
+        return _limit_exceeded(check, first.ended, title)
+    if first.ended is Ended.TIMED_OUT:
+        return _because(check, "cell too slow", title=title)
+    place = _place(title)
+    for begins, (key, what, next_step) in _SHORTAGES.items():
+        if first.error.startswith(begins):
+            reason = f"In {place}, the notebook {what}."
+            return zero_points(check, key, reason, next_step, _end_of_traceback(first))
     if first.error.startswith(_NO_INPUT):
-        begins = f"The cell that begins with “{title}” stopped" if cause else "This check cell stopped"
-        return zero_points(
-            check,
-            ASKS_FOR_INPUT.key,
-            f"{begins}, so the check could not begin. {ASKS_FOR_INPUT.text}",
-            ASKS_FOR_INPUT.next_step,
-        )
-    reason = f"The check could not begin: {_told(run.error)}."
-    if cause:
-        reason = (
-            f"The cell that begins with “{title}” ended with {_told(cause.error)}, "
-            "so the check could not begin."
-        )
+        reason = f"{place[0].upper()}{place[1:]} stopped, so the check could not begin. {ASKS_FOR_INPUT.text}"
+        return zero_points(check, ASKS_FOR_INPUT.key, reason, ASKS_FOR_INPUT.next_step)
     return zero_points(
         check,
         "syntax_error" if first.error.startswith(_SYNTAX_ERRORS) else "crashed",
-        reason,
+        f"The check could not begin: {_told(run.error)}."
+        if title is None
+        else f"The cell that begins with “{title}” ended with {_told(first.error)}, so the check could not begin.",
         "Correct the first cell that shows an error, then restart the kernel and run all cells.",
-        detail=_end_of_traceback(first),
+        _end_of_traceback(first),
     )
 
 

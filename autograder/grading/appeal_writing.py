@@ -12,18 +12,17 @@ from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.grading_errors import (
     GradingError,
     clear_disk_errors,
-    clear_place_errors,
     course_command,
+    write_output,
 )
 from autograder.judge import evidence_files
 from autograder.judge.evidence_files import NoEvidence, unpack
-from autograder.safe_files import write_whole
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
     from pathlib import Path
 
-    from autograder.grading.class_records import Entered, RunCell
+    from autograder.grading.class_records import Attempt, RunCell
 
 
 FOLDER = "appeals"
@@ -51,8 +50,7 @@ def write_appeal(path: Path, student: str, exercise_id: str, to: Path | None = N
     with clear_disk_errors(directory.path), ClassStore(directory) as store:
         content = _content(directory, store, student, exercise_id, task)
         to = (to or directory.path / FOLDER / f"{student}-{exercise_id}.zip").absolute()
-        with clear_place_errors(to, "-o"):
-            write_whole(to, content)
+        write_output(to, content, "-o")
     return to
 
 
@@ -98,7 +96,7 @@ def _before(cells: list[RunCell], exercise_id: str) -> Iterator[AppealedCell]:
 
 def _why_nothing(
     directory: ClassDirectory,
-    entered: Mapping[tuple[str, str], Entered],
+    entered: Mapping[tuple[str, str], Attempt],
     student: str,
     exercise_id: str,
     again: str,

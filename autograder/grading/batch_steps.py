@@ -300,13 +300,11 @@ class Batch:
 
     def _why_again(self, work: Work) -> str:
         """Return why a notebook of a submission is executed again; empty if it is executed for the first time."""
-        earlier = [
-            one.made_from for one in self._store.attempts(work.key[0]) if one.assignment == work.key[1]
-        ]
-        if not earlier:
+        earlier = self._store.last_key(work.submission)
+        if earlier is None:
             return ""
         nothing = "--again was given" if self._asked.again else "its result was not kept"
-        return work.made_from.changes_since(earlier[-1]) or nothing
+        return work.made_from.changes_since(earlier) or nothing
 
     def _take_stored_results(self, work: Work) -> None:
         stored = self._store.results(*work.key)

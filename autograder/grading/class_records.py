@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import zlib
-from dataclasses import dataclass
-from datetime import datetime  # noqa: TC003  (msgspec reads the annotations)
+from collections.abc import Mapping  # noqa: TC003  (msgspec reads the annotations)
+from dataclasses import dataclass, field
+from datetime import datetime  # noqa: TC003  (the same)
 from typing import TYPE_CHECKING, Self
 
 import msgspec
@@ -62,13 +63,18 @@ class ResultKey:
 
 @dataclass(frozen=True)
 class Attempt:
-    """One grading of a submission.
+    """One grading of a submission, with everything by which a run recognizes that the gradebook contains its results.
 
     Attributes:
         at: The time of the grading, in UTC.
         made_from: The key of the results.
         course: The version of the course that judged the submission.
         rows: The judge's results, as rows of the report.
+        earlier: The key of the student's attempt before this one at the same assignment; None if this is the first, or
+            if only the attempts in the gradebook were asked for.
+        tasks: The hash of each notebook's task, from :meth:`autograder.grading.grading_task.Task.key`.
+        scores: The points of each check cell, by notebook and grade_id.
+        shown: The hash of the gradebook's entry from which the feedback pages were made; empty without pages.
     """
 
     at: datetime
@@ -76,15 +82,15 @@ class Attempt:
     made_from: ResultKey
     course: str
     rows: tuple[Row, ...]
+    earlier: ResultKey | None = None
+    tasks: Mapping[str, str] = field(default_factory=dict)
+    scores: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    shown: str = ""
 
-    def line(self, earlier: Attempt | None) -> str:
-        """Return the attempt as a line of text.
-
-        Args:
-            earlier: The student's attempt before this one at the same assignment; None if this is the first.
-        """
+    def line(self) -> str:
+        """Return the attempt as a line of text."""
         score, most = sum(row.score for row in self.rows), sum(row.max_score for row in self.rows)
-        why = self.made_from.changes_since(earlier.made_from) if earlier else "first attempt"
+        why = self.made_from.changes_since(self.earlier) if self.earlier else "first attempt"
         words = [
             f"{row.exercise} {row.score:g}" + (f" ({row.diagnosis})" if row.diagnosis else "")
             for row in self.rows
@@ -94,21 +100,6 @@ class Attempt:
             f"[{why or 'nothing changed'}, course {self.course[:8]}]"
         )
 
-
-@dataclass(frozen=True)
-class Entered(Attempt):
-    """An attempt with everything by which a run recognizes that the gradebook contains its results.
-
-    Attributes:
-        tasks: The hash of each notebook's task, from :meth:`autograder.grading.grading_task.Task.key`.
-        scores: The points of each check cell, by notebook and grade_id.
-        shown: The hash of the gradebook's entry from which the feedback pages were made; empty without pages.
-    """
-
-    tasks: dict[str, str]
-    scores: dict[str, dict[str, float]]
-    shown: str = ""
-
     def is_in(self, entry: SubmissionEntry) -> bool:
         """Return True if a gradebook entry still contains the points that were entered."""
         return all(
@@ -116,6 +107,27 @@ class Entered(Attempt):
             for notebook, entered in self.scores.items()
             for name, score in entered.items()
         )
+
+
+@dataclass(frozen=True)
+class AttemptProgress:
+    """A student's points from the judge in the first and the last attempt at an assignment.
+
+    Attributes:
+        student: The student's id.
+        assignment: The assignment's name.
+        attempts: The number of different submissions that were graded.
+        first: The points of the first attempt.
+        last: The points of the last attempt.
+        max_score: The maximum points that the judge gives.
+    """
+
+    student: str
+    assignment: str
+    attempts: int
+    first: float
+    last: float
+    max_score: float
 
 
 @dataclass(frozen=True)

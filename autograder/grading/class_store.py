@@ -13,12 +13,13 @@ import contextlib
 import sqlite3
 from dataclasses import replace
 from datetime import UTC, datetime
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self, TypeVar
 
 import msgspec
 
 from autograder.execution.executed_cells import Execution
-from autograder.grading.class_records import Attempt, Entered, KeptEvidence, Origin, ResultKey
+from autograder.grading.class_records import Attempt, AttemptProgress, KeptEvidence, Origin, ResultKey
 from autograder.grading.grading_errors import DiskFull, StoreTrouble, is_disk_full, said_by_database
 from autograder.grading.store_tables import bring_up_to_date
 from autograder.grading.table.rows import Row
@@ -31,6 +32,9 @@ if TYPE_CHECKING:
     from autograder.grading.grading_task import Task
 
 NAME = "class.db"
+_SQL = Path(__file__).with_name("class_queries.sql").read_text(encoding="utf-8")
+_QUERIES = dict(part.split("\n", 1) for part in _SQL.split("-- query: ")[1:])
+"""The queries in ``class_queries.sql`` by name."""
 _NOT_ENTERED = (
     "task NOT IN (SELECT value FROM attempt AS a, json_each(CAST(a.tasks AS TEXT))"
     " WHERE a.entered AND a.student = evidence.student AND a.assignment = evidence.assignment)"
@@ -146,7 +150,7 @@ class ClassStore:
 
     # -- attempts
 
-    def enter(self, submission: Submission, attempt: Entered, *, is_final: bool = True) -> None:
+    def enter(self, submission: Submission, attempt: Attempt, *, is_final: bool = True) -> None:
         """Record an attempt, whose results are now in the gradebook.
 
         If ``is_final`` is False, the next run grades the submission again.
@@ -178,27 +182,23 @@ class ClassStore:
         with self._step() as book:
             book.executemany(_TAKE_BACK, ((one.student, one.assignment) for one in submissions))
 
-    def entered(self) -> dict[tuple[str, str], Entered]:
-        """Return the results that were last entered into the gradebook, by student and assignment."""
-        return {(student, one.assignment): one for student, one in self._attempts("entered")}
+    def entered(self) -> dict[tuple[str, str], Attempt]:
+        """Return the attempts whose results are in the gradebook, by student and assignment."""
+        found = {tuple(row[:2]): _attempt(*row) for row in self._rows(_QUERIES["entered"])}
+        return {key: attempt for key, attempt in found.items() if attempt}
 
     def attempts(self, student: str) -> list[Attempt]:
         """Return all attempts of a student, oldest first."""
-        found = self._attempts("student = ?", student)
-        return [Attempt(one.at, one.assignment, one.made_from, one.course, one.rows) for _, one in found]
+        return list(filter(None, (_attempt(*row) for row in self._rows(_QUERIES["attempts"], student))))
 
-    def _attempts(self, condition: str, *names: str) -> Iterator[tuple[str, Entered]]:
-        forms: tuple[Any, ...] = (ResultKey, tuple[Row, ...], dict[str, str], dict[str, dict[str, float]])
-        for student, at, assignment, course, shown, *blobs in self._rows(
-            "SELECT student, at, assignment, course, shown, made_from, report, tasks, scores FROM attempt"
-            f" WHERE {condition} ORDER BY number",
-            *names,
-        ):
-            fields: list[Any] = list(map(_decoded, blobs, forms))
-            if None not in fields:
-                key, rows, tasks, scores = fields
-                when, own = datetime.fromisoformat(at), tuple(replace(row, student=student) for row in rows)
-                yield student, Entered(when, assignment, key, course, own, tasks, scores, shown)
+    def last_key(self, submission: Submission) -> ResultKey | None:
+        """Return the key of the newest attempt of a submission; None if it was never graded."""
+        rows = self._rows(_QUERIES["last_key"], submission.student, submission.assignment)
+        return _decoded(rows[0][0], ResultKey) if rows else None
+
+    def progress(self) -> list[AttemptProgress]:
+        """Return the progress in each submission that changed between attempts, the greatest improvement first."""
+        return [AttemptProgress(*row) for row in self._rows(_QUERIES["progress"])]
 
     def rename(self, ids: Mapping[str, str]) -> None:
         """Give students other ids. If a student had both ids, the results under the new one stay.
@@ -235,10 +235,12 @@ class ClassStore:
         """Return the names of the runs, oldest first."""
         return [name for (name,) in self._rows("SELECT name FROM run ORDER BY name")]
 
-    def run(self, name: str) -> tuple[Row, ...] | None:
-        """Return the table of results after a run; None if no run has this name."""
-        rows = self._rows("SELECT report FROM run WHERE name = ?", name)
-        return _decoded(rows[0][0], tuple[Row, ...]) if rows else None
+    def differences(self, before: str, after: str) -> list[tuple[Any, ...]]:
+        """Return the results that differ between two runs.
+
+        Each is a student, an assignment, an exercise, the points before and after, and the diagnosis before and after.
+        """
+        return self._rows(_QUERIES["differences"], before, after)
 
     # -- sources
 
@@ -313,6 +315,29 @@ class ClassStore:
             if isinstance(error, sqlite3.Error):
                 raise StoreTrouble(self._path, said_by_database(error)) from error
             raise
+
+
+def _attempt(
+    student: str,
+    assignment: str,
+    at: str,
+    course: str,
+    shown: str,
+    key: bytes,
+    report: bytes,
+    tasks: bytes,
+    scores: bytes,
+    earlier: bytes | None,
+) -> Attempt | None:
+    """Return an attempt; None if its data is damaged. The rows may have an earlier id of the student."""
+    made_from, rows = _decoded(key, ResultKey), _decoded(report, tuple[Row, ...])
+    hashes, points = _decoded(tasks, dict[str, str]), _decoded(scores, dict[str, dict[str, float]])
+    if made_from is None or rows is None or hashes is None or points is None:
+        return None
+    own = tuple(replace(row, student=student) for row in rows)
+    before = _decoded(earlier or b"", ResultKey)
+    when = datetime.fromisoformat(at)
+    return Attempt(when, assignment, made_from, course, own, before, hashes, points, shown)
 
 
 def _decoded(

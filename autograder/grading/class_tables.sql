@@ -10,7 +10,7 @@ CREATE TABLE IF NOT EXISTS evidence (
     checks BLOB NOT NULL, cells BLOB NOT NULL,
     PRIMARY KEY (student, assignment, notebook, task)
 );
--- Each grading of a submission; see the class Entered. The column entered is 1 if the gradebook contains the results of
+-- Each grading of a submission; see the class Attempt. The column entered is 1 if the gradebook contains the results of
 -- this attempt: of each submission one attempt at most. Attempts are only added, never changed or removed; only the id of
 -- their student, entered and shown may change.
 CREATE TABLE IF NOT EXISTS attempt (

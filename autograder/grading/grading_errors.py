@@ -8,6 +8,7 @@ import shlex
 from typing import TYPE_CHECKING
 
 from autograder.command_name import COMMAND
+from autograder.safe_files import write_whole
 from environment.installation import IS_CLONE, ROOT, installing
 
 if TYPE_CHECKING:
@@ -182,9 +183,8 @@ def clear_disk_errors(path: Path) -> Iterator[None]:
         raise
 
 
-@contextlib.contextmanager
-def clear_place_errors(path: Path, option: str) -> Iterator[None]:
-    """If an output file cannot be written in the block, raise an error with a message for an instructor.
+def write_output(path: Path, data: bytes, option: str) -> None:
+    """Write a file at a path that an instructor chose.
 
     Args:
         path: The file to write.
@@ -195,7 +195,7 @@ def clear_place_errors(path: Path, option: str) -> Iterator[None]:
         OSError: The disk failed; :func:`clear_disk_errors` has messages for that.
     """
     try:
-        yield
+        write_whole(path, data)
     except OSError as error:
         if is_disk_full(error) or isinstance(error, PermissionError):
             raise

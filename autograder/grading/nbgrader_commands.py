@@ -150,8 +150,7 @@ class SubmissionExporter(NotebookExporter):
     """The exporter for ``autograde`` in a class's configuration. Making it replaces nbgrader's converter."""
 
     def __init__(self, *args: Any, **kw: Any) -> None:
-        initialise: Any = super().__init__
-        initialise(*args, **kw)
+        super().__init__(*args, **kw)
         _take_over(self.parent)
 
 
@@ -159,8 +158,7 @@ class FeedbackExporter(PageExporter):
     """The exporter for ``generate_feedback`` in a class's configuration. Making it replaces nbgrader's converter."""
 
     def __init__(self, *args: Any, **kw: Any) -> None:
-        initialise: Any = super().__init__
-        initialise(*args, **kw)
+        super().__init__(*args, **kw)
         _take_over(self.parent)
 
 

@@ -23,7 +23,7 @@ from nbgrader.utils import compute_checksum, determine_grade, is_grade, is_solut
 from autograder.boxes.run_limits import Ended
 from autograder.cards.html_rendering import card_bundle
 from autograder.execution.executed_cells import Cell, CellCheck, CellRun, CellType, Execution
-from autograder.grading.class_records import Entered
+from autograder.grading.class_records import Attempt
 from autograder.grading.classes import gradebook_writing
 from autograder.grading.classes.class_directory import SUFFIX
 from autograder.grading.classes.gradebook_reading import read_entry
@@ -106,7 +106,9 @@ class Writer:
         tasks = {task.notebook: task.key() for task, _ in work.pairs}
         scores = {task.notebook: scores_of(task, execution) for task, execution in work.pairs}
         now, course = datetime.now(tz=UTC), work.pairs[0][0].course
-        attempt = Entered(now, submission.assignment, work.made_from, course, rows, tasks, scores)
+        attempt = Attempt(
+            now, submission.assignment, work.made_from, course, rows, tasks=tasks, scores=scores
+        )
         # If the grader itself failed, the attempt is kept, but the submission is not entered as done: it runs again.
         self._store.enter(submission, attempt, is_final=not any(one.trouble for _, one in work.pairs))
 

@@ -17,7 +17,12 @@ SERVER = "python -P -m autograder.boxes.fork_server"
     ("words", "folder", "now", "role"),
     [
         ("python -P -m autograder.grading.running.order_executor /x 2 boxed", "/", "grader", "executor"),
-        (f"{SERVER} inside autograder.grading.rebuilding.notebook_parsing 4", "", "grader", "desks"),
+        (
+            f"{SERVER} inside autograder.boxes.desk_program 4 list=autograder.grading.lists",
+            "",
+            "grader",
+            "desks",
+        ),
         (f"{SERVER} beside autograder.boxes.box_supervisor 5", "/", "executor", "boxes"),
         (f"{SERVER} inside autograder.judge.controlled_judge 5", "/", "executor", "judges"),
         (f"{SERVER} inside autograder.execution.program_process 5", "/", "executor", "programs"),

@@ -81,12 +81,12 @@ def kill_worker(supervisors: ForkServer, worker: subprocess.Popen[bytes]) -> Non
 
 
 def kill_supervisor(supervisors: ForkServer, worker: subprocess.Popen[bytes]) -> None:
-    for child in psutil.Process(supervisors.pid).children():
+    for child in psutil.Process(supervisors._process.pid).children():
         child.kill()
 
 
 def kill_fork_server(supervisors: ForkServer, worker: subprocess.Popen[bytes]) -> None:
-    os.kill(supervisors.pid, signal.SIGKILL)
+    os.kill(supervisors._process.pid, signal.SIGKILL)
 
 
 @pytest.mark.parametrize("kill", [kill_worker, kill_supervisor, kill_fork_server])

@@ -169,7 +169,7 @@ def test_verdicts_and_other_students_are_out_of_its_reach(hostile: Addresses, tm
 @pytest.mark.parametrize("document", CRAFTED, ids=range(len(CRAFTED)))
 def test_a_document_that_no_kernel_brings_about_is_refused(document: bytes) -> None:
     with pytest.raises(ValueError, match=r"."):
-        admitted_answer(document, range(1, 2), {0})
+        admitted_answer(document, 1_000_000, range(1, 2), {0})
 
 
 def test_ten_thousand_mutated_answers_are_refused_or_harmless() -> None:
@@ -192,7 +192,7 @@ def test_ten_thousand_mutated_answers_are_refused_or_harmless() -> None:
             place = chance.randrange(len(document))
             document[place : place + chance.randint(0, 3)] = chance.randbytes(chance.randint(0, 3))
         try:
-            answer = admitted_answer(bytes(document), range(1, 2), {0})
+            answer = admitted_answer(bytes(document), 1_000_000, range(1, 2), {0})
         except ValueError:
             refused += 1
             continue

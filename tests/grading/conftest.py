@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-import functools
 import shutil
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from autograder.boxes.reading_desks import KeptDesk
 from autograder.grading import course_version
 from autograder.grading.course_version import CourseFiles
-from autograder.grading.rebuilding import submission_desk
 
 sys.path.insert(0, str(Path(__file__).parent))
 sys.path.insert(0, str(Path(__file__).parent / "collecting"))
@@ -23,12 +22,10 @@ from tiny_class import COURSE, FakeEngine, TinyClass, make_tiny_class
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from autograder.boxes.reading_desks import Desk, KeptDesk
-
 SMALL = 100_000
 """Bytes of a file that is kept in the memory of the tests, with what it holds."""
-_document_of = submission_desk.document_of
-_once = functools.lru_cache(maxsize=300)(submission_desk.document_of)
+_once: dict[bytes, Any] = {}
+"""What a desk answered about the bytes of a notebook."""
 
 
 @pytest.fixture(scope="session")
@@ -68,11 +65,17 @@ def _the_course_stands_still() -> Iterator[None]:
 def each_file_is_read_once() -> Iterator[None]:
     """A desk knows nothing but the bytes of a file, so it returns the same for the same bytes."""
 
-    def document(asked: Desk | KeptDesk, data: bytes) -> bytes:
-        return (_once if len(data) < SMALL else _document_of)(asked, data)
+    read = KeptDesk.read
+
+    def read_once(self: KeptDesk, request: str, data: bytes, kind: Any, **words: Any) -> Any:
+        if request != "submission" or len(data) > SMALL:
+            return read(self, request, data, kind, **words)
+        if data not in _once:
+            _once[data] = read(self, request, data, kind, **words)
+        return _once[data]
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(submission_desk, "document_of", document)
+        patch.setattr(KeptDesk, "read", read_once)
         yield
 
 

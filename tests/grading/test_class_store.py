@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import itertools
 import os
 import random
 import signal
@@ -22,11 +23,12 @@ from autograder.boxes.run_limits import Ended, Limits
 from autograder.cli import cli
 from autograder.execution.executed_cells import Cell, CellCheck, CellRun, Execution
 from autograder.grading import class_store, store_tables
-from autograder.grading.class_records import Attempt, Entered, Origin, ResultKey
+from autograder.grading.class_records import Attempt, AttemptProgress, Origin, ResultKey
 from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.class_directory import ClassDirectory, Submission
 from autograder.grading.grading_errors import DiskFull, StoreTrouble
 from autograder.grading.grading_task import Task
+from autograder.grading.table import rows
 from autograder.grading.table.rows import Row
 from autograder.verdict import State, Verdict
 from tests import hasty_disk
@@ -59,15 +61,27 @@ def submission(student: str = "ada", assignment: str = "lab") -> Submission:
     return Submission(student, assignment, Path("submitted", student, assignment))
 
 
-def entered(number: int = 0, student: str = "ada", assignment: str = "lab") -> Entered:
-    rows = (Row(student, assignment, "lab.one", 2, 4, "failed"),)
+def entered(number: int = 0, student: str = "ada", assignment: str = "lab") -> Attempt:
+    own = (Row(student, assignment, "lab.one", 2, 4, "failed"),)
     task = replace(TASK, student=student, assignment=assignment)
     scores = {"lab": {"lab-one": 2.0}}
-    return Entered(AT, assignment, ResultKey(f"work {number}"), "v1", rows, {"lab": task.key()}, scores)
+    key = ResultKey(f"work {number}")
+    return Attempt(AT, assignment, key, "v1", own, tasks={"lab": task.key()}, scores=scores)
 
 
-def attempt(number: int = 0) -> Attempt:
-    return Attempt(AT, "lab", ResultKey(f"work {number}"), "v1", ROWS)
+def attempts(*numbers: int) -> list[Attempt]:
+    """The attempts of ada with these numbers, as a list of her attempts has them."""
+    keys = [None, *(ResultKey(f"work {number}") for number in numbers)]
+    return [
+        Attempt(AT, "lab", key, "v1", ROWS, earlier)
+        for earlier, key in itertools.pairwise(keys)
+        if key is not None
+    ]
+
+
+def attempts_of(store: ClassStore) -> list[Attempt]:
+    """The attempts of ada without what a run recognizes them by."""
+    return [replace(one, tasks={}, scores={}, shown="") for one in store.attempts("ada")]
 
 
 def change(store: ClassStore, statement: str) -> None:
@@ -111,7 +125,7 @@ def test_an_unknown_class_has_an_empty_answer_to_everything_and_no_file(store: C
         [],
     )
     assert (store.evidence("ada", "lab.one"), store.origins(), store.graded_cells("x")) == (None, {}, b"")
-    assert store.run("yesterday") is None
+    assert (store.last_key(submission()), store.progress(), store.differences("a", "b")) == (None, [], [])
     assert not file_of(store).exists()
     file_of(store).touch()  # whoever made it was killed before the first step was done
     assert store.entered() == {}
@@ -171,7 +185,7 @@ def test_what_was_entered_is_known_with_its_attempt_until_it_is_taken_back(store
     assert store.entered()["ada", "lab"].shown == "", "its pages say something else"
     store.forget_entered([submission()])
     store.note_shown(submission(), "pages")
-    assert (store.entered(), store.attempts("ada")) == ({}, [attempt(1), attempt(2), attempt(3)])
+    assert (store.entered(), attempts_of(store)) == ({}, attempts(1, 2, 3))
 
 
 def test_attempts_are_added_and_neither_changed_nor_removed(store: ClassStore) -> None:
@@ -183,7 +197,7 @@ def test_attempts_are_added_and_neither_changed_nor_removed(store: ClassStore) -
     ):
         with pytest.raises(sqlite3.IntegrityError, match="attempts stay"):
             change(store, statement)
-    assert store.attempts("ada") == [attempt()]
+    assert attempts_of(store) == attempts(0)
 
 
 def test_the_last_runs_are_kept_and_none_twice(store: ClassStore) -> None:
@@ -192,10 +206,57 @@ def test_the_last_runs_are_kept_and_none_twice(store: ClassStore) -> None:
             store.keep_run("v1", [replace(ROWS[0], score=number)])
     names = store.runs()
     assert (len(names), names) == (class_store._RUNS, sorted(names))
-    assert store.run(names[-1]) == (replace(ROWS[0], score=class_store._RUNS + 2),)
-    assert store.run(names[0]) == (replace(ROWS[0], score=3),)
+    assert store.differences(names[0], names[-1]) == [
+        ("ada", "lab", "lab.one", 3, class_store._RUNS + 2, "", "")
+    ]
     store.keep_run("v2", [replace(ROWS[0], score=class_store._RUNS + 2)])
     assert store.runs()[-1] > names[-1], "of another version of the course it is another table"
+
+
+def test_a_difference_has_the_points_that_are_shown(store: ClassStore) -> None:
+    """The store's query and the class Row decide alike whether a row has points."""
+    states = (*rows.NOTHING_JUDGED, State.PASSED, rows.WAITS, rows.BY_HAND, rows.LATE)
+    some = [
+        Row(student, "lab", f"{state} {by_hand} {extra}", 3, 4, str(state), by_hand=by_hand, extra=extra)
+        for student, state, by_hand, extra in itertools.product(
+            ("ada", "ben"), states, (None, 0.0, 3.0), (0.0, 0.5)
+        )
+    ]
+    fewer = [replace(row, score=1) for row in some]
+    for table in ([], some, [replace(row, diagnosis="slow") for row in some], fewer, some[1:]):
+        store.keep_run("v1", table)
+    empty, first, slow, less, last = store.runs()
+    given = {(row.student, row.assignment, row.exercise): row for row in some}
+    expected = [(*key, None, row.shown_score, "", "") for key, row in given.items() if not row.is_blank]
+    assert store.differences(empty, first) == sorted(expected)
+    assert {one[5:] for one in store.differences(first, slow)} == {("", "slow")}
+    assert store.differences(first, first) == []
+    assert {one[3:5] for one in store.differences(first, less)} == {(3, 1)}
+    assert {one[3:5] for one in store.differences(less, first)} == {(1, 3)}
+    gone = some[0]
+    assert [one[:3] for one in store.differences(first, last)] == [
+        key for key in [(gone.student, "lab", gone.exercise)] if not gone.is_blank
+    ]
+
+
+def test_the_progress_is_that_of_changed_work_with_one_version_of_the_course(store: ClassStore) -> None:
+    for number, points, course in ((0, 9, "v0"), (1, 1, "v1"), (1, 2, "v1"), (2, 4, "v1")):
+        own = (replace(ROWS[0], score=points), replace(ROWS[0], exercise="lab.two", score=0.5, max_score=1))
+        store.enter(submission(), replace(entered(number), rows=own, course=course))
+        store.enter(submission("ben"), replace(entered(points, "ben"), rows=own, course=course))
+        store.enter(submission("eve"), replace(entered(0, "eve"), rows=own, course=course))
+    assert store.progress() == [
+        AttemptProgress("ada", "lab", 2, 1.5, 4.5, 5),
+        AttemptProgress("ben", "lab", 3, 1.5, 4.5, 5),
+    ]
+    assert store.last_key(submission()) == ResultKey("work 2")
+
+
+def test_the_attempt_before_is_that_at_the_same_assignment(store: ClassStore) -> None:
+    for number, assignment in enumerate(("lab", "quiz", "lab", "quiz")):
+        store.enter(submission(assignment=assignment), entered(number, assignment=assignment))
+    keys = [None, None, ResultKey("work 0"), ResultKey("work 1")]
+    assert [one.earlier for one in store.attempts("ada")] == keys
 
 
 def test_of_a_student_with_two_ids_the_new_one_keeps_its_grade(store: ClassStore) -> None:
@@ -259,13 +320,14 @@ def test_a_damaged_result_counts_as_none_and_the_others_stay(store: ClassStore, 
     assert store.results("ada", "lab")[two.key()] == DONE
 
 
-@pytest.mark.parametrize("column", ["tasks", "scores", "report"])
+@pytest.mark.parametrize("column", ["tasks", "scores", "report", "made_from"])
 def test_a_damaged_entry_counts_as_none_and_the_others_stay(store: ClassStore, column: str) -> None:
     for student in ("ada", "ben"):
         store.enter(submission(student), entered(student=student))
     change(store, "DROP TRIGGER not_changed")
     change(store, f"UPDATE attempt SET {column} = 'x' WHERE student = 'ada'")
     assert store.entered() == {("ben", "lab"): entered(student="ben")}
+    assert (store.progress(), len(store.attempts("ben"))) == ([], 1)
 
 
 @pytest.mark.parametrize(
@@ -354,7 +416,7 @@ def dump_of(path: Path) -> list[str]:
 def test_a_file_of_an_earlier_course_is_used_on_and_a_copy_stays(store: ClassStore, form: int) -> None:
     before = make_earlier(store, form)
     assert store.entered() == {("ada", "lab"): replace(entered(), shown="pages")}
-    assert (store.attempts("ada"), len(store.runs())) == ([attempt(), attempt(1)], 1)
+    assert (attempts_of(store), len(store.runs())) == (attempts(0, 1), 1)
     with contextlib.closing(sqlite3.connect(file_of(store))) as book:
         assert book.execute("PRAGMA user_version").fetchone() == (store_tables.FORM,)
     copy = file_of(store).with_name(f"class.db.version-{form}")
@@ -556,7 +618,7 @@ def test_a_full_disk_is_said_and_loses_nothing(store: ClassStore) -> None:
         with pytest.raises(DiskFull):
             store.keep(tasks[kept], large)
         assert store.results("ada", "lab").keys() == {task.key() for task in tasks[:kept]}
-        assert (store.entered(), store.attempts("ada")) == ({("ada", "lab"): entered()}, [attempt()])
+        assert (store.entered(), attempts_of(store)) == ({("ada", "lab"): entered()}, attempts(0))
         filler.unlink()
         store.keep(tasks[kept], large)
         assert kept

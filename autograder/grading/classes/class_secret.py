@@ -1,9 +1,7 @@
-"""The secret of a class, from which the seed of each student's random inputs is derived."""
+"""The secret of a class, from which :func:`autograder.grading.tasks.task_making.seed_for` derives students' seeds."""
 
 from __future__ import annotations
 
-import hashlib
-import hmac
 import os
 import secrets
 from typing import TYPE_CHECKING
@@ -37,15 +35,3 @@ def read_secret(path: Path) -> bytes:
     if len(secret) != _SECRET_BYTES:
         raise ValueError(f"{path} does not hold {_SECRET_BYTES} bytes")
     return secret
-
-
-def seed_for(secret: bytes, student: str, assignment: str, notebook: str, work: str) -> str:
-    """Return the seed of one student's notebook. The judge derives the seed of each exercise from it.
-
-    Args:
-        work: A hash of the submitted cells, so that a changed submission gets different inputs. Otherwise a student
-            could copy inputs from the feedback into the next submission.
-    """
-    # The hashed message contains the lengths of the names, so that ("ab", "c") and ("a", "bc") give different seeds.
-    message = "".join(f"{len(part)}:{part};" for part in (student, assignment, notebook, work))
-    return hmac.new(secret, message.encode(), hashlib.sha256).hexdigest()[:32]

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 
 from autograder import standard_output
 from autograder.grading.classes.class_directory import ClassDirectory
+from autograder.grading.collecting.archive_unpacking import is_archive
 from autograder.grading.collecting.collected_csv import Table
 from autograder.grading.collecting.collected_files import SHORT_KEY, Arrival, Delivery, Inbox, LineState
-from autograder.grading.collecting.download_desk_process import is_archive
 from autograder.grading.collecting.downloaded_files import (
     Archives,
     File,
@@ -20,7 +20,7 @@ from autograder.grading.collecting.downloaded_files import (
     without_sandbox,
 )
 from autograder.grading.collecting.file_owners import NamedSource, StudentOf
-from autograder.grading.collecting.file_to_grade import ClassFolders, decide
+from autograder.grading.collecting.file_to_grade import decide
 from autograder.grading.collecting.inbox_lines import lines_of
 from autograder.grading.collecting.list_times import NO_LIST, entries_of, in_utc
 from autograder.grading.collecting.submitted_file_names import Pattern
@@ -175,8 +175,7 @@ class _Collecting:
         self._submitted.take_in()
         delivery = self._receive(sources)
         before = {one.label for one in self._table.waiting()}
-        folders = ClassFolders(self._directory, self._inbox, self._submitted)
-        lines = decide(lines_of(self._directory, self._inbox, self._roster, edits), folders)
+        lines = decide(lines_of(self._directory, self._inbox, self._roster, edits), self._submitted)
         results = self._submitted.bring(lines)
         lines = [
             replace(one, state=LineState.NOT_PLACED, reason=results[one.place][1])

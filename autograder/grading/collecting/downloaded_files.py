@@ -2,7 +2,7 @@
 
 A desk, a process in a box, unpacks each archive and parses each list, so that this process parses none of their bytes.
 For an archive, the desk writes all files, within limits, into one file on the disk, as
-:mod:`autograder.grading.collecting.download_desk_process` describes. This module treats each name in it as text only,
+:mod:`autograder.grading.collecting.archive_unpacking` describes. This module treats each name in it as text only,
 reads bytes up to the size limit of a notebook, and gives a reason for each file that cannot be taken.
 """
 
@@ -13,24 +13,19 @@ import errno
 import functools
 import itertools
 import os
-import signal
 from collections import Counter
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, NamedTuple, Self
 
-import msgspec
-
+from autograder.boxes.admission import NotAdmitted, admitted
 from autograder.boxes.box_connection import ChannelClosed
-from autograder.boxes.reading_desks import KeptDesk, answer_in, in_memory
+from autograder.boxes.reading_desks import in_memory
 from autograder.boxes.sandbox import why_impossible
+from autograder.grading.collecting.archive_unpacking import LONGEST_LINE, LONGEST_NAME, is_left_by_a_program
 from autograder.grading.collecting.collected_files import Arrival
-from autograder.grading.collecting.download_desk_process import (
-    LONGEST_LINE,
-    LONGEST_NAME,
-    is_left_by_a_program,
-)
 from autograder.grading.collecting.lms_lists import ListEntry
+from autograder.grading.rebuilding.file_desk import desk
 from autograder.grading.rebuilding.submitted_notebook import MAX_BYTES, UnreadableSubmission, read_bytes
 from autograder.safe_files import name_as_text, opened, unnamed_file
 
@@ -38,7 +33,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
 
-desk = KeptDesk("autograder.grading.collecting.download_desk_process", attempts=1)
 _CPU_SECONDS = 200
 """The limit in seconds of the processor time for one archive, or one list."""
 
@@ -60,14 +54,13 @@ def read_list(name: str, data: bytes) -> list[ListEntry] | None:
         name: The file's name.
         data: The bytes of the file.
     """
-    with in_memory(data) as source, in_memory() as answer:
-        if _ask(source, answer, _LARGEST_LIST, name=name):
-            return None
-        document = answer_in(answer, _LARGEST_LIST)
     try:
-        return msgspec.json.decode(document, type=list[ListEntry] | None)
-    except msgspec.MsgspecError:
+        entries: list[ListEntry] | None = desk.read(
+            "list", data, list[ListEntry] | None, most=_LARGEST_LIST, seconds=_CPU_SECONDS, name=name
+        )
+    except (NotAdmitted, ChannelClosed):
         return None
+    return entries
 
 
 class NotTaken(ValueError):
@@ -212,10 +205,12 @@ def _unpacked(
 ) -> Iterator[tuple[tuple[str, ...], Callable[[], bytes]]]:
     """Unpack an archive. Yield, for each file, the names that lead to it and a function that reads it."""
     most = max(room.unpacked, 0) + max(room.files + 1, 1) * LONGEST_LINE
-    code = _ask(archive, out.fileno(), most, limits=(depth, room.files, room.unpacked, MAX_BYTES))
-    if code in (errno.ENOSPC, errno.EDQUOT):
-        raise OSError(code, os.strerror(code))
-    if code:
+    limits = {"depth": depth, "files": room.files, "unpacked": room.unpacked, "of_one": MAX_BYTES}
+    try:
+        desk.ask("archive", archive, out.fileno(), most=most, seconds=_CPU_SECONDS, **limits)
+    except (NotAdmitted, ChannelClosed) as error:
+        if isinstance(error, NotAdmitted) and error.code in (errno.ENOSPC, errno.EDQUOT):
+            raise OSError(error.code, os.strerror(error.code)) from error
         yield (), _refusing("unpacking the archive would exceed a limit: unpack it, and collect the folder")
         return
     for line, begin in itertools.islice(_lines(out), room.files + 1):
@@ -227,7 +222,7 @@ def _unpacked(
 
 @dataclass(frozen=True)
 class _Unpacked:
-    """A line of the desk's answer, as :mod:`autograder.grading.collecting.download_desk_process` describes it."""
+    """A line of the desk's answer, as :mod:`autograder.grading.collecting.archive_unpacking` describes it."""
 
     names: tuple[str, ...]
     size: int
@@ -240,8 +235,8 @@ def _lines(out: IO[bytes]) -> Iterator[tuple[_Unpacked, int]]:
     while place < end:
         line, mark, _ = os.pread(out.fileno(), LONGEST_LINE, place).partition(b"\n")
         try:
-            found = msgspec.json.decode(line, type=_Unpacked)
-        except msgspec.MsgspecError:
+            found: _Unpacked = admitted(line, _Unpacked, LONGEST_LINE)
+        except NotAdmitted:
             # The rest is not read: it may be the content of a file that looks like such a line.
             yield _Unpacked((), 0, "the output of the box is not a list of files"), end
             return
@@ -255,22 +250,3 @@ def _path(name: str) -> tuple[str, ...]:
     """Return the path of a file in an archive as a tuple of names, without ``..``. This path is never written to."""
     parts = name[:LONGEST_NAME].replace("\\", "/").split("/")
     return tuple(part for part in parts if part not in ("", ".", "..")) or (name[:LONGEST_NAME],)
-
-
-def _ask(source: int, answer: int, most: int, **call: object) -> int:
-    """Let the desk read a file and write an answer, as :func:`.download_desk_process.run` does it.
-
-    Args:
-        source: The descriptor of the file.
-        answer: The descriptor of an empty file.
-        most: The limit in bytes of the answer.
-        call: What the desk has to do.
-
-    Returns:
-        The exit code: the number of the error if the answer could not be written; negative or 1 if a limit was
-        exceeded.
-    """
-    try:
-        return desk.ask(source, answer, most, _CPU_SECONDS, call)
-    except ChannelClosed:  # the system has killed the desk, usually because memory is short
-        return -signal.SIGKILL

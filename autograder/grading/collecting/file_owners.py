@@ -23,7 +23,7 @@ from typing import TYPE_CHECKING
 import re2
 
 from autograder.grading.classes.class_directory import reason_against_name
-from autograder.grading.collecting.download_desk_process import EMPTY
+from autograder.grading.collecting.archive_unpacking import EMPTY
 from autograder.grading.collecting.submitted_file_names import (
     Pattern,
     read_lms_name,

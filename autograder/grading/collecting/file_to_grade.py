@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import re2
@@ -20,30 +20,16 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Sequence
 
     from autograder.grading.classes.class_directory import ClassDirectory
-    from autograder.grading.collecting.collected_files import Inbox
     from autograder.grading.collecting.submitted_folder import Submitted
 
 
-_Why = tuple[Line, LineState, str]
+def decide(lines: Iterable[Line], submitted: Submitted) -> list[Line]:
+    """Return the lines with a state and a reason. The work of a group becomes one line for each student.
 
-
-@dataclass(frozen=True)
-class ClassFolders:
-    """The folders of a class whose contents decide which of a student's files is graded.
-
-    Attributes:
-        directory: The class, with the notebooks that were handed out.
-        inbox: The inbox, with the bytes of the files.
-        submitted: The folder ``submitted``, with the files that are graded so far.
+    Args:
+        lines: The lines of all files.
+        submitted: The folder with the files that are graded so far.
     """
-
-    directory: ClassDirectory
-    inbox: Inbox
-    submitted: Submitted
-
-
-def decide(lines: Iterable[Line], folders: ClassFolders) -> list[Line]:
-    """Return the lines with a state and a reason. The work of a group becomes one line for each student."""
     decided: list[Line] = []
     soft: list[Line] = []
     by_place: dict[Place, list[Line]] = defaultdict(list)
@@ -59,10 +45,7 @@ def decide(lines: Iterable[Line], folders: ClassFolders) -> list[Line]:
                 own = replace(line, students=(student,))
                 by_place[own.place].append(own)
     for place, files in by_place.items():
-        decided += [
-            replace(line, state=state, reason=reason)
-            for line, state, reason in _of_notebook(place, files, folders)
-        ]
+        decided += _of_notebook(place, files, submitted)
     handed_in = {
         (one.student, one.assignment) for one in decided if one.state in (LineState.PLACED, LineState.EARLIER)
     }
@@ -92,47 +75,48 @@ def cell_in(reason: str) -> str:
     return found[1] if found else ""
 
 
-def _of_notebook(place: Place, files: list[Line], folders: ClassFolders) -> Iterator[_Why]:
+def _of_notebook(place: Place, files: list[Line], submitted: Submitted) -> Iterator[Line]:
     """Yield, for each file that a student handed in for one notebook, its state and the reason for that state."""
     by_hand = [one for one in files if one.is_by_hand]
-    present = [one for one in by_hand if folders.submitted.content(place) == one.content]
+    present = [one for one in by_hand if submitted.content(place) == one.content]
     chosen = present or [one for one in files if one.use == "yes"]
     pool = chosen or [one for one in files if not one.is_by_hand]
     for sift in () if chosen else (_ambiguous_names, _unreadable):
         doubts = sift(place, pool)
-        yield from ((one, LineState.NOT_PLACED, reason) for one, reason in doubts)
-        doubtful = {one.key for one, _ in doubts}
+        yield from doubts
+        doubtful = {one.key for one in doubts}
         pool = [one for one in pool if one.key not in doubtful]
-    best, others = _best(place, pool, folders) if pool else (None, [])
+    best, others = _best(place, pool, submitted) if pool else (None, [])
     yield from others
     if best:
         # If a person corrected the file in ``submitted``, the student's own time of handing in still applies.
         times = [one.when for one in files if one.when and present]
-        yield _timed(replace(best, when=best.when or max(times, default=None)), files, folders)
+        yield _timed(replace(best, when=best.when or max(times, default=None)), files, submitted)
     why = "the file was in submitted before: write yes under use to put it there again"
     if chosen:
         put_there = "was put into the folder submitted by hand, and is graded"
         why = f"{chosen[0].label} {put_there if present else 'is graded, because yes is written under use'}"
     for one in (one for one in files if one not in chosen and (chosen or one.is_by_hand)):
         is_same = chosen and best and one.content == best.content
-        yield (one, LineState.UNCHANGED, "") if is_same else (one, LineState.EARLIER, why)
+        state, reason = (LineState.UNCHANGED, "") if is_same else (LineState.EARLIER, why)
+        yield replace(one, state=state, reason=reason)
 
 
-def _timed(best: Line, files: Sequence[Line], folders: ClassFolders) -> _Why:
+def _timed(best: Line, files: Sequence[Line], submitted: Submitted) -> Line:
     """Return the file to grade with the first time at which the same bytes came, unless a person wrote another one."""
     first = min((one.first for one in files if one.first and one.content == best.content), default=None)
     if not best.when or not first or first >= best.when or best.time_from == "handed_in":
-        return best, LineState.PLACED, ""
-    again = in_zone(best.when, folders.directory.time_zone)
+        return replace(best, state=LineState.PLACED, reason="")
+    again = in_zone(best.when, submitted.directory.time_zone)
     reason = f"the same bytes were handed in again on {again}: the first time counts"
-    return replace(best, when=first), LineState.PLACED, reason
+    return replace(best, when=first, state=LineState.PLACED, reason=reason)
 
 
 _ONE_NUMBER = ("canvas", "moodle", "brightspace")
 """The LMSs in which users may change their names, but have the same number in all files of a download."""
 
 
-def _ambiguous_names(place: Place, pool: Sequence[Line]) -> list[tuple[Line, str]]:
+def _ambiguous_names(place: Place, pool: Sequence[Line]) -> list[Line]:
     """Return the files that are linked to a student only by a name, if several people have this name.
 
     Several people have the name if the LMS gives it several numbers. In Canvas, a person has the same number in every
@@ -149,20 +133,24 @@ def _ambiguous_names(place: Place, pool: Sequence[Line]) -> list[tuple[Line, str
         f"several people in the LMS have the name of {place[0]}; their numbers are {', '.join(several)}: write the id "
         "under student, or no under use"
     )
-    return [(one, reason) for one in of_systems if several and not one.is_sure]
+    return [_waiting(one, reason) for one in of_systems if several and not one.is_sure]
 
 
-def _unreadable(place: Place, pool: Sequence[Line]) -> list[tuple[Line, str]]:
+def _unreadable(place: Place, pool: Sequence[Line]) -> list[Line]:
     """Return the unreadable files, which neither replace readable work nor become zero points without a word."""
     what_to_do = (
         "Ask the student for the file again; to have it graded as it is, without points, write yes under use"
         if all(one.unreadable for one in pool)
         else f"Another file of {place[0]} is graded: ask for this file again if it is newer, or write no under use"
     )
-    return [(one, f"{one.unreadable} {what_to_do}") for one in pool if one.unreadable]
+    return [_waiting(one, f"{one.unreadable} {what_to_do}") for one in pool if one.unreadable]
 
 
-def _best(place: Place, files: Sequence[Line], folders: ClassFolders) -> tuple[Line | None, list[_Why]]:
+def _waiting(line: Line, reason: str) -> Line:
+    return replace(line, state=LineState.NOT_PLACED, reason=reason)
+
+
+def _best(place: Place, files: Sequence[Line], submitted: Submitted) -> tuple[Line | None, list[Line]]:
     """Return the file to grade, or None if a person has to choose; and the decisions about the other files.
 
     The file with the newest time of handing in is graded. If the times are equal or unknown, a file with answers is
@@ -170,11 +158,11 @@ def _best(place: Place, files: Sequence[Line], folders: ClassFolders) -> tuple[L
     last, the file with the highest number from the system. If several different files are left, the file that is
     already in ``submitted`` is graded again.
     """
-    there = folders.submitted.content(place)
+    there = submitted.content(place)
     contents = {one.content for one in files}
     work = {
         one.content: len(contents) == 1
-        or _has_work(folders.directory, one.assignment, one.notebook, folders.inbox.read(one.content))
+        or _has_work(submitted.directory, one.assignment, one.notebook, submitted.inbox.read(one.content))
         for one in files
     }
     timed = [one for one in files if one.when]
@@ -193,24 +181,25 @@ def _best(place: Place, files: Sequence[Line], folders: ClassFolders) -> tuple[L
             f"{place[0]} has several different files for {place[1]}, and it is unknown which file is the newest: "
             "write yes under use for the file to grade, or the times under handed_in"
         )
-        return None, [(one, LineState.NOT_PLACED, reason) for one in files]
-    others: list[_Why] = []
-    at = f", handed in {in_zone(first.when, folders.directory.time_zone)}" if first.when else ""
+        return None, [_waiting(one, reason) for one in files]
+    others: list[Line] = []
+    at = f", handed in {in_zone(first.when, submitted.directory.time_zone)}" if first.when else ""
     for one in (one for one in files if one is not first):
         is_older = work[one.content] < work[first.content] or (
             one.lms == first.lms and 0 < one.order < first.order
         )
         unknown = f"it is unknown whether this file is newer than {first.label}"
         if one.content == first.content:
-            others.append((one, LineState.UNCHANGED, ""))
+            others.append(replace(one, state=LineState.UNCHANGED, reason=""))
         elif one in best:
             reason = f"{unknown}, which is graded: write yes under use to have this file graded, or no"
-            others.append((one, LineState.NOT_PLACED, reason))
+            others.append(_waiting(one, reason))
         elif first.when and not one.when and not is_older:
             reason = f"{unknown}{at}: write the file's time under handed_in"
-            others.append((one, LineState.NOT_PLACED, reason))
+            others.append(_waiting(one, reason))
         else:
-            others.append((one, LineState.EARLIER, f"{first.label} {_why_it_counts(first, one, work)}"))
+            reason = f"{first.label} {_why_it_counts(first, one, work)}"
+            others.append(replace(one, state=LineState.EARLIER, reason=reason))
     return first, others
 
 

@@ -46,17 +46,21 @@ class Submitted:
     Args:
         directory: The class, which this process has locked.
         inbox: The inbox of the class.
+
+    Attributes:
+        directory: The class, with the notebooks that were handed out.
+        inbox: The inbox, with the bytes of the files.
     """
 
     def __init__(self, directory: ClassDirectory, inbox: Inbox) -> None:
-        self._directory = directory
-        self._inbox = inbox
+        self.directory = directory
+        self.inbox = inbox
         self._records = CollectedRecords(directory.state)
 
     def _path(self, place: Place) -> Path:
         """Return the path of a notebook in ``submitted``."""
         student, assignment, notebook = place
-        return self._directory.path / "submitted" / student / assignment / f"{notebook}{SUFFIX}"
+        return self.directory.path / "submitted" / student / assignment / f"{notebook}{SUFFIX}"
 
     def content(self, place: Place) -> str:
         """Return the hash of a notebook in ``submitted``; empty if it does not exist or cannot be read."""
@@ -71,17 +75,17 @@ class Submitted:
         Raises:
             OSError: A file could not be written.
         """
-        for submission in self._directory.submissions()[0]:
+        for submission in self.directory.submissions()[0]:
             student, assignment = submission.student, submission.assignment
             history = self._records.get(assignment, student) or History({})
-            for notebook in self._directory.notebooks(assignment):
+            for notebook in self.directory.notebooks(assignment):
                 place = (student, assignment, notebook)
                 content = self.content(place)
                 arrival = Arrival("submitted", (student, assignment, f"{notebook}{SUFFIX}"), content=content)
                 delivery = Delivery((arrival,), form=BY_HAND)
-                is_ours = content in history.written(notebook) and content in self._inbox
-                if content and not is_ours and delivery.id not in self._inbox.deliveries:
-                    with self._inbox.receiving() as receiving:
+                is_ours = content in history.written(notebook) and content in self.inbox
+                if content and not is_ours and delivery.id not in self.inbox.deliveries:
+                    with self.inbox.receiving() as receiving:
                         receiving.keep(read_bytes(self._path(place)))
                         receiving.delivery = delivery
 
@@ -132,7 +136,7 @@ class Submitted:
             is_ours = content in old.written(notebook) or (place, content) in refused
             if line and content == line.content:
                 yield place, LineState.UNCHANGED, ""
-            elif line or (content and content in self._inbox and is_ours):
+            elif line or (content and content in self.inbox and is_ours):
                 changes.append((place, line, content))
         history = History(now)
         # Write the record before the files, so that the next `collect` knows that these files are its own even if this
@@ -145,7 +149,7 @@ class Submitted:
                 self._path(place).unlink()
                 yield place, LineState.EARLIER, ""
             else:
-                write_whole(self._path(place), self._inbox.read(line.content))
+                write_whole(self._path(place), self.inbox.read(line.content))
                 yield place, LineState.PLACED, "instead of an earlier file" if content else ""
         if history != old and (now or old != History({})):
             self._records.put(assignment, student, history)
@@ -157,7 +161,7 @@ class Submitted:
 
         If the time is unknown, remove the file, and the folders that are then empty.
         """
-        stamp = self._directory.path / "submitted" / student / assignment / TIMESTAMP
+        stamp = self.directory.path / "submitted" / student / assignment / TIMESTAMP
         if history.when:
             text = f"{timestamp_text(history.when)}\n".encode()
             with contextlib.suppress(UnreadableSubmission):

@@ -77,7 +77,8 @@ def change_students(path: Path, new: Path | None, said: Mapping[str, str], *, is
         _check_doubles(directory, changes, entries)
         lines += _lines(known, listed, changes, entries)
         if not is_final:
-            words = ["students", path, *([new] if new else []), *_options(said), "--yes"]
+            options = [word for pair in said.items() for word in ("--rename", "=".join(pair))]
+            words = ["students", path, *([new] if new else []), *options, "--yes"]
             return [*lines, f"Nothing was changed. To use this list, type {course_command(*words)}"]
         if new:
             write_whole(directory.path / NAME, new.read_bytes())
@@ -87,11 +88,6 @@ def change_students(path: Path, new: Path | None, said: Mapping[str, str], *, is
     if (directory.state / INBOX_FOLDER).exists():
         lines += [f"note      {note}" for note in collect(path).notes]
     return [*lines, f"Done. Then {course_command('grade', path)}"]
-
-
-def _options(said: Mapping[str, str]) -> Iterator[str]:
-    for old, new in said.items():
-        yield from ("--rename", f"{old}={new}")
 
 
 def _lines(

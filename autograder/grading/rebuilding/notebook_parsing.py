@@ -2,9 +2,8 @@
 
 The class's source notebooks may be parsed in any process. But a student's file is parsed only in a desk, so call
 :func:`autograder.grading.rebuilding.submission_desk.read_notebook` for it. The desk is a process in a box that parses
-the file of one student, and does nothing else. A fork server (:mod:`autograder.boxes.fork_server`) forks it with the
-system call filter for readers, and it calls :func:`prepare` and :func:`run`. If a student has crafted a file that keeps
-a parser busy or uses up memory, the limits of this process end it.
+the file of one student with :func:`read`, and does nothing else. If a student has crafted a file that keeps a parser
+busy or uses up memory, the limits of this process end it.
 """
 
 from __future__ import annotations
@@ -13,13 +12,13 @@ import gc
 import json
 import os
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import IO, Any
 
 import msgspec
-import re2
 
 from autograder.execution.executed_cells import IMAGES, CellType
 from autograder.grading.rebuilding.submitted_notebook import (
+    BASE64,
     LONGEST_NAME,
     LONGEST_REASON,
     MAX_CELL_CHARACTERS,
@@ -32,11 +31,6 @@ from autograder.grading.rebuilding.submitted_notebook import (
     UnreadableSubmission,
 )
 
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-
-BASE64 = re2.compile(r"[A-Za-z0-9+/=\s]+")
 _CELL_TYPES = tuple(CellType)
 
 
@@ -151,29 +145,19 @@ _SAMPLE = (
     b'"metadata": {"nbgrader": {"grade_id": "a", "grade": true}}, "attachments": {"a.png": {"image/png": "aa=="}}}]}'
 )
 """A notebook that makes the parser load everything that it would otherwise load when it is first needed."""
-_PIECE = 1 << 20
 
 
-def prepare() -> None:
-    """Load everything that a desk needs, because the desk itself cannot open files."""
-    # No garbage collection: a desk process frees nothing before it ends, so searches for garbage only take time.
-    gc.disable()
+def rehearse() -> None:
+    """Load everything that :func:`read` needs, because a desk itself cannot open files."""
     for data in (_SAMPLE, b"[", b"\xff"):
         answer_to(data)
 
 
-def run(call: Mapping[str, Any], descriptors: Sequence[int]) -> None:
-    """Parse one file, and write the answer.
-
-    Args:
-        call: Not used.
-        descriptors: The submitted file, and an empty file for the answer.
-    """
-    del call
-    source, answer = descriptors
-    document = memoryview(answer_to(os.pread(source, os.lseek(source, 0, os.SEEK_END), 0)))
-    while document:
-        document = document[os.write(answer, document[:_PIECE]) :]
+def read(file: IO[bytes]) -> Iterator[bytes]:
+    """Yield the answer about the file of a student."""
+    # No garbage collection: a desk process frees nothing before it ends, so searches for garbage only take time.
+    gc.disable()
+    yield answer_to(os.pread(file.fileno(), file.seek(0, os.SEEK_END), 0))
 
 
 def answer_to(data: bytes) -> bytes:

@@ -10,8 +10,9 @@ from dataclasses import dataclass
 from typing import IO, TYPE_CHECKING, Annotated
 
 import msgspec
+import re2
 
-from autograder.execution.executed_cells import CellType  # noqa: TC001  (msgspec reads the annotations)
+from autograder.execution.executed_cells import IMAGES, CellType
 from autograder.safe_files import files_below, opened
 
 if TYPE_CHECKING:
@@ -30,6 +31,7 @@ LONGEST_REASON = 300
 """The maximum length, in characters, of the desk's reason why a file cannot be read."""
 LONGEST_NAME = 200
 """The maximum length of the name of a cell or picture, in characters."""
+BASE64 = re2.compile(r"[A-Za-z0-9+/=\s]+")
 _LONGEST_SHOWN = 80
 _KINDS = {
     stat.S_ISLNK: "a link",
@@ -79,6 +81,18 @@ class ReadNotebook(msgspec.Struct, frozen=True, tag=True):
 
     cells: Annotated[tuple[SubmittedCell, ...], msgspec.Meta(max_length=MAX_CELLS)]
     left_out: Annotated[int, msgspec.Meta(ge=0, le=MAX_CELLS)]
+
+    def __post_init__(self) -> None:
+        """Refuse cells that no notebook can bring about, also when msgspec decodes an answer.
+
+        Raises:
+            ValueError: The cells have too much text together, or a picture is not a bitmap.
+        """
+        pictures = (picture for cell in self.cells for picture in cell.pictures)
+        if sum(len(cell.source) for cell in self.cells) > MAX_CHARACTERS or not all(
+            kind in IMAGES and BASE64.fullmatch(data) for _, kind, data in pictures
+        ):
+            raise ValueError("no notebook has these cells")
 
 
 class Unreadable(msgspec.Struct, frozen=True, tag=True):

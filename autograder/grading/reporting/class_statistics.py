@@ -7,12 +7,11 @@ from collections import defaultdict
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from autograder.grading.table.rows import EXCUSED, LATE, NOT_SUBMITTED, columns
+from autograder.grading.table.rows import EXCUSED, LATE, NOT_SUBMITTED, columns, grouped
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Sequence
 
-    from autograder.grading.class_records import Attempt
     from autograder.grading.class_store import ClassStore
     from autograder.grading.reporting.class_table import ClassTable
     from autograder.grading.table.rows import Row
@@ -30,9 +29,9 @@ def handed_in(table: ClassTable) -> list[str]:
     ]
 
 
-def totals(table: ClassTable) -> list[float]:
-    """Return the total points of each student who has points."""
-    return [points for student in handed_in(table) if (points := table.score(student)) is not None]
+def totals(table: ClassTable) -> dict[str, float]:
+    """Return the total points of each student who has points, by the student's id."""
+    return {student: points for student in handed_in(table) if (points := table.score(student)) is not None}
 
 
 _BANDS = 10
@@ -56,9 +55,7 @@ class Band:
 def bands(table: ClassTable) -> list[Band]:
     """Return the distribution of total points in ten bands, without students who have no points."""
     found: dict[int, list[str]] = defaultdict(list)
-    for student in handed_in(table):
-        if (points := table.score(student)) is None:
-            continue
+    for student, points in totals(table).items():
         most = sum(row.max_score for row in table.of(student))
         share = points / most if most else 0.0
         found[max(0, min(_BANDS - 1, int(share * _BANDS + 1e-9)))].append(student)
@@ -192,10 +189,8 @@ class MistakeFigures:
 
 def mistakes(table: ClassTable) -> list[MistakeFigures]:
     """Return the recognized mistakes with the students who made them, the most common mistake first."""
-    found: dict[tuple[str, str, str], list[Row]] = defaultdict(list)
-    for row in table.rows:
-        if row.diagnosis:
-            found[row.assignment, row.exercise, row.diagnosis].append(row)
+    diagnosed = [row for row in table.rows if row.diagnosis]
+    found = grouped(diagnosed, lambda row: (row.assignment, row.exercise, row.diagnosis))
     names = columns(table.rows)
     figures = [
         MistakeFigures(
@@ -204,46 +199,3 @@ def mistakes(table: ClassTable) -> list[MistakeFigures]:
         for (assignment, exercise, key), rows in found.items()
     ]
     return sorted(figures, key=lambda one: (-len(one.students), one.exercise, one.key))
-
-
-@dataclass(frozen=True)
-class AttemptProgress:
-    """A student's points from the judge in the first and the last attempt at an assignment.
-
-    Attributes:
-        student: The student's id.
-        assignment: The assignment's name.
-        attempts: The number of different submissions that were graded.
-        first: The points of the first attempt.
-        last: The points of the last attempt.
-        max_score: The maximum points that the judge gives.
-    """
-
-    student: str
-    assignment: str
-    attempts: int
-    first: float
-    last: float
-    max_score: float
-
-
-def progress(student: str, attempts: Iterable[Attempt]) -> list[AttemptProgress]:
-    """Return a student's progress in each assignment that the student submitted again after a change.
-
-    Args:
-        student: The student's id.
-        attempts: All graded attempts of the student, oldest first. But only attempts with the same version of the
-            course as the last attempt are used, because other attempts are not comparable.
-    """
-    found: dict[str, list[Attempt]] = defaultdict(list)
-    for attempt in attempts:
-        found[attempt.assignment].append(attempt)
-    shown = []
-    for assignment, all_of_it in found.items():
-        same = [one for one in all_of_it if one.course == all_of_it[-1].course]
-        works = len({one.made_from.handed_in for one in same})
-        first, last = (sum(row.score for row in one.rows) for one in (same[0], same[-1]))
-        if works > 1:
-            most = sum(row.max_score for row in same[-1].rows)
-            shown.append(AttemptProgress(student, assignment, works, first, last, most))
-    return shown

@@ -12,7 +12,7 @@ from autograder.grading.collecting.collected_csv import Table, Waiting
 from autograder.grading.grading_errors import GradingError, MasterUnusable
 from autograder.grading.reporting.gradebook_layouts import LAYOUTS
 from autograder.grading.table.roster import Roster, Student
-from autograder.grading.table.rows import DROPPED, EXCUSED, NOT_SUBMITTED, Row, total
+from autograder.grading.table.rows import DROPPED, EXCUSED, NOT_SUBMITTED, Row, grouped, total
 from autograder.grading.table.student_list import read_roster
 from autograder.grading.table.weighted_rows import read_what_counts, true_rows
 from autograder.grading.tasks.result_keys import ResultKeys
@@ -50,10 +50,7 @@ class ClassTable:
 
     @functools.cached_property
     def _of_student(self) -> dict[str, list[Row]]:
-        found: dict[str, list[Row]] = {}
-        for row in self.rows:
-            found.setdefault(row.student, []).append(row)
-        return found
+        return grouped(self.rows, lambda row: row.student)
 
     @functools.cached_property
     def students(self) -> list[str]:
@@ -222,25 +219,6 @@ class Difference:
         return f"{self.student}  {self.exercise}  {points}{words}{f', {self.note}' if self.note else ''}"
 
 
-def _differences(before: Iterable[Row], after: Iterable[Row]) -> list[Difference]:
-    """Return the differences between the rows of two tables, sorted by student, assignment and exercise."""
-    earlier = {(row.student, row.assignment, row.exercise): row for row in before}
-    later = {(row.student, row.assignment, row.exercise): row for row in after}
-    found = []
-    for key in sorted({*earlier, *later}):
-        old, new = earlier.get(key), later.get(key)
-        difference = Difference(
-            *key,
-            old.shown_score if old else None,
-            new.shown_score if new else None,
-            old.diagnosis if old else "",
-            new.diagnosis if new else "",
-        )
-        if (difference.before, difference.diagnosis_before) != (difference.after, difference.diagnosis_after):
-            found.append(difference)
-    return found
-
-
 def compare(store: ClassStore, before: str = "", after: str = "") -> tuple[str, str, list[Difference]]:
     """Compare the results of two runs of a class.
 
@@ -261,12 +239,9 @@ def compare(store: ClassStore, before: str = "", after: str = "") -> tuple[str, 
             "There is nothing to compare yet: this class does not have two runs with different results."
         )
     before, after = before or names[-2], after or names[-1]
-    tables = []
     for name in (before, after):
-        rows = store.run(name)
-        if rows is None:
+        if name not in names:
             raise GradingError(
                 f"Run {name} does not exist. The runs are: {', '.join(names[-10:]) or 'none'}."
             )
-        tables.append(rows)
-    return before, after, _differences(*tables)
+    return before, after, [Difference(*row) for row in store.differences(before, after)]

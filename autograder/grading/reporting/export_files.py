@@ -20,14 +20,13 @@ import xlsxwriter
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.collecting.collected_files import CollectedRecords
 from autograder.grading.collecting.submitted_file_names import read_lms_name
-from autograder.grading.grading_errors import GradingError, check_known, clear_place_errors, course_command
+from autograder.grading.grading_errors import GradingError, check_known, course_command, write_output
 from autograder.grading.reporting.class_table import ClassTable, read_table
 from autograder.grading.reporting.gradebook_layouts import LAYOUTS, GradebookLayout
 from autograder.grading.reporting.lms_gradebooks import fill_list, gradebook, line_from_lms
 from autograder.grading.table.rows import COLUMNS, DROPPED, LATE, csv_cells
 from autograder.grading.table.spreadsheet_csv import blank, csv_text
 from autograder.kit.in_words import counted
-from autograder.safe_files import write_whole
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -97,8 +96,7 @@ def export(
             purpose = f"{to.capitalize()}: your exported list, now with the points of {', '.join(wanted)}"
         parts = [(into.name, filled, purpose)] if into else _files(directory, table, to, wanted, notices)
         for name, data, purpose in parts:
-            with clear_place_errors(folder / name, "--output"):
-                write_whole(folder / name, data)
+            write_output(folder / name, data, "--output")
             written.append((folder / name, purpose))
     notices += [
         f"{one.label} was not graded, so no points of it are exported: {one.sentence}"

@@ -24,6 +24,7 @@ from autograder.grading.table.rows import (
     WAITS,
     Row,
     columns,
+    grouped,
     remarks_on,
     total,
 )
@@ -298,9 +299,7 @@ class _Grid:
 
     @classmethod
     def of(cls, rows: Sequence[Row], *, diagnoses: bool) -> Self:
-        students: dict[str, list[Row]] = {}
-        for row in rows:
-            students.setdefault(row.student, []).append(row)
+        students = grouped(rows, lambda row: row.student)
         results = {(row.student, row.assignment, row.exercise): row for row in rows}
         return cls(columns(rows), students, results, diagnoses)
 

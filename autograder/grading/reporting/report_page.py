@@ -12,12 +12,11 @@ from autograder.cards.readable_text import one_line
 from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.collecting.collected_csv import Table
-from autograder.grading.grading_errors import GradingError, clear_disk_errors, clear_place_errors
+from autograder.grading.grading_errors import GradingError, clear_disk_errors, write_output
 from autograder.grading.reporting import class_statistics as figures
 from autograder.grading.reporting.class_table import ClassTable, read_table
 from autograder.grading.returning.page_exporter import POLICY
 from autograder.grading.table.rows import DROPPED, EXCUSED, NO_EXERCISE, columns, remarks_on
-from autograder.safe_files import write_whole
 from autograder.standard_output import printable
 
 if TYPE_CHECKING:
@@ -69,8 +68,7 @@ def write_report(
         if not figures.handed_in(table):
             raise GradingError("The class has no submissions yet, so nothing can be reported.")
         page = _page(directory, store, table, names=names, folder=to.parent)
-        with clear_place_errors(to, "--output"):
-            write_whole(to, page.encode())
+        write_output(to, page.encode(), "--output")
     return to
 
 
@@ -80,7 +78,7 @@ def _page(
     environment = page_templates("autograder.grading.reporting")
     people = _people(directory, table, names=names, folder=folder)
     there = figures.handed_in(table)
-    totals = figures.totals(table)
+    totals = figures.totals(table).values()
     environment.filters["printable"] = printable
     template = environment.get_template("report.html.j2")
     return template.render(
@@ -108,7 +106,7 @@ def _page(
         items=figures.items(table, store),
         mistakes=figures.mistakes(table),
         times=_times(directory, table),
-        progress=_progress(store, table),
+        progress=[one for one in store.progress() if one.student in people],
         remarks=remarks_on(table.rows),
         names=names,
     )
@@ -134,23 +132,16 @@ def _people(directory: ClassDirectory, table: ClassTable, *, names: bool, folder
 
 def _dropped(table: ClassTable) -> dict[str, list[str]]:
     """Return the assignments of each student that do not count because of ``drop_lowest``."""
-    found: dict[str, list[str]] = {}
-    for row in table.rows:
-        if row.exercise == DROPPED:
-            found.setdefault(row.student, []).append(row.assignment)
-    return found
+    dropped = {
+        one: [row.assignment for row in table.of(one) if row.exercise == DROPPED] for one in table.students
+    }
+    return {student: names for student, names in dropped.items() if names}
 
 
 def _cell(row: Row | None) -> str:
     if row is None or row.is_blank:
         return "excused" if row and row.state == EXCUSED else "–"
     return f"{row.score:g}{row.mark}"
-
-
-def _progress(store: ClassStore, table: ClassTable) -> list[figures.AttemptProgress]:
-    """Return the progress of students over several attempts, those with the greatest improvement first."""
-    found = [one for student in table.students for one in figures.progress(student, store.attempts(student))]
-    return sorted(found, key=lambda one: one.first - one.last)
 
 
 def _times(directory: ClassDirectory, table: ClassTable) -> list[dict[str, object]]:

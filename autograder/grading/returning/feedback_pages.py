@@ -71,9 +71,7 @@ class FeedbackPages:
 
     @functools.cached_property
     def _exporter(self) -> PageExporter:
-        make: Any = PageExporter
-        exporter: PageExporter = make(config=self._directory.config)
-        return exporter
+        return PageExporter(config=self._directory.config)
 
 
 _FOR_A_PERSON, _TRIED_AGAIN = "waits for your instructor", "could not be checked, and is tried again"

@@ -78,19 +78,15 @@ class PageExporter(HTMLExporter):
         return config
 
     def __init__(self, *args: Any, **kw: Any) -> None:
-        initialise: Any = super().__init__
-        initialise(*args, **kw)
+        super().__init__(*args, **kw)
         self._parts = RenderedTexts(_REMEMBERED_CHARACTERS)
         self._preprocessors: list[Any] = []
-        css: Any = CSSHTMLHeaderPreprocessor(config=self.config)
-        register: Any = self.register_preprocessor
-        register(css, enabled=True)
-        self._set_filter("markdown2html", markdown_to_html)
+        self.register_preprocessor(CSSHTMLHeaderPreprocessor(config=self.config), enabled=True)
+        self.register_filter("markdown2html", markdown_to_html)
 
     def default_filters(self) -> Iterator[tuple[str, Any]]:
         """Yield nbconvert's filters and the filters that this page's template adds, as pairs of name and function."""
-        filters: Any = super().default_filters
-        yield from filters()
+        yield from super().default_filters()
         yield "without_scripts", without_scripts
         yield "with_summary", with_summary
         yield "cards_first", cards_first
@@ -104,9 +100,8 @@ class PageExporter(HTMLExporter):
         """
         language = notebook.metadata.get("language_info", {})
         lexer = language.get("pygments_lexer", language.get("name", None))
-        make_filter: Any = Highlight2HTML
-        self._set_filter("highlight_code", make_filter(pygments_lexer=lexer))
-        self._set_filter("part_of_page", functools.partial(self._part, lexer))
+        self.register_filter("highlight_code", Highlight2HTML(pygments_lexer=lexer))
+        self.register_filter("part_of_page", functools.partial(self._part, lexer))
         resources = self._resources.copy()
         resources["nbgrader"] = dict(names)
         rendered: str = self.template.render(nb=make_harmless(notebook), resources=resources)
@@ -115,26 +110,19 @@ class PageExporter(HTMLExporter):
     @functools.cached_property
     def _resources(self) -> dict[str, Any]:
         """The resources that nbconvert gives to a template, such as style sheets; the same for every notebook."""
-        initialise: Any = self._init_resources
         names = {"notebook": "", "score": 0.0, "max_score": 0.0, "late_penalty": 0.0}
         # Set `config_dir`, because nbconvert would otherwise read custom/custom.css in the current folder.
-        resources: dict[str, Any] = initialise({"nbgrader": names, "config_dir": str(_OURS)})
-        shown: Any = WidgetsDataTypeFilter(notebook_metadata={}, parent=self, resources=resources)
-        self._set_filter("filter_data_type", shown)
-        convert: Any = (
-            TemplateExporter.from_notebook_node
-        )  # not HTMLExporter's own method, which would parse the whole page again
-        _, resources = convert(self, nbformat_nodes.notebook([], {}), resources)
-        return resources
+        resources = self._init_resources({"nbgrader": names, "config_dir": str(_OURS)})
+        shown = WidgetsDataTypeFilter(notebook_metadata={}, parent=self, resources=resources)
+        self.register_filter("filter_data_type", shown)
+        # Not HTMLExporter's own method, which would parse the whole page again.
+        _, filled = TemplateExporter.from_notebook_node(self, nbformat_nodes.notebook([], {}), resources)
+        return dict(filled)
 
     def _part(self, lexer: str | None, render: Callable[[], str], depends_on: Any) -> str:
         if isinstance(depends_on, NotebookNode) and is_check(depends_on):
             return render()  # not cached, because a check cell contains this student's card
         return self._parts.get((lexer, depends_on), render)
-
-    def _set_filter(self, name: str, function: Callable[..., Any]) -> None:
-        register: Any = self.register_filter
-        register(name, function)
 
 
 class RenderedTexts:

@@ -3,7 +3,7 @@
 A worker is a machine with a number of slots, each of which executes one task at a time. This machine counts as one
 worker. A task runs again if its worker ended. It also runs again, but alone on a worker, if the result is not reliable:
 the grader itself failed, or other tasks may have used up the memory or processor time that this task needed. Every
-answer is checked before it is used (:func:`autograder.grading.running.worker_messages.admitted`).
+answer is checked before it is used (:func:`autograder.grading.running.worker_messages.admitted_execution`).
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING
 
 import msgspec
 
+from autograder.boxes.admission import NotAdmitted
 from autograder.cards.readable_text import paragraph
 from autograder.command_name import COMMAND
 from autograder.grading.course_version import course_version
@@ -31,14 +32,13 @@ from autograder.grading.running.worker_messages import (
     Broken,
     Drop,
     Failed,
-    Forged,
     Give,
     Joined,
     Left,
     News,
     Order,
     Unfit,
-    admitted,
+    admitted_execution,
     admitted_offer,
 )
 
@@ -262,8 +262,8 @@ class Dispatcher:
     def _consider(self, address: str, name: str, data: bytes) -> None:
         try:
             offer = admitted_offer(data)
-        except Forged as error:
-            self._refuse(address, name, f"{error}. Check that machine")
+        except NotAdmitted as error:
+            self._refuse(address, name, f"the worker sent an impossible offer: {error}. Check that machine")
             return
         if address != ADDRESS and offer.version != course_version():
             self._refuse(
@@ -293,8 +293,8 @@ class Dispatcher:
     def _answered(self, number: int, data: bytes) -> None:
         flight = self._flights[number]
         try:
-            execution = admitted(data, flight.job.task)
-        except Forged as error:
+            execution = admitted_execution(data, flight.job.task)
+        except NotAdmitted as error:
             self._forged(number, str(error))
             return
         worker = self._workers[flight.worker]

@@ -4,8 +4,8 @@ They are sent as lines of JSON, to and from the executor process of this machine
 client process only passes orders and answers on as bytes, without decoding them.
 
 A student's program may have taken over the worker that executed it. So the dispatcher checks each answer before it uses
-the answer (:func:`admitted`): it must have the form of an execution of the task, and no check in it may give more than
-the check's maximum points. Everything that a browser would run is removed from the outputs.
+the answer (:func:`admitted_execution`): it must have the form of an execution of the task, and no check in it may give
+more than the check's maximum points. Everything that a browser would run is removed from the outputs.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 
 import msgspec
 
+from autograder.boxes.admission import NotAdmitted, admitted
 from autograder.cards.readable_text import paragraph
 from autograder.execution.executed_cells import Execution, NotebookOutputs
 from autograder.verdict import State
@@ -147,44 +148,30 @@ LONGEST_WORDS = 1_000
 """The maximum length in characters of a sentence from a worker."""
 
 
-class Forged(ValueError):
-    """A worker gave an answer that an unmodified worker would never give, for the reason in the message."""
-
-
 def admitted_offer(data: bytes) -> Offer:
     """Decode and check a worker's offer, and return it.
 
     Raises:
-        Forged: The data is not a valid offer.
+        NotAdmitted: The data is not a valid offer.
     """
-    if len(data) > LARGEST_OFFER:
-        raise Forged(f"the worker's offer has {len(data)} bytes")
-    try:
-        offer = msgspec.json.decode(data, type=Offer)
-    except msgspec.MsgspecError as error:
-        raise Forged(f"the worker's offer is not valid: {error}") from error
+    offer: Offer = admitted(data, Offer, LARGEST_OFFER)
     if not 1 <= offer.slots <= _MOST_SLOTS:
-        raise Forged(f"the worker offers to execute {offer.slots} notebooks at the same time")
+        raise NotAdmitted(f"it offers to execute {offer.slots} notebooks at the same time")
     return offer
 
 
-def admitted(data: bytes, task: Task) -> Execution:
+def admitted_execution(data: bytes, task: Task) -> Execution:
     """Decode and check a worker's answer to a task, and return the execution with cleaned outputs.
 
     Raises:
-        Forged: The data is not an execution, or not an execution of this task.
+        NotAdmitted: The data is not an execution, or not an execution of this task.
     """
-    if len(data) > LARGEST_ANSWER:
-        raise Forged(f"the answer has {len(data)} bytes")
-    try:
-        execution = msgspec.json.decode(data, type=Execution)
-    except (msgspec.MsgspecError, RecursionError) as error:
-        raise Forged(f"the answer is not an execution: {error}") from error
+    execution: Execution = admitted(data, Execution, LARGEST_ANSWER)
     if len(execution.cells) not in ({len(task.cells), 0} if execution.trouble else {len(task.cells)}):
-        raise Forged(f"the answer has {len(execution.cells)} cells, and the notebook has {len(task.cells)}")
+        raise NotAdmitted(f"it has {len(execution.cells)} cells, and the notebook has {len(task.cells)}")
     checks = task.checks
     if execution.verdicts.keys() != checks.keys():
-        raise Forged("the answer has verdicts on other checks than the notebook has")
+        raise NotAdmitted("it has verdicts on other checks than the notebook has")
     for index, check in checks.items():
         _look_at(execution.verdicts[index], check)
     # Cut and clean the outputs again: the worker should have done so, but is not trusted.
@@ -202,10 +189,8 @@ def admitted(data: bytes, task: Task) -> Execution:
 
 def _look_at(verdict: Verdict, check: CellCheck) -> None:
     if verdict.exercise != check.exercise:
-        raise Forged(f"the answer has a verdict on {verdict.exercise!r:.60} instead of {check.exercise}")
+        raise NotAdmitted(f"it has a verdict on {verdict.exercise!r:.60} instead of {check.exercise}")
     if verdict.max_score != check.points or not 0 <= verdict.score <= check.points:
-        raise Forged(
-            f"the answer gives {verdict.score:g} of {verdict.max_score:g} points for {check.exercise}"
-        )
+        raise NotAdmitted(f"it gives {verdict.score:g} of {verdict.max_score:g} points for {check.exercise}")
     if verdict.state is State.NOT_CHECKED and verdict.score:
-        raise Forged("the answer gives points for an exercise that could not be checked")
+        raise NotAdmitted("it gives points for an exercise that could not be checked")

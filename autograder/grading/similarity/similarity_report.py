@@ -16,7 +16,7 @@ from rich.text import Text
 from autograder import standard_output
 from autograder.cards.html_rendering import page_templates
 from autograder.cards.readable_text import one_line
-from autograder.grading.grading_errors import clear_place_errors
+from autograder.grading.grading_errors import write_output
 from autograder.grading.returning.page_exporter import POLICY
 from autograder.grading.running.batch_progress import plain_line
 from autograder.grading.similarity.similar_pairs import (
@@ -26,7 +26,6 @@ from autograder.grading.similarity.similar_pairs import (
     by_students,
     nothing_found,
 )
-from autograder.safe_files import write_whole
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -154,8 +153,7 @@ def write_page(found: SimilarPairs, to: Path | None = None) -> Path:
         OSError: The file could not be written for another reason.
     """
     to = (to or found.path / _NAME).absolute()
-    with clear_place_errors(to, "--output"):
-        write_whole(to, page_html(found).encode())
+    write_output(to, page_html(found).encode(), "--output")
     return to
 
 

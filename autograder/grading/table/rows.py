@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Hashable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from autograder.cards.readable_text import one_line
 from autograder.grading.grading_task import points
@@ -36,7 +37,9 @@ LATE = "late"
 DROPPED = "dropped"
 """The value of ``exercise`` in a row that subtracts the points of a dropped assignment."""
 NO_EXERCISE = (LATE, DROPPED)
-_NOTHING_JUDGED = (NOT_SUBMITTED, NOT_GRADED, EXCUSED, State.NOT_CHECKED)
+NOTHING_JUDGED = (NOT_SUBMITTED, NOT_GRADED, EXCUSED, State.NOT_CHECKED)
+"""The states in which the judge gave no points. The query ``differences`` in ``class_queries.sql`` has them, too."""
+_Key = TypeVar("_Key", bound=Hashable)
 
 
 @dataclass(frozen=True)
@@ -79,7 +82,7 @@ class Row:
     @property
     def is_blank(self) -> bool:
         """True if the row has no points yet, which is different from zero points."""
-        return self.state in _NOTHING_JUDGED and self.by_hand is None and not self.extra
+        return self.state in NOTHING_JUDGED and self.by_hand is None and not self.extra
 
     @property
     def is_unchecked(self) -> bool:
@@ -123,6 +126,14 @@ def rows_of(task: Task, execution: Execution) -> list[Row]:
                 remarks=task.remarks,
             )
         )
+    return found
+
+
+def grouped(rows: Iterable[Row], key: Callable[[Row], _Key]) -> dict[_Key, list[Row]]:
+    """Return rows by a key, such as the student, in the order of the rows."""
+    found: dict[_Key, list[Row]] = {}
+    for row in rows:
+        found.setdefault(key(row), []).append(row)
     return found
 
 

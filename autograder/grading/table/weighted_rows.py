@@ -23,6 +23,7 @@ from autograder.grading.table.rows import (
     NOT_SUBMITTED,
     WAITS,
     Row,
+    grouped,
     total,
 )
 
@@ -70,9 +71,7 @@ class WhatCounts:
         But at least one assignment always counts, and no assignment is dropped while points for any assignment are
         still missing.
         """
-        by_assignment: dict[str, list[Row]] = {}
-        for row in rows:
-            by_assignment.setdefault(row.assignment, []).append(row)
+        by_assignment = grouped(rows, lambda row: row.assignment)
         worth = {name: sum(row.max_score for row in own) for name, own in by_assignment.items()}
         points = {name: total(own) for name, own in by_assignment.items() if worth[name]}
         to_come = any(row.is_to_come and row.max_score for row in rows)

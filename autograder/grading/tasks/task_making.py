@@ -6,6 +6,7 @@ Cells that only show something, such as a ``ros2`` command, are skipped when a c
 from __future__ import annotations
 
 import hashlib
+import hmac
 from collections import Counter
 from typing import TYPE_CHECKING, Any
 
@@ -14,7 +15,6 @@ import msgspec
 from autograder.execution.executed_cells import Cell, CellType
 from autograder.grading.class_checks import limits_of
 from autograder.grading.classes.class_directory import SUFFIX, ClassDirectory, Submission
-from autograder.grading.classes.class_secret import seed_for
 from autograder.grading.course_version import judged_by
 from autograder.grading.grading_task import Task
 from autograder.grading.rebuilding.notebook_rebuilding import (
@@ -72,6 +72,18 @@ def task_of(directory: ClassDirectory, submission: Submission, notebook: str) ->
         boxed=not directory.is_sandbox_off,
     )
     return task, rebuilt
+
+
+def seed_for(secret: bytes, student: str, assignment: str, notebook: str, work: str) -> str:
+    """Return the seed of one student's notebook. The judge derives the seed of each exercise from it.
+
+    Args:
+        work: A hash of the submitted cells, so that a changed submission gets different inputs. Otherwise a student
+            could copy inputs from the feedback into the next submission.
+    """
+    # The hashed message contains the lengths of the names, so that ("ab", "c") and ("a", "bc") give different seeds.
+    message = "".join(f"{len(part)}:{part};" for part in (student, assignment, notebook, work))
+    return hmac.new(secret, message.encode(), hashlib.sha256).hexdigest()[:32]
 
 
 def _rebuilt(

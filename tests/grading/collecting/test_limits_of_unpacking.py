@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import io
+import os
 import shutil
 import tarfile
 import zipfile
@@ -15,13 +16,14 @@ import pytest
 from downloads import zipped
 
 from autograder.boxes import reading_desks as desk_of_boxes
-from autograder.boxes.reading_desks import Desk
+from autograder.boxes.reading_desks import Desk, in_memory
 from autograder.boxes.sandbox import why_impossible
 from autograder.grading.collecting import downloaded_files
 from autograder.grading.collecting.downloaded_files import Archives, File, NotTaken, Room, read_list
+from autograder.grading.rebuilding.file_desk import READERS, desk
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterable, Iterator, Mapping
 
 ROOT = Path(__file__).resolve().parents[3]
 BOMB = (
@@ -29,6 +31,10 @@ BOMB = (
     "TEgP>v0Np%m6P*ay~G3nPeHU_"
 )
 """800 MB of zeros after bz2, zlib and base85, in this order: to pack them takes bz2 seven seconds."""
+
+
+NO_JSON = (b'["\xff"]', b'{"names": ["\xff"], "size": 1}\n', b'{"x":' + b"[" * 40_000 + b"\n")
+"""Answers that msgspec decodes with errors of other types than its own."""
 
 
 @pytest.fixture
@@ -185,10 +191,17 @@ def test_a_folder_of_a_download_has_so_many_files(archives: Archives, tmp_path: 
 @pytest.fixture
 def taken_over(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     """The program of the desk is one that an archive has taken over."""
-    hostile = Desk("tests.grading.collecting.hostile_desk_program", {"PYTHONPATH": str(ROOT)})
-    monkeypatch.setattr(downloaded_files.desk, "_desk", hostile)
+    hostile = Desk(READERS, "tests.grading.collecting.hostile_desk_program", {"PYTHONPATH": str(ROOT)})
+    monkeypatch.setattr(desk, "_desk", hostile)
     yield
     hostile.close()
+
+
+@pytest.mark.usefixtures("taken_over")
+def test_an_answer_has_no_byte_more_than_it_may_have() -> None:
+    with in_memory(b"x" * 200) as source, in_memory() as answer:
+        desk.ask("list", source, answer, most=99, seconds=5)
+        assert os.fstat(answer).st_size == 99
 
 
 @pytest.mark.usefixtures("taken_over")
@@ -197,7 +210,9 @@ def test_an_archive_that_took_over_the_program_reaches_nothing(archives: Archive
 
 
 @pytest.mark.usefixtures("taken_over")
-@pytest.mark.parametrize("text", [b"no line\n", b'{"names": 3}\n', b'{"names": [], "size": -5}\n', b"\n" * 5])
+@pytest.mark.parametrize(
+    "text", [b"no line\n", b'{"names": 3}\n', b'{"names": [], "size": -5}\n', b'["a"]', b"\n" * 5, *NO_JSON]
+)
 def test_what_a_desk_writes_is_not_believed(archives: Archives, tmp_path: Path, text: bytes) -> None:
     assert not [one for one in within(archives, tmp_path, text).values() if isinstance(one, bytes) and one]
     assert read_list("list.csv", text) is None
@@ -220,12 +235,12 @@ def test_many_archives_need_one_box(
     made: list[Desk] = []
 
     class Counted(Desk):
-        def __init__(self, module: str) -> None:
-            super().__init__(module)
+        def __init__(self, readers: Mapping[str, str]) -> None:
+            super().__init__(readers)
             made.append(self)
 
     monkeypatch.setattr(desk_of_boxes, "Desk", Counted)
-    downloaded_files.desk.close()
+    desk.close()
     for _ in range(3):
         assert within(archives, tmp_path, archive(["a.ipynb"])) == {"a.ipynb": b"x"}
     assert len(made) == 1
@@ -239,8 +254,8 @@ def test_without_a_sandbox_the_same_limits_hold(
     monkeypatch.setattr(
         downloaded_files, "why_impossible", why_impossible.__wrapped__
     )  # not what an earlier test found
-    downloaded_files.desk.close()
+    desk.close()
     assert within(archives, tmp_path, archive(["a.ipynb"])) == {"a.ipynb": b"x"}
     assert "unpacks to 60 MB" in refusals(archives, tmp_path, [archive(["a.ipynb"], said=60_000_000)])[0]
     assert "bubblewrap is not installed" in downloaded_files.without_sandbox()
-    downloaded_files.desk.close()
+    desk.close()

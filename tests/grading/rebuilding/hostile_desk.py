@@ -19,9 +19,9 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 import re2
 
+from autograder.boxes import desk_program
 from autograder.boxes.seccomp_filter import ARCHITECTURES
 from autograder.execution.executed_cells import CellType
-from autograder.grading.rebuilding import notebook_parsing
 from autograder.grading.rebuilding.submitted_notebook import ReadNotebook, SubmittedCell, Unreadable
 from tests.boxes.reach import reached
 
@@ -53,9 +53,11 @@ CRAFTED: tuple[bytes, ...] = (
 """Documents that no notebook has."""
 
 
-def prepare() -> None:
+def prepare(*readers: str) -> None:
     """Be as ready as a desk."""
-    notebook_parsing.prepare()
+    desk_program.prepare(*readers)
+    if "ILL" in os.environ:
+        desk_program._readers["submission"].rehearse = lambda: crash(-1, 0)
 
 
 def run(call: Mapping[str, Any], descriptors: Sequence[int]) -> None:
@@ -63,7 +65,7 @@ def run(call: Mapping[str, Any], descriptors: Sequence[int]) -> None:
     source, answer = descriptors
     named = _NAMED.search(os.pread(source, 1_000_000, 0))
     if named is None:
-        notebook_parsing.run(call, descriptors)
+        desk_program.run(call, descriptors)
     else:
         globals()[named[1].decode()](answer, int(named[2] or 0))
 

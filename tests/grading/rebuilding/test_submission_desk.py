@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import os
 import random
-import re
 import shutil
 import tempfile
 import zlib
@@ -18,20 +17,27 @@ from hypothesis import strategies as st
 from tiny_class import LISTENER, TALKER, FakeEngine, TinyClass
 
 from autograder.boxes import reading_desks as desk_of_boxes
+from autograder.boxes import sandbox
+from autograder.boxes.admission import NotAdmitted, admitted
 from autograder.boxes.box_connection import ChannelClosed
-from autograder.boxes.reading_desks import Desk
+from autograder.boxes.reading_desks import Desk, KeptDesk
 from autograder.boxes.sandbox import why_impossible
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.collecting.collect import collect
 from autograder.grading.grading_errors import GradingError
-from autograder.grading.rebuilding import submission_desk
+from autograder.grading.rebuilding import file_desk, submission_desk
+from autograder.grading.rebuilding.file_desk import READERS
 from autograder.grading.rebuilding.notebook_parsing import answer_to, parse
 from autograder.grading.rebuilding.submission_desk import (
-    checked,
-    document_of,
+    LARGEST_DOCUMENT,
     read_notebook,
 )
-from autograder.grading.rebuilding.submitted_notebook import MAX_CELL_CHARACTERS, UnreadableSubmission
+from autograder.grading.rebuilding.submitted_notebook import (
+    MAX_CELL_CHARACTERS,
+    ReadNotebook,
+    Unreadable,
+    UnreadableSubmission,
+)
 from autograder.grading.similarity.similar_pairs import find_similar
 from tests.drawn import drawn
 from tests.grading.rebuilding.hostile_desk import CRAFTED, SCRIPT
@@ -47,6 +53,11 @@ def why_unreadable(data: bytes) -> str:
     except UnreadableSubmission as error:
         return str(error)
     return ""
+
+
+def checked(document: bytes) -> ReadNotebook | Unreadable:
+    read: ReadNotebook | Unreadable = admitted(document, ReadNotebook | Unreadable, LARGEST_DOCUMENT)
+    return read
 
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -68,7 +79,7 @@ FAULTS = {
 
 @pytest.fixture(scope="module")
 def hostile() -> Iterator[Desk]:
-    made = Desk(HOSTILE, {"PYTHONPATH": str(ROOT)})
+    made = Desk(READERS, HOSTILE, {"PYTHONPATH": str(ROOT)})
     yield made
     made.close()
 
@@ -76,7 +87,7 @@ def hostile() -> Iterator[Desk]:
 @pytest.fixture
 def taken_over(hostile: Desk, monkeypatch: pytest.MonkeyPatch) -> Desk:
     """The desk of this process is one whose program students can choose."""
-    monkeypatch.setattr(submission_desk._desk, "_desk", hostile)
+    monkeypatch.setattr(file_desk.desk, "_desk", hostile)
     monkeypatch.setattr(submission_desk, "CPU_SECONDS", 1)
     return hostile
 
@@ -106,8 +117,8 @@ def test_a_desk_reads_what_its_parser_reads() -> None:
 
 
 def test_a_desk_is_in_a_box_if_one_can_be_had() -> None:
-    read_notebook(submission_desk._SAMPLE)
-    assert submission_desk._desk.is_unboxed is bool(why_impossible())
+    read_notebook(notebook(""))
+    assert file_desk.desk.is_unboxed is bool(why_impossible())
 
 
 @pytest.mark.parametrize("act", FAULTS)
@@ -116,7 +127,7 @@ def test_hostile_code_at_a_desk_is_the_fault_of_its_own_file(taken_over: Desk, a
     assert FAULTS[act] in said
     assert said.isprintable()
     assert why_unreadable(b"[]") == "The file is JSON, but not a Jupyter notebook."
-    assert submission_desk._desk._desk is taken_over, "the others need no new desk"
+    assert file_desk.desk._desk is taken_over, "the others need no new desk"
 
 
 def test_a_desk_reaches_nothing_not_even_without_a_box(
@@ -125,11 +136,11 @@ def test_a_desk_reaches_nothing_not_even_without_a_box(
     assert why_unreadable(notebook("reach")) == "reached:"
     which = shutil.which
     monkeypatch.setattr(shutil, "which", lambda name: None if name == "bwrap" else which(name))
-    plain = Desk(HOSTILE, {"PYTHONPATH": str(ROOT)})
+    plain = Desk(READERS, HOSTILE, {"PYTHONPATH": str(ROOT)})
+    monkeypatch.setattr(file_desk.desk, "_desk", plain)
     try:
         assert not plain.is_boxed
-        with pytest.raises(UnreadableSubmission, match=r"^reached:$"):
-            checked(document_of(plain, notebook("reach")))
+        assert why_unreadable(notebook("reach")) == "reached:"
     finally:
         plain.close()
 
@@ -180,38 +191,45 @@ def test_ten_thousand_mutated_documents_are_refused_or_harmless() -> None:
             place = chance.randrange(len(document))
             document[place : place + chance.randint(0, 3)] = chance.randbytes(chance.randint(0, 3))
         try:
-            taken, left_out = checked(bytes(document))
-        except UnreadableSubmission:
+            read = checked(bytes(document))
+        except NotAdmitted:
             refused += 1
             continue
-        assert 0 <= left_out <= 2_000
-        assert all(len(cell.source.encode()) <= MAX_CELL_CHARACTERS for cell in taken)
+        if isinstance(read, Unreadable):
+            refused += 1
+            continue
+        assert 0 <= read.left_out <= 2_000
+        assert all(len(cell.source.encode()) <= MAX_CELL_CHARACTERS for cell in read.cells)
     assert 5_000 < refused < 10_000
 
 
 def test_a_lost_desk_is_no_file_s_fault(monkeypatch: pytest.MonkeyPatch) -> None:
     lost = [ChannelClosed("killed")] * 2
 
-    def ask(self: Desk, source: int, answer: int, *_: object) -> int:
-        if lost:
-            raise lost.pop()
-        os.write(answer, answer_to(os.pread(source, 1_000, 0)))
-        return 0
+    def ask(self: Desk, request: str, source: int, answer: int, **_: object) -> None:
+        if request == "submission":
+            if lost:
+                os.read(source, 10)
+                os.write(answer, b"a part of an answer" * 1_000)
+                raise lost.pop()
+            os.write(answer, answer_to(os.read(source, 1_000)))
 
+    read_notebook(notebook(""))
+    first = file_desk.desk._desk
     monkeypatch.setattr(Desk, "ask", ask)
-    assert read_notebook(notebook(""))[1] == 0
+    assert read_notebook(notebook("of another student"))[1] == 0
+    assert file_desk.desk._desk not in (first, None), "a lost desk is not asked again"
     lost = [ChannelClosed("killed")] * 9
     with pytest.raises(GradingError, match=r"killed.*short of memory"):
         read_notebook(notebook(""))
 
 
 def test_a_desk_that_cannot_read_a_sample_reads_no_student_s_file(
-    hostile: Desk, monkeypatch: pytest.MonkeyPatch
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr(submission_desk, "_SAMPLE", notebook("crash"))
-    monkeypatch.setattr(submission_desk._desk, "_desk", None)
-    monkeypatch.setattr(desk_of_boxes, "Desk", lambda _: hostile)
-    monkeypatch.setattr(hostile, "close", lambda: None)
+    monkeypatch.setattr(file_desk.desk, "_desk", None)
+    ill = {"PYTHONPATH": str(ROOT), "ILL": "1"}
+    monkeypatch.setattr(desk_of_boxes, "Desk", lambda readers: Desk(readers, HOSTILE, ill))
     with pytest.raises(GradingError, match="not even a sample"):
         read_notebook(notebook(""))
 
@@ -223,9 +241,9 @@ def test_a_desk_that_cannot_be_started_leaves_no_process_and_no_folder(
         raise OSError("AF_UNIX path too long")
 
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
-    monkeypatch.setattr(desk_of_boxes, "Enclosure", too_long)
+    monkeypatch.setattr(sandbox, "Enclosure", too_long)
     with pytest.raises(OSError, match="too long"):
-        Desk(HOSTILE, {"PYTHONPATH": str(ROOT)})
+        Desk(READERS, HOSTILE, {"PYTHONPATH": str(ROOT)})
     assert not list(tmp_path.iterdir())
 
 
@@ -237,11 +255,11 @@ def asked(monkeypatch: pytest.MonkeyPatch) -> list[bytes]:
     """The files that a desk was asked to read."""
     files: list[bytes] = []
 
-    def document(_: object, data: bytes) -> bytes:
+    def read(self: KeptDesk, request: str, data: bytes, *_: object, **__: object) -> object:
         files.append(data)
-        return answer_to(data)
+        return checked(answer_to(data))
 
-    monkeypatch.setattr(submission_desk, "document_of", document)
+    monkeypatch.setattr(KeptDesk, "read", read)
     return files
 
 
@@ -338,9 +356,8 @@ def test_what_a_desk_says_of_any_file_is_what_was_parsed(file: object) -> None:
     data = json.dumps(file).encode()
     try:
         cells, left_out = parse(data)
-    except UnreadableSubmission as error:
-        with pytest.raises(UnreadableSubmission, match=re.escape(str(error)[:20])):
-            checked(answer_to(data))
+    except UnreadableSubmission:
+        assert isinstance(checked(answer_to(data)), Unreadable)
         return
-    assert checked(answer_to(data)) == (tuple(cells), left_out)
+    assert checked(answer_to(data)) == ReadNotebook(tuple(cells), left_out)
     assert len(cells) + left_out == len(file["cells"])  # type: ignore[index]

@@ -104,3 +104,12 @@ def test_who_is_excused_from_half_is_where_their_share_is() -> None:
         50: ("ben",),
         0: ("cleo",),
     }
+
+
+def test_the_total_is_that_of_the_exported_assignments() -> None:
+    rows = (Row("ada", "lab_1", "lab_1.a", 3, 4, "failed"), Row("ada", "lab_2", "lab_2.a", 5, 10, "failed"))
+    table = ClassTable(rows, Roster([Student("ada")]), {})
+    for names, total, most in ((["lab_1"], 3, 4), (["lab_2"], 5, 10), (list(ASSIGNMENTS), 8, 14)):
+        header, ada = export_files.class_csv(table, names).decode("utf-8-sig").splitlines()
+        cells = dict(zip(header.split(","), ada.split(","), strict=True))
+        assert (cells["total"], cells["max"]) == (str(total), str(most))

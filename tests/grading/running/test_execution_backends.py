@@ -185,7 +185,7 @@ def test_so_many_are_at_work_at_once_and_no_more(run: Any, monkeypatch: pytest.M
 def test_an_answer_that_is_not_possible_is_never_used(run: Any) -> None:
     forged = Execution((CellRun(Ended.DONE), CellRun(Ended.DONE)))
     results, seen, _ = run(lambda task, times: forged if task.notebook == "b" else Execution(()), "abc")
-    assert "gave an impossible answer: the answer has 2 cells, and the notebook has 0" in results["b"].trouble
+    assert "gave an impossible answer: it has 2 cells, and the notebook has 0" in results["b"].trouble
     assert not results["b"].cells
     assert not results["a"].trouble + results["c"].trouble
     assert [student for student, _, _ in seen].count("b") == task_dispatcher.ATTEMPTS

@@ -9,15 +9,15 @@ import msgspec
 import pytest
 from tiny_class import FakeEngine, TinyClass
 
+from autograder.boxes.admission import NotAdmitted
 from autograder.boxes.run_limits import Ended
 from autograder.execution.executed_cells import CellRun, Execution
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.running.worker_messages import (
     LARGEST_ANSWER,
     LARGEST_OFFER,
-    Forged,
     Offer,
-    admitted,
+    admitted_execution,
     admitted_offer,
 )
 from autograder.grading.tasks.task_making import task_of
@@ -65,15 +65,15 @@ def test_an_honest_answer_comes_through_as_it_is(task: Task, execution: Executio
     said = replace(
         execution, cells=(CellRun(Ended.RAISED, outputs, "ValueError: no", 0.2), *execution.cells[1:])
     )
-    assert admitted(msgspec.json.encode(said), task) == said
+    assert admitted_execution(msgspec.json.encode(said), task) == said
 
 
 def test_trouble_without_cells_comes_through(task: Task, execution: Execution) -> None:
     said = replace(execution, cells=(), trouble="the worker process ended")
-    assert admitted(msgspec.json.encode(said), task) == said
+    assert admitted_execution(msgspec.json.encode(said), task) == said
     said = replace(said, trouble="it\x1b[2J\nended" + "!" * 100_000)
-    assert admitted(msgspec.json.encode(said), task).trouble.startswith("it\\x1b[2J ended!!!")
-    assert len(admitted(msgspec.json.encode(said), task).trouble) == 1_000
+    assert admitted_execution(msgspec.json.encode(said), task).trouble.startswith("it\\x1b[2J ended!!!")
+    assert len(admitted_execution(msgspec.json.encode(said), task).trouble) == 1_000
 
 
 FORGERIES: dict[str, tuple[str, Callable[[Execution], Execution]]] = {
@@ -96,9 +96,9 @@ FORGERIES: dict[str, tuple[str, Callable[[Execution], Execution]]] = {
 @pytest.mark.parametrize("forgery", FORGERIES)
 def test_what_cannot_be_is_refused(task: Task, execution: Execution, forgery: str) -> None:
     words, forge = FORGERIES[forgery]
-    assert admitted(msgspec.json.encode(execution), task)
-    with pytest.raises(Forged, match=words):
-        admitted(msgspec.json.encode(forge(execution)), task)
+    assert admitted_execution(msgspec.json.encode(execution), task)
+    with pytest.raises(NotAdmitted, match=words):
+        admitted_execution(msgspec.json.encode(forge(execution)), task)
 
 
 @pytest.mark.parametrize(
@@ -114,13 +114,13 @@ def test_what_cannot_be_is_refused(task: Task, execution: Execution, forgery: st
     ],
 )
 def test_what_is_no_execution_is_refused(task: Task, data: bytes) -> None:
-    with pytest.raises(Forged, match="the answer is not an execution"):
-        admitted(data, task)
+    with pytest.raises(NotAdmitted, match="it has another form"):
+        admitted_execution(data, task)
 
 
 def test_what_is_too_large_is_not_even_read(task: Task, execution: Execution) -> None:
-    with pytest.raises(Forged, match="bytes"):
-        admitted(msgspec.json.encode(execution) + b" " * LARGEST_ANSWER, task)
+    with pytest.raises(NotAdmitted, match="bytes"):
+        admitted_execution(msgspec.json.encode(execution) + b" " * LARGEST_ANSWER, task)
 
 
 def test_outputs_are_cut_and_stripped_here_too(task: Task, execution: Execution) -> None:
@@ -134,7 +134,7 @@ def test_outputs_are_cut_and_stripped_here_too(task: Task, execution: Execution)
         {"output_type": "<script>", "text": "z"},
     )
     said = replace(execution, cells=(CellRun(Ended.DONE, outputs), *execution.cells[1:]))
-    cell = admitted(msgspec.json.encode(said), task).cells[0]
+    cell = admitted_execution(msgspec.json.encode(said), task).cells[0]
     assert cell.outputs[0] == {"output_type": "display_data", "data": {"text/plain": "x"}, "metadata": {}}
     assert len(cell.outputs) == 3
     assert len(str(cell.outputs)) < 1.1 * task.limits.cell_output_bytes
@@ -145,8 +145,14 @@ def test_an_offer_is_looked_at_too() -> None:
     honest = Offer("version", slots=2, obstacle="")
     assert admitted_offer(msgspec.json.encode(honest)) == honest
     for slots in (0, -1, 10**9):
-        with pytest.raises(Forged, match="at the same time"):
+        with pytest.raises(NotAdmitted, match="at the same time"):
             admitted_offer(msgspec.json.encode(Offer("version", slots=slots, obstacle="")))
-    for data in (b"", b"\x80\x04K\x01.", b'{"version": 1}', b" " * (LARGEST_OFFER + 1)):
-        with pytest.raises(Forged, match="the worker's offer"):
+    for data in (
+        b"",
+        b"\x80\x04K\x01.",
+        b'{"version": 1}',
+        b'{"x":' + b"[" * 3_900,
+        b" " * (LARGEST_OFFER + 1),
+    ):
+        with pytest.raises(NotAdmitted, match="it has"):
             admitted_offer(data)

@@ -85,3 +85,15 @@ def test_a_number_decides_before_a_login_and_a_login_before_a_name(
 def test_who_has_no_apostrophe_is_not_taken_for_who_has() -> None:
     assert [one.id for one in ROSTER.find(Identity("moodle", name="Conor Brien"))] == ["a2"]
     assert [one.id for one in ROSTER.find(Identity("moodle", name="Nora DAngelo"))] == ["a3"]
+
+
+def test_a_name_that_two_students_have_means_neither() -> None:
+    """What means several students says nothing; the next thing that is known of the person decides, or none does."""
+    lees = Roster([Student("a1", "Ann", "Lee"), Student("a2", "Ann", "Lee"), Student("a3", "Nora", "Bär")])
+    ann = Identity(name="Ann Lee")
+    assert lees.first([ann]) is None
+    assert lees.first([ann, Identity(login="a2")]) == (lees.students["a2"], 1)
+    assert lees.first([Identity(login="a9"), ann, Identity(name="Nora Bär"), Identity(login="a1")]) == (
+        lees.students["a3"],
+        2,
+    )

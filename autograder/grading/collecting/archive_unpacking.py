@@ -1,11 +1,8 @@
-"""A desk of ``collect`` is a process in a box that unpacks one archive, or parses one list from an LMS.
+"""Unpacks an archive in a desk, a process in a box, because an archive may be made to do harm.
 
-Archives and lists are read in a box because they may be made to do harm. The process is forked like that of
-:mod:`autograder.grading.rebuilding.notebook_parsing`, with the same filter of system calls.
-
-The answer about an archive contains, for each file, a line of JSON and then the bytes of the file. The line has the
-size of the file, and the paths that lead to the file: ``["src.zip", "lab_1_2.ipynb"]`` for a file in an archive inside
-the archive. If a file is not taken, the line has the reason.
+The answer contains, for each file, a line of JSON and then the bytes of the file. The line has the size of the file,
+and the paths that lead to the file: ``["src.zip", "lab_1_2.ipynb"]`` for a file in an archive inside the archive. If a
+file is not taken, the line has the reason.
 """
 
 from __future__ import annotations
@@ -15,21 +12,17 @@ import gzip  # noqa: F401
 import io
 import json
 import lzma  # noqa: F401
-import os
 import stat
 import tarfile
 import zipfile
+from dataclasses import dataclass
 from functools import partial
-from typing import IO, TYPE_CHECKING, Any, NamedTuple
+from typing import IO, TYPE_CHECKING, NamedTuple
 
-import msgspec
 import re2
 
-from autograder.grading.collecting.lms_lists import parse_list
-from autograder.grading.collecting.systems import GRADESCOPE
-
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Callable, Iterator, Sequence
 
 
 EMPTY = "contains no file, or only files that programs leave there"
@@ -65,64 +58,42 @@ def is_left_by_a_program(name: str) -> bool:
     return bool(_LEFT_BY_PROGRAMS.match(name.encode("utf-8", "replace")))
 
 
-_SAMPLES = {
-    "a.csv": b"identifier,grade,full name,last modified (submission)\nParticipant 1,,Ada,3 October 2025\n",
-    GRADESCOPE: b"submission_1:\n  :created_at: 2025-10-03\n  :submitters:\n  - :name: Ada\n",
-}
-"""One small list of each format. Reading them once loads everything that a desk otherwise loads at its first use."""
-
-
-def prepare() -> None:
-    """Load everything that a desk needs, because a desk itself cannot open files."""
-    for name, data in _SAMPLES.items():
-        msgspec.json.encode(parse_list(name, data))
+def rehearse() -> None:
+    """Load everything that :func:`read` needs, because a desk itself cannot open files."""
     "".encode("cp437")
 
 
-def run(call: Mapping[str, Any], descriptors: Sequence[int]) -> None:
-    """Read one file and write the answer.
+def read(file: IO[bytes], depth: int, files: int, unpacked: int, of_one: int) -> Iterator[bytes]:
+    """Unpack an archive, and the archives in it. The limits hold for all of them together.
 
     Args:
-        call: For an archive, the ``limits`` for :class:`_Unpacking`; for a list, the ``name`` of its file.
-        descriptors: The file, and an empty file for the answer.
-    """
-    source, answer = descriptors
-    file = open(source, "rb", closefd=False)  # noqa: SIM115  (a descriptor, until the process ends)
-    if "limits" in call:
-        _Unpacking(answer, *call["limits"]).unpack([], file)
-    else:
-        _write(answer, msgspec.json.encode(parse_list(call["name"], file.read())))
-
-
-class _Unpacking:
-    """Unpacks an archive, and the archives in it. The limits hold for all of them together.
-
-    Args:
-        answer: The descriptor of the file to which the answer is written.
+        file: The archive.
         depth: The maximum number of archives inside one another; 1 to leave archives inside the archive packed.
         files: The maximum number of files.
         unpacked: The maximum size of all files together, in bytes.
         of_one: The maximum size of one file, in bytes.
     """
+    return _Unpacking(depth, files, unpacked, of_one).unpack([], file)
 
-    def __init__(self, answer: int, depth: int, files: int, unpacked: int, of_one: int) -> None:
-        self._answer = answer
-        self.depth, self.files, self.unpacked, self.of_one = depth, files, unpacked, of_one
 
-    def unpack(self, names: Sequence[str], file: IO[bytes]) -> None:
+@dataclass
+class _Unpacking:
+    depth: int
+    files: int
+    unpacked: int
+    of_one: int
+
+    def unpack(self, names: Sequence[str], file: IO[bytes]) -> Iterator[bytes]:
         try:
             entries = _entries(file)
         except Exception as error:
-            self._tell(
-                names,
-                reason=f"the archive cannot be read: {_told(error)}; get the archive again",
-            )
+            yield _refused(names, f"the archive cannot be read: {_told(error)}; get the archive again")
             return
         size = sum(one.size for one in entries)
         if len(entries) > self.files or size > self.unpacked:
-            self._tell(
+            yield _refused(
                 names,
-                reason=f"the archive has {len(entries)} files of {size / 1e6:.0f} MB, but only {self.files} files of "
+                f"the archive has {len(entries)} files of {size / 1e6:.0f} MB, but only {self.files} files of "
                 f"{self.unpacked / 1e6:.0f} MB may still be unpacked: ask the student for the notebook alone",
             )
             return
@@ -135,40 +106,47 @@ class _Unpacking:
         ]
         # At depth 1 the archive is a whole download; if that is empty, a later step reports it.
         if not kept and self.depth > 1:
-            self._tell(names, reason=f"the archive {EMPTY}")
+            yield _refused(names, f"the archive {EMPTY}")
         if kept and all(one.is_encrypted for one in kept):
-            self._tell(names, reason=ENCRYPTED)
+            yield _refused(names, ENCRYPTED)
             return
         for one in kept:
-            self._take([*names, one.name[: 2 * LONGEST_NAME]], one)
+            yield from self._take([*names, one.name[: 2 * LONGEST_NAME]], one)
 
-    def _take(self, names: Sequence[str], one: _Entry) -> None:
-        if not one.is_ordinary:
-            self._tell(names, reason="the file is a link, or not an ordinary file")
-            return
-        if one.is_encrypted:
-            self._tell(names, reason=ENCRYPTED)
-            return
-        if one.size > self.of_one:
-            megabytes = f"{one.size / 1e6:.0f} MB; the limit is {self.of_one / 1e6:.0f} MB"
-            self._tell(names, reason=f"it unpacks to {megabytes}")
+    def _take(self, names: Sequence[str], one: _Entry) -> Iterator[bytes]:
+        if reason := self._reason_against(one):
+            yield _refused(names, reason)
             return
         try:
             with one.open() as file:
                 data = file.read(one.size + 1)
         except Exception as error:
-            self._tell(names, reason=f"it cannot be unpacked: {_told(error)}")
+            yield _refused(names, f"it cannot be unpacked: {_told(error)}")
             return
         if len(names) < self.depth and is_archive(one.name, data):
-            self.unpack(names, io.BytesIO(data))
+            yield from self.unpack(names, io.BytesIO(data))
         else:
-            self._tell(names, data)
+            yield _line(names, len(data))
+            yield data
 
-    def _tell(self, names: Sequence[str], data: bytes = b"", reason: str = "") -> None:
-        """Write a file, or the reason why it is not taken."""
-        line = json.dumps({"names": names, "size": len(data), "reason": reason}, ensure_ascii=False)
-        # A name in a tar may be in any encoding; its unknown bytes are lone surrogates, which the reader would refuse.
-        _write(self._answer, line.encode("utf-8", "replace") + b"\n" + data)
+    def _reason_against(self, one: _Entry) -> str:
+        if not one.is_ordinary:
+            return "the file is a link, or not an ordinary file"
+        if one.is_encrypted:
+            return ENCRYPTED
+        if one.size > self.of_one:
+            return f"it unpacks to {one.size / 1e6:.0f} MB; the limit is {self.of_one / 1e6:.0f} MB"
+        return ""
+
+
+def _refused(names: Sequence[str], reason: str) -> bytes:
+    return _line(names, 0, reason)
+
+
+def _line(names: Sequence[str], size: int, reason: str = "") -> bytes:
+    line = json.dumps({"names": names, "size": size, "reason": reason}, ensure_ascii=False)
+    # A name in a tar may be in any encoding; its unknown bytes are lone surrogates, which the reader would refuse.
+    return line.encode("utf-8", "replace") + b"\n"
 
 
 class _Entry(NamedTuple):
@@ -218,13 +196,3 @@ def _name_of(one: zipfile.ZipInfo) -> str:
 def _told(error: Exception) -> str:
     """Return the text of an error, cut because it may contain two names of a file, or the type if it has no text."""
     return str(error)[:LONGEST_NAME] or type(error).__name__
-
-
-def _write(answer: int, data: bytes) -> None:
-    """Write an answer. If writing fails, end the process with the error's number."""
-    left = memoryview(data)
-    while left:
-        try:
-            left = left[os.write(answer, left) :]
-        except OSError as error:
-            os._exit(error.errno or 1)
