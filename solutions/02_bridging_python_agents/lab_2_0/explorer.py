@@ -8,6 +8,12 @@ def turned(now: Moment) -> float:
     return now.pose.heading if abs(now.pose.heading) < 2.4 else 0.0
 
 
+def first_turn(now: Moment) -> float:
+    """Return the first turn of the robot's commands, in radians per second; 0.0 if none of them turns."""
+    turns = (event.data["fields"]["angular"]["z"] for event in now.part.of("message"))
+    return next(filter(None, turns), 0.0)
+
+
 EXERCISE = Mission(
     "lab_2_0.explorer",
     "Lab 2.0 · The exploring robot",
@@ -39,7 +45,7 @@ EXERCISE = Mission(
     knows=[
         (
             "other_side",
-            lambda now: now.pose.heading > 0.7 and not now.reached,
+            lambda now: first_turn(now) < 0 and not now.reached,
             "Your robot turns to the side with less room.",
             "To the left is a positive turn. Compare seen.left with seen.right, and hand command.turn on as angular.z.",
         ),
