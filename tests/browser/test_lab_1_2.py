@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 import sys
 from pathlib import Path
@@ -31,6 +32,12 @@ BANK = Path(__file__).parents[1] / "submissions/notebooks"
 def answer(file: str) -> str:
     """What a student types into the solution cell."""
     return (BANK / file).read_text().partition("# %% solution ")[2].partition("\n")[2].strip()
+
+
+def solution(exercise: str) -> str:
+    """The course's own solution cell of an exercise."""
+    file = Path(__file__).parents[2] / f"solutions/01_ros2_fundamentals/lab_1_2/{exercise}.solution.json"
+    return str(json.loads(file.read_text(encoding="utf-8"))["code"][0])
 
 
 def program(name: str) -> str:
@@ -64,6 +71,8 @@ def test_a_student_errs_reads_the_card_mends_it_and_validates(page: Page, lab: s
 
     notebook.write(r"^class TalkerNode", answer("lab_1_2.talker/right/as_hinted.py"))
     notebook.write(r"^class ListenerNode", answer("lab_1_2.listener/right/as_hinted.py"))
+    notebook.write(r"^class Careful", solution("wall"))
+    notebook.write(r"^class Reporter", solution("rooms"))
     for name in ("talker", "listener"):
         notebook.write(rf"^%%(?:writefile|program) .*/{name}\.py", program(name))
     notebook.write(r"^entry_points = ", ENTRY_POINTS)

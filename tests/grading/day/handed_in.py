@@ -30,7 +30,7 @@ BY_HAND = {
     "too high": "",
     "decomposed": "José",
     "small letters": "bob",
-    "capitals": "Bob",
+    "capitals": "Bobby",
 }
 """How work lies in ``submitted`` that somebody has put there, and the student's id where that is the oddity."""
 SYSTEMS = ("moodle", "canvas", "blackboard", "brightspace", "gradescope")
