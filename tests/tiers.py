@@ -54,6 +54,8 @@ NIGHTLY = (
     "tests/judge/test_missing_events.py::test_no_exercise_needs_an_event_to_come_to_a_verdict[lab_1_4.programs]",
     # All notebooks in one folder; two of them are executed each day.
     "tests/masters/test_run_again.py",
+    # The longest exercise at each missing event, a hundred seconds; the others stay.
+    "tests/judge/test_missing_events.py::test_no_exercise_needs_an_event_to_come_to_a_verdict[bugs_2.counting_clock]",
     # Recording what builds packages, or a changed exercise; what has changed in truth is recorded in both tiers.
     "tests/authoring/test_reference_files.py::test_recording_again_gives_the_same_file[lab_1_2.programs]",
     "tests/authoring/test_reference_files.py::test_recording_again_gives_the_same_file[lab_1_3.programs]",
@@ -132,6 +134,10 @@ DRAWS = (
     Draw("tests/grading/new_classes/test_sample_class.py::test_every_sample_earns_what_it_must[", 3),
     Draw("tests/workspaces/test_graded_notebooks.py::test_the_master_gets_full_marks[", 1),
     Draw("tests/workspaces/test_graded_notebooks.py::test_answers_are_judged_as_in_a_terminal[", 1),
+    Draw(
+        "tests/workspaces/builds/test_plain_packages.py::test_the_files_of_each_package_of_the_bank_are_those_of_colcon[",
+        1,
+    ),
     Draw("tests/masters/test_programs.py::test_the_program_earns_full_marks[", 2),
     Draw("tests/notebook/checking/test_patience_in_cells.py::test_who_keeps_the_patience_is_right[", 3),
     Draw("tests/notebook/checking/test_patience_in_cells.py::test_who_waits_by_another_limit_is_wrong[", 3),
