@@ -184,10 +184,8 @@ class KeptDesk:
             try:
                 desk = self._started()
                 os.ftruncate(answer, 0)
-                for descriptor in (
-                    source,
-                    answer,
-                ):  # a lost desk has moved the positions, which all desks share
+                # A lost desk has moved the positions, which all desks share.
+                for descriptor in (source, answer):
                     os.lseek(descriptor, 0, os.SEEK_SET)
                 return desk.ask(request, source, answer, most=most, seconds=seconds, **words)
             except (ChannelClosed, NoSandbox, OSError) as error:

@@ -45,7 +45,7 @@ def robot(random: Random, number: int, talk: list[Qos], hear: list[Qos], deaf: Q
 def hears_well(seen: Searches, _: Searches) -> str:
     """Return a subscriber that was named and is not deaf; empty if there is none."""
     named = [(search.robot.nodes, name) for search in seen.values() for name in search.astray]
-    return next((name for nodes, name in named if "subscribes" in nodes.get(f"/{name.strip('/')}", {})), "")
+    return next((name for nodes, name in named if "subscribes" in nodes.get(name, {})), "")
 
 
 quest = Quest(robots)
@@ -58,7 +58,7 @@ finds.knows(
     hears_well,
     "Your answer names {}, which subscribes to the topic, and hears its publishers.",
     "Pass the publisher's qos_profile first, then the subscriber's, to qos_check_compatible, and look for ERROR: only "
-    "a subscriber that asks for more than is offered hears nothing. Another QoS alone is no error.",
+    "a subscriber that asks for more than is offered hears nothing. A different QoS alone is not an error.",
 )
 EXERCISE = finds.exercise(
     arguments="a topic",
