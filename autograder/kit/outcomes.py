@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, Any
 
 import re2
 
+from autograder.kit.in_words import counted
 from autograder.kit.mistakes.crashes import on_purpose, raised_lines
 from autograder.kit.model import Advice
 
@@ -113,7 +114,8 @@ class SentGoal:
         if self.cancel_accepted:
             return ""
         if self.cancel_accepted is None and self.status is None:
-            return f"the cancel request was not answered; feedback messages after it: {self.unread}"
+            came = counted(self.unread, "feedback message")
+            return f"the cancel request was not answered, and {came} came after it"
         return f"the cancel request was not accepted; status {status_text(self.status)}"
 
     @property

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib.util
 import lzma
 import subprocess
 import sys
@@ -113,90 +112,6 @@ def test_evidence_depends_on_the_scenario_and_not_on_what_is_said(monkeypatch: p
     assert stimulus.digest.__wrapped__(ID) == before
     monkeypatch.setattr(publisher, "PERSISTENT", publisher.PERSISTENT + 1)
     assert stimulus.digest.__wrapped__(ID) != before
-
-
-SCENARIO = """
-import contextlib
-
-WAIT, OTHER = 1.5, 2.5
-KINDS = {"first": (lambda: 11)}
-
-class Base:
-    def drive(self):
-        return "base"
-
-class Times:
-    def __init__(self):
-        self.pace = 3.5
-
-class Recipe(Base):
-    def __init__(self):
-        self.times = Times()
-
-    def drive(self):
-        "Said well."
-        return super().drive(), self.times.pace
-
-    def judges(self):
-        return "not asked"
-
-recipe = Recipe()
-
-@contextlib.contextmanager
-def held():
-    yield 4.5
-
-@print
-def criterion():
-    return "what is said"
-
-def scenario():
-    with held():
-        return WAIT, recipe.drive(), KINDS  # why
-"""
-
-
-def reached(text: str, folder: Path, module_name: str = "autograder.kit.made_up") -> set[str]:
-    file = folder / f"made_up_{len(list(folder.iterdir()))}.py"  # no bytecode of another one is taken for it
-    file.write_text(text, encoding="utf-8")
-    spec = importlib.util.spec_from_file_location(module_name, file)
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setitem(sys.modules, spec.name, module)
-        spec.loader.exec_module(module)
-        stimulus._nodes.cache_clear()
-        found = stimulus._Reached()
-        found.add(module.scenario)
-    return found.texts
-
-
-@pytest.mark.parametrize(
-    ("old", "new", "counts"),
-    [
-        ("1.5", "1.6", True),
-        ("3.5", "3.6", True),
-        ("4.5", "4.6", True),
-        ("11", "12", True),
-        ('"base"', '"other"', True),
-        ("2.5", "2.6", False),
-        ("Said well.", "Said better.", False),
-        ("# why", "# because", False),
-        ("not asked", "never asked", False),
-        ("what is said", "in other words", False),
-    ],
-)
-def test_what_a_scenario_refers_to_counts_and_nothing_else(
-    old: str, new: str, counts: bool, tmp_path: Path
-) -> None:
-    assert old in SCENARIO
-    usual = reached(SCENARIO, tmp_path)
-    assert (reached(SCENARIO.replace(old, new), tmp_path) != usual) == counts
-
-
-def test_where_a_scenario_is_written_does_not_count(tmp_path: Path) -> None:
-    assert reached(SCENARIO, tmp_path) == reached(SCENARIO, tmp_path, "autograder.kit.recipes.moved")
 
 
 def test_the_digest_is_the_same_in_each_process() -> None:

@@ -1,0 +1,156 @@
+"""Code that drives a subject counts for the evidence of its answers, and words do not."""
+
+from __future__ import annotations
+
+import importlib.util
+import sys
+from typing import TYPE_CHECKING
+
+import pytest
+
+from tests.measure import driving_code
+from tests.measure.stimulus import without_texts
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+SCENARIO = """
+import contextlib
+from dataclasses import dataclass
+
+WAIT, OTHER = 1.5, 2.5
+KINDS = {"first": (lambda: 11)}
+
+class TooLate(Exception):
+    pass
+
+class Finding:
+    def __init__(self, passed, seen):
+        self.passed = passed
+
+@dataclass
+class Turn:
+    number: int = 21
+
+    @property
+    def pace(self):
+        return 31
+
+    def in_words(self):
+        return "the turn"
+
+class Base:
+    def drive(self):
+        return "base"
+
+class Times:
+    def __init__(self):
+        self.pace = 3.5
+
+class Recipe(Base):
+    def __init__(self):
+        self.times = Times()
+
+    def drive(self):
+        "Said well."
+        return super().drive(), self.times.pace
+
+    def judges(self):
+        return "not asked"
+
+recipe = Recipe()
+
+@contextlib.contextmanager
+def held():
+    yield 4.5
+
+@print
+def criterion():
+    return "what is said"
+
+def too_late(seconds: float):
+    import math
+    if seconds > 41:
+        raise TooLate(f"it took {seconds} s", 51)
+
+def holds():
+    return Finding(61 < 62, "seen on the card")
+
+def scenario():
+    with held():
+        too_late(7)
+        return WAIT, recipe.drive(), KINDS, Turn().number, holds().passed  # why
+"""
+
+
+def reached(text: str, folder: Path, module_name: str = "autograder.kit.made_up") -> list[str]:
+    file = folder / f"made_up_{len(list(folder.iterdir()))}.py"  # no bytecode of another one is taken for it
+    file.write_text(text, encoding="utf-8")
+    spec = importlib.util.spec_from_file_location(module_name, file)
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setitem(sys.modules, spec.name, module)
+        spec.loader.exec_module(module)
+        code = driving_code.DrivingCode()
+        code.add(module.scenario)
+        return code.texts()
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("1.5", "1.6"),
+        ("3.5", "3.6"),
+        ("4.5", "4.6"),
+        ("11", "12"),
+        ('"base"', '"other"'),
+        ("21", "22"),
+        ("31", "32"),
+        ("> 41", "> 42"),
+        ("51", "52"),
+        ("61 < 62", "61 < 63"),
+        ("raise TooLate", "raise ValueError"),
+    ],
+)
+def test_what_drives_a_subject_counts(old: str, new: str, tmp_path: Path) -> None:
+    assert old in SCENARIO
+    assert reached(SCENARIO.replace(old, new), tmp_path) != reached(SCENARIO, tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("2.5", "2.6"),
+        ("Said well.", "Said better."),
+        ("# why", "# because"),
+        ("not asked", "never asked"),
+        ("what is said", "in other words"),
+        ("the turn", "this turn"),
+        ("it took {seconds} s", "{seconds} seconds are too long"),
+        ("seen on the card", "seen on a card"),
+        ("seconds: float", "seconds: int"),
+        ("import math", "import cmath"),
+    ],
+)
+def test_words_do_not_count(old: str, new: str, tmp_path: Path) -> None:
+    assert old in SCENARIO
+    assert reached(SCENARIO.replace(old, new), tmp_path) == reached(SCENARIO, tmp_path)
+
+
+def test_where_a_scenario_is_written_does_not_count(tmp_path: Path) -> None:
+    assert reached(SCENARIO, tmp_path) == reached(SCENARIO, tmp_path, "autograder.kit.recipes.moved")
+
+
+def test_of_a_reference_output_the_texts_do_not_count() -> None:
+    noted = {
+        "kind": "noted",
+        "name": "/a",
+        "data": {"step": 1, "given": "1 s without an input", "values": [2]},
+    }
+    reference = {"exercise": "lab.one", "parts": [{"name": "drawing 0", "inputs": {}, "events": [noted]}]}
+    card = {"key": "late", "text": "It comes late.", "next_step": "Send it at once.", "parts": []}
+    assert without_texts({**reference, "variants": [card]}) == without_texts(reference)
+    assert "without an input" not in str(without_texts(reference))
+    assert "[2]" in str(without_texts(reference))
