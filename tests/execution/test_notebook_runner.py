@@ -18,6 +18,7 @@ from autograder.boxes.run_limits import Ended, Left, Limits, Patient, wall_time
 from autograder.execution.executed_cells import Cell, CellCheck, CellType, Execution
 from autograder.execution.notebook_processes import BoxedProcesses, NotebookSetting, UnboxedProcesses
 from autograder.execution.notebook_runner import Unfinished, run_notebook
+from autograder.grading.rebuilding.submitted_notebook import MAX_CELL_CHARACTERS
 from autograder.safe_files import scratch_folder
 from autograder.verdict import State, Verdict
 
@@ -199,6 +200,13 @@ def test_a_message_larger_than_allowed_is_dropped_and_the_next_cell_is_heard(run
     execution = run(["print('x' * 3_000_000)", "print('small')"], message_bytes=1_000_000)
     assert "too large" in execution.cells[0].outputs[0]["text"]
     assert execution.cells[1].outputs[0]["text"] == "small\n"
+
+
+def test_a_cell_as_long_as_a_cell_may_be_is_run(run: Run) -> None:
+    numbers = f"numbers = [{'1, ' * (MAX_CELL_CHARACTERS // 3 - 10)}]"
+    execution = run([numbers, "print(len(numbers))"])
+    assert [cell.ended for cell in execution.cells] == [Ended.DONE, Ended.DONE]
+    assert "".join(str(output["text"]) for output in execution.cells[1].outputs) == "33323\n"
 
 
 def test_input_is_refused_at_once(run: Run) -> None:
