@@ -30,18 +30,22 @@ _LEFT_OUT = "[picture left out: it is too large, or damaged]"
 _ADDRESS = r"attachment:(?P<{0}name>[\w.%+-]+)|(?P<{0}data>data:image/(?:png|jpeg);base64,[A-Za-z0-9+/=]+)"
 # Matches a whole picture in Markdown; in HTML, it matches only the address in `src`.
 _PICTURE = re2.compile(rf"!\[(?P<alt>[^\[\]\n]*)\]\((?:{_ADDRESS.format('')})\)|{_ADDRESS.format('bare_')}")
-_DIRECTION_ESCAPES = {
+_ESCAPES = {
     code: f"\\u{code:04x}"
     for code in (0x061C, 0x200E, 0x200F, *range(0x202A, 0x202F), *range(0x2066, 0x206A))
-}
-"""The characters that change the writing direction, each with the escape to show instead. They are replaced because
-with them, a text may look different from its real content (Unicode TR 36, "Bidirectional Text").
+} | {code: f"\\x{code:02x}" for code in (*range(0x20), *range(0x7F, 0xA0)) if chr(code) not in "\t\n\r"}
+"""The characters that change the writing direction, and control characters, each with the escape to show instead.
+
+The first are replaced because with them, a text may look different from its real content (Unicode TR 36, "Bidirectional
+Text"); the others because they control the program that shows the page.
 """
+_LONGEST_CODE = 40
+"""The maximum length of a code for a terminal; those of a color have up to twenty characters."""
 
 
-def escape_direction_marks(text: str) -> str:
-    """Return ``text`` with escapes for the characters that change the writing direction."""
-    return text if text.isascii() else text.translate(_DIRECTION_ESCAPES)
+def escape_marks(text: str) -> str:
+    """Return ``text`` with escapes for control characters, and for those that change the writing direction."""
+    return text if text.isprintable() else text.translate(_ESCAPES)
 
 
 def make_harmless(notebook: NotebookNode, own: Collection[int] = ()) -> NotebookNode:
@@ -70,7 +74,7 @@ def make_harmless(notebook: NotebookNode, own: Collection[int] = ()) -> Notebook
 
 def _make_text_harmless(cell: NotebookNode, pictures: PixelBudget, *, is_own: bool) -> None:
     if cell.cell_type == CellType.CODE:
-        cell.source = escape_direction_marks(cell.source)
+        cell.source = escape_marks(cell.source)
         cell.metadata["magics_language"] = "text"  # so that nbconvert shows the code without highlighting
         return
     attached = {
@@ -114,7 +118,7 @@ def _picture(alternative: str | None, address: str) -> str:
 
 def _escaped(text: str) -> str:
     """Return text as HTML. ``[`` is escaped too: nbconvert looks for links of Markdown in a page, in quadratic time."""
-    return escape(escape_direction_marks(text)).replace("[", "&#91;")
+    return escape(escape_marks(text)).replace("[", "&#91;")
 
 
 def _with_pictures_that_fit(output: NotebookNode, pictures: PixelBudget) -> NotebookNode:
@@ -139,7 +143,17 @@ def harmless_output(output: NotebookNode) -> NotebookNode:
 
 
 def _escape_marks_in(words: Any) -> Any:
-    """Return a text, or a list of lines, with escapes for the characters that change the writing direction."""
+    """Return a text, or a list of lines, with the escapes of :func:`escape_marks`, but with its colors."""
     if isinstance(words, str):
-        return escape_direction_marks(words)
+        first, *others = map(escape_marks, words.split("\x1b"))
+        return first + "".join(("\x1b" if _is_code(other) else "\\x1b") + other for other in others)
     return [_escape_marks_in(line) for line in words] if isinstance(words, list) else words
+
+
+def _is_code(text: str) -> bool:
+    """Return True if a text that follows an escape character begins with the rest of a code for a terminal.
+
+    nbconvert shows colors, and drops other codes.
+    """
+    end = text[1:_LONGEST_CODE].lstrip("0123456789;:?")[:1]
+    return text.startswith("[") and "@" <= end <= "~"
