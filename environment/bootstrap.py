@@ -31,6 +31,8 @@ ROOT = Path(__file__).resolve().parent.parent
 # The disk space of a complete environment, with some reserve for the build, in bytes.
 _SPACE_NEEDED = 1_600_000_000
 _LOG_LINES_SHOWN = 25
+# Earlier versions left these in the set-up's folder; colcon writes all variables of the user into the first two.
+_LEFTOVERS = ("build", "colcon-log", "interfaces")
 # The maximum length of a line of the log that is shown, in characters. pip names all of its packages in one line.
 _LOG_COLUMNS_SHOWN = 200
 
@@ -152,8 +154,11 @@ def set_up(place: Place, environ: Mapping[str, str], with_tests: bool, extras: S
         say(ros.notice)
     _check_space(place)
     place.notes.mkdir(parents=True, exist_ok=True)
+    for name in _LEFTOVERS:
+        shutil.rmtree(place.notes / name, ignore_errors=True)
     log_path = place.notes / "setup.log"
     with log_path.open("a", encoding="utf-8") as log:
+        log_path.chmod(0o600)  # packages that fail to install may print anything
         system_packages.require("setup", log, say)
         setup = Setup(place, ros, sourced, log, say)
         steps = setup.steps(with_tests, _extras(place, extras))

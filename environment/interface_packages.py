@@ -82,14 +82,13 @@ def build_command(
         python: The interpreter for which interfaces are generated.
         packages: The folders with the definitions.
         prefix: The common install folder of all packages.
-        scratch: A folder for intermediate files.
+        scratch: An empty folder for intermediate files.
         light: True to generate interfaces for Python only.
 
     Raises:
         OSError: The packages cannot be written.
     """
     sources = scratch / "interfaces"
-    shutil.rmtree(sources, ignore_errors=True)
     for package in packages:
         _make_package(package, sources / package.name)
     # Release defines NDEBUG. With asserts, a field of a wrong type would end a student's process.

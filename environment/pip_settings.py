@@ -10,37 +10,37 @@ if TYPE_CHECKING:
 
 # The sections in the order in which pip reads them; the last one wins (pip's documentation, "Configuration").
 _SECTIONS = ("global", "install", ":env:")
-_OPTIONS = {
-    "index-url": "--default-index",
-    "extra-index-url": "--index",
-    "find-links": "--find-links",
-    "trusted-host": "--allow-insecure-host",
-}
 _VARIABLES = {
+    "index-url": "UV_DEFAULT_INDEX",
+    "extra-index-url": "UV_INDEX",
+    "find-links": "UV_FIND_LINKS",
+    "trusted-host": "UV_INSECURE_HOST",
     "cert": "SSL_CERT_FILE",
     "client-cert": "SSL_CLIENT_CERT",
     "proxy": "ALL_PROXY",
     "default-timeout": "UV_HTTP_TIMEOUT",
     "timeout": "UV_HTTP_TIMEOUT",
 }
+_SEPARATORS = {"UV_INDEX": " ", "UV_FIND_LINKS": ",", "UV_INSECURE_HOST": " "}
 
 
 def as_uv_has_them(listed: str) -> tuple[list[str], dict[str, str]]:
     """Return the options and variables with which uv downloads from the same place as pip.
 
+    Addresses are variables, because they may contain a password. Options are shown by the log of the set-up, and to
+    every user of the machine.
+
     Args:
         listed: The output of ``pip config list``: on each line a section, a name and a quoted value.
     """
     settings = _settings(listed)
-    options = [
-        word
-        for name, option in _OPTIONS.items()
-        for value in settings.get(name, "").split()
-        for word in (option, value)
-    ]
-    if settings.get("no-index", "").lower() in ("1", "true", "yes", "on"):
-        options.append("--no-index")
-    return options, {_VARIABLES[name]: value for name, value in settings.items() if name in _VARIABLES}
+    variables = {
+        variable: _SEPARATORS[variable].join(value.split()) if variable in _SEPARATORS else value
+        for name, value in settings.items()
+        if (variable := _VARIABLES.get(name))
+    }
+    is_without = settings.get("no-index", "").lower() in ("1", "true", "yes", "on")
+    return ["--no-index"] if is_without else [], variables
 
 
 def _settings(listed: str) -> Mapping[str, str]:

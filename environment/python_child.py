@@ -28,7 +28,10 @@ program.
 """
 TYPED_PYTHONPATH = "COURSE_PYTHONPATH"
 """The variable with the terminal's ``PYTHONPATH``, for a student's program: ``./course`` drops relative folders."""
-_SEARCH_PATHS = ("PATH", "PYTHONPATH", "LD_LIBRARY_PATH", "AMENT_PREFIX_PATH", "CMAKE_PREFIX_PATH")
+SEARCH_PATHS = {
+    *("PATH", "PYTHONPATH", "LD_LIBRARY_PATH", "AMENT_PREFIX_PATH", "CMAKE_PREFIX_PATH", "COLCON_PREFIX_PATH")
+}
+"""The variables that contain a list of folders."""
 _OF_PYTHON = "PYTHON"
 _KEPT_OF_PYTHON = {
     "PYTHONPATH",
@@ -42,6 +45,27 @@ _KEPT_OF_PYTHON = {
     "PYTHONUTF8",
 }
 """Variables that affect how a process reads, writes and prints. Python's other variables name code or files."""
+_LISTED = {
+    *SEARCH_PATHS,
+    *("CONDA_PREFIX", "PYTHONUTF8", "TZ", "VIRTUAL_ENV"),
+    *(
+        "LANG",
+        "LANGUAGE",
+        "LC_ALL",
+        "LC_COLLATE",
+        "LC_CTYPE",
+        "LC_MESSAGES",
+        "LC_MONETARY",
+        "LC_NUMERIC",
+        "LC_TIME",
+    ),
+    *("ROS_DISTRO", "ROS_PYTHON_VERSION", "ROS_VERSION", "ROS_AUTOMATIC_DISCOVERY_RANGE", "ROS_DOMAIN_ID"),
+    *("ROS_LOCALHOST_ONLY", "ROS_STATIC_PEERS", "ROS_PYTHON_CHECK_FIELDS", "RMW_IMPLEMENTATION"),
+    *("FASTDDS_BUILTIN_TRANSPORTS", "RCUTILS_COLORIZED_OUTPUT", "RCUTILS_CONSOLE_OUTPUT_FORMAT"),
+    *("RCUTILS_LOGGING_BUFFERED_STREAM", "RCUTILS_LOGGING_USE_STDOUT"),
+    *("_ROS_WHEELS_BOOTSTRAP_COMPLETE",),
+}
+"""The variables that Python and ROS need. Any other variable may contain a secret, such as a token of the user."""
 
 
 @dataclass(frozen=True)
@@ -92,13 +116,22 @@ def clean_environment(environment: Mapping[str, str]) -> dict[str, str]:
         for name, value in environment.items()
         if not name.startswith(_OF_PYTHON) or name in _KEPT_OF_PYTHON
     }
-    for name in _SEARCH_PATHS:
+    for name in SEARCH_PATHS:
         if name in kept:
             absolute = [entry for entry in kept[name].split(os.pathsep) if entry.startswith("/")]
             kept[name] = os.pathsep.join(absolute)
             if not absolute:
                 del kept[name]
     return kept
+
+
+def listed_environment(environment: Mapping[str, str], *more: str) -> dict[str, str]:
+    """Return the variables of an environment that Python and ROS need, and nothing else of the user's.
+
+    Args:
+        more: The names of further variables to keep.
+    """
+    return {name: value for name, value in environment.items() if name in _LISTED or name in more}
 
 
 def installed_program(name: str) -> Path:

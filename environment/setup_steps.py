@@ -11,7 +11,9 @@ import shlex
 import shutil
 import subprocess
 import sys
+import tempfile  # noqa: TID251  (this runs before the package is installed)
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import IO, TYPE_CHECKING
 
 from environment import course_process, ros_flavour
@@ -20,18 +22,31 @@ from environment.jupyter_files import kernel_install_options, write_jupyter_file
 from environment.lock import EXTRAS, split_blocks
 from environment.pip_settings import as_uv_has_them
 from environment.place import INTERFACES, Place, environment_paths, environment_values
+from environment.python_child import SEARCH_PATHS, listed_environment
 from environment.ros2_command.install import install as install_ros2_command
 from environment.steps import Step, files_below
 from environment.wheel_repairs import repair_fast_dds, repair_sources
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Mapping, Sequence
-    from pathlib import Path
 
     from environment.ros_flavour import Ros
 
     # A program and its arguments.
     Command = Sequence[str | Path]
+
+
+_OF_BUILDS = (
+    "HOME",
+    "TMPDIR",
+    "CC",
+    "CXX",
+    "CFLAGS",
+    "CXXFLAGS",
+    "CPPFLAGS",
+    "LDFLAGS",
+    "CMAKE_BUILD_PARALLEL_LEVEL",
+)
 
 
 class SetupError(Exception):
@@ -110,13 +125,14 @@ class Setup:
             )
         return "installing ROS 2 Jazzy, Jupyter and the build tools (a minute or two, longer if the computer is busy)"
 
-    def _run(self, what: str, command: Command, **more: str) -> None:
+    def _run(self, what: str, command: Command, environment: Mapping[str, str] | None = None) -> None:
         """Run a command, with its output in the log.
 
         Args:
             what: The purpose of the command, for the message if it fails.
             command: The program and its arguments.
-            more: More environment variables.
+            environment: All environment variables; None for what a build needs, because colcon writes its environment
+                into files.
 
         Raises:
             SetupError: The command failed.
@@ -125,7 +141,7 @@ class Setup:
         print(f"\n$ {shlex.join(words)}", file=self.log, flush=True)
         done = subprocess.run(
             words,
-            env={**self._child_variables(), **more},
+            env=self._build_variables() if environment is None else environment,
             cwd=self.place.root,
             stdin=subprocess.DEVNULL,
             stdout=self.log,
@@ -135,21 +151,28 @@ class Setup:
         if done.returncode != 0:
             raise SetupError(f"{what} failed")
 
-    def _child_variables(self) -> dict[str, str]:
-        """Return the variables for the commands, which lead only to the chosen ROS and this environment."""
-        paths = environment_paths(self.place, self.ros)
-        values = environment_values(self.place)
-        result = {**self.environ, **course_process.variables(paths, values, self.environ)}
+    def _build_variables(self) -> dict[str, str]:
+        """Return the variables that a build needs, which lead only to the chosen ROS and this environment."""
+        kept = listed_environment(self.environ, *_OF_BUILDS)
+        found = {name: value for name, value in kept.items() if name not in SEARCH_PATHS or name == "PATH"}
+        return self._with_the_courses(found)
+
+    def _installer_variables(self) -> dict[str, str]:
+        """Return the user's variables, which say how pip and uv reach a package index."""
+        result = self._with_the_courses(self.environ)
         for name in ("PYTHONHOME", "PYTHONSAFEPATH"):
             result.pop(name, None)
         return result
+
+    def _with_the_courses(self, environ: Mapping[str, str]) -> dict[str, str]:
+        paths, values = environment_paths(self.place, self.ros), environment_values(self.place)
+        return {**environ, **course_process.variables(paths, values, environ)}
 
     def _make_environment(self) -> None:
         place = self.place
         if place.prefix.exists():
             _empty(place.prefix, keep=place.notes)
-            for name in ("build", "stamps"):
-                shutil.rmtree(place.notes / name, ignore_errors=True)
+            shutil.rmtree(place.notes / "stamps", ignore_errors=True)
         # A sourced ROS needs the system's Python packages (numpy, yaml, …) in the versions with which it was built.
         options = ["--system-site-packages"] if self.ros.is_sourced else []
         self._run("making .venv", [place.base_python, "-m", "venv", *options, place.prefix])
@@ -195,9 +218,8 @@ class Setup:
     def _uv(self, *arguments: str) -> None:
         """Install with uv, from the package index that the user's pip would use."""
         asked: Command = [self.place.python, "-m", "pip", "config", "list"]
-        listed = subprocess.run(
-            asked, env=self._child_variables(), capture_output=True, text=True, check=False
-        )
+        own = self._installer_variables()
+        listed = subprocess.run(asked, env=own, capture_output=True, text=True, check=False)
         options, variables = as_uv_has_them(listed.stdout)
         command: list[str | Path] = [self._uv_program, "pip", "install", "--no-config", "--no-progress"]
         command += ["--python", self.place.python, "--no-build-isolation", "--compile-bytecode"]
@@ -205,13 +227,13 @@ class Setup:
         # best of all indexes; the hashes say which file that is.
         options = [option for option in options if option not in arguments]  # uv accepts no option twice
         command += ["--link-mode=copy", "--index-strategy=unsafe-best-match", *options, *arguments]
-        self._run("installing packages", command, **variables)
+        self._run("installing packages", command, {**own, **variables})
 
     def _pip(self, *arguments: str) -> None:
         command: list[str | Path] = [self.place.python, "-m", "pip", "install", "--disable-pip-version-check"]
         command += ["--progress-bar=off", "--no-build-isolation", "--use-pep517", *arguments]
         # If a user's setting makes pip install into the home folder, pip would refuse to do so inside an environment.
-        self._run("installing packages", command, PIP_USER="0")
+        self._run("installing packages", command, {**self._installer_variables(), "PIP_USER": "0"})
 
     def _repair_sources(self) -> None:
         changed = repair_sources(self.place.site_packages)
@@ -223,16 +245,16 @@ class Setup:
         place = self.place
         if not self.ros.is_sourced:
             self._run("repairing the wheels", [place.python, "-m", "environment.wheel_repairs"])
-        # The cache of an interrupted build may name compilers that no longer exist.
-        shutil.rmtree(place.notes / "build", ignore_errors=True)
         # Merged into the environment itself: its lib folder and its site-packages are searched already.
         # With a ROS that was sourced, programs in C++ may use them.
         light = not self.ros.is_sourced and only_python_needs(place.interfaces)
         colcon = place.prefix / "bin/colcon"
-        command = build_command(
-            colcon, place.python, place.interfaces, place.prefix, place.notes, light=light
-        )
-        self._run(f"building {self._interfaces()}", command)
+        # Only this user can read the folder, and no box sees it.
+        with tempfile.TemporaryDirectory(prefix="course-setup-", ignore_cleanup_errors=True) as scratch:
+            command = build_command(
+                colcon, place.python, place.interfaces, place.prefix, Path(scratch), light=light
+            )
+            self._run(f"building {self._interfaces()}", command)
 
     def _interfaces(self) -> str:
         return ", ".join(package.name for package in self.place.interfaces)

@@ -11,12 +11,12 @@ def test_an_index_and_a_folder_are_handed_on() -> None:
         "global.extra-index-url='https://two.example/simple\\nfile:///three'\n"
         "install.find-links='/wheels'\n"
     )
-    assert options == [
-        *("--default-index", "https://one.example/simple"),
-        *("--index", "https://two.example/simple", "--index", "file:///three"),
-        *("--find-links", "/wheels"),
-    ]
-    assert variables == {}
+    assert options == []
+    assert variables == {
+        "UV_DEFAULT_INDEX": "https://one.example/simple",
+        "UV_INDEX": "https://two.example/simple file:///three",
+        "UV_FIND_LINKS": "/wheels",
+    }
 
 
 def test_a_variable_of_the_user_counts_more_than_a_file() -> None:
@@ -24,8 +24,12 @@ def test_a_variable_of_the_user_counts_more_than_a_file() -> None:
         ":env:.index-url='https://env.example'\ninstall.index-url='https://install.example'\n"
         "global.index-url='https://global.example'\n:env:.cert='/ca.pem'\nglobal.proxy='http://proxy.example:3128'\n"
     )
-    assert options == ["--default-index", "https://env.example"]
-    assert variables == {"SSL_CERT_FILE": "/ca.pem", "ALL_PROXY": "http://proxy.example:3128"}
+    assert options == []
+    assert variables == {
+        "UV_DEFAULT_INDEX": "https://env.example",
+        "SSL_CERT_FILE": "/ca.pem",
+        "ALL_PROXY": "http://proxy.example:3128",
+    }
 
 
 def test_without_a_network_only_what_is_named_is_looked_at() -> None:

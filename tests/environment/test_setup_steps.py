@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import io
+import os
+import shutil
 import subprocess
 import sys
+import tempfile
 from dataclasses import replace
 from pathlib import Path
 
@@ -144,6 +147,62 @@ def test_the_commands_of_the_set_up_see_neither_another_ros_nor_another_python(t
     assert not [line for line in lines if "humble" in line or line.startswith("PYTHONHOME")]
 
 
+SECRET = {"LMS_API_TOKEN": "planted-4711", "LC_SECRET": "planted-4711", "ROS_SECRET": "planted-4711"}
+LEFT = (
+    "build/my_robot_interfaces/colcon_command_prefix_build.sh.env",
+    "colcon-log/events.log",
+    "interfaces/a/package.xml",
+)
+
+
+def test_a_build_keeps_no_variable_of_the_user_and_no_file(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    shutil.copytree(ROOT / "environment/interfaces", tmp_path / "environment/interfaces")
+    (tmp_path / ".venv/bin").mkdir(parents=True)
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "temporary"))
+    (tmp_path / "temporary").mkdir()
+    place = Place(tmp_path, Path(sys.executable))
+    workspace = tmp_path / "reference_ws/install"
+    environ = {**os.environ, **SECRET, "CMAKE_PREFIX_PATH": str(workspace)}
+    with (tmp_path / "log.txt").open("w") as log:
+        setup = Setup(place, JAZZY, environ, log)
+        colcon, builds = place.prefix / "bin/colcon", tmp_path / "builds"
+        colcon.write_text(f"#!/bin/sh\nenv >{builds}; stat -c 'mode %a' {tmp_path}/temporary/*\n")
+        colcon.chmod(0o755)
+        setup._build_interfaces()
+    assert "mode 700" in (tmp_path / "log.txt").read_text()
+    assert "planted-4711" not in builds.read_text()
+    assert str(workspace) not in builds.read_text()
+    assert f"CMAKE_PREFIX_PATH={place.prefix}" in builds.read_text()
+    assert list((tmp_path / "temporary").iterdir()) == []
+    assert not place.notes.exists()
+
+
+def test_what_installs_packages_gets_the_variables_of_the_user(tmp_path: Path) -> None:
+    setup = Setup(PLACE, Ros("wheels"), {**SECRET, "PIP_INDEX_URL": "https://one.example"}, io.StringIO())
+    assert setup._installer_variables()["PIP_INDEX_URL"] == "https://one.example"
+    assert not set(SECRET) & set(setup._build_variables())
+
+
+def test_a_set_up_removes_what_earlier_ones_have_left(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    place = Place(tmp_path, Path(sys.executable))
+    for name in LEFT:
+        (place.notes / name).parent.mkdir(parents=True)
+        (place.notes / name).write_text("LMS_API_TOKEN=planted-4711")
+    (place.notes / "setup.log").write_text("planted-4711")
+    (place.notes / "setup.log").chmod(0o644)
+    monkeypatch.setattr(Setup, "steps", lambda *_: [])
+    monkeypatch.setattr(Setup, "compile_modules", lambda _: None)
+    monkeypatch.setattr(bootstrap.system_packages, "require", lambda *_: None)
+    monkeypatch.setattr(bootstrap, "_provide", lambda *_: None)
+    bootstrap.set_up(place, {"PATH": os.environ["PATH"]}, with_tests=False)
+    assert [path.name for path in place.notes.iterdir()] == ["setup.log"]
+    assert (place.notes / "setup.log").stat().st_mode & 0o777 == 0o600
+
+
 def test_modules_are_compiled_also_for_a_python_that_keeps_no_bytecode(tmp_path: Path) -> None:
     place = Place(tmp_path, Path(sys.executable))
     place.python.parent.mkdir(parents=True)
@@ -172,7 +231,7 @@ def calls(tmp_path: Path) -> tuple[Setup, list[str], Path]:
         program.write_text(
             f"""#!/bin/sh
 case "$*" in "-m pip config list") echo "global.index-url='https://one.example/simple'"; exit; esac
-echo "{name} $*" >>{called}
+echo "{name} $* index=$UV_DEFAULT_INDEX" >>{called}
 ! [ -e {tmp_path}/no-{name} ]
 """
         )
@@ -192,11 +251,12 @@ def test_uv_installs_with_hashes_from_where_pip_would(calls: tuple[Setup, list[s
     for line in lines:
         for option in (
             "--require-hashes",
-            "--default-index https://one.example/simple",
+            "index=https://one.example/simple",
             "--compile-bytecode",
         ):
             assert option in line
     assert said == []
+    assert "one.example" not in Path(setup.log.name).read_text(), "an address may contain a password"
 
 
 def test_where_uv_cannot_pip_installs_the_same_and_it_is_said(calls: tuple[Setup, list[str], Path]) -> None:
@@ -291,7 +351,7 @@ def test_uv_is_given_no_option_twice(tmp_path: Path, monkeypatch: pytest.MonkeyP
     listed = subprocess.CompletedProcess([], 0, stdout=":env:.no-index='1'\n")
     monkeypatch.setattr(subprocess, "run", lambda *_, **__: listed)
     monkeypatch.setattr(
-        Setup, "_run", lambda _self, _what, command, **_: asked.append(list(map(str, command)))
+        Setup, "_run", lambda _self, _what, command, *_: asked.append(list(map(str, command)))
     )
     setup._uv("--no-index", "--editable", "here")
     assert asked[0].count("--no-index") == 1
