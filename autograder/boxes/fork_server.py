@@ -210,6 +210,10 @@ class ForkServer:
             listener.listen(128)
             arguments = ("-m", "autograder.boxes.fork_server", mode, module, str(listener.fileno()), *words)
             variables = {**base_environment(), "PYDEVD_DISABLE_FILE_VALIDATION": "1", **(extra or {})}
+            if mode == BESIDE:
+                variables["PATH"] = os.environ.get(
+                    "PATH", os.defpath
+                )  # bubblewrap may be where no box can see it
             self._process = python_child(*arguments, environment=variables).start(
                 stdin=subprocess.PIPE,
                 stdout=subprocess.DEVNULL,

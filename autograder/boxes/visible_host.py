@@ -17,8 +17,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from environment import ros_flavour
+from environment.python_child import SEARCH_PATHS, listed_environment
+
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
 
 _PACKAGE = Path(__file__).resolve().parents[1]
 SYSTEM = ("/usr", "/bin", "/sbin", "/lib", "/lib32", "/lib64", "/libx32")
@@ -100,7 +103,7 @@ def box_arguments(
     else:
         for place in (HOME, Path("/tmp"), Path("/dev/shm")):
             words += ["--size", "64000000", "--tmpfs", str(place)]
-    cover = _course_below_the_scratch()
+    cover = _below_the_scratch()
     words += [word for folder in cover for word in ("--tmpfs", folder)]
     for bind in (*(Bind(path) for path in installation()), *binds):
         words += bind.arguments()
@@ -109,17 +112,14 @@ def box_arguments(
     return [*words, *(word for folder in ("/dev", "/", *cover) for word in ("--remount-ro", folder))]
 
 
-def _course_below_the_scratch() -> tuple[str, ...]:
-    """Return the folder of the course's git clone if a box could write to it; else nothing.
+def _below_the_scratch() -> tuple[str, ...]:
+    """Return the folders of the course's git clone and of Python if a box could write to them; else nothing.
 
-    A box can write to ``/tmp`` and its home. A clone in one of these is made read-only, because Python imports from the
-    clone. Nothing has to be done for a package installed with pip, because it is inside Python's own folder, which the
-    box sees read-only anyway.
+    A box can write to ``/tmp`` and its home. A clone or an environment in one of these is made read-only, because
+    Python imports from it.
     """
-    folder = _PACKAGE.parent
-    if folder.is_relative_to(sys.prefix) or not any(map(folder.is_relative_to, (HOME, Path("/tmp")))):
-        return ()
-    return (str(folder),)
+    folders = _outermost({_PACKAGE.parent, *_python_prefixes()})
+    return tuple(str(folder) for folder in folders if any(map(folder.is_relative_to, (HOME, Path("/tmp")))))
 
 
 _ETC_FILES = {
@@ -184,66 +184,63 @@ def _system() -> list[str]:
     return words
 
 
+_PARTS = (
+    *("bin", "etc/ipython", "include", "lib*", "openssl", "pyvenv.cfg", "share", "ssl", "*-linux-gnu"),
+    *("local_setup.bash", "local_setup.sh", "_local_setup_util_sh.py"),  # a built workspace sources them
+)
+"""The parts of an installation of Python, as patterns, that a box sees: programs, libraries, and what they read.
+
+The rest of such a folder may be private: the records of the set-up, pip's settings, or other environments of conda.
+"""
+OVERLAYS = "AUTOGRADER_OVERLAYS"
+"""The environment variable, a search path, with the workspaces that the class names in ``class.toml``."""
+
+
 @functools.cache
 def installation() -> tuple[Path, ...]:
-    """Return the folders of Python, ROS and this package that lie outside the system's folders.
+    """Return the files and folders of Python, ROS, the class's overlays and this package outside the system's folders.
 
-    For a virtual environment, these are its own prefix and that of the Python that made it. For a sourced ROS, they are
-    the installations that contain the folders in its search paths: the prefix of ROS (``share/ament_index``) or of
-    conda.
+    ROS is what the set-up has recorded, or else what is sourced. A workspace that is sourced on top of ROS is not part
+    of it, because it may contain anything, even solutions.
     """
     return _installation(os.environ)
 
 
 def _installation(variables: Mapping[str, str]) -> tuple[Path, ...]:
-    wanted = {Path(sys.prefix), Path(sys.base_prefix), Path(sys.base_prefix).resolve(), _PACKAGE}
+    wanted = {_PACKAGE, *_ros_prefixes(variables)}
+    for prefix in _python_prefixes():
+        wanted.update(path for pattern in _PARTS for path in prefix.glob(pattern))
     helper = _PACKAGE.parent / "environment"
     if (helper / "ros2_command").is_dir():
         wanted.add(helper)
-    for name in ("AMENT_PREFIX_PATH", "CMAKE_PREFIX_PATH", "LD_LIBRARY_PATH", "PYTHONPATH", "PATH"):
-        for entry in variables.get(name, "").split(os.pathsep):
-            prefix = _ros_prefix(Path(entry)) if entry.startswith("/") else None
-            if prefix is not None:
-                wanted.add(prefix)
-    folders = sorted(path for path in wanted if path.is_dir() and not any(map(path.is_relative_to, SYSTEM)))
-    # A folder inside another one of them is visible already.
-    return tuple(
-        folder
-        for folder in folders
-        if not any(folder != other and folder.is_relative_to(other) for other in folders)
+    return _outermost(path for path in wanted if path.exists() and not any(map(path.is_relative_to, SYSTEM)))
+
+
+def _outermost(paths: Iterable[Path]) -> tuple[Path, ...]:
+    """Return the sorted paths without those inside another one of them."""
+    found: list[Path] = []
+    for path in sorted(paths):
+        if not any(map(path.is_relative_to, found)):
+            found.append(path)
+    return tuple(found)
+
+
+def _python_prefixes() -> set[Path]:
+    return {Path(sys.prefix), Path(sys.base_prefix), Path(sys.base_prefix).resolve()}
+
+
+def _ros_prefixes(variables: Mapping[str, str]) -> set[Path]:
+    """Return the folders of ROS outside of Python's environment, and of the overlays that the class names."""
+    recorded = ros_flavour.load(Path(sys.prefix))
+    ros = (
+        ros_flavour.sourced_prefixes(variables)
+        if recorded is None
+        else recorded.paths.get("AMENT_PREFIX_PATH", ())
     )
+    overlays = variables.get(OVERLAYS, "").split(os.pathsep)
+    return {Path(entry) for entry in (*ros, *overlays) if entry.startswith("/")}
 
 
-def _ros_prefix(path: Path) -> Path | None:
-    """Return the ROS installation that contains a path; None if there is none."""
-    for folder in (path, *path.parents):
-        if (folder / "share" / "ament_index").is_dir() or (folder / "conda-meta").is_dir():
-            return folder
-    return None
-
-
-_KEPT = {
-    "PATH",
-    "LANG",
-    "LANGUAGE",
-    "TZ",
-    "LD_LIBRARY_PATH",
-    "PYTHONPATH",
-    "PYTHONUTF8",
-    "VIRTUAL_ENV",
-    "CONDA_PREFIX",
-}
-_KEPT_PREFIXES = (
-    "LC_",
-    "ROS_",
-    "RMW_",
-    "RCUTILS_",
-    "AMENT_",
-    "CMAKE_PREFIX",
-    "COLCON_PREFIX",
-    "FASTDDS_",
-    "_ROS_WHEELS_",
-)
 _NO_THREADS = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
 """Variables that keep numpy's libraries from starting threads when they are loaded.
 
@@ -310,5 +307,11 @@ def _own_folders(home: Path, temporary: Path, log: Path) -> dict[str, str]:
 
 
 def _kept(given: Mapping[str, str]) -> dict[str, str]:
-    """Return the variables of an environment that Python and ROS need."""
-    return {name: value for name, value in given.items() if name in _KEPT or name.startswith(_KEPT_PREFIXES)}
+    """Return the variables that Python and ROS need. Search paths keep only folders that a box sees."""
+    kept = listed_environment(given)
+    seen = (*SYSTEM, *_python_prefixes(), *_ros_prefixes(given))
+    for name in SEARCH_PATHS & kept.keys():
+        entries = kept.pop(name).split(os.pathsep)
+        if entries := [entry for entry in entries if any(map(Path(entry).is_relative_to, seen))]:
+            kept[name] = os.pathsep.join(entries)
+    return kept

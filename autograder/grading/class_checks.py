@@ -68,6 +68,7 @@ def check_configuration(directory: ClassDirectory) -> None:
                 f"bypass the judge. Copy the line from a class that `{COMMAND} new-class` makes."
             )
     limits_of(directory)
+    _ = directory.overlays  # raises an error if it names something else
 
 
 def limits_of(directory: ClassDirectory) -> Limits:

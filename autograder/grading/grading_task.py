@@ -34,6 +34,8 @@ class Task:
         boxed: True to execute the notebook in a sandbox; False for the course's own notebooks, and if the instructor
             allowed grading without a sandbox. A result without a sandbox is not reused for a boxed task, because the
             two have different hashes.
+        overlays: The paths of the workspaces that the class names. They change the task's hash; a worker learns them
+            when it starts.
     """
 
     student: str
@@ -48,6 +50,7 @@ class Task:
     remarks: tuple[str, ...] = ()
     pictures: str = ""
     boxed: bool = True
+    overlays: tuple[str, ...] = ()
 
     def beside_others(self, beside: bool) -> Task:
         """Return the task with the memory limit for running beside other tasks, or alone if ``beside`` is False."""

@@ -25,6 +25,7 @@ from autograder.execution.notebook_runner import run_notebook
 from autograder.messages.judge_messages import SOCKET_VARIABLE
 from autograder.safe_files import scratch_folder
 from environment.place import Place
+from environment.ros_flavour import Ros
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -295,18 +296,60 @@ answer = results
     assert ask(code) == [True, False, 0, 1, True, True]
 
 
-def test_a_sourced_ros_is_part_of_the_installation_and_a_workspace_is_not(tmp_path: Path) -> None:
-    ros, workspace = tmp_path / "opt" / "jazzy", tmp_path / "home" / "ros2_ws" / "install"
-    (ros / "share" / "ament_index").mkdir(parents=True)
-    (ros / "lib" / "x86_64-linux-gnu").mkdir(parents=True)
-    workspace.mkdir(parents=True)
-    variables = {
+@pytest.fixture
+def sourced(tmp_path: Path) -> dict[str, str]:
+    """The variables of a terminal in which a ROS, and on top of it a workspace, is sourced."""
+    ros, workspace = tmp_path / "opt" / "jazzy", tmp_path / "home" / "ros2_ws" / "install" / "my_robot_pkg"
+    (ros / "share" / "rclpy").mkdir(parents=True)
+    (ros / "share" / "rclpy" / "package.xml").touch()
+    for prefix in (ros, workspace):
+        (prefix / "share" / "ament_index").mkdir(parents=True)
+        (prefix / "lib" / "site-packages").mkdir(parents=True)
+    return {
         "AMENT_PREFIX_PATH": f"{workspace}:{ros}",
-        "LD_LIBRARY_PATH": f"{ros}/lib/x86_64-linux-gnu:{workspace}/lib",
-        "PATH": f"/usr/bin:{tmp_path}/home/bin:.",
+        "LD_LIBRARY_PATH": f"{workspace}/lib:{ros}/lib/x86_64-linux-gnu",
+        "PATH": f"{workspace}/bin:/usr/bin:{tmp_path}/home/bin:.",
+        "PYTHONPATH": f"{workspace}/lib/site-packages",
+        "LMS_API_TOKEN": "planted",
+        "ROS_PASSWORD": "planted",
+        "LC_PASSWORD": "planted",
     }
-    found = [path for path in visible_host._installation(variables) if path.is_relative_to(tmp_path)]
-    assert found == [ros]
+
+
+@pytest.mark.parametrize(
+    ("recorded", "seen"), [(None, "opt/jazzy"), (Ros("wheels"), ""), (Ros("system", {}), "")]
+)
+def test_a_sourced_ros_is_part_of_the_installation_and_a_workspace_is_not(
+    tmp_path: Path, sourced: dict[str, str], monkeypatch: pytest.MonkeyPatch, recorded: Ros | None, seen: str
+) -> None:
+    monkeypatch.setattr(visible_host.ros_flavour, "load", lambda _: recorded)
+    found = [path for path in visible_host._installation(sourced) if path.is_relative_to(tmp_path)]
+    assert found == [tmp_path / seen] * bool(seen)
+    got = visible_host.box_environment(given=sourced)
+    named = {entry for value in got.values() for entry in value.split(":") if str(tmp_path) in entry}
+    assert named == ({f"{tmp_path}/{seen}", f"{tmp_path}/{seen}/lib/x86_64-linux-gnu"} if seen else set())
+    assert got["PATH"] == "/usr/bin"
+    assert "planted" not in got.values()
+
+
+def test_a_workspace_that_the_class_names_is_seen(tmp_path: Path, sourced: dict[str, str]) -> None:
+    workspace = tmp_path / "home/ros2_ws/install/my_robot_pkg"
+    variables = {**sourced, visible_host.OVERLAYS: str(workspace)}
+    assert workspace in visible_host._installation(variables)
+    got = visible_host.box_environment(given=variables)
+    assert got["PYTHONPATH"] == sourced["PYTHONPATH"]
+    assert visible_host.OVERLAYS not in got
+
+
+def test_of_an_environment_only_the_listed_parts_are_seen(ask: Ask) -> None:
+    hidden = [path for path in Path(sys.prefix).iterdir() if path.name in ("course", "pip.conf", ".lock")]
+    assert Path(sys.prefix, "course") in hidden
+    names = [str(path) for path in hidden]
+    assert ask(f"answer = [name for name in {names!r} if os.path.exists(name)]") == []
+    assert ask("answer = [os.path.exists(os.path.join(sys.prefix, 'pyvenv.cfg')), sys.prefix]") == [
+        True,
+        sys.prefix,
+    ]
 
 
 def test_the_lock_of_the_set_up_is_out_of_sight() -> None:

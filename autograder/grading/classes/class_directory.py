@@ -15,6 +15,7 @@ from traitlets.config.loader import PyFileConfigLoader
 
 from autograder import course
 from autograder.command_name import COMMAND
+from autograder.grading.classes.class_file import read_overlays
 from autograder.grading.classes.class_lock import held
 from autograder.grading.classes.class_secret import create_secret, read_secret
 from autograder.grading.grading_errors import GradingError, NotAClass, clear_disk_errors
@@ -125,6 +126,15 @@ class ClassDirectory:
             )
         config.CourseDirectory.root = str(self.path)
         return config
+
+    @functools.cached_property
+    def overlays(self) -> tuple[Path, ...]:
+        """The installed workspaces that ``class.toml`` names: every box of the class sees them.
+
+        Raises:
+            GradingError: The file cannot be used, or names something else.
+        """
+        return read_overlays(self.path)
 
     @property
     def time_zone(self) -> ZoneInfo:

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING
 import psutil
 
 from autograder.boxes.run_limits import BUILD_LIMITS, Limits
+from autograder.grading.classes import class_file
 from autograder.grading.grading_errors import GradingError
 from autograder.grading.running.process_link import ProcessLink
 from autograder.grading.running.task_dispatcher import Dispatcher
@@ -25,7 +26,7 @@ from autograder.safe_files import HeldFolder, sweep
 from environment.installation import installing
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Generator, Iterable, Iterator
+    from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
     from pathlib import Path
 
     from autograder.grading.classes.class_directory import ClassDirectory
@@ -53,7 +54,12 @@ def on_this_machine(directory: ClassDirectory, jobs: int | None, judge: str) -> 
     boxed = not directory.is_sandbox_off
     with HeldFolder(directory.scratch_prefix) as scratch:
         yield functools.partial(
-            execute_all, scratch=scratch.path, workers=jobs, judge=judge or JUDGE, boxed=boxed
+            execute_all,
+            scratch=scratch.path,
+            workers=jobs,
+            judge=judge or JUDGE,
+            boxed=boxed,
+            overlays=directory.overlays,
         )
 
 
@@ -71,8 +77,14 @@ def on_cluster(
         tell: Called with a sentence for the instructor.
 
     Raises:
-        GradingError: No scheduler answers at this address, or no worker can execute tasks.
+        GradingError: No scheduler answers at this address, no worker can execute tasks, or the class names overlays,
+            which workers do not have.
     """
+    if directory.overlays:
+        raise GradingError(
+            f"{directory.path / class_file.NAME} names overlays, which the workers of a cluster do not have: grade "
+            "without --scheduler."
+        )
     boxed = not directory.is_sandbox_off
     with ProcessLink("autograder.grading.cluster.dask_client", scheduler, scratch=None) as link:
         dispatcher = Dispatcher(link, scheduler, judge=judge or JUDGE, boxed=boxed, tell=tell)
@@ -105,6 +117,7 @@ def execute_all(
     on_start: Callable[[Task], None] = lambda _: None,
     judge: str = JUDGE,
     boxed: bool = True,
+    overlays: Sequence[Path] = (),
 ) -> Generator[Done, None, None]:
     """Execute tasks in parallel on this machine, and yield results as they are ready.
 
@@ -116,11 +129,14 @@ def execute_all(
         on_start: Called when a task begins.
         judge: The Python class of the judge, as ``module:class``.
         boxed: True if the tasks are executed in boxes.
+        overlays: The workspaces that every box sees.
     """
     slots = workers or at_once(cores(), psutil.virtual_memory().available)
     words = (str(scratch), str(slots), *(["boxed"] if boxed else []))
     # In a process of its own, so that the process with the gradebook loads nothing that executes submissions.
-    with ProcessLink("autograder.grading.running.order_executor", *words, scratch=scratch) as machine:
+    with ProcessLink(
+        "autograder.grading.running.order_executor", *words, scratch=scratch, overlays=overlays
+    ) as machine:
         dispatcher = Dispatcher(machine, "", judge=judge, boxed=boxed, tell=lambda _: None)
         yield from dispatcher.execute_all(tasks, on_start)
 

@@ -15,13 +15,16 @@ from typing import TYPE_CHECKING, Self
 import msgspec
 
 from autograder import course
+from autograder.boxes.visible_host import OVERLAYS
 from autograder.grading.running.worker_messages import ADDRESS, Broken, Command, Left, News
 from autograder.messages.json_lines import Hangup, Lines, Silent
 from autograder.process_trees import end_processes_in, end_soon
 from autograder.safe_files import unnamed_file
+from autograder.workspaces.builds.install_folder import with_prefixes
 from environment.python_child import python_child
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
     from pathlib import Path
 
 _GOODBYE_SECONDS = 2.0
@@ -38,10 +41,16 @@ class ProcessLink:
         scratch: The folder in which the process executes submissions. If the process ends by accident, it is started
             again. None for a process that only passes messages on, which is not started again, and which keeps the
             caller's working directory, because Dask's settings may name certificates by relative paths.
+        overlays: The workspaces that every box of the process sees.
     """
 
-    def __init__(self, *words: str, scratch: Path | None) -> None:
+    def __init__(self, *words: str, scratch: Path | None, overlays: Sequence[Path] = ()) -> None:
         self._words, self._scratch = words, scratch
+        # The process also gets the search paths, because it hands on those that lead to what a box sees.
+        self._variables = {
+            **with_prefixes(os.environ, overlays),
+            OVERLAYS: os.pathsep.join(map(str, overlays)),
+        }
         self._silent_starts = 0
 
     def __enter__(self) -> Self:
@@ -95,7 +104,7 @@ class ProcessLink:
             child = python_child(
                 "-m",
                 *self._words,
-                environment={**os.environ, **course.variables()},
+                environment={**self._variables, **course.variables()},
                 folder=None if self._scratch is None else "/",
             )
             self._process = child.start(

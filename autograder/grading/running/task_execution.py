@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Self
 from autograder import exercises
 from autograder.boxes.box_connection import NoSandbox
 from autograder.boxes.run_limits import Ended
-from autograder.boxes.visible_host import kernel_environment
+from autograder.boxes.visible_host import box_environment, kernel_environment
 from autograder.execution.notebook_processes import (
     SHARED_FOLDER,
     BoxedProcesses,
@@ -227,7 +227,7 @@ class _Paths:
         """Return environment variables that let ``colcon build`` in the notebook's box use the grader's builds."""
         if not self.boxed:
             return {}
-        path = f"{SHARED_FOLDER / _PROGRAMS}{os.pathsep}{os.environ.get('PATH', os.defpath)}"
+        path = f"{SHARED_FOLDER / _PROGRAMS}{os.pathsep}{box_environment().get('PATH', os.defpath)}"
         return {"PATH": path, students_builds.GRADERS: str(SHARED_FOLDER / _BUILDS)}
 
 

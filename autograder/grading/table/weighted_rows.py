@@ -6,13 +6,11 @@ Points come from the gradebook, states and diagnoses from the judge. The points 
 
 from __future__ import annotations
 
-import tomllib
 from dataclasses import dataclass, field, replace
 from datetime import UTC, tzinfo
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING
 
-import msgspec
-
+from autograder.grading.classes import class_file
 from autograder.grading.grading_errors import GradingError
 from autograder.grading.table.rows import (
     BY_HAND,
@@ -107,13 +105,6 @@ def _scaled(row: Row, factor: float) -> Row:
     )
 
 
-class _File(msgspec.Struct, forbid_unknown_fields=True):
-    leave_out: list[str] = []
-    points: dict[str, float] = {}
-    weights: dict[str, float] = {}
-    drop_lowest: Annotated[int, msgspec.Meta(ge=0)] = 0
-
-
 def read_what_counts(directory: ClassDirectory, cells: Mapping[str, Sequence[GradedCell]]) -> WhatCounts:
     """Return the settings from ``class.toml``. If the file does not exist, nothing is weighted or left out.
 
@@ -124,16 +115,7 @@ def read_what_counts(directory: ClassDirectory, cells: Mapping[str, Sequence[Gra
     Raises:
         GradingError: The file cannot be used. The message says what to write.
     """
-    path = directory.path / "class.toml"
-    if not path.exists():
-        return WhatCounts()
-    try:
-        said = msgspec.convert(tomllib.loads(path.read_text(encoding="utf-8-sig")), type=_File)
-    except (OSError, ValueError) as error:
-        raise GradingError(
-            f'{path} cannot be used: {error}. It may contain leave_out = ["EXERCISE"], drop_lowest = 1, '
-            "and tables named points and weights."
-        ) from error
+    path, said = directory.path / class_file.NAME, class_file.read_class_file(directory.path)
     exercises = {cell.exercise for of_assignment in cells.values() for cell in of_assignment}
     for name, known in (
         *((name, exercises) for name in (*said.leave_out, *said.points)),

@@ -57,7 +57,14 @@ class ResultKeys:
             released=_hash_of([assignment, *names, *contents]),
             exercises=files.version(SHARED, *files.labs(b"\n".join(contents))),
             judge=files.version(JUDGE),
-            settings=_hash_of([configuration, self._directory.secret, str(self._directory.is_sandbox_off)]),
+            settings=_hash_of(
+                [
+                    configuration,
+                    self._directory.secret,
+                    str(self._directory.is_sandbox_off),
+                    *map(str, self._directory.overlays),
+                ]
+            ),
             grader=files.version(GRADER),
         )
 

@@ -70,6 +70,7 @@ def task_of(directory: ClassDirectory, submission: Submission, notebook: str) ->
         remarks=() if problem else tuple(rebuilt.metadata["autograder"]["remarks"]),
         pictures=hashlib.sha256(msgspec.json.encode(pictures)).hexdigest() if pictures else "",
         boxed=not directory.is_sandbox_off,
+        overlays=tuple(map(str, directory.overlays)),
     )
     return task, rebuilt
 

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import nbformat
 import pytest
@@ -13,6 +12,9 @@ from autograder.grading.returning.page_exporter import PageExporter
 from autograder.grading.returning.sanitize import escape_marks, make_harmless
 from autograder.grading.table.spreadsheet_csv import defused
 from autograder.standard_output import printable
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
 
 TURNS = [chr(code) for code in (0x061C, 0x200E, 0x200F, *range(0x202A, 0x202F), *range(0x2066, 0x206A))]
 
@@ -58,7 +60,9 @@ def test_of_codes_for_a_terminal_a_page_has_the_colors_alone() -> None:
     text = f"\x1b[1;31mred\x1b[0m \x1b[2K{link} \x1b[\n \x1b"
     cell = nbformat.v4.new_code_cell("", outputs=[nbformat.v4.new_output("stream", text=text)])
     notebook = make_harmless(nbformat.v4.new_notebook(cells=[cell]))
-    page = PageExporter().page(notebook, {"notebook": "lab", "score": 0.0, "max_score": 0.0, "late_penalty": 0.0})
+    page = PageExporter().page(
+        notebook, {"notebook": "lab", "score": 0.0, "max_score": 0.0, "late_penalty": 0.0}
+    )
     assert "red</span>" in page
     assert "\\x1b]8;;https://example.com\\x1b\\here\\x1b]8;;\\x07" in page
     assert not set(page) & set(CONTROLS)
