@@ -8,7 +8,13 @@ import time
 from collections import Counter
 from typing import TYPE_CHECKING
 
-from autograder.grading.batch_work import due_dates, find_work, without_grade, would_change
+from autograder.grading.batch_work import (
+    due_dates,
+    find_work,
+    forget_unneeded_documents,
+    without_grade,
+    would_change,
+)
 from autograder.grading.class_checks import changed_master_warnings, limits_of
 from autograder.grading.classes import gradebook_reading
 from autograder.grading.classes.gradebook_reading import SubmissionEntry
@@ -272,6 +278,8 @@ class Batch:
         else:
             write_csv(self._directory.path / "grades.csv", rows)
             self._store.keep_run(course_version(), rows)
+            if self._run_again:
+                forget_unneeded_documents(self._directory)
         return GradeReport(
             path=self._directory.path,
             rows=tuple(row for row in rows if self._asked.has(row.student, row.assignment)),

@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 import contextlib
+import hashlib
 from dataclasses import dataclass, replace
 from datetime import UTC
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from autograder.command_name import COMMAND
-from autograder.grading.classes.class_directory import RefusedFile
+from autograder.grading.classes.class_directory import SUFFIX, RefusedFile
 from autograder.grading.classes.gradebook_reading import CellEntry, SubmissionEntry, read_due_dates
 from autograder.grading.collecting.collected_csv import NAME, Table
+from autograder.grading.collecting.collected_files import Inbox
 from autograder.grading.grading_errors import MasterUnusable, check_known, course_command
+from autograder.grading.rebuilding.submission_desk import forget_documents
+from autograder.grading.rebuilding.submitted_notebook import UnreadableSubmission, read_bytes
 from autograder.grading.reporting.class_table import Difference
 from autograder.grading.table.rows import LATE, Row
 from autograder.grading.tasks.submission_times import handed_in_at, is_not_believed
@@ -228,3 +232,14 @@ def without_grade(row: Row) -> Row:
     """Return a row with zero points for a result that could not be entered into the gradebook."""
     reason = "The result could not be entered into the gradebook; the exercise has zero points there."
     return replace(row, score=0.0, state="not_checked", diagnosis="not_written_down", reason=reason)
+
+
+def forget_unneeded_documents(directory: ClassDirectory) -> None:
+    """Remove what was read from files that are neither in ``submitted`` nor in the inbox any more."""
+    needed = Inbox(directory.state).contents
+    for submission in directory.submissions()[0]:
+        for name in directory.notebooks(submission.assignment):
+            with contextlib.suppress(UnreadableSubmission):
+                data = read_bytes(submission.folder / f"{name}{SUFFIX}")
+                needed.add(hashlib.sha256(data).hexdigest())
+    forget_documents(directory.state, needed)

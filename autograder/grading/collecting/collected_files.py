@@ -138,6 +138,11 @@ class Inbox:
         """Return the keys of all files."""
         return {file.key for delivery in self._deliveries.values() for file in delivery.arrivals}
 
+    @property
+    def contents(self) -> set[str]:
+        """Return the hashes of the bytes of all files."""
+        return set(self._where)
+
     def __contains__(self, content: str) -> bool:
         return content in self._where
 

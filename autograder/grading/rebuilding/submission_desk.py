@@ -43,7 +43,7 @@ from autograder.grading.rebuilding.submitted_notebook import (
 from autograder.safe_files import write_whole
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Sequence
 
     from autograder.grading.rebuilding.submitted_notebook import SubmittedCell
 
@@ -75,7 +75,7 @@ def read_notebook(data: bytes, state: Path = Path(os.devnull)) -> tuple[Sequence
         UnreadableSubmission: The file is not a notebook. The message is a sentence for the student.
         GradingError: No file can be read on this machine.
     """
-    kept = state / _DOCUMENTS / hashlib.sha256(_VERSION + data).hexdigest()
+    kept = state / _DOCUMENTS / _name(hashlib.sha256(data).hexdigest())
     # A missing or damaged document is made again.
     with contextlib.suppress(OSError, zlib.error, NotAdmitted):
         again: ReadNotebook = admitted(zlib.decompress(kept.read_bytes()), ReadNotebook, LARGEST_DOCUMENT)
@@ -95,3 +95,26 @@ def read_notebook(data: bytes, state: Path = Path(os.devnull)) -> tuple[Sequence
     with contextlib.suppress(OSError):  # for example, the class may only be read
         write_whole(kept, zlib.compress(msgspec.json.encode(read), 1))
     return read.cells, read.left_out
+
+
+def forget_documents(state: Path, needed: Iterable[str]) -> None:
+    """Remove the kept documents of a class, except those of some files.
+
+    A document that another process needs nevertheless is made again.
+
+    Args:
+        state: The class's folder for the grader's own files.
+        needed: The SHA-256 of each file, hexadecimal.
+    """
+    names = set(map(_name, needed))
+    for document in (state / _DOCUMENTS).glob(
+        "[!.]*"
+    ):  # a process may be writing a file that begins with a dot
+        if document.name not in names:
+            with contextlib.suppress(OSError):
+                document.unlink()
+
+
+def _name(content: str) -> str:
+    """Return the name of the document of a file with this SHA-256."""
+    return hashlib.sha256(_VERSION + content.encode()).hexdigest()

@@ -313,6 +313,34 @@ def test_a_class_reads_each_file_once(tiny: TinyClass, asked: list[bytes], fake_
     assert tiny.scores("ada")[TALKER] == 6
 
 
+def documents(path: Path) -> list[str]:
+    return sorted(file.name for file in (path / ".autograder" / "documents").iterdir())
+
+
+def test_a_document_that_no_submission_needs_is_removed_when_the_class_is_graded(
+    tiny: TinyClass, asked: list[bytes], fake_engine: FakeEngine, tmp_path: Path
+) -> None:
+    for points in range(4):
+        tiny.submit("ada", points)
+        tiny.submit("ben", 5)
+        tiny.grade(students=["ada"])
+    assert len(documents(tiny.path)) == 1
+    tiny.grade()
+    assert len(documents(tiny.path)) == 2
+    assert len(asked) == 5
+    download = tmp_path / "download" / "ada" / "lab_1_2.ipynb"
+    download.parent.mkdir(parents=True)
+    download.write_bytes(tiny.submit("ada", 6).read_bytes())
+    collect(tiny.path, [download.parent.parent])
+    (tiny.path / ".autograder/documents/.unfinished.1.new").touch()
+    tiny.submit("ada", 7)
+    tiny.grade()
+    assert len(documents(tiny.path)) == 1 + 3, "those of two submissions and one file in the inbox"
+    assert len(asked) == 7
+    collect(tiny.path)
+    assert len(asked) == 7
+
+
 # -- what a desk says of any file
 
 JSON = st.recursive(
