@@ -90,17 +90,22 @@ def test_in_a_box_a_program_has_the_same_verdict_and_sees_its_folder_only(tmp_pa
     assert json.loads(_boxed(tmp_path, "python3", "talker.py").stdout)["state"] == "passed"
     secret = tmp_path.parent / "secret_of_somebody_else"
     secret.touch()
+    workspace = tmp_path.parent / "reference_ws"
+    (workspace / "share" / "ament_index").mkdir(parents=True)
     (tmp_path / "talker.py").write_text(f"""
-import os, socket
+import os, pathlib, socket
+started = [path.read_text() for path in pathlib.Path("/proc").glob("[0-9]*/environ")]
 found = [
-    os.path.exists({str(secret)!r}), os.path.exists({str(TALKER)!r}), os.environ.get("SECRET"),
+    os.path.exists({str(secret)!r}), os.path.exists({str(TALKER)!r}), os.path.exists({str(workspace)!r}),
+    [text for text in (*started, str(os.environ)) if "planted" in text or "reference_ws" in text],
     [name for _, name in socket.if_nameindex()], os.access(".", os.W_OK), os.listdir(),
 ]
 raise RuntimeError(f"it sees {{found}}")
 """)
-    done = _boxed(tmp_path, "python3", "talker.py", SECRET="1")
+    sourced = {"AMENT_PREFIX_PATH": str(workspace), "PYTHONPATH": str(workspace)}
+    done = _boxed(tmp_path, "python3", "talker.py", SECRET="planted", ROS_SECRET="planted", **sourced)
     assert done.returncode == 1
-    assert "it sees [False, False, None, ['lo'], False, ['talker.py']]" in done.stdout
+    assert "it sees [False, False, False, [], ['lo'], False, ['talker.py']]" in done.stdout
     assert not list(Path(tempfile.gettempdir()).glob("autograder-box-*/scratch"))
 
 

@@ -152,6 +152,7 @@ class _Supervisor:
         try:
             process = subprocess.Popen(
                 [*words, *(command or ("/bin/cat",))],
+                env={},
                 stdin=subprocess.PIPE if idle else descriptors[0],
                 stdout=subprocess.PIPE if idle else descriptors[1],
                 stderr=subprocess.STDOUT if idle else descriptors[2],
@@ -223,7 +224,8 @@ def furnish(place: Path, size: int, inodes: int) -> None:
 def bubblewrap(arguments: Sequence[str], *, hidden_memory: bool) -> tuple[list[str], list[int]]:
     """Return the beginning of bubblewrap's command line, and the file descriptors that bubblewrap needs.
 
-    The caller appends the command that runs in the box.
+    The caller appends the command that runs in the box, and starts it with an empty environment, because a box sees
+    that of its first process.
 
     Args:
         arguments: The description of the box (:func:`autograder.boxes.visible_host.box_arguments`).
@@ -241,7 +243,7 @@ def bubblewrap(arguments: Sequence[str], *, hidden_memory: bool) -> tuple[list[s
     # The arguments are passed in a file, because a box sees the command line of its first process, which would name
     # folders of the host.
     kept.append(_file_with(b"".join(os.fsencode(word) + b"\0" for word in arguments)))
-    return ["bwrap", "--args", str(kept[-1]), "--"], kept
+    return [shutil.which("bwrap") or "bwrap", "--args", str(kept[-1]), "--"], kept
 
 
 def _file_with(data: bytes) -> int:

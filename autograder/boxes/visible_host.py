@@ -140,8 +140,10 @@ def etc_files() -> Mapping[str, bytes]:
     return files
 
 
-_PROC_HIDDEN = {"kcore", "kmsg", "keys", "key-users"}
-"""Files in ``/proc`` that say more about the machine and its users than a program needs."""
+_PROC_HIDDEN = {"bootconfig", "cmdline", "kmsg", "keys", "key-users", "sched_debug"}
+"""Files in ``/proc`` that say more about the machine and its users than a program needs, in addition to those that only
+root can read.
+"""
 
 
 @functools.cache
@@ -158,8 +160,11 @@ def _proc_covers() -> tuple[str, ...]:
         if path.is_dir():
             # Bind only folders that need it, because bubblewrap reads the list of mounts again for each bind.
             words += ["--ro-bind", str(path), str(path)] if _can_be_written_below(path) else []
-        elif path.name in _PROC_HIDDEN or path.stat().st_mode & 0o222:
-            words += ["--ro-bind", "/dev/null", str(path)]
+        else:
+            mode = path.stat().st_mode
+            is_roots = not mode & 0o004 and os.access(path, os.R_OK)
+            if path.name in _PROC_HIDDEN or mode & 0o222 or is_roots:
+                words += ["--ro-bind", "/dev/null", str(path)]
     return tuple(words)
 
 

@@ -234,7 +234,9 @@ class CommandSubject(InOwnProcesses):
             return subprocess.Popen(
                 command,
                 cwd=self._cwd,
-                env=environment,
+                env=environment
+                if self._box is None
+                else {},  # the box has been told the variables of the command
                 stdin=subprocess.DEVNULL,
                 stdout=subprocess.PIPE,
                 stderr=subprocess.PIPE,
