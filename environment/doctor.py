@@ -158,8 +158,8 @@ def _ros(recorded: ros_flavour.Ros | None, report: dict[str, object]) -> Finding
         source = recorded is not None and recorded.is_sourced
         remedy = "Is the ROS 2 that was sourced at set-up still there? " * source + _again("ros")
         return Finding("ROS 2", "missing", f"rclpy cannot be imported: {report['rclpy_error']}", remedy)
-    if not IS_CLONE and not report.get("prefix"):
-        return Finding("ROS 2", "ok", f"from wheels, rclpy {_distribution('ros-rclpy')}")
+    if not IS_CLONE and report.get("prefix") == sys.prefix:
+        return Finding("ROS 2", "ok", f"from wheels, rclpy {report.get('version')}")
     flavour = recorded.flavour if recorded else "sourced"
     where = {"wheels": "from wheels", "system": "of the system", "robostack": "of RoboStack"}.get(
         flavour, flavour

@@ -9,7 +9,7 @@ from __future__ import annotations
 import json
 import os
 import re  # noqa: TID251  (not what a student handed in)
-from importlib.metadata import PackageNotFoundError, version
+import sys
 from pathlib import Path
 
 # The fields that the course's text defines.
@@ -23,21 +23,17 @@ INTERFACE_FIELDS = {
 
 
 def rclpy_version() -> tuple[str, str]:
-    """Return the version of rclpy and the prefix in which it is installed; two empty texts if there is none."""
-    for prefix in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep):
+    """Return the version of rclpy and the prefix in which it is installed; two empty texts if there is none.
+
+    The version is that of the code, from its ``package.xml``: the wheel called ros-rclpy 7.1.6 contains 7.1.5.
+    """
+    # A wheel that is not installed by the course's set-up has no AMENT_PREFIX_PATH.
+    for prefix in [*os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep), sys.prefix]:
         package = Path(prefix) / "share/rclpy/package.xml"
         if prefix and package.exists():
             found = re.search(r"<version>\s*([\d.]+)\s*</version>", package.read_text(encoding="utf-8"))
-            return _wheel_version() or (found.group(1) if found else ""), prefix
+            return found.group(1) if found else "", prefix
     return "", ""
-
-
-def _wheel_version() -> str:
-    # The wheel 7.1.6 contains a package.xml that says 7.1.5. The lock file has the version that pip reports.
-    try:
-        return version("ros-rclpy")
-    except PackageNotFoundError:
-        return ""
 
 
 def interface_fields() -> dict[str, dict[str, str]]:

@@ -1,4 +1,4 @@
-"""Repairs files of the installed wheels: CMake files, imports, the callbacks of parameters, and Fast DDS.
+"""Repairs files of the installed wheels: CMake files, imports, the callbacks of parameters, action clients, Fast DDS.
 
 * **CMake files.** The wheels were built in a container. What CMake exports for the Python part of a message package
   names that container's folders, ``/opt/python/cp311-cp311/include/python3.11`` and numpy's headers below it, and
@@ -15,6 +15,11 @@
   running node. A node that refuses what it does not know would not follow the judge's clock, and a node that takes each
   value for its speed would drive at ``True``. So only rclpy itself is asked about ``use_sim_time``, as if it had been
   set before the node had a callback.
+* **Action clients.** The wheel that is called rclpy 7.1.6 contains the code of 7.1.5, whose ``ActionClient`` sends a
+  request first and notes its number afterwards. If another thread spins, it may take the answer in between: it does
+  not find the number, logs "Ignoring unexpected goal response", and the future is never done. The same happens to
+  cancel requests and results. Upstream: https://github.com/ros2/rclpy/issues/1123. A lock per client lets no thread
+  take answers while another one is sending.
 * **Fast DDS** can hang for ever in a node that ends while another one appears. Who deletes a participant waits for the
   callback of discovery that is just running. It waits "for ever", with ``time_point::max()`` as its deadline. As the
   wheels are built, this deadline is converted into time of day, where it overflows into the past:
@@ -121,12 +126,12 @@ def repair_cmake(prefix: Path, headers: HeaderFolders) -> list[Path]:
 
 @dataclass(frozen=True)
 class SourceRepair:
-    """A change of a Python module.
+    r"""A change of a Python module.
 
     Attributes:
         file: The module, below site-packages.
         now: The text that is replaced.
-        later: The text that replaces it.
+        later: The text that replaces it, as a template of ``re``: ``\g<name>`` is a group of ``now``.
     """
 
     file: str
@@ -206,6 +211,34 @@ def __getattr__(name):
 
         modified_parameter_list = self._call_pre_set_parameters_callback(parameter_list)""",
     ),
+    SourceRepair(
+        "rclpy/action/client.py",
+        re.compile(
+            # A client that has a lock already sends in a block of it: the second line is indented further.
+            r"^(?P<init>        self\._is_ready = False\n)"
+            r"(?P<rest>.*^        sequence_number = self\._client_handle\.send_goal_request\(.*)\Z",
+            re.MULTILINE | re.DOTALL,
+        ),
+        r"\g<init>        self._sending_or_taking = threading.RLock()\n\g<rest>\n\n"
+        + _MARK
+        + """no answer is taken before the number of its request is noted.
+import functools
+
+
+def _one_at_a_time(method):
+    @functools.wraps(method)
+    def locked(self, *args, **kwargs):
+        # Reentrant, because a signal handler may send a goal while this thread is sending one.
+        with self._sending_or_taking:
+            return method(self, *args, **kwargs)
+
+    return locked
+
+
+for _name in ('send_goal_async', '_cancel_goal_async', '_get_result_async', 'take_data'):
+    setattr(ActionClient, _name, _one_at_a_time(getattr(ActionClient, _name)))
+""",
+    ),
 )
 
 
@@ -217,7 +250,7 @@ def repair_sources(site_packages: Path) -> list[Path]:
         if not path.is_file():
             continue
         text = path.read_text(encoding="utf-8")
-        new = module.now.sub(lambda _, module=module: module.later, text, count=1)  # type: ignore[misc]
+        new = module.now.sub(module.later, text, count=1)
         if _MARK not in text and new != text:
             _replace_content(path, new.encode())
             changed.append(path)

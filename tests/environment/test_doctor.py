@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -13,13 +14,13 @@ from environment import bootstrap, doctor, jupyter_files, loopback, ros_flavour
 from environment.doctor import Finding, as_text, exit_code
 from environment.place import Place
 from environment.ros_flavour import Ros
-from environment.ros_report import INTERFACE_FIELDS
+from environment.ros_report import INTERFACE_FIELDS, rclpy_version
 from environment.setup_steps import SetupError
 
 if TYPE_CHECKING:
     from environment.doctor import State
 
-HEALTHY = {"version": "7.1.6", "prefix": "/env", "rmw": "rmw_fastrtps_cpp", "fields": INTERFACE_FIELDS}
+HEALTHY = {"version": "7.1.5", "prefix": "/env", "rmw": "rmw_fastrtps_cpp", "fields": INTERFACE_FIELDS}
 
 
 def program(folder: Path, name: str, script: str) -> None:
@@ -59,8 +60,28 @@ def ros_findings(monkeypatch: pytest.MonkeyPatch, printed: str, recorded: Ros | 
 def test_a_healthy_ros(monkeypatch: pytest.MonkeyPatch) -> None:
     found = ros_findings(monkeypatch, f"a library said hello\n{json.dumps(HEALTHY)}\n", Ros("wheels"))
     assert [finding.state for finding in found] == ["ok", "ok", "ok"]
-    assert found[0].detail == "Jazzy from wheels, rclpy 7.1.6 in /env"
+    assert found[0].detail == "Jazzy from wheels, rclpy 7.1.5 in /env"
     assert found[1].detail == "rmw_fastrtps_cpp, ROS_DOMAIN_ID 65"
+
+
+def test_the_version_is_that_of_the_code(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    package = tmp_path / "share/rclpy/package.xml"
+    package.parent.mkdir(parents=True)
+    package.write_text("<package>\n  <version> 7.1.5 </version>\n</package>")
+    monkeypatch.setenv("AMENT_PREFIX_PATH", f"{tmp_path / 'other'}:{tmp_path}")
+    assert rclpy_version() == ("7.1.5", str(tmp_path))
+
+
+def test_an_installed_wheel_has_no_ament_prefix_path(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("AMENT_PREFIX_PATH")
+    package = tmp_path / "share/rclpy/package.xml"
+    package.parent.mkdir(parents=True)
+    package.write_text("<package><version>7.1.5</version></package>")
+    monkeypatch.setattr(sys, "prefix", str(tmp_path))
+    assert rclpy_version() == ("7.1.5", str(tmp_path))
+    monkeypatch.setattr(doctor, "IS_CLONE", False)
+    found = ros_findings(monkeypatch, json.dumps({**HEALTHY, "prefix": sys.prefix}))
+    assert [finding.detail for finding in found][:1] == ["from wheels, rclpy 7.1.5"]
 
 
 def test_an_rclpy_that_cannot_be_imported(monkeypatch: pytest.MonkeyPatch) -> None:

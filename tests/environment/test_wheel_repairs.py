@@ -66,6 +66,29 @@ class Node:
         modified_parameter_list = self._call_pre_set_parameters_callback(parameter_list)
         return modified_parameter_list
 """
+CLIENT = """\
+import threading
+
+
+class ActionClient:
+    def __init__(self):
+        self._is_ready = False
+
+    def send_goal_async(self):
+        sequence_number = self._client_handle.send_goal_request(request)
+
+    def _cancel_goal_async(self):
+        pass
+
+    def _get_result_async(self):
+        pass
+
+    def take_data(self):
+        return self._sending_or_taking.acquire(blocking=False)
+"""
+MENDED_CLIENT = CLIENT.replace(
+    "        sequence_number", "        with self._lock:\n            sequence_number"
+)
 
 INSTALLED = Path(sys.prefix) / "lib/libfastrtps.so"
 SET_LISTENER = "_ZN8eprosima7fastdds3dds17DomainParticipant12set_listenerEPNS1_25DomainParticipantListenerE"
@@ -144,7 +167,7 @@ def test_this_environment_is_repaired_cmake() -> None:
 
 @pytest.fixture
 def wheels(tmp_path: Path) -> Path:
-    for module, text in zip(SOURCE_REPAIRS, (GENERATOR, MESSAGE, GRAMMARS, PARAMETERS), strict=True):
+    for module, text in zip(SOURCE_REPAIRS, (GENERATOR, MESSAGE, GRAMMARS, PARAMETERS, CLIENT), strict=True):
         file = tmp_path / module.file
         file.parent.mkdir(parents=True)
         file.write_text(text, encoding="utf-8")
@@ -175,7 +198,7 @@ def run(program: str, first: Path | None = None) -> Any:
 
 
 def test_what_is_not_needed_is_imported_where_it_is_used(wheels: Path) -> None:
-    changed = ["__init__.py", "_service_event_info.py", "__init__.py", "node.py"]
+    changed = ["__init__.py", "_service_event_info.py", "__init__.py", "node.py", "client.py"]
     assert [path.name for path in repair_sources(wheels)] == changed
     program = """
 import sys
@@ -197,6 +220,29 @@ def test_sources_are_repaired_once(wheels: Path) -> None:
     assert [path.read_bytes() for path in changed] == texts
     assert {path.stat().st_mode & 0o777 for path in changed} == {0o644}
     assert not list(wheels.rglob("*.new"))
+
+
+def test_an_action_client_takes_no_answer_while_it_sends(wheels: Path) -> None:
+    """:mod:`tests.environment.test_action_answers` forces the order with the real one."""
+    client = wheels / SOURCE_REPAIRS[-1].file
+    repair_sources(wheels)
+    module: dict[str, Any] = {}
+    exec(compile(client.read_text(), client, "exec"), module)
+    taken = []
+    one = module["ActionClient"]()
+    with one._sending_or_taking:
+        other = threading.Thread(target=lambda: taken.append(one.take_data()))
+        other.start()
+        assert not taken
+    other.join()
+    assert taken == [True]
+
+
+def test_an_action_client_with_a_lock_of_its_own_is_left_alone(tmp_path: Path) -> None:
+    client = tmp_path / SOURCE_REPAIRS[-1].file
+    client.parent.mkdir(parents=True)
+    client.write_text(MENDED_CLIENT)
+    assert repair_sources(tmp_path) == []
 
 
 def test_a_file_that_looks_otherwise_and_one_that_is_not_there_are_left_alone(tmp_path: Path) -> None:

@@ -1,6 +1,6 @@
 """Makes rclpy check the type of an action server or client, as it checks the types of topics and services.
 
-rclpy 7.1.6 passes the type of any message, service or part of an action to its compiled code, which takes it for the
+rclpy 7.1.5 passes the type of any message, service or part of an action to its compiled code, which takes it for the
 type of an action and ends the process (``rclpy/action/server.py`` and ``client.py`` only call
 ``check_for_type_support``). In a notebook, the kernel would end.
 """
