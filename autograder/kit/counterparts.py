@@ -1,4 +1,8 @@
-"""The interfaces of the publishers, servers and clients that the judge makes in a scenario."""
+"""The interfaces of the publishers, servers and clients that the judge makes in a scenario.
+
+A field of floats also takes whole numbers. Each method that is given fields raises a ValueError if the type has no such
+field or the field cannot hold the value; an answer of a server that does not fit raises it when the part ends.
+"""
 
 from __future__ import annotations
 

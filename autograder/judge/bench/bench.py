@@ -17,7 +17,7 @@ from autograder.judge.bench.recorded_actions import RecordedActionClient, Script
 from autograder.judge.bench.recorded_services import Answer, RecordedCaller, RecordedServer
 from autograder.judge.bench.recorded_topics import LogReader, RecordedPublisher, RecordedSubscription
 from autograder.judge.bench.recorder import Place, Recorder
-from autograder.judge.bench.ros_interfaces import expected_hashes, served_hashes, service_fields
+from autograder.judge.bench.ros_interfaces import MisfitError, expected_hashes, served_hashes, service_fields
 from autograder.judge.bench.subject_presence import GRAPH_POLL, MATCH, Presence
 from autograder.judge.bench.subject_time import SubjectTime, answers
 from autograder.judge.machine_fitness import JudgeFailed
@@ -161,6 +161,8 @@ class TestBench:
         self._gone, self._there = self._gone | self._there, set()
         if self._decoys is not None:
             self._decoys.clear()
+        if isinstance(self._wire.failure, MisfitError):
+            raise self._wire.failure  # an answer that the exercise gives
         if self._wire.failure is not None:
             raise JudgeFailed(f"the judge's own node failed: {self._wire.failure!r}")
 

@@ -113,17 +113,15 @@ class ScriptedActionServer:
 
     def send_feedback(self, **fields: Any) -> None:
         """Send one feedback message for the current goal."""
-        message = self._type.Impl.FeedbackMessage()
-        message.goal_id = self._goal_id
-        filled(message.feedback, fields)
+        message = self._type.Impl.FeedbackMessage(goal_id=self._goal_id)
+        message.feedback = filled(self._type.Feedback, fields, f"The feedback of {self._place.name}")
         self._place.record("feedback", fields=dict(fields))
         self._feedback.publish(message)
 
     def finish(self, status: str, **fields: Any) -> None:
         """End the current goal with a status (a key of :data:`STATUS`) and a result that has these fields."""
-        response = self._type.Impl.GetResultService.Response()
-        response.status = STATUS[status]
-        filled(response.result, fields)
+        response = self._type.Impl.GetResultService.Response(status=STATUS[status])
+        response.result = filled(self._type.Result, fields, f"The result of {self._place.name}")
         self._place.record("result", status=status, fields=dict(fields))
         self._set_status(STATUS[status])
         with self._lock:
@@ -231,7 +229,8 @@ class RecordedActionClient(Client):
         self._goals: dict[int, UUID] = {}
         self._numbers: dict[str, int] = {}
         self._ended: set[int] = set()
-        node, self._parts = place.wire.node, interface(place.type_name).Impl
+        self._type = interface(place.type_name)
+        node, self._parts = place.wire.node, self._type.Impl
         # The feedback subscription is made before the clients. Endpoints are announced in order, so a server that has
         # discovered the clients has also discovered this subscription, and no feedback is lost.
         self._feedback = node.create_subscription(
@@ -252,11 +251,11 @@ class RecordedActionClient(Client):
 
     def send_goal(self, number: int | None = None, /, **fields: Any) -> int:
         """Send a goal with these fields. Return the goal's number, by default counted from 0."""
+        goal = filled(self._type.Goal, fields, self._place.name)
         number = len(self._goals) if number is None else number
         self._goals[number] = goal_id = UUID(uuid=list(uuid.uuid4().bytes))
         self._numbers[_goal_text(goal_id)] = number
-        request = self._parts.SendGoalService.Request(goal_id=goal_id)
-        filled(request.goal, fields)
+        request = self._parts.SendGoalService.Request(goal_id=goal_id, goal=goal)
         self._place.record("goal_sent", goal=number, fields=dict(fields))
         self._place.wire.executor.ask(self._send, request, partial(self._take_answer, number))
         return number

@@ -66,7 +66,7 @@ class RecordedServer:
     def _take(self, request: Any, send: Send) -> None:
         fields = to_data(request)
         self._place.record("request", fields=fields)
-        response = filled(self._type.Response(), dict(self._answer(fields)))
+        response = filled(self._type.Response, self._answer(fields), f"The answer of {self._place.name}")
         with self._holding:
             self._count += 1
             delay = math.inf if self._count == self._hold else self._late.get(self._count)
@@ -150,14 +150,14 @@ class RecordedCaller(Client):
 
     def ask(self, *requests: Mapping[str, Any]) -> None:
         """Send all requests without waiting for an answer between them."""
+        messages = [filled(self._type.Request, fields, self._place.name) for fields in requests]
         numbered = list(enumerate(requests, self._calls))
         self._calls += len(numbered)
         # Record all calls before the first is sent, because otherwise chance would decide whether an answer is recorded
         # before a later call.
         for number, fields in numbered:
             self._place.record("asked", call=number, fields=dict(fields))
-        for number, fields in numbered:
-            request = filled(self._type.Request(), fields)
+        for (number, _), request in zip(numbered, messages, strict=True):
             self._place.wire.executor.ask(self._client, request, partial(self._take, number))
 
     def await_answers(self, quiet: float) -> bool:

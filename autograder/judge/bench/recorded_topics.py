@@ -108,8 +108,9 @@ class RecordedPublisher(_RecordedEndpoint):
 
     def send(self, **fields: Any) -> None:
         """Publish one message with these fields."""
+        message = filled(self._type, fields, self._place.name)
         self._place.record("sent", fields=dict(fields))
-        self.publisher.publish(filled(self._type(), fields))
+        self.publisher.publish(message)
 
 
 class LogReader:

@@ -6,7 +6,6 @@ the package, so the same definition in two packages has two hashes.
 
 from __future__ import annotations
 
-import array
 import hashlib
 import importlib
 import json
@@ -17,6 +16,8 @@ from typing import TYPE_CHECKING, Any
 
 import re2
 
+from autograder.kit.in_words import shortened
+
 if TYPE_CHECKING:
     from rclpy.node import Node
 
@@ -25,6 +26,11 @@ _SIDES = {"request": "rq{service}Request", "response": "rr{service}Reply"}
 """The names that rmw_fastrtps gives to the two DDS topics of a service. The keys are the parts of the service type, and
 each topic announces the type hash of its part.
 """
+
+
+_AS_DEFINED = {"float": "float32", "double": "float64", "boolean": "bool", "octet": "byte"}
+"""The names of types in the definition of an interface, if the generated code has others."""
+_FLOATS = ("float", "double")
 
 
 class UnknownInterface(LookupError):
@@ -59,33 +65,62 @@ def to_data(message: Any) -> Any:
         return {field: to_data(getattr(message, field)) for field in message.get_fields_and_field_types()}
     if isinstance(message, (bytes, bytearray)):
         return list(message)
-    if isinstance(message, (list, tuple, array.array)) or hasattr(message, "tolist"):
+    if isinstance(message, (list, tuple)):
         return [to_data(item) for item in message]
-    return message
+    # Numbers are in an array.array, or in a numpy.ndarray if the type gives their count.
+    return message.tolist() if hasattr(message, "tolist") else message
 
 
-def filled(message: Any, fields: Mapping[str, Any]) -> Any:
-    """Set fields of a message and return the message. Nested messages are given as mappings, also in lists.
+class MisfitError(ValueError):
+    """The exercise gives a message a field that the type does not have, or a value that the field cannot hold."""
+
+
+def filled(kind: Any, fields: Mapping[str, Any], to: str, path: str = "") -> Any:
+    """Return a message with these fields. Nested messages are given as mappings, also in lists.
+
+    A whole number becomes a float if the field contains floats, because rclpy would send other bytes of the memory.
+
+    Args:
+        kind: The class of the message, such as the request of a service.
+        fields: The values by the names of the fields. The other fields have their defaults.
+        to: The name of the topic, service or action, for an error.
+        path: The path of this message in the whole one, which ends with a dot; empty for the whole one.
 
     Raises:
-        AttributeError: The message has no field with that name.
+        MisfitError: The message has no field with that name, or the field cannot hold the value.
     """
+    # With this argument, the generated code checks each value: its type, its range and its length.
+    message, types = kind(check_fields=True), kind.get_fields_and_field_types()
     for name, value in fields.items():
-        present = getattr(message, name)
-        if isinstance(value, Mapping):
-            filled(present, value)
-        elif isinstance(value, list) and value and isinstance(value[0], Mapping):
-            element = _element_type(message, name)
-            setattr(message, name, [filled(element(), inner) for inner in value])
-        else:
-            setattr(message, name, value)
+        if name not in types:
+            raise MisfitError(f"{to}: no field is called {path}{name}; the fields are {', '.join(types)}")
+        try:
+            setattr(message, name, _fitting(types[name], value, to, f"{path}{name}"))
+        except (AssertionError, TypeError, OverflowError):
+            type_name = re2.sub(r"\b[a-z]+\b", lambda found: _AS_DEFINED.get(found[0], found[0]), types[name])
+            raise MisfitError(
+                f"{to}: field {path}{name} is {type_name} and cannot hold {shortened(repr(value))}"
+            ) from None
     return message
 
 
-def _element_type(message: Any, field: str) -> Any:
-    """Return the class of the elements of a field such as ``sequence<rcl_interfaces/Parameter>``."""
-    package, name = re2.findall(r"(\w+)/(\w+)", message.get_fields_and_field_types()[field])[0]
-    return interface(f"{package}/msg/{name}")
+def _fitting(type_name: str, value: Any, to: str, path: str) -> Any:
+    """Return a value as the setter of a field of this type takes it, if it can."""
+    # A sequence<double>, a sequence<double, 3> and a double[3] contain doubles.
+    element = re2.match(r"(?:sequence<)?(\w[\w/]*)", type_name)[1]
+    if element == type_name or isinstance(value, (str, Mapping)):
+        if element == type_name and "/" in element and isinstance(value, Mapping):
+            package, _, name = element.partition("/")
+            return filled(interface(f"{package}/msg/{name}"), value, to, f"{path}.")
+        return _as_float(value) if element in _FLOATS else value
+    if "/" in element:
+        return [_fitting(element, item, to, f"{path}[{index}]") for index, item in enumerate(value)]
+    return [_as_float(item) for item in value] if element in _FLOATS else list(value)
+
+
+def _as_float(value: Any) -> Any:
+    """Return a whole number as a float; another value unchanged, also a bool."""
+    return float(value) if type(value) is int else value
 
 
 def served_hashes(judge: Node, service: str) -> dict[str, str]:

@@ -289,7 +289,10 @@ class SameAsSolution:
             bench.wait_until(lambda evidence: bool(evidence.main.of("message")), self._waits)
         went_through = True
         if not isinstance(step, (int, float)):
-            went_through = self._given(met, step)
+            try:
+                went_through = self._given(met, step)
+            except ValueError as error:
+                raise ValueError(f"Step {turn.number} gives {error}") from error
             # What is wrong with a goal that does not end is compared, too.
             if not (went_through or isinstance(step, Goal)):
                 return False
@@ -349,7 +352,7 @@ class SameAsSolution:
             for name, client in zip(sorted(ends.get(role, {})), made, strict=True)
         }
         if step.name not in clients:
-            raise ValueError(f"gives: {step.name!r} is not one of {', '.join(clients)}")
+            raise ValueError(f"{step.name!r}, which is not one of {', '.join(clients)}")
         if isinstance(step, Goal):
             return step.play(GoalSender(bench, clients[step.name], simulated=True))
         whole = step.value if isinstance(step.value, Mapping) else {"data": step.value}

@@ -202,11 +202,15 @@ def parameter_in_words(noted: Sequence[Any]) -> str:
 
 
 def parameter_value(value: float | str | bool) -> dict[str, Any]:
-    """Return the fields of a rcl_interfaces/msg/ParameterValue."""
-    kind = next(
-        number for number, python in ((1, bool), (2, int), (3, float), (4, str)) if isinstance(value, python)
-    )
-    return {"type": kind, f"{TYPES[kind]}_value": value}
+    """Return the fields of a rcl_interfaces/msg/ParameterValue.
+
+    Raises:
+        ValueError: The value is neither a number nor a text nor a truth value.
+    """
+    for number, python in ((1, bool), (2, int), (3, float), (4, str)):
+        if isinstance(value, python):
+            return {"type": number, f"{TYPES[number]}_value": value}
+    raise ValueError(f"{value!r}, which is neither a number nor a text nor a truth value")
 
 
 def pick(fields: Any, path: str) -> Any:
