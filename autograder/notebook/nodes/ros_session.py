@@ -28,6 +28,7 @@ from rclpy.task import Future
 from rclpy.utilities import get_default_context, ok, try_shutdown
 
 from autograder.dds_discovery import DOMAIN_VARIABLE, DomainClaim, claim_free_domain, domain_from_environment
+from autograder.notebook.nodes.interrupts import end_waits_from_now_on
 from environment.python_child import python_child
 
 if TYPE_CHECKING:
@@ -127,6 +128,10 @@ def start_ros() -> RosSession:
     """
     with _lock:
         prepare_environment()
+        if (
+            threading.current_thread() is threading.main_thread()
+        ):  # Python handles signals in this thread only
+            end_waits_from_now_on()
         if ok():
             # Remove the signal handlers of an earlier rclpy.init(), because they would end ROS at an interrupt.
             if get_current_signal_handlers_options() != SignalHandlerOptions.NO:

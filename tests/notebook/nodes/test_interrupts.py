@@ -1,0 +1,81 @@
+"""An interrupt of the kernel ends a cell in which rclpy waits and nothing arrives; the nodes and ROS live on."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+
+if TYPE_CHECKING:
+    from tests.notebook.conftest import Notebook
+
+pytestmark = pytest.mark.ros
+
+BEGIN = """
+import linecache, sys, threading
+from rclpy.executors import MultiThreadedExecutor, SingleThreadedExecutor
+from rclpy.task import Future
+from rclpy.wait_for_message import wait_for_message
+
+class Deaf(Node):
+    def __init__(self):
+        super().__init__("deaf")
+        self.heard = []
+        self.create_subscription(String, "silence", self.heard.append, 10)
+
+def say_when_it_waits():
+    main = threading.main_thread().ident
+    while True:
+        frame = sys._current_frames()[main]
+        if "wait_set.wait(" in linecache.getline(frame.f_code.co_filename, frame.f_lineno):
+            print("it waits", flush=True)
+            return
+        threading.Event().wait(0.001)
+
+def spin_in(executor, node):
+    executor.add_node(node)
+    try:
+        executor.spin()
+    finally:
+        executor.remove_node(node)
+
+node = Deaf()
+"""
+AFTERWARDS = """
+publisher = node.create_publisher(String, "silence", 10)
+publisher.publish(String(data="heard"))
+while not node.heard:
+    rclpy.spin_once(node)
+print(rclpy.ok(), node.heard.pop().data)
+"""
+WAITS = [
+    "rclpy.spin(node)",
+    "rclpy.spin_once(node)",
+    "rclpy.spin_until_future_complete(node, Future())",
+    "spin_in(SingleThreadedExecutor(), node)",
+    "spin_in(MultiThreadedExecutor(2), node)",
+    'wait_for_message(String, node, "other")',
+]
+
+
+@pytest.mark.parametrize("wait", WAITS)
+def test_an_interrupt_ends_a_wait_without_messages(notebook: Notebook, wait: str) -> None:
+    assert notebook.run(BEGIN).error is None
+    request = notebook.begin(f"threading.Thread(target=say_when_it_waits).start()\n{wait}")
+    notebook.wait_for_output("it waits")
+    notebook.interrupt()
+    # The message in the error is rclpy's own where it handles an interrupt: wait_for_message may return instead.
+    assert notebook.result_of(request).error in ("KeyboardInterrupt: ", None)
+    assert notebook.run(AFTERWARDS).stdout == "True heard\n"
+
+
+def test_nodes_in_the_background_spin_on(notebook: Notebook) -> None:
+    assert (
+        notebook.run(f"{BEGIN}\nlistener = ListenerNode(); spin_in_background(TalkerNode(), listener)").error
+        is None
+    )
+    request = notebook.begin("threading.Thread(target=say_when_it_waits).start()\nrclpy.spin(node)")
+    notebook.wait_for_output("it waits")
+    notebook.interrupt()
+    assert notebook.result_of(request).error == "KeyboardInterrupt: "
+    assert notebook.run("print(len(hear(3, listener)))").stdout.endswith("3\n")
