@@ -60,8 +60,16 @@ class Part:
         Args:
             after: If given, only lines after this event are returned.
         """
-        start = self.events.index(after) + 1 if after is not None else 0
+        start = 0 if after is None else self._place_behind(after)
         return [text for i, text in self._spoken if i >= start]
+
+    def _place_behind(self, event: Event) -> int:
+        try:
+            return self.events.index(event) + 1
+        except (
+            ValueError
+        ):  # a line of a subject that said so much that the recorder has dropped its older lines
+            return sum(one.t <= event.t for one in self.events)
 
     @functools.cached_property
     def _spoken(self) -> list[tuple[int, str]]:

@@ -8,6 +8,8 @@ says it sent the messages, unless the times of arrival contradict them.
 
 from __future__ import annotations
 
+import ast
+import contextlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
@@ -228,13 +230,26 @@ def value(event: Event) -> Any:
     return event.data["fields"].get("data", event.data["fields"])
 
 
+def value_of(text: str) -> Any:
+    """Return the Python value that a subject's text stands for; None if it stands for none that Python can write."""
+    # literal_eval names the errors that it raises for what is no literal, or too deep or too long for it.
+    with contextlib.suppress(ValueError, TypeError, SyntaxError, MemoryError, RecursionError):
+        value = ast.literal_eval(text)
+        repr(value)  # a number in another base may have more digits than Python writes
+        return value
+    return None
+
+
 def same(one: Any, other: Any, tolerance: float = 1e-6) -> bool:
     """Return True if two contents, or lists of contents, are equal.
 
     Floating-point numbers may differ by ``tolerance`` (absolute, or relative to the larger one). NaN equals NaN.
     """
     if {type(one), type(other)} in ({float}, {float, int}):
-        return (isnan(one) and isnan(other)) or isclose(one, other, rel_tol=tolerance, abs_tol=tolerance)
+        try:
+            return (isnan(one) and isnan(other)) or isclose(one, other, rel_tol=tolerance, abs_tol=tolerance)
+        except OverflowError:
+            return False  # the int is larger than each float
     if isinstance(one, Mapping) and isinstance(other, Mapping):
         return one.keys() == other.keys() and all(same(one[key], other[key], tolerance) for key in one)
     if isinstance(one, (list, tuple)) and isinstance(other, (list, tuple)):

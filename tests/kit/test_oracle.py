@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from random import Random
 from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from autograder.kit.bench import Pace
 from autograder.kit.counterparts import Qos
 from autograder.kit.evidence import Event, Evidence, Part, Reference, Variant
 from autograder.kit.oracle.same_as_solution import SameAsSolution, Sets, To
@@ -266,6 +268,14 @@ def test_the_judge_s_endpoint_has_the_qos_of_the_solution_s_if_the_author_says_t
         scenario("/scan", qos={})
 
 
+@pytest.mark.parametrize("pace", Pace)
+def test_a_node_that_hangs_at_the_first_step_says_nothing(pace: Pace) -> None:
+    bench = _Hung(evidence_of(run(RIGHT)).reference, pace)
+    exercise().scenario(bench)  # type: ignore[arg-type]
+    part = Part("drawing 1", {}, [Event(1.0, "noted", name, data) for name, data in bench.noted])
+    assert set(failed(part)) == {"cmd_vel", "speed", "beat"}
+
+
 class _Bench:
     """A bench on which no endpoint of a subject appears. It remembers the judge's endpoints."""
 
@@ -282,3 +292,18 @@ class _Bench:
 
     def __getattr__(self, _: str) -> Callable[..., bool]:
         return lambda *_, **__: False
+
+
+class _Hung(_Bench):
+    """A bench with a subject that the judge has met, and that then answers nothing."""
+
+    def __init__(self, reference: Reference, pace: Pace) -> None:
+        super().__init__(reference)
+        self.pace, self.random, self.moment = pace, Random(1), 0.0
+        self.noted: list[tuple[str, Any]] = []
+
+    def await_endpoint(self, *_: str) -> bool:
+        return True
+
+    def note(self, name: str, **data: Any) -> None:
+        self.noted.append((name, data))

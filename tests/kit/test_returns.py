@@ -10,6 +10,7 @@ import pytest
 from autograder.kit.bench import Pace
 from autograder.kit.evidence import Event, Evidence, Part, Reference
 from autograder.kit.oracle.returns import Returns
+from tests.kit.test_rules import HOSTILE
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -100,6 +101,23 @@ def test_the_solution_is_recorded_with_several_lists_and_a_subject_gets_one_of_t
 )
 def test_each_value_that_is_returned_counts(function: Callable[[Any], Any], passes: bool, key: str) -> None:
     assert judged(function) == (passes, key)
+
+
+class Says(list[Any]):
+    """A list that writes itself as a text that is not its own."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self._text = text
+
+    def __repr__(self) -> str:
+        return self._text
+
+
+@pytest.mark.parametrize("text", [*HOSTILE, f"[{10**400}, 1, 2, 3, 4]", "[1e999, 1j, ..., b'', {1}]"])
+@pytest.mark.parametrize("prints", [False, True])
+def test_whatever_a_function_returns_is_compared(text: str, prints: bool) -> None:
+    assert judged(lambda _: Says(text), prints=prints) == (False, "")
 
 
 def test_a_program_prints_its_list_last() -> None:

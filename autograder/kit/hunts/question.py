@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import ast
-import contextlib
 import os
 import platform
 from dataclasses import dataclass
@@ -13,6 +11,7 @@ from typing import TYPE_CHECKING
 from autograder.kit.draft import OWN, Draft, SeenAsItIs
 from autograder.kit.mistakes.crashes import CRASHES, OTHER_CRASHES
 from autograder.kit.model import Advice, Finding
+from autograder.kit.rules import value_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -129,9 +128,8 @@ def answer(seen: Evidence) -> str:
     returned = seen.main.returned
     if returned is None:
         return "".join(seen.main.said()[-1:]).strip()
-    with contextlib.suppress(ValueError, SyntaxError):
-        returned = str(ast.literal_eval(returned) or "")
-    return returned
+    value = value_of(returned)
+    return returned if value is None and returned != "None" else str(value or "")
 
 
 def _plain(text: str) -> str:

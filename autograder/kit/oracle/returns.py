@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import ast
-import contextlib
 from random import Random  # noqa: TC003  (an author reads the types)
 from typing import TYPE_CHECKING, Any
 
@@ -11,6 +9,7 @@ from autograder.kit.draft import POINTS
 from autograder.kit.mistakes.unfinished import STEP_MISSING
 from autograder.kit.oracle.outputs import Kind
 from autograder.kit.oracle.same_as_solution import TOLERANCE, SameAsSolution
+from autograder.kit.rules import value_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -94,7 +93,5 @@ class Returns(SameAsSolution):
 def _returned(bench: Bench) -> list[Any]:
     """Return the list that the function returned, or that a program printed last; an empty one if it is no list."""
     seen = bench.seen()
-    with contextlib.suppress(ValueError, SyntaxError):
-        value = ast.literal_eval(seen.returned or "".join(seen.said()[-1:]))
-        return value if isinstance(value, list) else []
-    return []
+    value = value_of(seen.returned or "".join(seen.said()[-1:]))
+    return value if isinstance(value, list) else []

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
-from itertools import product
+from itertools import product, zip_longest
 from random import Random
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
@@ -24,8 +24,16 @@ from autograder.kit.mistakes.crashes import CRASHES, OTHER_CRASHES
 from autograder.kit.model import Advice, Finding, Mistake
 from autograder.kit.oracle.goal_sender import GoalSender
 from autograder.kit.oracle.outputs import Kind, Output
+from autograder.kit.oracle.parameter_answers import (
+    DESCRIBE,
+    DESCRIBED,
+    SET,
+    described,
+    parameter_value,
+    received,
+)
 from autograder.kit.oracle.standing_clock import KEY, noted_before, on_another_clock
-from autograder.kit.oracle.steps import Goal, Serves, Sets, Step, To, Turn, parameter_value
+from autograder.kit.oracle.steps import Goal, Serves, Sets, Step, To, Turn
 from autograder.kit.recipes.own_scenario import ENDPOINTS, QUIET, Met, OwnScenario, meet
 
 if TYPE_CHECKING:
@@ -44,10 +52,6 @@ PAUSE = 0.75
 TOLERANCE = 1e-3
 """The tolerance for numbers, absolute or relative to the larger one."""
 NOTHING: Mapping[str, Any] = MappingProxyType({})
-SET = ("set_parameters", "rcl_interfaces/srv/SetParameters")
-DESCRIBE = ("describe_parameters", "rcl_interfaces/srv/DescribeParameters")
-DESCRIBED = ("type", "ranges")
-NOT_DECLARED = {"type": 0, "floating_point_range": (), "integer_range": ()}
 
 
 class _Drawn(OwnScenario):
@@ -272,7 +276,7 @@ class SameAsSolution:
         )
         if bench.pace is Pace.REAL_TIME:
             bench.settle()
-            for turn, following in zip(turns, [*turns[1:], None], strict=True):
+            for turn, following in zip_longest(turns, turns[1:]):
                 self._notes(bench, turn, following)
         for output in self._of(Kind.LIST):
             seen = bench.seen().of("message", output.name)
@@ -318,12 +322,9 @@ class SameAsSolution:
         events = turn.events(seen, following, by_time=bench.pace is Pace.REAL_TIME)
         given = f"{step:g} s without an input" if isinstance(step, (int, float)) else str(step)
         stood = {"stood": step.stands} if isinstance(step, To) and step.stands else {}
-        # The words of a refusal are the student's own, so only the presence of a reason is compared.
         if isinstance(step, Sets):
             given = f"{step.parameter} = {step.value}"
-            result = next(e.data["fields"]["results"][0] for e in events if e.kind == "answered")
-            taken = [result["successful"], bool(result["reason"])]
-            bench.note(step.parameter, step=turn.number, given=given, values=[taken])
+            bench.note(step.parameter, step=turn.number, given=given, values=[received(events)])
         for output in self._of(Kind.STEPS):
             values = output.values(events)
             if isinstance(step, Goal) and output.name == step.name:
@@ -365,16 +366,9 @@ class SameAsSolution:
     def _describe(self, bench: Bench) -> bool:
         """Note the types and ranges of the parameters. Return False if the subject does not answer."""
         for name in [output.name for output in self._of(Kind.PARAMETER)]:
-            # A node answers with an empty list if one of the parameters is not declared.
             if not self._ask(bench, "", DESCRIBE, {"names": [name]}):
                 return False
-            described = bench.seen().of("answered")[-1].data["fields"]["descriptors"]
-            (one,) = described or [NOT_DECLARED]
-            ranges = [
-                [r["from_value"], r["to_value"]]
-                for r in (*one["floating_point_range"], *one["integer_range"])
-            ]
-            bench.note(name, step=0, given="", values=[[one["type"], ranges]])
+            bench.note(name, step=0, given="", values=[described(bench.seen().events)])
         return True
 
     @staticmethod

@@ -19,9 +19,6 @@ if TYPE_CHECKING:
     from autograder.kit.oracle.goal_sender import GoalSender
     from autograder.kit.outcomes import SentGoal
 
-TYPES = {1: "bool", 2: "integer", 3: "double", 4: "string"}
-"""The types of parameters (rcl_interfaces/msg/ParameterType.msg)."""
-
 
 class To(NamedTuple):
     """An input for one of several topics and services.
@@ -188,29 +185,6 @@ class Turn(NamedTuple):
 def _sent_at(message: Event) -> float:
     """Return when a message was sent, in seconds of the run's real time."""
     return message.t - (float(message.data.get("arrived", message.t)) - sent_times([message])[0])
-
-
-def parameter_in_words(noted: Sequence[Any]) -> str:
-    """Return in words a parameter's noted type and ranges, or how a new value was received."""
-    first, second = noted
-    if isinstance(first, bool):
-        return "taken" if first else f"refused with{'' if second else 'out'} a reason"
-    if first not in TYPES:
-        return "not declared"
-    ranges = " and ".join(f"from {low:g} to {high:g}" for low, high in second) or "without a range"
-    return f"{TYPES[first]} {ranges}"
-
-
-def parameter_value(value: float | str | bool) -> dict[str, Any]:
-    """Return the fields of a rcl_interfaces/msg/ParameterValue.
-
-    Raises:
-        ValueError: The value is neither a number nor a text nor a truth value.
-    """
-    for number, python in ((1, bool), (2, int), (3, float), (4, str)):
-        if isinstance(value, python):
-            return {"type": number, f"{TYPES[number]}_value": value}
-    raise ValueError(f"{value!r}, which is neither a number nor a text nor a truth value")
 
 
 def pick(fields: Any, path: str) -> Any:
