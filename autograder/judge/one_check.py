@@ -13,7 +13,9 @@ from typing import TYPE_CHECKING
 
 from autograder import exercises, kit
 from autograder.judge.bench.bench import TestBench
+from autograder.judge.bench.recorder import MAX_EVENTS
 from autograder.judge.bench.subject_time import Unanswered
+from autograder.judge.bench.unreadable import FLOOD, NAME, Unreadable
 from autograder.judge.machine_fitness import (
     NOT_DELIVERED,
     SEEN_SO_FAR,
@@ -51,10 +53,18 @@ UNKNOWN = "unknown"
 """The key of the diagnosis if the mistake is unknown."""
 MAX_DETAIL = 6_000
 """The maximum length of a traceback on a card, in characters."""
-MOST_EVENTS = 20_000
-"""The maximum number of events in all parts of one look. With more, a check fails, because the decision would take
-minutes. The bank's answers have at most about a thousand in a part.
-"""
+UNREADABLE = {
+    FLOOD: (
+        f"Your program said and sent far too much: the judge reads at most {MAX_EVENTS:,} lines, messages and calls.",
+        "Log what the task asks for, one short line for each thing that happens, and nothing else.",
+    ),
+    NAME: (
+        "A node, topic, service or action of your program has a name that ROS does not allow, so the judge cannot read "
+        "what is on the ROS graph.",
+        "Give each of them a name of letters, digits and underscores, as the task does.",
+    ),
+}
+"""What a subject did that no judge can read, and what the student should do now."""
 MAX_WORDS = 500
 """The maximum length of one sentence of a verdict, in characters; it may quote the subject's output."""
 
@@ -64,10 +74,6 @@ CUT = (
     "may be met than it seems now."
 )
 """A remark on a check that a busy machine has cut after a look that proves a mistake."""
-
-
-class TooManyEvents(Exception):
-    """The subject said and sent more than the judge reads."""
 
 
 @dataclass(frozen=True)
@@ -113,8 +119,8 @@ def check(
     """Judge a subject in one look, or in two looks if the first does not decide.
 
     A subject that passes the first look, in simulated time, has passed. If it fails, a second look in real time
-    decides, unless the evidence proves the mistake whatever the load is. A check with more than :data:`MOST_EVENTS` has
-    failed.
+    decides, unless the evidence proves the mistake whatever the load is. A subject that
+    does what no judge can read has failed (:data:`UNREADABLE`).
 
     Args:
         reference: The recorded behavior of the reference solution.
@@ -126,7 +132,7 @@ def check(
         TooBusy: The machine was too busy to decide, or a student has waited for a long time on a busy machine.
         NotDelivered: The subject did not pass, nothing proves a mistake, and this machine may have lost messages.
     """
-    with of_exercise(exercise):
+    with of_exercise(exercise, reference):
         return _check(exercise, subject, reference, seed, domain_id, marks_crowded)
 
 
@@ -189,8 +195,8 @@ def _check(
             crowded = not certain and (seen.unmet or (again and crowding.too_busy))
             if not certain and not (delivered and delivers()):
                 raise NotDelivered(NOT_DELIVERED)
-    except TooManyEvents:
-        verdict = _undecidable(exercise, seed)
+    except Unreadable as error:
+        verdict = _undecidable(exercise, seed, error.why)
     except TooBusy:
         # The machine left no time for a further look, but the last whole one may prove a mistake, such as a wrong name.
         if verdict is None or not is_certain(exercise, evidence):
@@ -241,19 +247,15 @@ def _so_far(verdict: Verdict) -> str:
 
 
 def decide(exercise: Exercise, evidence: Evidence, seed: str) -> Verdict:
-    """Return the verdict that follows from evidence; a fail if there are too many events to judge."""
+    """Return the verdict that follows from evidence; a fail if the subject did what no judge can read."""
     try:
         return judge(exercise, evidence, seed)
-    except TooManyEvents:
-        return _undecidable(exercise, seed)
+    except Unreadable as error:
+        return _undecidable(exercise, seed, error.why)
 
 
-def _undecidable(exercise: Exercise, seed: str) -> Verdict:
-    diagnosis = Diagnosis(
-        "undecidable",
-        f"Your program said and sent far too much: the judge reads at most {MOST_EVENTS:,} lines, messages and calls.",
-        "Log what the task asks for, one short line for each thing that happens, and nothing else.",
-    )
+def _undecidable(exercise: Exercise, seed: str, why: str) -> Verdict:
+    diagnosis = Diagnosis("undecidable", *UNREADABLE[why])
     return replace(failed(exercise.id, exercise.title, float(exercise.points), diagnosis), seed=seed)
 
 
@@ -288,7 +290,7 @@ def look(
 
     bench = TestBench(subject, domain_id, reference, pace, Random(seed), before, hurry, names)
     bench.is_waited_for, bench.begin_run = card is not None, begin_run
-    with contextlib.closing(bench), contextlib.suppress(Unanswered):
+    with contextlib.closing(bench), contextlib.suppress(Unanswered), bench.noting_what_is_unreadable():
         exercise.scenario(bench)
     # Sort the parts: a scenario may shuffle them, but the verdict's text must not depend on the order.
     places = {part.name: place for place, part in enumerate(reference.parts)}
@@ -300,10 +302,13 @@ def judge(exercise: Exercise, evidence: Evidence, seed: str) -> Verdict:
     """Return the verdict that follows from the evidence.
 
     Raises:
-        TooManyEvents: There are more than :data:`MOST_EVENTS`.
+        Unreadable: The subject did what no judge can read.
     """
-    if sum(len(part.events) for part in evidence) > MOST_EVENTS:
-        raise TooManyEvents
+    # The decision on more events would take minutes. The bank's answers have at most about a thousand in a part.
+    if sum(len(part.events) for part in evidence) >= MAX_EVENTS:
+        raise Unreadable(FLOOD)
+    if unreadable := [event for part in evidence for event in part.of("unreadable")]:
+        raise Unreadable(unreadable[0].name)
     lost = {event.data["costs"]: event for part in evidence for event in part.of("misnamed")}
     criteria = tuple(_result(exercise, one, evidence, lost.get(one.name)) for one in exercise.criteria)
     passed = all(criterion.passed for criterion in criteria)
@@ -398,6 +403,7 @@ def _cut(text: str, limit: int = MAX_WORDS) -> str:
 
 
 WHAT_TO_DO = "Show this card to your instructor: the exercise has to be corrected first."
+NOT_THE_EXERCISE = "Show this card to your instructor: the judge has to learn to read what your program does."
 _KIT = Path(kit.__file__).parent
 MAX_QUOTED_ERROR = 300
 """The maximum length of the quoted error, in characters. It is limited because the error may contain output of the
@@ -406,12 +412,15 @@ subject.
 
 
 class ExerciseFailed(JudgeFailed):
-    """The exercise's own code raised an exception."""
+    """The code of an exercise or of the kit raised an exception."""
 
 
 @contextlib.contextmanager
-def of_exercise(exercise: Exercise) -> Iterator[None]:
+def of_exercise(exercise: Exercise, reference: Reference | None = None) -> Iterator[None]:
     """Turn an exception in an exercise's own code into an :class:`ExerciseFailed`, which says what to do about it.
+
+    Args:
+        reference: The recording of the reference solution; None if the solution is the subject.
 
     Raises:
         ExerciseFailed: The code in the block raised an exception, and code of the exercise or of the kit called it.
@@ -425,7 +434,25 @@ def of_exercise(exercise: Exercise) -> Iterator[None]:
         if not where:
             raise
         words = " ".join(f"{type(error).__name__}: {error}".split())[:MAX_QUOTED_ERROR]
-        raise ExerciseFailed(f"The exercise has a fault: {words} ({where}).\n{WHAT_TO_DO}") from error
+        whose, what_to_do = "The exercise has a fault", WHAT_TO_DO
+        if reference is not None and not _fails_on_solution(exercise, reference):
+            whose, what_to_do = "The judge cannot read what your program did", NOT_THE_EXERCISE
+        raise ExerciseFailed(f"{whose}: {words} ({where}).\n{what_to_do}") from error
+
+
+def _fails_on_solution(exercise: Exercise, reference: Reference) -> bool:
+    """Return True if the exercise's criteria or mistakes raise an exception about the reference solution, too.
+
+    This decides no point: it tells whether the exercise is to blame for a check without a verdict.
+    """
+    solution = Evidence(reference.parts, reference)
+    try:
+        for criterion in exercise.criteria:
+            criterion.judge(solution)
+        _recognized(exercise, solution)
+    except Exception:
+        return True
+    return False
 
 
 def _line_of_exercise(error: Exception, exercise: Exercise) -> str:

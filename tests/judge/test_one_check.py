@@ -10,8 +10,10 @@ import pytest
 from autograder import exercises
 from autograder.cards.text_rendering import card_text
 from autograder.judge import evidence_files, machine_fitness, one_check
+from autograder.judge.bench.bench import TestBench
+from autograder.judge.bench.unreadable import NAME
 from autograder.judge.machine_fitness import ANSWER_WITHIN, Crowding, NotDelivered, TooBusy
-from autograder.judge.one_check import WHAT_TO_DO, ExerciseFailed
+from autograder.judge.one_check import NOT_THE_EXERCISE, WHAT_TO_DO, ExerciseFailed
 from autograder.kit.bench import Pace
 from autograder.kit.evidence import Event, Evidence, Part
 from autograder.kit.model import Advice, Criterion, Finding, Mistake
@@ -132,11 +134,16 @@ def test_who_checks_by_hand_is_told_that_the_machine_is_too_busy_to_tell(
 
 
 @pytest.mark.parametrize("place", ["criteria", "mistakes"])
+@pytest.mark.parametrize("with_solution", [True, False], ids=["with the solution, too", "with the subject"])
 def test_an_exception_of_the_exercise_is_no_trouble_of_the_moment(
-    monkeypatch: pytest.MonkeyPatch, place: str
+    monkeypatch: pytest.MonkeyPatch, place: str, with_solution: bool
 ) -> None:
-    def fails(*_: object) -> Any:
-        return value(Event(0.0, "message", "/any", {}))  # a line of the kit, as an author calls it
+    """Such a check has no verdict, and only what fails with the solution, too, is the exercise's fault."""
+
+    def fails(evidence: Evidence) -> Any:
+        if with_solution or evidence.main.name == "bad":
+            return value(Event(0.0, "message", "/any", {}))  # a line of the kit, as an author calls it
+        return Finding(False, "", "") if place == "criteria" else None
 
     stored = evidence_files.load_reference(USUAL.id)
     seen = one_check.Seen(Evidence([Part("bad")], stored), doubtful=False)
@@ -149,8 +156,40 @@ def test_an_exception_of_the_exercise_is_no_trouble_of_the_moment(
     with pytest.raises(ExerciseFailed, match=r"KeyError: 'fields' \(rules\.py, line \d+\)") as failed:
         one_check.check(judged, subject, stored, seed="s", domain_id=0)
     card = card_text(not_checked(judged.id, judged.title, 10, str(failed.value)))
-    assert WHAT_TO_DO in card
+    shown = " ".join(card.split())
+    assert (WHAT_TO_DO in shown, NOT_THE_EXERCISE in shown) == (with_solution, not with_solution)
+    assert ("The exercise has a fault" in shown) is with_solution
     assert "again" not in card
+
+
+@pytest.mark.parametrize("error", [ValueError("planted"), UnicodeDecodeError("utf-8", b"", 0, 1, "planted")])
+def test_an_exception_of_the_bench_is_no_verdict(monkeypatch: pytest.MonkeyPatch, error: Exception) -> None:
+    def fails(*_: object, **__: object) -> None:
+        raise error
+
+    monkeypatch.setattr(TestBench, "part", fails)
+    subject: Any = Anybody()
+    subject.shares_participant = True
+    with pytest.raises((ExerciseFailed, type(error)), match="planted"):
+        one_check.check(
+            USUAL, subject, evidence_files.load_reference(USUAL.id), seed="s", domain_id=0, marks_crowded=True
+        )
+
+
+def test_an_unreadable_subject_has_no_points_and_the_reason(monkeypatch: pytest.MonkeyPatch) -> None:
+    stored = evidence_files.load_reference(USUAL.id)
+    seen = one_check.Seen(
+        Evidence([Part("good", {}, [Event(0.1, "unreadable", NAME)])], stored), doubtful=False
+    )
+    monkeypatch.setattr(one_check, "look", lambda *_, **__: seen)
+    subject: Any = Anybody()
+    checked = one_check.check(exercise(), subject, stored, seed="s", domain_id=0)
+    assert (checked.verdict.state, checked.verdict.score) == (State.FAILED, 0.0)
+    assert checked.verdict.diagnosis is not None
+    assert "a name that ROS does not allow" in checked.verdict.diagnosis.text
+    assert replace(one_check.decide(exercise(), checked.evidence, "s"), seconds=checked.verdict.seconds) == (
+        checked.verdict
+    )
 
 
 class BusyFor:

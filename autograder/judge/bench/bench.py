@@ -19,7 +19,8 @@ from autograder.judge.bench.recorded_topics import LogReader, RecordedPublisher,
 from autograder.judge.bench.recorder import Place, Recorder
 from autograder.judge.bench.ros_interfaces import MisfitError, expected_hashes, served_hashes, service_fields
 from autograder.judge.bench.subject_presence import GRAPH_POLL, MATCH, Presence
-from autograder.judge.bench.subject_time import SubjectTime, answers
+from autograder.judge.bench.subject_time import SubjectTime, silent
+from autograder.judge.bench.unreadable import Unreadable
 from autograder.judge.machine_fitness import JudgeFailed
 from autograder.kit.bench import STEP, Pace
 from autograder.kit.counterparts import Qos
@@ -27,7 +28,7 @@ from autograder.kit.evidence import INTERRUPTED, Evidence, Part, Reference
 from autograder.kit.giving_up import patience
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping, Sequence
+    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
     from random import Random
 
     from autograder.judge.subject import Subject
@@ -147,10 +148,11 @@ class TestBench:
         if not self._in_part:
             return
         self._in_part = False
-        if self._is_silent():
-            self._ask(self._presence.nodes())
-        self._presence.note_last_state()
-        self._presence.note_short_life()
+        with self.noting_what_is_unreadable():
+            if self._is_silent():
+                self._ask(self._presence.nodes())
+            self._presence.note_last_state()
+            self._presence.note_short_life()
         # After Ctrl-C, the old endpoints of the subject may stay on the graph for a while. So the judge uses a new
         # participant in the next part, because a new participant never discovers them.
         self._clean = self._subject.ended and not self._recorder.part().of("subject", INTERRUPTED)
@@ -165,6 +167,14 @@ class TestBench:
             raise self._wire.failure  # an answer that the exercise gives
         if self._wire.failure is not None:
             raise JudgeFailed(f"the judge's own node failed: {self._wire.failure!r}")
+
+    @contextlib.contextmanager
+    def noting_what_is_unreadable(self) -> Iterator[None]:
+        """End the block as soon as the subject does what no judge can read, and record that."""
+        try:
+            yield
+        except Unreadable as error:
+            self._recorder.record("unreadable", error.why)
 
     def close(self) -> None:
         """Stop the subject and remove everything from the graph. A call is allowed at any time."""
@@ -377,10 +387,11 @@ class TestBench:
 
     def _ask(self, nodes: Iterable[discovery.NodeName]) -> None:
         """Record which of the nodes do not answer, and where the subject hangs."""
-        for node in nodes:
-            if not self._subject.ended and not answers(self._wire, self._recorder, node):
-                self._recorder.record("unanswered", node.full)
-                self.note_where_it_hangs()
+        mute = [] if self._subject.ended else silent(self._wire, self._recorder, list(nodes))
+        for node in mute:
+            self._recorder.record("unanswered", node.full)
+        if mute:
+            self.note_where_it_hangs()
 
     def _is_silent(self) -> bool:
         """Return True if a subject that runs has done nothing since the judge's last input, and was not asked why."""

@@ -28,6 +28,7 @@ from rclpy.node import Node, NodeNameNonExistentError
 
 from autograder.dds_discovery import GROUP_OFFSET, PARTICIPANT_OFFSET, UNNAMED, port
 from autograder.judge.bench.qos_profiles import qos_of
+from autograder.judge.bench.unreadable import checked, names_are_read
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -80,11 +81,14 @@ def subject_nodes(judge: Node, keeper: str) -> list[NodeName]:
     return sorted(set(every_node(judge, keeper)), key=lambda node: (node.name, node.namespace))
 
 
+@names_are_read()
 def every_node(judge: Node, keeper: str) -> list[NodeName]:
     """Like :func:`subject_nodes`, but with a name for each node, so that a name of two nodes comes twice."""
     own = judge.get_name()
     seen = judge.get_node_names_and_namespaces()
     others = [NodeName(name, space) for name, space in seen if name != own and not name.startswith(UNNAMED)]
+    for other in others:
+        checked(other.full)
     if keeper and (the_one := NodeName(keeper, "/")) in others:
         others.remove(the_one)
     return others
@@ -128,6 +132,7 @@ class TopicEnd:
     qos: Qos
 
 
+@names_are_read()
 def topic_ends(judge: Node) -> list[TopicEnd]:
     """Return the subject's publishers and subscriptions.
 
@@ -146,7 +151,7 @@ def topic_ends(judge: Node) -> list[TopicEnd]:
                 qos_of(end["qos_profile"]),
             )
             for topic, _ in judge.get_topic_names_and_types()
-            if _is_own_work("publisher", topic)
+            if _is_own_work("publisher", checked(topic))
             # rclpy's own methods check the name again, and make objects of what is read here: four times the work.
             for role, ends in _ENDS_OF_A_TOPIC.items()
             for end in ends(judge.handle, topic, False)
@@ -159,6 +164,7 @@ def _process(gid: bytes) -> int:
     return int.from_bytes(gid[4:6], "little") if gid[:2] == _FAST_DDS else 0
 
 
+@names_are_read()
 def counterparts(judge: Node, heard: list[str], spoken: list[str]) -> list[NodeName] | None:
     """Return the subject's nodes that use these topics; None before the names of all of them are discovered.
 
@@ -172,7 +178,7 @@ def counterparts(judge: Node, heard: list[str], spoken: list[str]) -> list[NodeN
     own = judge.get_name()
     if any(not one.name or one.name.startswith(UNNAMED) for one in names):
         return None
-    return [one for one in dict.fromkeys(names) if one.name != own]
+    return [one for one in dict.fromkeys(names) if one.name != own and checked(one.full)]
 
 
 def owners(judge: Node, role: str, name: str) -> list[NodeName]:
@@ -210,9 +216,10 @@ _ENDS_OF_A_TOPIC = {
 }
 
 
+@names_are_read()
 def _ask(query: _Query, judge: Node, node: NodeName) -> list[tuple[str, list[str]]]:
     try:
-        return query(judge, node.name, node.namespace)
+        return [(checked(name), types) for name, types in query(judge, node.name, node.namespace)]
     except (NodeNameNonExistentError, RCLError):
         return []  # the node disappeared between the two queries
 
@@ -252,6 +259,7 @@ def topic_endpoints(node: Node, topics: Iterable[str]) -> set[Endpoint]:
     return _endpoints(node, [f"rt{name}" for name in topics])
 
 
+@names_are_read()
 def _endpoints(node: Node, topics: Iterable[str]) -> set[Endpoint]:
     """Return a node's endpoints on these topics, with the identifiers by which all participants know them.
 
@@ -335,6 +343,7 @@ class Announcements:
                     self._heard.add(message[_PROCESS_ID])
 
 
+@names_are_read()
 def process_of(node: Node) -> bytes:
     """Return the DDS id of the process that made a node.
 

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 from rclpy.action import ActionClient, ActionServer
 from rclpy.context import Context
 from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
+from rclpy.exceptions import NameValidationException
 from rclpy.node import Node
 
 from autograder.dds_discovery import receivers_wait
@@ -55,6 +56,13 @@ class _QuietNode(Node):
         return super().create_subscription(*arguments, **options)
 
 
+class _NeverReady:
+    """Stands for a client of a service that cannot exist."""
+
+    def service_is_ready(self) -> bool:
+        return False
+
+
 class Wire:
     """The judge's DDS participant on one ROS domain, with one node, and with its own ROS context and thread.
 
@@ -92,6 +100,22 @@ class Wire:
             ) as error:  # raised by the judge's own callback: no later result can be trusted
                 self.failure = error
             return
+
+    def client(self, kind: Any, service: str, **how: Any) -> Any:
+        """Return a client; one that is never ready if no service can have this name.
+
+        A node's name may be so long that the names of its parameter services would be longer than ROS allows.
+        """
+        try:
+            return self.node.create_client(kind, service, **how)
+        except NameValidationException:
+            return _NeverReady()
+
+    def count_servers(self, service: str) -> int:
+        """Return how many servers of this name the graph shows."""
+        with contextlib.suppress(NameValidationException):
+            return self.node.count_services(service)
+        return 0
 
     def take_in(self) -> bool:
         """Wait until everything that had been sent to the judge is recorded. Return True if this succeeds in time.

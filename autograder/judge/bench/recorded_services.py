@@ -133,7 +133,7 @@ class Client(ABC):
         """True if a server is matched with the client."""
 
     def _note_servers(self) -> None:
-        self._place.record("servers", count=self._place.wire.node.count_services(self._service))
+        self._place.record("servers", count=self._place.wire.count_servers(self._service))
 
 
 class RecordedCaller(Client):
@@ -143,7 +143,7 @@ class RecordedCaller(Client):
         super().__init__(place, place.at, server_is_gone)
         self._type = interface(place.type_name)
         self._calls = 0
-        self._client = place.wire.node.create_client(self._type, place.at, qos_profile=ROOM_FOR_ALL)
+        self._client = place.wire.client(self._type, place.at, qos_profile=ROOM_FOR_ALL)
 
     def _ready(self) -> bool:
         return bool(self._client.service_is_ready())

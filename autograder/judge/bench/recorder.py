@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
+from autograder.judge.bench.unreadable import FLOOD, Unreadable
 from autograder.judge.machine_fitness import Patience
 from autograder.kit.evidence import REPORTS, Event, Part
 
@@ -150,6 +151,9 @@ class Recorder:
 
         Returns:
             True if the condition held in time.
+
+        Raises:
+            Unreadable: The record is full, so what comes now is not in it.
         """
         slowness = (lambda: 1.0) if wall else None
         patience = Patience(within, slowness=slowness)
@@ -157,6 +161,8 @@ class Recorder:
         heard = self._count
         while True:
             self._hurry()
+            if len(self._events) >= MAX_EVENTS:
+                raise Unreadable(FLOOD)
             # Read the count before the condition, so that an event during the check is not slept through below.
             seen = self._count
             if condition():

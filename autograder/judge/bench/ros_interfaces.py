@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 import re2
 
+from autograder.judge.bench.unreadable import names_are_read
 from autograder.kit.in_words import shortened
 
 if TYPE_CHECKING:
@@ -123,6 +124,7 @@ def _as_float(value: Any) -> Any:
     return float(value) if type(value) is int else value
 
 
+@names_are_read()
 def served_hashes(judge: Node, service: str) -> dict[str, str]:
     """Return the type hashes of a service's request and response, as the server announces them."""
     readers = judge.get_subscriptions_info_by_topic(_SIDES["request"].format(service=service), no_mangle=True)

@@ -10,6 +10,7 @@ still, or if its executor answers slowly, and then looks again in real time.
 from __future__ import annotations
 
 import contextlib
+import itertools
 import threading
 import time
 from functools import partial
@@ -26,7 +27,7 @@ from autograder.judge.machine_fitness import Patience
 from autograder.kit.bench import STEP, Pace
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
     from autograder.judge.bench.discovery import NodeName
     from autograder.judge.bench.judge_nodes import Wire
@@ -85,7 +86,7 @@ class NodeClock:
         self._recorder = recorder
         self._publisher = wire.node.create_publisher(Clock, "/clock", QoSProfile(depth=10))
         self._set, self._get = (
-            [wire.node.create_client(kind, f"{node.full}/{name}") for node in nodes]
+            [wire.client(kind, f"{node.full}/{name}") for node in nodes]
             for kind, name in ((SetParameters, "set_parameters"), (GetParameters, "get_parameters"))
         )
 
@@ -93,7 +94,7 @@ class NodeClock:
         """Tell the nodes to follow simulated time, or real time again. Return True if all have accepted this."""
         value = ParameterValue(type=ParameterType.PARAMETER_BOOL, bool_value=simulated)
         request = SetParameters.Request(parameters=[Parameter(name=_SIM_TIME, value=value)])
-        told = [_ask(self._wire, self._recorder, client, request, ANSWER_LIMIT) for client in self._set]
+        told = _ask(self._wire, self._recorder, self._set, request, ANSWER_LIMIT)
         return all(answer and answer.results and answer.results[0].successful for answer in told)
 
     def is_heard(self) -> bool:
@@ -112,10 +113,7 @@ class NodeClock:
 
     def keeps_up(self) -> bool:
         """Return True if the nodes' executors make as many rounds as they need to handle what has arrived."""
-        return all(
-            _ask(self._wire, self._recorder, client, _QUESTION, ANSWER_LIMIT, turns=TURNS) is not None
-            for client in self._get
-        )
+        return None not in _ask(self._wire, self._recorder, self._get, _QUESTION, ANSWER_LIMIT, turns=TURNS)
 
     def lend(self, seconds: float, until: Callable[[], bool]) -> bool:
         """Make a node that runs in real time follow a simulated clock for some seconds, so that its timers fire sooner.
@@ -146,48 +144,57 @@ class NodeClock:
             self._wire.node.destroy_client(client)
 
 
-def _ask(wire: Wire, recorder: Recorder, client: Any, request: Any, limit: float, *, turns: int = 1) -> Any:
-    """Return the answer of a service of the subject; None if the subject's executor does not answer in time.
+def _ask(
+    wire: Wire, recorder: Recorder, clients: Sequence[Any], request: Any, limit: float, *, turns: int = 1
+) -> list[Any]:
+    """Ask services of the subject at once. Return the answer of each; None if its executor does not answer in time.
 
     Args:
-        recorder: The record of the part. At each new event, this function looks whether the answer has come.
-        limit: Time limit in seconds for the service to appear, and again for each answer.
+        recorder: The record of the part. At each new event, this function looks whether the services are there.
+        limit: Time limit in seconds for the services to appear, and again for each answer.
         turns: The number of executor rounds to wait for: the request is sent this many times at once, and the last
             answer counts.
     """
-    if not recorder.wait(client.service_is_ready, limit, poll=0.005):
-        return None
-    answers: list[Any] = []
-    all_came = threading.Event()
+    recorder.wait(lambda: all(client.service_is_ready() for client in clients), limit, poll=0.005)
+    answers: dict[int, list[Any]] = {
+        number: [] for number, client in enumerate(clients) if client.service_is_ready()
+    }
+    number_of_answers, all_came = itertools.count(1), threading.Event()
 
-    def take(answer: Any) -> None:
-        answers.append(answer)
-        if len(answers) == turns:
+    def take(number: int, answer: Any) -> None:
+        answers[number].append(answer)
+        if next(number_of_answers) == turns * len(answers):
             all_came.set()
 
-    for _ in range(turns):
-        wire.executor.ask(client, request, take)
+    for number in answers:
+        for _ in range(turns):
+            wire.executor.ask(clients[number], request, partial(take, number))
     patience, before = Patience(limit), 0
-    while not all_came.wait(max(0.0, patience.left)):
-        if len(answers) > before:
+    while answers and not all_came.wait(max(0.0, patience.left)):
+        count = sum(map(len, answers.values()))
+        if count > before:
             patience.restart()
         elif patience.left <= 0:
-            return None
-        before = len(answers)
-    return answers[-1]
+            break
+        before = count
+    return [came[-1] if len(came := answers.get(n, [])) == turns else None for n in range(len(clients))]
 
 
-def answers(wire: Wire, recorder: Recorder, node: NodeName, limit: float = PATIENT_ANSWER) -> bool:
-    """Return True if a node answers a request for a parameter in time. Every node that is spun can answer."""
-    client = _new_client(wire, node)
+def silent(
+    wire: Wire, recorder: Recorder, nodes: Sequence[NodeName], limit: float = PATIENT_ANSWER
+) -> list[NodeName]:
+    """Return the nodes that do not answer a request for a parameter in time. Every node that is spun can answer."""
+    clients = [_new_client(wire, node) for node in nodes]
     try:
-        return _ask(wire, recorder, client, _QUESTION, limit) is not None
+        told = _ask(wire, recorder, clients, _QUESTION, limit)
+        return [node for node, answer in zip(nodes, told, strict=True) if answer is None]
     finally:
-        wire.node.destroy_client(client)
+        for client in clients:
+            wire.node.destroy_client(client)
 
 
 def _new_client(wire: Wire, node: NodeName) -> Any:
-    return wire.node.create_client(GetParameters, f"{node.full}/get_parameters")
+    return wire.client(GetParameters, f"{node.full}/get_parameters")
 
 
 class SimulatedClock(NodeClock):
@@ -321,16 +328,15 @@ class SubjectTime:
         between. A node that failed to answer before, in this part, is left out.
         """
         limit = ANSWER_LIMIT if self._pace is Pace.FAST else PATIENT_ANSWER
-        for node in self._presence.counterparts():
-            if node.full in self._deaf or self._subject.ended:
-                continue
-            if self._clock is not None and node in self._clock.nodes:
-                has_settled = self._clock.keeps_up()
-            else:
-                ask = partial(_ask, self._wire, self._recorder, self._client_of(node), _QUESTION, limit)
-                has_settled = all(ask() is not None for _ in range(2))
-            if not has_settled:
-                self._deaf.add(node.full)
+        nodes = [] if self._subject.ended else self._presence.counterparts()
+        clocked = {node.full for node in nodes if self._clock is not None and node in self._clock.nodes}
+        if self._clock is not None and clocked - self._deaf and not self._clock.keeps_up():
+            self._deaf |= clocked
+        for _ in range(2):
+            asked = [node for node in nodes if node.full not in self._deaf | clocked]
+            clients = [self._client_of(node) for node in asked]
+            told = _ask(self._wire, self._recorder, clients, _QUESTION, limit)
+            self._deaf |= {node.full for node, answer in zip(asked, told, strict=True) if answer is None}
         self._recorder.take_in()
 
     def _client_of(self, node: NodeName) -> Any:
@@ -352,9 +358,9 @@ class SubjectTime:
         is_fast = self._pace is Pace.FAST
         limit = PATIENT_ANSWER if is_fast else MATCH
         nodes = [] if self._subject.ended else self._presence.counterparts()
-        silent = [node for node in nodes if not answers(self._wire, self._recorder, node, limit)]
-        if is_fast and silent and len(silent) == len(nodes) and not self._subject.ended:
-            for node in silent:
+        mute = silent(self._wire, self._recorder, nodes, limit)
+        if is_fast and mute and len(mute) == len(nodes) and not self._subject.ended:
+            for node in mute:
                 self._recorder.record("unanswered", node.full)
             raise Unanswered
 

@@ -107,3 +107,12 @@ def test_a_wire_that_was_closed_takes_nothing_in() -> None:
     with ros_setup.lease_domain() as domain_id, contextlib.closing(Wire(domain_id)) as wire:
         pass
     assert not wire.take_in()
+
+
+def test_a_service_whose_name_would_be_too_long_has_no_server() -> None:
+    with ros_setup.lease_domain() as domain_id, contextlib.closing(Wire(domain_id)) as wire:
+        name = f"/{'n' * 250}/get_parameters"
+        client = wire.client(GetParameters, name)
+        assert not client.service_is_ready()
+        assert wire.count_servers(name) == 0
+        assert not wire.node.destroy_client(client)

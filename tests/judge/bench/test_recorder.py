@@ -11,6 +11,7 @@ import pytest
 from autograder.judge import machine_fitness
 from autograder.judge.bench import recorder
 from autograder.judge.bench.recorder import Recorder
+from autograder.judge.bench.unreadable import FLOOD, Unreadable
 from autograder.judge.machine_fitness import SLOWEST, Patience
 
 
@@ -72,6 +73,20 @@ def test_a_flood_is_cut(monkeypatch: object) -> None:
     for number in range(recorder.MAX_EVENTS + 5):
         book.record("message", "/flood", number=number)
     assert len(book.part().events) == recorder.MAX_EVENTS
+    # What a scenario waits for now may be missing from the record, so no scenario goes on.
+    with pytest.raises(Unreadable, match=FLOOD):
+        book.wait(lambda: True, 0.0)
+
+
+@pytest.mark.parametrize("text", ["", "a line", "x" * 1000])
+def test_what_was_said_behind_a_line_that_was_dropped_is_what_is_kept(text: str) -> None:
+    book = Recorder()
+    book.record("output", "stdout", text=text)
+    first = book.part().events[0]
+    for _ in range(recorder.MAX_EVENTS + 5):
+        book.record("output", "stdout", text=text)
+    assert first not in book.part().events
+    assert book.part().said(after=first) == book.part().said()
 
 
 def test_of_long_speech_the_end_is_kept_and_all_else_too() -> None:
