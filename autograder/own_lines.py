@@ -77,6 +77,22 @@ def _uses(tree: ast.AST, text: str) -> Iterator[tuple[str, tuple[int, str]]]:
             yield name, (statement.lineno, quote)
 
 
+def loop_around(text: str, line: int) -> str:
+    """Return the line number and the quoted head of the innermost loop around a line; empty if there is none.
+
+    Args:
+        text: The source.
+        line: The number of a line in it, counted from 1.
+    """
+    try:
+        tree = ast.parse(text if len(text) <= LONGEST_SOURCE else "")
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        return ""
+    loops = [one for one in ast.walk(tree) if isinstance(one, ast.While | ast.For | ast.AsyncFor)]
+    around = [one.lineno for one in loops if one.lineno <= line <= (one.end_lineno or 0)]
+    return f"{max(around)}: {_quote(text.splitlines()[max(around) - 1 :][:1])}" if around else ""
+
+
 def _quote(lines: Sequence[str]) -> str:
     return " ".join(" ".join(lines).split())[:LONGEST_LINE]
 

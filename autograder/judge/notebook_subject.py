@@ -14,6 +14,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from autograder.judge.subject import InOwnProcesses
+from autograder.kit.mistakes.hangs import LOOPS
 from autograder.kit.runners import tells_of_a_build
 from autograder.messages import judge_messages, run_messages
 from autograder.messages.json_lines import Hangup, Lines, NotUnderstood
@@ -41,6 +42,10 @@ endpoints. It usually takes milliseconds.
 """
 MAX_OWN_LINES = 2_000
 """The maximum number of lines of the student's code that a notebook may claim."""
+LOOP_LIMIT, ASK_AGAIN = 20.0, 0.5
+"""Time limit in seconds of wall time for finding out whether the subject is in a loop, and the time between two
+questions.
+"""
 STOP_LIMIT = 3.0
 """Time limit in seconds of wall time for the notebook to stop a run."""
 
@@ -77,7 +82,7 @@ class NotebookSubject:
         self._seen_as_told = False
         self._news_left = NEWS_LIMIT
         self._gone = threading.Event()
-        self._stack = ""
+        self._stack, self._used, self.busy = "", 0.0, 0.0
         self._told_stack = threading.Event()
         self._own_lines: list[judge_messages.OwnLine] = []
         self._thread = threading.Thread(target=self._listen, daemon=True)
@@ -161,12 +166,23 @@ class NotebookSubject:
         return self._may_make_more
 
     def stack(self) -> str:
-        """Return the stacks of the subject's threads. The text is empty if the notebook does not answer in time."""
-        self._told_stack.clear()
-        self._stack = ""
-        self._tell(judge_messages.Stack(self._run))
-        self._told_stack.wait(STOP_LIMIT)
-        return self._stack
+        """Return the stacks of the subject's threads. The text is empty if the notebook does not answer in time.
+
+        As long as a thread in the student's code uses the processor, ask again, until it has used so much that the code
+        must be in a loop. So a loop is told from a program that a busy machine lets wait.
+        """
+        began, used = time.monotonic(), [0.0]
+        while True:
+            self._told_stack.clear()
+            self._stack, self._used = "", 0.0
+            self._tell(judge_messages.Stack(self._run))
+            self._told_stack.wait(STOP_LIMIT)
+            used.append(self._used)
+            self.busy = used[-1] - used[1]
+            goes_on = used[-1] > used[-2] and self.busy < LOOPS and not self.ended
+            if not goes_on or time.monotonic() - began > LOOP_LIMIT:
+                return self._stack
+            time.sleep(ASK_AGAIN)
 
     def own_lines(self) -> list[judge_messages.OwnLine]:
         """Return the lines of the student's code that the notebook sent when the check began."""
@@ -216,8 +232,8 @@ class NotebookSubject:
         match message:
             case run_messages.Stopped():
                 self._stopped.set()
-            case judge_messages.Stacks(text=text):
-                self._stack = text[:MAX_STACK]
+            case judge_messages.Stacks(text=text, busy=busy):
+                self._stack, self._used = text[:MAX_STACK], busy
                 self._told_stack.set()
             case run_messages.Output(text=text, logged=logged):
                 record("output", "notebook log" if logged else "notebook", text=text[:MAX_TEXT])

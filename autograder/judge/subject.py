@@ -49,6 +49,8 @@ class Subject(Protocol):
     """True if all runs share one ROS participant."""
     in_a_notebook: bool
     """True if a check cell, and perhaps a student, waits for the verdict."""
+    busy: float
+    """Processor time in seconds that a thread in the student's code used while :meth:`stack` watched it."""
     keeper: str
     """The name of the node that keeps the participant alive and has no endpoints of its own; empty if there is none."""
 
@@ -128,6 +130,7 @@ class InOwnProcesses:
     shares_participant = False
     in_a_notebook = False
     is_building = False
+    busy = 0.0
     keeper = ""
     marker = None
     may_make_more = False

@@ -196,6 +196,9 @@ class Bench(Protocol):
     def heard(self, topic: str) -> int:
         """Return the number of messages that arrived on a topic so far in this part."""
 
+    def confirm(self) -> None:
+        """End the look in real time: it goes as the first one went, whose evidence decides."""
+
     def doubt(self) -> None:
         """Require a second look in real time to confirm this look."""
 
@@ -265,7 +268,12 @@ class Bench(Protocol):
         """
 
     def wait_until(
-        self, condition: Callable[[Evidence], bool], within: float, *, quiet: float | None = None
+        self,
+        condition: Callable[[Evidence], bool],
+        within: float,
+        *,
+        quiet: float | None = None,
+        paced: bool = False,
     ) -> bool:
         """Wait until a condition on the evidence of this part holds, or until the subject has ended.
 
@@ -273,6 +281,7 @@ class Bench(Protocol):
             condition: Returns True when the wait is over.
             within: The limit in seconds of wall time.
             quiet: If given, give up earlier if no event was recorded for this many seconds.
+            paced: True to let the subject's simulated time pass meanwhile, no faster than wall time.
         """
 
     def let_wait(self, seconds: float) -> None:

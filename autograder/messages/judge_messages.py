@@ -125,9 +125,13 @@ class Raised(RunMessage, frozen=True):
 
 
 class Stacks(RunMessage, frozen=True, tag="stack"):
-    """The stacks of the subject's threads."""
+    """The stacks of the subject's threads.
+
+    ``busy`` is the processor time in seconds that the busiest of the threads in the student's code has used.
+    """
 
     text: str
+    busy: float = 0.0
 
 
 OfRun = (

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import contextlib
 import itertools
+import time
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from autograder.judge.bench import discovery
@@ -44,8 +45,14 @@ WORKS = frozenset(
 """The kinds of events that show that the subject works."""
 GRAPH_LOOK = 0.02
 """Seconds between two queries of the graph whose results are recorded."""
+PACED_STEP = 0.1
+"""Seconds of the subject's simulated time that pass at once while the judge waits for something in wall time."""
 _T = TypeVar("_T")
 _Client = TypeVar("_Client", RecordedCaller, RecordedActionClient)
+
+
+class Confirmed(Exception):
+    """The look in real time goes as the first one went."""
 
 
 class TestBench:
@@ -374,6 +381,9 @@ class TestBench:
     def await_attention(self) -> None:
         self._time.await_attention()
 
+    def confirm(self) -> None:
+        raise Confirmed
+
     def doubt(self) -> None:
         self.doubtful = True
 
@@ -404,14 +414,33 @@ class TestBench:
     def note_where_it_hangs(self) -> None:
         if not self._subject.ended:
             self._presence.note_interface()
-            self._recorder.record("stack", "subject", text=self._subject.stack())
+            text = self._subject.stack()
+            self._recorder.record("stack", "subject", text=text, busy=self._subject.busy)
 
     def wait_until(
-        self, condition: Callable[[Evidence], bool], within: float, *, quiet: float | None = None
+        self,
+        condition: Callable[[Evidence], bool],
+        within: float,
+        *,
+        quiet: float | None = None,
+        paced: bool = False,
     ) -> bool:
+        last, poll = time.monotonic(), PACED_STEP if paced else 0.5
+
+        def look() -> Evidence:
+            nonlocal last
+            passed = time.monotonic() - last
+            if paced and self._time.is_simulated and passed >= PACED_STEP:
+                last += passed
+                self.run_time(min(passed, PACED_STEP))
+            return self._evidence()
+
+        return self._wait_for(condition, look, within, quiet=quiet, poll=poll)
+
+    @property
+    def _is_lost(self) -> bool:
         # A subject whose executor stopped in simulated time does not go on; the second look is in real time.
-        is_lost = self._time_of_part is not None and self._time_of_part.is_lost
-        return self._wait_for(condition, self._evidence, 0.0 if is_lost else within, quiet=quiet)
+        return self._time_of_part is not None and self._time_of_part.is_lost
 
     def _wait_for(
         self, condition: Callable[[Evidence], bool], look: Callable[[], Evidence], within: float, **how: Any
@@ -425,7 +454,7 @@ class TestBench:
             # from before the end.
             ended = self._subject.ended
             held = condition(look())
-            return held or ended
+            return held or ended or self._is_lost
 
         self._recorder.wait(over, within, **how)
         return held

@@ -309,6 +309,11 @@ class SubjectTime:
         self._recorder.wait(lambda: over() or self._subject.ended, seconds, quiet=quiet, wall=True)
         return True
 
+    @property
+    def is_simulated(self) -> bool:
+        """True if the subject's time is simulated and its executor still answers."""
+        return self._pace is Pace.FAST and not self.is_lost and self._follow_clock()
+
     def lend(self, seconds: float, role: str, name: str) -> None:
         """Lend a simulated clock to the node with this endpoint, so that its timers fire sooner.
 

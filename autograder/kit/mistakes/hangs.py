@@ -20,6 +20,11 @@ from autograder.kit.model import Advice, Mistake
 if TYPE_CHECKING:
     from autograder.kit.evidence import Evidence, Part
 
+LOOPS = 2.0
+"""Seconds of processor time in one callback after which it is in an endless loop, however busy the machine is."""
+ENDLESS = "endless"
+"""The name of the noted event about a goal for which the subject has sent far too much feedback."""
+_LOOP = re2.compile(r" in the loop of line (?P<line>\d+): (?P<head>.*) \(most recent call first")
 _FRAME = re2.compile(r'^\s*File "(?P<file>[^"]*)", line (?P<line>\d+),? in (?P<function>\S+)')
 _BLOCKING = {
     "client.py": {"call"},
@@ -50,13 +55,16 @@ Stack = Sequence[_StackFrame]
 
 def _stacks(part: Part) -> list[Stack]:
     """Return the stacks of the subject's threads at the time when it hung, innermost call first."""
+    return [stack for event in part.of("stack") for stack in _stacks_in(str(event.data["text"]))]
+
+
+def _stacks_in(text: str) -> list[Stack]:
     found: list[list[_StackFrame]] = []
-    for event in part.of("stack"):
-        for line in str(event.data["text"]).splitlines():
-            if "most recent call first" in line:
-                found.append([])
-            elif (match := _FRAME.match(line)) and found:
-                found[-1].append(_StackFrame(_rclpy_file(match["file"]), match["function"], match["line"]))
+    for line in text.splitlines():
+        if "most recent call first" in line:
+            found.append([])
+        elif (match := _FRAME.match(line)) and found:
+            found[-1].append(_StackFrame(_rclpy_file(match["file"]), match["function"], match["line"]))
     return [stack for stack in found if stack]
 
 
@@ -229,5 +237,30 @@ def _mistake(key: str, fits: Recognize, text: str, next_step: str) -> Mistake:
     return Mistake(key, recognize, certain=key in WAITS_FOR_ITSELF)
 
 
+def _endless_loop(evidence: Evidence) -> Advice | None:
+    told = [event.data for part in evidence for event in part.of("noted", ENDLESS)]
+    shown = [event.data for part in evidence for event in part.of("stack")]
+    busy = [data for data in shown if data.get("busy", 0.0) >= LOOPS]
+    if not (told or busy):
+        return None
+    texts = [data["text"] for data in busy or shown]
+    callback = _stuck_callback([stack for text in texts for stack in _stacks_in(text)])
+    what = f"Your callback {callback}()" if callback else "Your code"
+    how = (
+        f"to one goal it has sent {told[0]['feedback']} feedback messages, and goes on"
+        if told
+        else f"it has used the processor for {busy[0]['busy']:.0f} seconds, and goes on"
+    )
+    loop = next(filter(None, map(_LOOP.search, texts)), None)
+    where = f" It is in the loop of line {loop['line']}: `{loop['head']}`." if loop else ""
+    return Advice(
+        f"{what} does not come to an end: {how}.{where}",
+        "Something in the loop has to make its condition false. Look at each name in the condition, and at the line "
+        "that changes it in each round.",
+    )
+
+
+ENDLESS_LOOP = Mistake("endless_loop", _endless_loop, certain=True)
+"""A loop without an end: processor time or a number of messages proves it, however busy the machine is."""
 HANGS: tuple[Mistake, ...] = tuple(_mistake(*row) for row in _HANGS)
 """The mistakes that a stack shows, most specific first."""

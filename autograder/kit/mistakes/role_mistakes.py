@@ -15,7 +15,7 @@ from autograder.kit.mistakes import action_server_mistakes as execute
 from autograder.kit.mistakes import common_mistakes as common
 from autograder.kit.mistakes import unfinished
 from autograder.kit.mistakes.crashes import CRASHES, OTHER_CRASHES
-from autograder.kit.mistakes.hangs import HANGS
+from autograder.kit.mistakes.hangs import ENDLESS_LOOP, HANGS
 from autograder.kit.mistakes.silence import SECOND_NODE, never_published
 from autograder.kit.model import Mistake
 
@@ -104,6 +104,7 @@ def ladder(
         *at[Stage.FIRST],
         *first,
         *CRASHES,
+        ENDLESS_LOOP,
         unfinished.NEVER_CONSTRUCTED,
         *at[Stage.NAMED],
         *named,

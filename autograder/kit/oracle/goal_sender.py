@@ -6,6 +6,7 @@ from statistics import median
 from typing import TYPE_CHECKING, Any
 
 from autograder.kit.bench import Bench, Pace
+from autograder.kit.mistakes.hangs import ENDLESS
 from autograder.kit.outcomes import SUCCEEDED, SentGoal, all_goals, goal
 
 if TYPE_CHECKING:
@@ -15,8 +16,12 @@ if TYPE_CHECKING:
 
 QUIET = {Pace.FAST: 3.0, Pace.REAL_TIME: 8.0}
 """The judge no longer waits if no event comes for this many seconds of wall time."""
-GOAL_LIMIT = 100.0
-"""The seconds in which a goal must end, even if the server sends feedback all the time."""
+GOAL_LIMIT = {Pace.FAST: 15.0, Pace.REAL_TIME: 30.0}
+"""The judge no longer waits if nothing comes of a goal for this many seconds, even if the node says other things."""
+TOO_MUCH = 12
+"""A goal does not end if the server has sent so much feedback more than twice what is due. No seconds limit a goal for
+which feedback comes, so that a server may be slow, and the load of the machine changes nothing.
+"""
 CANCEL_LIMIT = {Pace.FAST: 4.0, Pace.REAL_TIME: 8.0}
 """The seconds in which a canceled goal must end. A server looks for a cancel request once in each round of its loop."""
 UNREAD = 6
@@ -27,8 +32,9 @@ AFTERMATH = 0.5
 """The seconds in which late feedback, or the end of a program that an exception has ended, must arrive."""
 AT_WORK = 20.0
 """The maximum number of seconds of the subject's time that pass before a goal is sent beside one that is at work."""
-SLICE = 0.1
-"""The seconds of wall time, and then of simulated time, that pass in turn while goals are at work."""
+
+
+_OF_A_GOAL = ("goal_answer", "feedback_heard", "cancel_answer", "goal_ended", "result_heard")
 
 
 class GoalSender:
@@ -39,6 +45,8 @@ class GoalSender:
         caller: The judge's client.
         due: Returns how many feedback messages a goal must have sent when its result comes. A busy judge may receive
             them after the result, so it waits for them.
+        most: The most feedback messages that a goal of the solution sends, infinity if that is unknown; by default as
+            many as are due.
         simulated: True if the subject may follow simulated time, which then goes on while goals are at work.
     """
 
@@ -48,9 +56,11 @@ class GoalSender:
         caller: ActionCaller,
         due: Callable[[SentGoal], int] = lambda _: 0,
         *,
+        most: float | None = None,
         simulated: bool = False,
     ) -> None:
         self.bench, self._caller, self._due, self._simulated = bench, caller, due, simulated
+        self._most = most
 
     def __getitem__(self, number: int) -> SentGoal:
         """Return a goal as far as the judge has seen it."""
@@ -67,7 +77,7 @@ class GoalSender:
             numbers: The goals.
             quiet: The judge gives up if no event comes for this many seconds of wall time.
         """
-        ended = self._wait(lambda: all(self[number].over for number in numbers), GOAL_LIMIT, quiet)
+        ended = self._wait(lambda: all(self[number].over for number in numbers), quiet)
         if ended:
             self.bench.wait_until(lambda _: all(map(self._is_complete, numbers)), AFTERMATH)
         return ended
@@ -82,7 +92,7 @@ class GoalSender:
             seen = self[number]
             return len(seen.feedback) >= messages or seen.over or (bool(seen.accepted) and self._is_silent())
 
-        self._wait(has_told, GOAL_LIMIT)
+        self._wait(has_told)
 
     def pass_time(self, number: int, messages: int) -> None:
         """Let the subject's time pass until a goal has sent so many feedback messages, or is over."""
@@ -104,7 +114,7 @@ class GoalSender:
 
     def await_answer(self, number: int) -> bool:
         """Wait until the server has accepted or refused a goal. Return False if it does neither."""
-        return self._wait(lambda: self[number].accepted is not None, GOAL_LIMIT)
+        return self._wait(lambda: self[number].accepted is not None)
 
     def cancel(self, number: int, *, after: int = 0, then: Callable[[], object] | None = None) -> None:
         """Request to cancel a goal, unless it is over, and wait for its end.
@@ -119,7 +129,7 @@ class GoalSender:
             return
         self._caller.cancel(number)
         if then is not None:
-            self._wait(lambda: self[number].cancel_accepted is not None, GOAL_LIMIT)
+            self._wait(lambda: self[number].cancel_accepted is not None)
             then()
         self.await_cancel(number)
 
@@ -131,20 +141,35 @@ class GoalSender:
             unread = seen.cancel_accepted is None and seen.unread >= UNREAD
             return seen.cancel_is_over or unread
 
-        self._wait(is_settled, CANCEL_LIMIT[self.bench.pace], CANCEL_LIMIT[self.bench.pace])
+        limit = CANCEL_LIMIT[self.bench.pace]
+        self.bench.wait_until(lambda _: is_settled(), limit, paced=self._simulated)
         if not self[number].cancel_is_over:
             # A MultiThreadedExecutor raises the exception of a callback only when it has something else to do.
             self.bench.settle()
             self.bench.await_end(AFTERMATH)
 
-    def _wait(self, holds: Callable[[], bool], within: float, quiet: float | None = None) -> bool:
-        quiet = quiet or QUIET[self.bench.pace]
-        if not self._simulated:
-            return self.bench.wait_until(lambda _: holds(), within, quiet=quiet)
-        idle, events = 0.0, 0
-        while not self.bench.wait_until(lambda _: holds(), SLICE):
-            before, events = events, len(self.bench.seen().events)
-            idle = 0.0 if events > before else idle + SLICE
-            if idle > quiet or not self.bench.run_time(SLICE):
-                return holds()
-        return True
+    def _wait(self, holds: Callable[[], bool], quiet: float | None = None) -> bool:
+        """Wait until a condition holds. Return False if a goal has no end, or nothing comes of the goals any more."""
+        pace, before = self.bench.pace, -1
+        while not (holds() or self._note_endless()) and (came := self._came()) > before:
+            before = came
+            self.bench.wait_until(
+                lambda _: holds() or self._came() > before,  # noqa: B023  (called at once)
+                GOAL_LIMIT[pace],
+                quiet=quiet or QUIET[pace],
+                paced=self._simulated,
+            )
+        return holds()
+
+    def _came(self) -> int:
+        return sum(event.kind in _OF_A_GOAL for event in self.bench.seen().events)
+
+    def _note_endless(self) -> bool:
+        """Return True if a goal has sent too much feedback to end rightly, and note that."""
+        goals = [one for one in all_goals(self.bench.seen()) if not one.over]
+        due = [max(0, self._due(one)) if self._most is None else self._most for one in goals]
+        sent = [len(one.feedback) for one, most in zip(goals, due, strict=True)
+                if len(one.feedback) > 2 * most + TOO_MUCH]  # fmt: skip
+        if sent and not self.bench.seen().of("noted", ENDLESS):
+            self.bench.note(ENDLESS, feedback=max(sent))
+        return bool(sent)

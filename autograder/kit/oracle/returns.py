@@ -5,6 +5,7 @@ from __future__ import annotations
 from random import Random  # noqa: TC003  (an author reads the types)
 from typing import TYPE_CHECKING, Any
 
+from autograder.kit.bench import Pace
 from autograder.kit.draft import POINTS
 from autograder.kit.mistakes.unfinished import STEP_MISSING
 from autograder.kit.oracle.outputs import Kind
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
 
     from autograder.kit.bench import Bench
 
-ANSWERED = 10.0
+ANSWERED = {Pace.FAST: 4.0, Pace.REAL_TIME: 10.0}
 """Time limit in seconds of wall time for the function to return."""
 RETURNED = "returned"
 """The name of the only criterion, and of what is compared."""
@@ -81,10 +82,13 @@ class Returns(SameAsSolution):
     def _gives_to(self, bench: Bench, part: str, steps: Sequence[Any], _: Random) -> None:
         bench.part(part)
         bench.start(steps)
-        if bench.await_end(ANSWERED):
+        ended = bench.await_end(ANSWERED[bench.pace])
+        if ended:
             bench.again()
             bench.start(steps)
-            bench.await_end(ANSWERED)
+            ended = bench.await_end(ANSWERED[bench.pace])
+        if not ended:
+            bench.note_where_it_hangs()
         for number, (given, value) in enumerate(zip(steps, _returned(bench), strict=False), 1):
             bench.note(RETURNED, step=number, given=str(given), values=[[value]])
         bench.stop()

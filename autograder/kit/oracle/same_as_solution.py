@@ -11,6 +11,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from itertools import product, zip_longest
+from math import inf
 from random import Random
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
@@ -21,6 +22,7 @@ from autograder.kit.draft import OWN, POINTS, Draft
 from autograder.kit.mistakes import unfinished
 from autograder.kit.mistakes.common_mistakes import KEEP_THE_PERIOD, NOT_LATCHED, is_not_latched
 from autograder.kit.mistakes.crashes import CRASHES, OTHER_CRASHES
+from autograder.kit.mistakes.hangs import ENDLESS_LOOP
 from autograder.kit.model import Advice, Finding, Mistake
 from autograder.kit.oracle.goal_sender import GoalSender
 from autograder.kit.oracle.outputs import Kind, Output
@@ -95,7 +97,7 @@ class _Drawn(OwnScenario):
         )
         likely = Mistake("variant", self._same_as_a_variant)
         if not self.roles:  # plain Python, which has no node
-            return (*CRASHES, *OTHER_CRASHES, OWN, proven, likely)
+            return (*CRASHES, ENDLESS_LOOP, *OTHER_CRASHES, OWN, proven, likely)
         ladder = super().ladder
         at = ladder.index(unfinished.NEVER_CONSTRUCTED)
         return (*ladder[:at], proven, clock, likely, *ladder[at:])
@@ -355,13 +357,21 @@ class SameAsSolution:
         if step.name not in clients:
             raise ValueError(f"{step.name!r}, which is not one of {', '.join(clients)}")
         if isinstance(step, Goal):
-            return step.play(GoalSender(bench, clients[step.name], simulated=True))
+            most = self._most_feedback(bench, step.name)
+            return step.play(GoalSender(bench, clients[step.name], most=most, simulated=True))
         whole = step.value if isinstance(step.value, Mapping) else {"data": step.value}
         if step.name in ends.get("service", {}):
             clients[step.name].ask(whole)
             return bool(clients[step.name].await_answers(QUIET[bench.pace]))
         clients[step.name].send(**whole)
         return True
+
+    def _most_feedback(self, bench: Bench, action: str) -> float:
+        """Return the most feedback messages that a goal of the solution sends; infinity if that is not compared."""
+        noted = [event.data["values"] for part in bench.reference.parts for event in part.of("noted", action)]
+        paths = next(output.paths for output in self._of(Kind.STEPS) if output.name == action)
+        told = [i for i, path in enumerate(paths) if path.startswith("feedback")]
+        return max((len(row[i]) for values in noted for row in values for i in told), default=inf)
 
     def _describe(self, bench: Bench) -> bool:
         """Note the types and ranges of the parameters. Return False if the subject does not answer."""

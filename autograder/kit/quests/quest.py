@@ -7,7 +7,7 @@ subject that looks once, without a limit, or that says nothing is noticed.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from random import Random
 from typing import TYPE_CHECKING, Any
 
@@ -21,6 +21,7 @@ from autograder.kit.giving_up import LATENESS, PATIENCE, PATIENCES
 from autograder.kit.lateness import SOON
 from autograder.kit.mistakes import unfinished
 from autograder.kit.mistakes.crashes import CRASHES, OTHER_CRASHES, OTHER_SLIPS
+from autograder.kit.mistakes.hangs import ENDLESS_LOOP
 from autograder.kit.model import Advice, Finding, Mistake, mistake
 from autograder.kit.quests.robot import Robot, Search
 
@@ -202,6 +203,8 @@ class Quest:
             _put(bench, robot, late=True)
         if bench.wait_until(lambda evidence: Search(evidence.main).has_answered, ANSWERING[bench.pace]):
             bench.await_end(0.5)
+        elif robot.answer:
+            bench.note_where_it_hangs()
 
     # --- criteria ------------------------------------------------------------------------------------------------
 
@@ -261,6 +264,8 @@ class Quest:
             *OTHER_CRASHES,
             self._mistake("gave_up", _gave_up),
             self._mistake("no_answer", _no_answer),
+            # A function that looks without a pause uses the processor, too, as long as it is right to look.
+            replace(ENDLESS_LOOP, certain=False),
             self._mistake("never_ended", _never_ended),
             # Without its last one, "ended too early": a subject that has found everything ends.
             *unfinished.NOTHING_THERE[:-1],

@@ -186,7 +186,7 @@ def converse(link: JudgeLink, exercise: str, subject: Any, progress: Progress) -
                     case run_messages.Interrupt() if isinstance(run, PathRun):
                         run.interrupt()
                     case messages.Stack() if run is not None:
-                        link.say(messages.Stacks(number, captured.stacks()))
+                        link.say(messages.Stacks(number, *captured.stacks()))
                     case run_messages.Stop() if run is not None:
                         if not run.stop():
                             check_context.renew()  # the run still uses the old context, so the next run gets a new one

@@ -15,11 +15,13 @@ a request that was sent before the judge's server existed, because such a reques
 from __future__ import annotations
 
 import functools
+import linecache
 import os
 import sys
 import threading
 import traceback
 from contextlib import suppress
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
 from rclpy.action import ActionClient
@@ -28,12 +30,17 @@ from rclpy.impl.rcutils_logger import RcutilsLogger
 from rclpy.node import Node
 
 from autograder.messages.judge_messages import Called, Looked
-from autograder.notebook.cell_output import notebook_shell
+from autograder.notebook.cell_output import is_students, notebook_shell
 from autograder.notebook.checking.judge_link import MAX_TEXT
+from autograder.own_lines import loop_around
 from autograder.standard_output import split_lines
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+
+
+_COURSE = f"{Path(__file__).parents[2]}/"
+"""The folder of this package, whose calls are no student's and left out of the stacks."""
 
 
 class CapturedOutput:
@@ -84,19 +91,29 @@ class CapturedOutput:
             os.dup2(saved, descriptor)
             os.close(saved)
 
-    def stacks(self) -> str:
-        """Return the stacks of the subject's threads, innermost call first, in the form of Python's faulthandler."""
+    def stacks(self) -> tuple[str, float]:
+        """Return the stacks of the subject's threads, innermost call first, in the form of Python's faulthandler.
+
+        The head of a thread also names the innermost loop of the student's code. The second value is the processor time
+        in seconds that the busiest thread in the student's code has used; 0.0 if there is no such thread.
+        """
         frames = sys._current_frames()
-        lines = []
+        lines, times = [], [0.0]
         for thread in threading.enumerate():
             if thread.ident in self._others or thread.ident not in frames:
                 continue
-            lines.append(f"Thread {thread.name} (most recent call first):")
-            calls = traceback.extract_stack(frames[thread.ident])
-            lines += [
-                f'  File "{call.filename}", line {call.lineno} in {call.name}' for call in reversed(calls)
+            calls = [
+                call
+                for call in reversed(traceback.extract_stack(frames[thread.ident]))
+                if not call.filename.startswith(_COURSE)
             ]
-        return "\n".join(lines)
+            own = [call for call in calls if is_students(call.filename)]
+            times += [_processor_time(thread)] if own else []
+            loops = (loop_around("".join(linecache.getlines(c.filename)), c.lineno or 0) for c in own)
+            loop = f" in the loop of line {found}" if (found := next(filter(None, loops), "")) else ""
+            lines.append(f"Thread {thread.name}{loop} (most recent call first):")
+            lines += [f'  File "{call.filename}", line {call.lineno} in {call.name}' for call in calls]
+        return "\n".join(lines), max(times)
 
     def is_captured(self) -> bool:
         """Return True if the calling thread belongs to the subject, that is, if it started during the check."""
@@ -110,6 +127,15 @@ class CapturedOutput:
             self._descriptors.append((descriptor, os.dup(descriptor)))
             os.dup2(nowhere, descriptor)
         os.close(nowhere)
+
+
+def _processor_time(thread: threading.Thread) -> float:
+    """Return the processor time in seconds that a thread of this process has used; 0.0 if it has ended (proc(5))."""
+    with suppress(OSError):
+        stat = Path(f"/proc/self/task/{thread.native_id}/stat").read_text(encoding="utf-8", errors="replace")
+        user, system = stat.rpartition(")")[2].split()[11:13]
+        return (int(user) + int(system)) / os.sysconf("SC_CLK_TCK")
+    return 0.0
 
 
 def _no_input_for(captured: Callable[[], bool], usual: Callable[..., str]) -> Callable[..., str]:
