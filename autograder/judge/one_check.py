@@ -12,7 +12,7 @@ from random import Random
 from typing import TYPE_CHECKING
 
 from autograder import exercises, kit
-from autograder.judge.bench.bench import TestBench
+from autograder.judge.bench.bench import Confirmed, TestBench
 from autograder.judge.bench.recorder import MAX_EVENTS
 from autograder.judge.bench.subject_time import Unanswered
 from autograder.judge.bench.unreadable import FLOOD, NAME, Unreadable
@@ -84,11 +84,13 @@ class Seen:
         evidence: The recorded events.
         doubtful: True if even a pass must be confirmed in real time.
         unmet: True if a run began before the subject's participant had discovered the judge's endpoints.
+        confirms: True if this look in real time went as the first one, whose evidence decides.
     """
 
     evidence: Evidence
     doubtful: bool
     unmet: bool = False
+    confirms: bool = False
 
 
 @dataclass(frozen=True)
@@ -183,8 +185,9 @@ def _check(
                 card.words = _so_far(verdict)
             with Crowding() as crowding:
                 seen = next_look(Pace.REAL_TIME, evidence)
-            evidence = replace(seen.evidence, before=evidence)
-            verdict = judge(exercise, evidence, seed)
+            if not seen.confirms:
+                evidence = replace(seen.evidence, before=evidence)
+                verdict = judge(exercise, evidence, seed)
         if not verdict.passed and (causes := _causes(exercise, evidence, verdict)):
             lines = subject.own_lines()
             raising = [line for line in lines if f'/{line.place}"' in verdict.detail]
@@ -192,7 +195,7 @@ def _check(
             verdict = judge(exercise, evidence, seed)
         if not verdict.passed:
             certain = is_certain(exercise, evidence)
-            crowded = not certain and (seen.unmet or (again and crowding.too_busy))
+            crowded = not certain and (seen.unmet or (again and crowding.too_busy and not seen.confirms))
             if not certain and not (delivered and delivers()):
                 raise NotDelivered(NOT_DELIVERED)
     except Unreadable as error:
@@ -290,12 +293,16 @@ def look(
 
     bench = TestBench(subject, domain_id, reference, pace, Random(seed), before, hurry, names)
     bench.is_waited_for, bench.begin_run = card is not None, begin_run
+    confirms = False
     with contextlib.closing(bench), contextlib.suppress(Unanswered), bench.noting_what_is_unreadable():
-        exercise.scenario(bench)
+        try:
+            exercise.scenario(bench)
+        except Confirmed:
+            confirms = True
     # Sort the parts: a scenario may shuffle them, but the verdict's text must not depend on the order.
     places = {part.name: place for place, part in enumerate(reference.parts)}
     parts = sorted(bench.parts, key=lambda part: places.get(part.name, len(places)))
-    return Seen(Evidence(parts, reference, pace is Pace.REAL_TIME), bench.doubtful, bench.unmet)
+    return Seen(Evidence(parts, reference, pace is Pace.REAL_TIME), bench.doubtful, bench.unmet, confirms)
 
 
 def judge(exercise: Exercise, evidence: Evidence, seed: str) -> Verdict:

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
+from autograder.kit.mission.first_look import FirstLook
 from autograder.kit.mission.track import NOTED, Track
 
 if TYPE_CHECKING:
@@ -19,8 +21,19 @@ AFTER = 1.0
 """Seconds of the subject's time for which the world goes on after everything was reached."""
 MISTAKE = "mistake"
 """The name of the noted events about the mistakes that an author knows."""
-_OF_THE_JUDGE = ("sent", "feedback", "noted", "response", "interface")
-"""The kinds of events with which the subject shows no sign of life."""
+_NEWS = (
+    "request",
+    "goal",
+    "cancel",
+    "answered",
+    "goal_answer",
+    "feedback_heard",
+    "cancel_answer",
+    "result_heard",
+)
+"""The kinds of events with which the subject does something else than to repeat a message."""
+_CIRCLE = 7.0
+"""Radians that a robot turns under one command without an end: a little more than a circle."""
 
 
 @dataclass(frozen=True)
@@ -63,7 +76,7 @@ class Course:
         robot: The robot in its world.
         lines: The lines of the card.
         within: Seconds of the subject's time for the whole mission.
-        quiet: Seconds without a word of the subject and a movement of the robot after which the mission is over.
+        quiet: Seconds without anything new of the subject and a movement of the robot after which the mission is over.
     """
 
     def __init__(self, bench: Bench, robot: Robot, lines: Lines, within: float, quiet: float) -> None:
@@ -71,9 +84,12 @@ class Course:
         self._within, self._quiet = within, quiet
         self._reached: dict[str, str] = {}
         self._broken: dict[str, str] = {}
-        self._last: tuple[object, ...] = ()
-        self._last_at = 0.0
+        self._news: tuple[object, ...] = ()
+        self._last_at = self._turned = 0.0
+        self._pose = robot.now.pose
         self._track = Track()
+        before = bench.before
+        self._first_look = FirstLook(before.main, robot.now.topic) if before is not None else None
 
     def run(self, journey: Journey, steps: Sequence[Step], until: Callable[[Moment], bool] | None) -> bool:
         """Take all steps, and go on until the mission is over. Return False if the subject did not answer."""
@@ -89,6 +105,10 @@ class Course:
         robot = self._robot
         end = robot.now.time + seconds
         while robot.now.time < end - 1e-6 and not until(robot.now):
+            if math.isinf(end) and self._is_quiet(robot.now):
+                return True
+            if self._first_look is not None and self._first_look.is_confirmed(robot.now):
+                self._bench.confirm()
             if robot.now.time >= self._within + AFTER or robot.now.part.ending is not None:
                 return True
             if not robot.step():
@@ -109,11 +129,21 @@ class Course:
                 self._broken[line.name] = str(now)
 
     def _is_quiet(self, now: Moment) -> bool:
-        """Return True if the subject has sent nothing, and the robot kept its place, also at a wall, for long."""
-        heard = sum(event.kind not in _OF_THE_JUDGE for event in now.part.events)
-        if (state := (heard, now.leg, now.pose)) != self._last:
-            self._last, self._last_at = state, now.time
-        return now.time - self._last_at >= self._quiet
+        """Return True if the subject has done nothing new for long, and the robot stands, pushes a wall, or circles.
+
+        In a mission in which something has to be reached, to repeat a message is nothing new.
+        """
+        part, repeats = now.part, bool(self._lines.reaches)
+        said = {event.name: str(event.data["fields"]) for event in part.of("message")} if repeats else {}
+        heard = sum(event.kind in _NEWS or (event.kind == "message" and not repeats) for event in part.events)
+        if (news := (heard, now.leg, said)) != self._news:
+            self._news, self._turned, self._last_at = news, 0.0, now.time
+        turned = math.remainder(now.pose.heading - self._pose.heading, math.tau)
+        self._turned += abs(turned)
+        if now.pose != self._pose:
+            self._pose, self._last_at = now.pose, now.time
+        circles = repeats and self._turned > _CIRCLE
+        return circles or now.time - self._last_at >= self._quiet
 
     def note(self, knows: Sequence[Callable[[Moment], Any]]) -> bool:
         """Note what became of each line, and which mistakes show. Return True if all lines hold."""

@@ -1,0 +1,68 @@
+"""Tells when a mission in real time goes as it went in simulated time, so that its end is known."""
+
+from __future__ import annotations
+
+import math
+from itertools import groupby
+from typing import TYPE_CHECKING, Any
+
+from autograder.kit.mission.driving import movement
+from autograder.kit.mission.track import NOTED
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from autograder.kit.evidence import Event, Part
+    from autograder.kit.mission.moment import Moment
+
+CHANGES, OVER = 2, 4.0
+"""The number of changes of the commands that must be the same, and the seconds that they must span at least.
+
+A node that goes by another clock than ROS's changes its commands at other moments in simulated time. A single change
+may be a matter of a counter, and several at once may be a matter of its start.
+"""
+AT_THE_SAME_TIME = 0.75
+"""Seconds between two changes that count as the same: a command may be late, and the laser sees twice a second."""
+STOOD = 2.5
+"""Seconds for which a robot stands where it stood at the end of the first look, after the same commands."""
+NEAR = 0.3
+"""The distance in meters between two places that count as the same."""
+
+
+class FirstLook:
+    """What a mission was like in the first look.
+
+    Args:
+        part: The record of the first look.
+        topic: The name of the topic with commands.
+    """
+
+    def __init__(self, part: Part, topic: str) -> None:
+        self._changes = _changes(part.of("message", topic))
+        noted = part.first("noted", NOTED)
+        self._ways: Sequence[Any] = noted.data["ways"] if noted is not None else ()
+
+    def is_confirmed(self, now: Moment) -> bool:
+        """Return True if the present look has gone on as the first one, and will go on so."""
+        if now.leg >= len(self._ways):
+            return False
+        mine, theirs = _changes(now.part.of("message", now.topic)), self._changes
+        if len(mine) > len(theirs) or not all(map(_are_alike, mine, theirs)):
+            return False
+        changes = len(mine) - 1
+        changed = changes >= CHANGES and mine[-1][1] >= OVER
+        way = self._ways[now.leg]
+        hits_the_same_wall = now.bumped and any(now.to(tuple(bump)) < NEAR for bump in way["bumps"])
+        is_last = len(mine) == len(theirs) and now.leg == len(self._ways) - 1
+        stays = is_last and now.stood > STOOD and math.dist(now.pose.point, way["points"][-1]) < NEAR
+        return changed or hits_the_same_wall or (changes > 0 and stays)
+
+
+def _changes(commands: Sequence[Event]) -> list[tuple[str, float]]:
+    """Return each movement that is commanded, with the seconds from the first command to its first one."""
+    firsts = [(said, next(same)) for said, same in groupby(commands, movement)]
+    return [(said, event.moment - firsts[0][1].moment) for said, event in firsts]
+
+
+def _are_alike(one: tuple[str, float], other: tuple[str, float]) -> bool:
+    return one[0] == other[0] and abs(one[1] - other[1]) < AT_THE_SAME_TIME
