@@ -40,13 +40,6 @@ if TYPE_CHECKING:
 _RUN_LIMIT = 600.0
 """Time limit in seconds for running one reference solution, which may build a workspace twice."""
 
-_CALL = """
-
-from autograder.notebook import check, start_ros
-start_ros()
-check({exercise!r}, {subject})
-"""
-
 
 class CannotRecord(RuntimeError):
     """A reference solution could not be run, or does not meet the criteria of its exercise."""
@@ -183,7 +176,7 @@ def program(exercise_id: str, *, solved: bool = True) -> str:
         solution = reference_source(master, exercise_id, solved=solved)
     except MasterError as error:
         raise CannotRecord(str(error)) from error
-    return solution.source + _CALL.format(exercise=exercise_id, subject=solution.subject)
+    return f"{solution.source}\n\n{solution.check_cell(exercise_id)}"
 
 
 def _run(file: Path, socket: Path) -> str:

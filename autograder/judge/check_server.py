@@ -209,7 +209,10 @@ def _converse(connection: socket.socket, order: Open | None) -> Report:
     shown = report.verdict or not_checked(exercise.id, exercise.title, exercise.points, report.trouble)
     _tell(lines, Judged(None if wanted.boxed else shown))
     # The notebook has its verdict and continues while the evidence is packed here.
-    return replace(report, evidence=evidence_files.packed(checked)) if wanted.evidence and checked else report
+    if not (wanted.evidence and checked):
+        return report
+    drawn = checked.evidence.reference if wanted.drawing else None
+    return replace(report, evidence=evidence_files.packed(checked, drawn))
 
 
 def _own_seed(seed: str, exercise_id: str) -> str:
@@ -234,13 +237,18 @@ def _report(
     try:
         with ros_setup.lease_domain(alone=wanted.boxed) as domain_id:
             if not wanted.record:
-                stored = evidence_files.load_reference(exercise.id)
+                stored = evidence_files.load_reference(exercise.id, wanted.drawing)
                 checked = one_check.check(
                     exercise, subject, stored, seed=seed, domain_id=domain_id, marks_crowded=marks_crowded
                 )
                 return Report(checked.verdict, crowded=checked.crowded), checked
             with of_exercise(exercise):
-                recorded = reference_recording.record(exercise, subject, domain_id=domain_id)
+                if wanted.drawing:
+                    recorded = reference_recording.record_drawing(
+                        exercise, subject, wanted.drawing, domain_id=domain_id
+                    )
+                else:
+                    recorded = reference_recording.record(exercise, subject, domain_id=domain_id)
                 verdict = one_check.judge(exercise, reference_recording.as_evidence(recorded), seed)
             return Report(verdict, evidence_files.dump_reference(recorded, exercise.recorded)), None
     except (

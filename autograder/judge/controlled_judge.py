@@ -106,14 +106,20 @@ class JudgeProcess:
     ) -> None:
         self.stop()
 
-    def open(self, exercise_id: str, *, record: bool = False) -> None:
+    def open(self, exercise_id: str, *, record: bool = False, drawing: str = "") -> None:
         """Allow the notebook to request a single check of this exercise.
+
+        Args:
+            record: True to record the subject instead of judging it.
+            drawing: As in :class:`autograder.messages.judge_messages.Open`.
 
         Raises:
             JudgeDied: The judge does not run any more.
         """
         seed = f"{self._seed}:{exercise_id}"
-        self._order(Open(exercise_id, seed, record, self.workspaces, self.keeps_evidence, self.is_boxed))
+        self._order(
+            Open(exercise_id, seed, record, self.workspaces, self.keeps_evidence, self.is_boxed, drawing)
+        )
 
     def close(self) -> Report:
         """End the opened check, and return its report.

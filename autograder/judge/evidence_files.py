@@ -28,7 +28,7 @@ from autograder.kit.evidence import Event, Evidence, Part, Reference, Variant
 from autograder.verdict import Verdict  # noqa: TC001  (msgspec reads the annotations)
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Sequence
 
     from autograder.judge.one_check import Checked
 
@@ -48,21 +48,25 @@ class NoReference(LookupError):
     """The reference output of an exercise does not exist or cannot be read."""
 
 
-def load_reference(exercise_id: str) -> Reference:
+def load_reference(exercise_id: str, drawing: str = "") -> Reference:
     """Read a reference output.
+
+    Args:
+        drawing: The recording of a drawing of a class, as JSON. Its part replaces those with the practice drawings.
 
     Raises:
         NoReference: The file does not exist, or is not a reference output.
     """
     file = reference_path(exercise_id)
     try:
-        return parse_reference(json.loads(file.read_text(encoding="utf-8")))
+        stored = parse_reference(json.loads(file.read_text(encoding="utf-8")))
     except FileNotFoundError as error:
         raise NoReference(f"{file} does not exist: run `{COMMAND} record {exercise_id}`") from error
     except (ValueError, KeyError, TypeError) as error:
         raise NoReference(
             f"{file} is not a reference output ({error}): run `{COMMAND} record {exercise_id}`"
         ) from error
+    return replace(stored, parts=parse_reference(json.loads(drawing)).parts) if drawing else stored
 
 
 def reference_digest(exercise_id: str) -> str:
@@ -180,6 +184,8 @@ small after compression.
 """
 MAX_LINES_BYTES = MAX_RAW_BYTES + 1_000
 """The maximum size in bytes of all lines. The last line, about what was left out, is written beyond the limit."""
+_EXPECTED = {"of": "the solution"}
+"""The line above the record of the solution in the drawing that the subject was given."""
 _GZIP = 31
 """The value of zlib's ``wbits`` for a gzip header with the largest window."""
 _FLOAT = "$float"
@@ -207,6 +213,8 @@ class Kept(msgspec.Struct, frozen=True):
         reference: The SHA-256 of the reference output's file.
         verdict: The verdict without its timeline, which is derived from the events.
         looks: The fast look, and the look in real time if there was one.
+        expected: The record of the solution in the drawing of a class that the subject was given; empty if it was given
+            a practice drawing, or the exercise has none. These are in the reference output.
         cut: A text that says which lines are missing, and why; empty if the evidence is complete.
     """
 
@@ -215,35 +223,44 @@ class Kept(msgspec.Struct, frozen=True):
     verdict: Verdict
     looks: list[KeptLook]
     cut: str = ""
+    expected: list[Part] = []
 
 
-def packed(checked: Checked) -> bytes:
-    """Pack the evidence of a check. If packing fails, return no bytes, so that the student still gets the verdict."""
+def packed(checked: Checked, drawn: Reference | None = None) -> bytes:
+    """Pack the evidence of a check. If packing fails, return no bytes, so that the student still gets the verdict.
+
+    Args:
+        drawn: The recording of the drawing of a class that the subject was given; None if it was given none.
+    """
     try:
         digest = reference_digest(checked.verdict.exercise)
-        return pack(checked.verdict, checked.evidence, digest, at=time.time())
+        expected = drawn.parts if drawn else ()
+        return pack(checked.verdict, checked.evidence, digest, at=time.time(), expected=expected)
     except Exception:
         traceback.print_exc()
         return b""
 
 
-def pack(verdict: Verdict, evidence: Evidence, digest: str, *, at: float) -> bytes:
+def pack(
+    verdict: Verdict, evidence: Evidence, digest: str, *, at: float, expected: Sequence[Part] = ()
+) -> bytes:
     """Pack a verdict and its evidence into bytes that :func:`unpack` can read.
 
     Args:
         digest: The SHA-256 of the reference output.
         at: Unix time of the verdict, in seconds.
+        expected: As in :class:`Kept`.
     """
     looks = [look for look in (evidence.before, evidence) if look is not None]
     sheet = _Sheet()
     told = msgspec.to_builtins(replace(verdict, timeline=()))
     sheet.write({"at": at, "reference": digest, "verdict": told})
+    if expected:
+        sheet.write(_EXPECTED)
+        sheet.write_parts(expected)
     for look in looks:
         sheet.write({"real_time": look.real_time})
-        for part in look:
-            sheet.write({"name": part.name, "inputs": part.inputs})
-            for event in part.events:
-                sheet.write([event.t, event.kind, event.name, event.data, event.sim])
+        sheet.write_parts(look)
     cut = ""
     if sheet.left_out:
         cut = (
@@ -267,6 +284,13 @@ class _Sheet:
         self.lines += 1
         if self.left_out or not self._add(_line(row)):
             self.left_out += 1
+
+    def write_parts(self, parts: Iterable[Part]) -> None:
+        """Add a line for each part, and below it a line for each event."""
+        for part in parts:
+            self.write({"name": part.name, "inputs": part.inputs})
+            for event in part.events:
+                self.write([event.t, event.kind, event.name, event.data, event.sim])
 
     def end(self, row: Any) -> bytes:
         """Add a last line, even beyond the limits, and return all compressed bytes."""
@@ -318,7 +342,10 @@ def parse(lines: bytes) -> Kept:
     """
     try:
         first, *rows, last = [json.loads(line, object_hook=restored) for line in lines.splitlines()]
-        return msgspec.convert({**first, **last, "looks": _looks(rows)}, type=Kept)
+        looks = _looks(rows)
+        expected = [part for look in looks if look.get("of") for part in look["parts"]]
+        looks = [look for look in looks if not look.get("of")]
+        return msgspec.convert({**first, **last, "looks": looks, "expected": expected}, type=Kept)
     except (ValueError, TypeError, LookupError, RecursionError) as error:
         raise NoEvidence(str(error)) from error
 
@@ -330,7 +357,7 @@ def _looks(rows: Sequence[Any]) -> list[dict[str, Any]]:
             looks[-1]["parts"][-1]["events"].append(
                 dict(zip(("t", "kind", "name", "data", "sim"), row, strict=True))
             )
-        elif "real_time" in row:
+        elif "name" not in row:
             looks.append({**row, "parts": []})
         else:
             looks[-1]["parts"].append({**row, "events": []})
@@ -342,14 +369,15 @@ def evidence_of(kept: Kept, expected: Reference) -> Evidence:
 
     Args:
         kept: The unpacked verdict and evidence.
-        expected: The reference output.
+        expected: The reference output. A drawing of a class is not in it, so evidence has its own record of that.
 
     Raises:
         NoEvidence: The evidence contains no look.
     """
     evidence: Evidence | None = None
+    reference = replace(expected, parts=kept.expected) if kept.expected else expected
     for look in kept.looks:
-        evidence = Evidence(look.parts, expected, look.real_time, evidence)
+        evidence = Evidence(look.parts, reference, look.real_time, evidence)
     if evidence is None:
         raise NoEvidence("the judge saw nothing")
     return evidence

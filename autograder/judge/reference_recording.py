@@ -1,4 +1,7 @@
-"""Records a reference output: runs the reference solution through the same scenario as a student's answer."""
+"""Records a reference output: runs the reference solution through the same scenario as a student's answer.
+
+The practice drawings of an exercise are recorded into the file of its reference output, those of a class for the class.
+"""
 
 from __future__ import annotations
 
@@ -8,7 +11,7 @@ from random import Random
 from typing import TYPE_CHECKING
 
 from autograder.judge.bench.bench import TestBench
-from autograder.judge.evidence_files import as_recorded
+from autograder.judge.evidence_files import as_recorded, load_reference
 from autograder.judge.one_check import is_certain, judge, look
 from autograder.judge.recording_differences import differences
 from autograder.kit.bench import Pace
@@ -29,6 +32,8 @@ LOOKS = 10
 """The maximum number of looks for a recording. On a busy machine the evidence of a look may be doubtful, so another
 look is needed. With at most three looks, 1 of 36 recordings failed when eighteen ran at once on two processors.
 """
+DRAWN_AGAIN = 3
+"""The maximum number of times that a drawing of a class is drawn again."""
 ALL_THERE = 20.0
 """Time limit in seconds of wall time for the programs of a launch to make their endpoints."""
 
@@ -89,6 +94,65 @@ def record_variant(
         "this wrong answer does not follow the simulated clock, so what it does differs from run to run. Take its "
         "`card` and `next_step` out of the table, or wait until the machine is less busy, and record again."
     )
+
+
+def record_drawing(exercise: Exercise, subject: Subject, name: str, *, domain_id: int) -> Reference:
+    """Record the reference solution in a drawing of the inputs that only one class has.
+
+    People review the practice drawings and judge the bank's answers with them, but nobody sees a drawing of a class. So
+    the solution has to pass in it, and it has to tell right answers from wrong ones; otherwise it is drawn again. If
+    none tells, the task has the same answer whatever the inputs are, and the last drawing counts.
+
+    Args:
+        name: The name of the drawing, of which the exercise draws the inputs.
+
+    Returns:
+        The recording, with one part. If the drawing was drawn again, the part has a longer name.
+
+    Raises:
+        NotRecordable: In each drawing the solution failed, or every look was doubtful.
+    """
+    deadline = time.monotonic() + exercise.limit
+    practice = load_reference(exercise.id)
+    subject.begin(domain_id)
+    steady: Reference | None = None
+    for attempt in range(DRAWN_AGAIN + 1):
+        bare = replace(practice, parts=(), variants=(), drawings=(f"{name}.{attempt}" if attempt else name,))
+        looks = _clear_looks(exercise, subject, bare, domain_id)
+        first, again = next(looks, None), next(looks, None)
+        if first is not None and again is not None:
+            recorded = replace(bare, parts=first, drawings=())
+            drawn = as_recorded(recorded, exercise.recorded)
+            if judge(exercise, Evidence(again, drawn), SEED).passed:
+                steady = recorded
+                if tells(exercise, drawn, practice):
+                    break
+        if time.monotonic() > deadline:
+            break
+    if steady is None:
+        raise NotRecordable(
+            f"{exercise.id}: the reference solution did not do the same twice with the same inputs. Wait until the "
+            "machine is less busy, and grade again. If this stays, the task leaves open what the exercise compares."
+        )
+    return steady
+
+
+def tells(exercise: Exercise, drawn: Reference, practice: Reference) -> bool:
+    """Return True if a drawing tells right answers from wrong ones: no known wrong answer passes in it.
+
+    The known wrong answers are those that do not look at their inputs, but do what is right in a practice drawing.
+    """
+    (mine,) = drawn.parts
+    outputs = _outputs(drawn, mine)
+    return all(
+        any(differences(_outputs(drawn, part), outputs, exercise.tolerance)) for part in practice.parts
+    )
+
+
+def _outputs(reference: Reference, part: Part) -> Reference:
+    """Return a recording that contains only the outputs of a part, without the inputs and times."""
+    outputs = [replace(event, data={**event.data, "given": ""}, sim=None) for event in part.events]
+    return replace(reference, parts=[replace(part, name="", events=outputs)])
 
 
 def _clear_looks(

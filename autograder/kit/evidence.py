@@ -377,6 +377,7 @@ class Reference:
         parts: The record of the reference solution, with the same parts as a subject's.
         variants: The records of wrong answers that a card can name.
         qos: For each role, the QoS of the reference solution's endpoints by name, if it is not the default one.
+        drawings: The names of the drawings to record; empty for the practice drawings of the exercise.
     """
 
     exercise: str
@@ -384,6 +385,7 @@ class Reference:
     parts: Sequence[Part] = ()
     variants: Sequence[Variant] = ()
     qos: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
+    drawings: Sequence[str] = ()
 
     def part(self, name: str) -> Part:
         """Return the part with this name.

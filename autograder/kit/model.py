@@ -179,6 +179,8 @@ class Exercise:
         wraps_commands: True if ``runner`` also runs commands.
         recorded: The kinds of events that a reference output keeps; None for the kinds that every exercise keeps.
         tolerance: The tolerance for numbers when two recordings of the solution are compared, absolute or relative.
+        is_drawn: True if the recording has several drawings of the inputs, and a check gives one of them. A class has
+            drawings of its own.
     """
 
     id: str
@@ -202,6 +204,7 @@ class Exercise:
     counts: Mapping[str, str] = field(default_factory=dict)
     hides_causes: bool = False
     enough: Mapping[str, int] = field(default_factory=lambda: ENOUGH)
+    is_drawn: bool = False
 
     @property
     def points(self) -> float:

@@ -50,6 +50,11 @@ class ReferenceSolution:
     source: str
     subject: str
 
+    def check_cell(self, exercise: str) -> str:
+        """Return the code that checks the subject, for a program that does not come from a notebook."""
+        begin = "from autograder.notebook import check, start_ros\nstart_ros()"
+        return f"{begin}\ncheck({exercise!r}, {self.subject})\n"
+
 
 def reference_source(
     master: Path, exercise: str, *, points: Points = exercise_points, solved: bool = True

@@ -227,6 +227,8 @@ class Open(msgspec.Struct, tag="open", frozen=True):
         exercise: The exercise's id.
         seed: The seed of the random inputs.
         record: True to record a reference output instead of judging.
+        drawing: The drawing of a class that the subject is given: a recording of the solution in it, as JSON. With
+            ``record``, the name of the drawing to record. Empty for the practice drawings of the reference output.
         workspaces: The path at which the judge reaches the socket of the grader's workspace service; empty if the
             grader runs no such service.
         evidence: True to add the evidence to the report.
@@ -241,6 +243,7 @@ class Open(msgspec.Struct, tag="open", frozen=True):
     workspaces: str = ""
     evidence: bool = False
     boxed: bool = False
+    drawing: str = ""
 
 
 class Close(msgspec.Struct, tag="close", frozen=True):

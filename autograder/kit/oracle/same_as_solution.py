@@ -48,7 +48,9 @@ if TYPE_CHECKING:
 __all__ = ["Goal", "SameAsSolution", "Serves", "Sets", "To"]
 
 DRAWINGS = 4
-"""The number of drawings of the inputs in a recording."""
+"""The number of practice drawings of the inputs, which every hand-out contains."""
+DRAWING = "drawing "
+"""The beginning of a drawing's name. The rest is the seed: a number for practice, a secret one for a class."""
 PAUSE = 0.75
 """Seconds of the subject's time after each input. Whatever the input changes must be published by then."""
 TOLERANCE = 1e-3
@@ -78,11 +80,19 @@ class _Drawn(OwnScenario):
         self._outputs, self._is_timed = outputs, is_timed
 
     def expected(self, evidence: Evidence) -> Part:
-        """Return the record of the solution in the drawing that the subject was given."""
-        recorded = evidence.reference.parts
-        # A subject that was not built was given no drawing: it did nothing, in whichever it is compared.
-        same_drawing = [part for part in recorded if part.name == evidence.main.name]
-        return next(iter([*same_drawing, *recorded]), evidence.main)
+        """Return the record of the solution in the drawing that the subject was given.
+
+        Raises:
+            KeyError: The reference does not have this drawing.
+        """
+        reference = evidence.reference
+        if not reference.parts:  # the solution is being recorded
+            return evidence.main
+        if (
+            not evidence.parts
+        ):  # the subject was given no drawing and did nothing, which is wrong in each of them
+            return reference.parts[0]
+        return reference.part(evidence.main.name)
 
     @property
     def ladder(self) -> tuple[Mistake, ...]:
@@ -210,6 +220,7 @@ class SameAsSolution:
         ]
         self._outputs += [Output(name, (), Kind.RATE, tolerance, period) for name, period in rates.items()]
         steps = gives(Random(0))
+        self._is_drawn = steps != gives(Random(1)) or bool(serves)
         # A clock that stands still tells which clock a node asks. Then no other clock makes it right.
         stands = any(isinstance(step, To) and step.stands for step in steps)
         is_timed = not stands and any(isinstance(step, (int, float)) for step in steps)
@@ -235,14 +246,16 @@ class SameAsSolution:
 
     def exercise(self, **more: Any) -> Exercise:
         """Return the finished exercise. For ``more`` see :meth:`autograder.kit.draft.Draft.exercise`."""
-        return self._draft.exercise(recorded=("noted",), tolerance=self._tolerance, **more)
+        return self._draft.exercise(
+            recorded=("noted",), tolerance=self._tolerance, is_drawn=self._is_drawn, **more
+        )
 
     def _scenario(self, bench: Bench) -> None:
-        drawings = range(DRAWINGS if self._gives(Random(0)) != self._gives(Random(1)) or self._serves else 1)
-        is_recording = not bench.reference.parts
-        for drawing in drawings if is_recording else [bench.random.choice(drawings)]:
-            drawn = Random(f"{self._id} {drawing}")
-            self._gives_to(bench, f"drawing {drawing}", self._gives(drawn), drawn)
+        known = [part.name for part in bench.reference.parts]
+        practice = [f"{DRAWING}{number}" for number in range(DRAWINGS if self._is_drawn else 1)]
+        for name in [bench.random.choice(known)] if known else bench.reference.drawings or practice:
+            drawn = Random(f"{self._id} {name.removeprefix(DRAWING)}")
+            self._gives_to(bench, name, self._gives(drawn), drawn)
 
     def _gives_to(self, bench: Bench, part: str, steps: Sequence[Step], drawn: Random) -> None:
         """Run the subject once, and give it all steps of one drawing."""
