@@ -51,8 +51,11 @@ def name_as_text(name: str) -> str:
     return name.encode("utf-8", "replace").decode()
 
 
-def write_whole(path: Path, data: bytes) -> None:
+def write_whole(path: Path, data: bytes, mode: int = 0o666) -> None:
     """Write a file so that it is never incomplete, and survives a power cut once this function returns.
+
+    Args:
+        mode: The permissions of the file, from which the process's umask is taken.
 
     Raises:
         OSError: The file could not be written. Its earlier content is then unchanged.
@@ -63,7 +66,7 @@ def write_whole(path: Path, data: bytes) -> None:
     # guessed.
     beside = path.with_name(f".{path.name}.{secrets.randbelow(10**12)}.new")
     try:
-        with beside.open("xb") as file:
+        with os.fdopen(os.open(beside, os.O_WRONLY | os.O_CREAT | os.O_EXCL, mode), "wb") as file:
             file.write(data)
             file.flush()
             os.fsync(file.fileno())

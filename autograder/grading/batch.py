@@ -38,6 +38,7 @@ FLOW: tuple[Callable[[Batch, Any], Any], ...] = (
     Batch.find,  # the chosen submissions of the class
     Batch.settle,  # which of them have their grades in the gradebook already
     Batch.find_workers,  # before grades are set to zero: if no task can be executed, the class stays as it is
+    Batch.draw,  # records the solution in the class's own inputs, if they are missing, before any submission runs
     Batch.take_back,  # zero points for the others, so that a killed run leaves no outdated grade
     Batch.make_tasks,  # for each notebook: a desk in a box reads the file, and the task is rebuilt from the source
     Batch.execute,  # each task with its kernel and judge in boxes, on this machine or on a cluster
@@ -94,8 +95,9 @@ def grade(
     console = console or standard_output.console(stderr=True)
     directory = ClassDirectory(Path(path))
     check_configuration(directory)
+    here = execution_backends.on_this_machine(directory, jobs, judge)
     if scheduler is None:
-        backend = execution_backends.on_this_machine(directory, jobs, judge)
+        backend = here
     else:
         execution_backends.check_dask()
         execution_backends.check_address(scheduler)
@@ -107,7 +109,7 @@ def grade(
         in_sections = roster.of_sections(sections) if sections else ()
         asked = AskedFor(assignments, [*students, *in_sections], again, feedback, dry_run)
         store = stack.enter_context(ClassStore(directory))
-        batch = Batch(directory, store, console, roster, asked, backend, stack)
+        batch = Batch(directory, store, console, roster, asked, backend, here, stack)
         handed_on: Any = ()
         for step in FLOW:
             handed_on = step(batch, handed_on)

@@ -6,6 +6,7 @@ import contextlib
 import functools
 import time
 from collections import Counter
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from autograder.grading.batch_work import (
@@ -27,6 +28,7 @@ from autograder.grading.running.batch_progress import BatchProgress, Timings, pl
 from autograder.grading.table.rows import rows_of, write_csv
 from autograder.grading.table.student_list import enter_roster
 from autograder.grading.table.weighted_rows import read_what_counts, true_rows
+from autograder.grading.tasks.class_drawings import DRAWINGS, ClassDrawings, all_drawings, drawings_of
 from autograder.grading.tasks.result_keys import ResultKeys
 from autograder.grading.tasks.source_points import check_release, read_released
 
@@ -48,6 +50,7 @@ if TYPE_CHECKING:
     from autograder.grading.running.task_dispatcher import Done
     from autograder.grading.table.roster import Roster
     from autograder.grading.table.rows import Row
+    from autograder.grading.tasks.class_drawings import Drawing
     from autograder.grading.tasks.submission_work import Work
 
 
@@ -60,6 +63,7 @@ class Batch:
         directory: The class, which this process has locked.
         asked: The choices of the instructor for the run.
         backend: Finds the workers that execute tasks.
+        here: Makes this machine execute tasks. The solution runs nowhere else, because it decides all grades.
         stack: Ends what the run began.
 
     Raises:
@@ -74,11 +78,13 @@ class Batch:
         roster: Roster,
         asked: AskedFor,
         backend: contextlib.AbstractContextManager[Execute],
+        here: contextlib.AbstractContextManager[Execute],
         stack: contextlib.ExitStack,
     ) -> None:
         self._began = time.monotonic()
-        self._backend, self._stack = backend, stack
+        self._backend, self._here, self._stack = backend, here, stack
         self._execute: Execute | None = None
+        self._drawings = ClassDrawings(directory)
         self._directory, self._store, self._console = directory, store, console
         self._roster, self._asked = roster, asked
         self._keys = ResultKeys(directory)
@@ -155,6 +161,31 @@ class Batch:
         """
         if any(not work.written for work in works):
             self._execute = self._stack.enter_context(self._backend)
+        return works
+
+    def draw(self, works: list[Work]) -> list[Work]:
+        """Record the solution in those drawings of the class that the submissions need and that are not recorded.
+
+        A drawing that cannot be recorded is a problem. The exercise then cannot be checked.
+
+        Raises:
+            GradingError: Nothing can be executed on this machine.
+        """
+        waiting = [work for work in works if not work.written]
+        exercises = {name: [cell.exercise for cell in cells] for name, cells in self._cells.items()}
+        count = Counter(work.submission.assignment for work in waiting)
+        needed: set[Drawing] = set()
+        for work in waiting:
+            drawings = all_drawings(exercises[work.submission.assignment])
+            if count[work.submission.assignment] < DRAWINGS and self._drawings.missing(drawings):
+                drawings = [one for task, _ in self._tasks_of(work) for one in drawings_of(task)]
+            needed.update(drawings)
+        if missing := self._drawings.missing(needed):
+            plain_line(self._console, f"running the solution with inputs of this class, {len(missing)} times")
+            is_open = self._backend is self._here
+            execute = self._execute if is_open else self._stack.enter_context(self._here)
+            for done in execute(missing) if execute else ():
+                self._problems += self._drawings.keep(done.task, done.execution)
         return works
 
     def take_back(self, works: list[Work]) -> list[Work]:
@@ -329,8 +360,8 @@ class Batch:
         for notebook in work.notebooks:
             if notebook not in work.results:
                 with self._timings.measure("rebuild"):
-                    made = task_of(self._directory, work.submission, notebook)
-                yield made
+                    task, rebuilt = task_of(self._directory, work.submission, notebook)
+                    yield replace(task, drawings=self._drawings.of(task)), rebuilt
 
     def _write(self, work: Work, rows: tuple[Row, ...]) -> bool:
         """Write the results of a submission. Return False if the gradebook now has zero points for it."""

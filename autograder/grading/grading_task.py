@@ -31,6 +31,9 @@ class Task:
         problem: The reason if the notebook cannot be executed; otherwise empty.
         remarks: Sentences about repairs of the notebook.
         pictures: A hash of the pictures that the student attached, so that changed pictures change the task's hash.
+        drawings: For each exercise that draws its inputs, the recording of the class's drawing that this submission
+            gets, as JSON; empty if it could not be recorded, so that the exercise cannot be checked.
+        records: For the solution of an exercise, the name of the drawing to record; empty for a submission.
         boxed: True to execute the notebook in a sandbox; False for the course's own notebooks, and if the instructor
             allowed grading without a sandbox. A result without a sandbox is not reused for a boxed task, because the
             two have different hashes.
@@ -49,6 +52,8 @@ class Task:
     problem: str = ""
     remarks: tuple[str, ...] = ()
     pictures: str = ""
+    drawings: Mapping[str, str] = field(default_factory=dict)
+    records: str = ""
     boxed: bool = True
     overlays: tuple[str, ...] = ()
 

@@ -52,6 +52,10 @@ would exceed this size, it is not kept.
 """
 
 
+class NoDrawing(RuntimeError):
+    """The inputs of an exercise for this submission are not known, so it cannot be checked."""
+
+
 def execute(
     task: Task,
     judge: str,
@@ -144,7 +148,7 @@ class _Judges:
             :class:`autograder.judge.controlled_judge.JudgeProcess`, as ``module:class``.
 
     Attributes:
-        evidence: The evidence of the verdicts, by exercise.
+        evidence: The evidence of the verdicts, by exercise; of a recorded solution, the recording.
         crowded: True if one of the verdicts may be due to a busy machine.
     """
 
@@ -183,14 +187,22 @@ class _Judges:
             self._open.close()
             self._start(of_programs)
         self._asked = exercise_id
-        self._judge.open(exercise_id)
+        if self._task.records:
+            self._judge.open(exercise_id, record=True, drawing=self._task.records)
+        elif drawing := self._task.drawings.get(exercise_id):
+            self._judge.open(exercise_id, drawing=drawing)
+        elif drawing is None:  # all submissions get the same inputs
+            self._judge.open(exercise_id)
+        else:
+            raise NoDrawing(f"the solution of {exercise_id} could not be recorded with inputs of this class")
 
     def close(self) -> Verdict | None:
         report = self._judge.close()
         if report.verdict is None and report.trouble:
             raise (Unfinished if report.unfinished else RuntimeError)(report.trouble)
-        if sum(map(len, self.evidence.values())) + len(report.evidence) <= MOST_EVIDENCE and report.evidence:
-            self.evidence[self._asked] = report.evidence
+        evidence = report.evidence if report.reference is None else report.reference.encode()
+        if sum(map(len, self.evidence.values())) + len(evidence) <= MOST_EVIDENCE and evidence:
+            self.evidence[self._asked] = evidence
         self.crowded = self.crowded or report.crowded
         verdict: Verdict | None = report.verdict
         return verdict
