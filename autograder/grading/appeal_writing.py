@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from autograder import exercises
@@ -81,7 +82,12 @@ def _content(
     if page.is_file() and page.stat().st_size < _MAX_PAGE:
         others["page.html"] = page.read_bytes()
     if evidence_files.reference_digest(exercise_id) == evidence.reference:
-        others["expected.json"] = exercises.reference_path(exercise_id).read_bytes()
+        expected = exercises.reference_path(exercise_id).read_bytes()
+        if evidence.expected:  # the student was given a drawing of the class, not one of this file
+            stored_reference = evidence_files.load_reference(exercise_id)
+            drawn = replace(stored_reference, parts=evidence.expected, variants=())
+            expected = evidence_files.dump_reference(drawn).encode()
+        others["expected.json"] = expected
     return dump(check, stored.checks[exercise_id], others)
 
 

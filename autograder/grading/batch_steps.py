@@ -182,10 +182,12 @@ class Batch:
             needed.update(drawings)
         if missing := self._drawings.missing(needed):
             plain_line(self._console, f"running the solution with inputs of this class, {len(missing)} times")
-            is_open = self._backend is self._here
-            execute = self._execute if is_open else self._stack.enter_context(self._here)
-            for done in execute(missing) if execute else ():
-                self._problems += self._drawings.keep(done.task, done.execution)
+            # On a cluster, this machine executes nothing else, so it is prepared only now.
+            own = self._execute if self._backend is self._here else self._stack.enter_context(self._here)
+            for exercise, why in self._drawings.record(missing, own).items() if own else ():
+                self._problems.append(
+                    f"{exercise} cannot be checked, because its solution was not recorded: {why}"
+                )
         return works
 
     def take_back(self, works: list[Work]) -> list[Work]:

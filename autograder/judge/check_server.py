@@ -239,7 +239,13 @@ def _report(
             if not wanted.record:
                 stored = evidence_files.load_reference(exercise.id, wanted.drawing)
                 checked = one_check.check(
-                    exercise, subject, stored, seed=seed, domain_id=domain_id, marks_crowded=marks_crowded
+                    exercise,
+                    subject,
+                    stored,
+                    seed=seed,
+                    domain_id=domain_id,
+                    marks_crowded=marks_crowded,
+                    practice=evidence_files.load_reference(exercise.id) if wanted.drawing else None,
                 )
                 return Report(checked.verdict, crowded=checked.crowded), checked
             with of_exercise(exercise):

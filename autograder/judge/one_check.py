@@ -117,6 +117,7 @@ def check(
     seed: str,
     domain_id: int,
     marks_crowded: bool = False,
+    practice: Reference | None = None,
 ) -> Checked:
     """Judge a subject in one look, or in two looks if the first does not decide.
 
@@ -128,6 +129,8 @@ def check(
         reference: The recorded behavior of the reference solution.
         seed: The seed of all random inputs.
         marks_crowded: True to return a verdict with ``crowded`` set instead of raising TooBusy, as the grader does.
+        practice: The reference output with the practice drawings, if ``reference`` has a drawing of a class. A subject
+            that does not pass is given a practice drawing, too, because only with these are wrong answers recorded.
 
     Raises:
         ExerciseFailed: The exercise's own code raised an exception.
@@ -135,11 +138,17 @@ def check(
         NotDelivered: The subject did not pass, nothing proves a mistake, and this machine may have lost messages.
     """
     with of_exercise(exercise, reference):
-        return _check(exercise, subject, reference, seed, domain_id, marks_crowded)
+        return _check(exercise, subject, reference, seed, domain_id, marks_crowded, practice)
 
 
 def _check(
-    exercise: Exercise, subject: Subject, reference: Reference, seed: str, domain_id: int, marks_crowded: bool
+    exercise: Exercise,
+    subject: Subject,
+    reference: Reference,
+    seed: str,
+    domain_id: int,
+    marks_crowded: bool,
+    practice: Reference | None,
 ) -> Checked:
     began = time.monotonic()
     crowded, delivered = False, delivers()
@@ -187,6 +196,13 @@ def _check(
                 seen = next_look(Pace.REAL_TIME, evidence)
             if not seen.confirms:
                 evidence = replace(seen.evidence, before=evidence)
+                verdict = judge(exercise, evidence, seed)
+        if practice and practice.variants and not (verdict.passed or is_certain(exercise, evidence)):
+            with contextlib.suppress(JudgeFailed):  # the verdict stands without it
+                known = look(exercise, subject, practice, Pace.FAST, seed=seed, domain_id=domain_id)
+                earlier = evidence.before.parts if evidence.before else ()
+                before = Evidence([*known.evidence.parts, *earlier], reference)
+                evidence = replace(evidence, before=before)
                 verdict = judge(exercise, evidence, seed)
         if not verdict.passed and (causes := _causes(exercise, evidence, verdict)):
             lines = subject.own_lines()

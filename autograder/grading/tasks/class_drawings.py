@@ -22,12 +22,11 @@ from autograder.kit.oracle.same_as_solution import DRAWING
 from autograder.safe_files import write_whole
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
     from pathlib import Path
 
-    from autograder.execution.executed_cells import Execution
     from autograder.grading.classes.class_directory import ClassDirectory
-    from autograder.masters.reference_solutions import ReferenceSolution
+    from autograder.grading.running.execution_backends import Execute
 
 FOLDER = "drawings"
 """The name of the folder in the class's state folder. No box sees this folder."""
@@ -54,6 +53,14 @@ class KeptDrawing(msgspec.Struct, frozen=True):
     recorded: str
 
 
+class _Solution(NamedTuple):
+    """The code of a solution and of its check; or the reason why the master cannot be used."""
+
+    source: str = ""
+    check: str = ""
+    problem: str = ""
+
+
 class ClassDrawings:
     """The recorded drawings of one class."""
 
@@ -70,37 +77,63 @@ class ClassDrawings:
     def missing(self, drawings: Iterable[Drawing]) -> list[Task]:
         """Return a task for each of these drawings that is not recorded. The task executes the solution.
 
-        Raises:
-            MasterError: The master of an exercise cannot be used.
+        If the master of an exercise cannot be used, the task has a ``problem`` and cannot be executed.
         """
         return [self._task(one) for one in sorted(drawings) if not self._read(one)]
 
-    def keep(self, task: Task, execution: Execution) -> Iterator[str]:
-        """Store the recording that a task of :meth:`missing` has made. If there is none, yield a sentence with why."""
-        drawing = Drawing(task.assignment, int(task.notebook))
-        recorded = execution.evidence.get(drawing.exercise, b"").decode()
-        if recorded and not execution.trouble:
-            file = self._file(drawing)
-            file.parent.mkdir(mode=0o700, exist_ok=True)
-            write_whole(file, msgspec.json.encode(KeptDrawing(task.seed, recorded)), mode=0o600)
-            return
-        verdicts = execution.verdicts.values()
-        why = execution.trouble or next((one.diagnosis.text for one in verdicts if one.diagnosis), "")
-        yield f"{drawing.exercise} could not be checked, because its solution could not be recorded: {why}"
+    def record(self, missing: Sequence[Task], execute: Execute) -> dict[str, str]:
+        """Execute the tasks of :meth:`missing`, and store the recordings.
+
+        Returns:
+            For each exercise of which a drawing could not be recorded, the reason.
+        """
+        reasons = {task.assignment: task.problem for task in missing if task.problem}
+        for done in execute((task for task in missing if not task.problem), on_start=lambda _: None):
+            task, execution = done.task, done.execution
+            recorded = execution.evidence.get(task.assignment, b"").decode()
+            if recorded and not execution.trouble:
+                file = self._file(Drawing(task.assignment, int(task.notebook)))
+                file.parent.mkdir(mode=0o700, exist_ok=True)
+                write_whole(file, msgspec.json.encode(KeptDrawing(task.seed, recorded)), mode=0o600)
+            else:
+                diagnosis = execution.verdicts[len(task.cells) - 1].diagnosis
+                reasons[task.assignment] = execution.trouble or (
+                    diagnosis.text if diagnosis else "no recording"
+                )
+        return reasons
 
     def _task(self, drawing: Drawing) -> Task:
-        exercise, solution = exercises.get(drawing.exercise), _solution(drawing.exercise)
+        exercise, solution = exercises.get(drawing.exercise), self._solution(drawing.exercise)
         check = CellCheck(exercise.id, exercise.title, exercise.points, exercise.points, exercise.limit)
         return Task(
             student="the solution",
             assignment=exercise.id,
             notebook=str(drawing.number),
-            cells=(Cell(solution.source), Cell(solution.check_cell(exercise.id), check=check)),
+            cells=(Cell(solution.source), Cell(solution.check, check=check)),
             seed=self._made_from(drawing),
-            course=_version(exercise.id),
+            course=self._version(exercise.id),
             records=self._name(drawing),
+            problem=solution.problem,
             boxed=not self._directory.is_sandbox_off,
         )
+
+    @functools.cache  # noqa: B019  (lives as long as one batch)
+    def _solution(self, exercise_id: str) -> _Solution:
+        # Imported here, because these import jupytext, which takes long.
+        from autograder.masters.master_files import MasterError
+        from autograder.masters.reference_solutions import reference_source
+
+        try:
+            found = reference_source(exercises.path(exercise_id).with_name(course.LAB), exercise_id)
+        except (MasterError, OSError) as error:
+            return _Solution(problem=str(error))
+        return _Solution(found.source, found.check_cell(exercise_id))
+
+    @functools.cache  # noqa: B019  (the same)
+    def _version(self, exercise_id: str) -> str:
+        """Return a hash of the exercise, its reference output and the judge."""
+        files = course_version.course_files()
+        return files.version(JUDGE, SHARED, *files.labs(exercise_id.encode()))
 
     def _read(self, drawing: Drawing) -> str:
         try:
@@ -118,7 +151,7 @@ class ClassDrawings:
 
     def _made_from(self, drawing: Drawing) -> str:
         whole = " ".join(
-            (self._name(drawing), _version(drawing.exercise), _solution(drawing.exercise).source)
+            (self._name(drawing), self._version(drawing.exercise), self._solution(drawing.exercise).source)
         )
         return hashlib.sha256(whole.encode()).hexdigest()
 
@@ -141,17 +174,3 @@ def _is_drawn(exercise_id: str) -> bool:
         return exercises.get(exercise_id).is_drawn
     except (exercises.UnknownExercise, exercises.BrokenExercise):
         return False
-
-
-@functools.cache
-def _solution(exercise_id: str) -> ReferenceSolution:
-    from autograder.masters.reference_solutions import reference_source  # imports jupytext, which takes long
-
-    return reference_source(exercises.path(exercise_id).with_name(course.LAB), exercise_id)
-
-
-@functools.cache
-def _version(exercise_id: str) -> str:
-    """Return a hash of the exercise, its reference output and the judge."""
-    files = course_version.course_files()
-    return files.version(JUDGE, SHARED, *files.labs(exercise_id.encode()))
