@@ -14,9 +14,11 @@ import pytest
 # Has Python find the labs, whose modules tests import.
 import autograder.exercises  # noqa: F401
 from tests import hasty_disk, tiers
+from tests.reach.changes import NoCommit, Selection, selection
 
 if TYPE_CHECKING:
     from collections.abc import Generator, Iterator
+    from pathlib import Path
 
 # Where a user's Python keeps no bytecode, each of the thousand processes that tests start would compile anew what it
 # imports, and each process of tests all tests.
@@ -97,36 +99,69 @@ def pytest_xdist_auto_num_workers() -> int:
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    """The tier."""
+    """The tiers."""
     parser.addoption("--all", action="store_true", help="also the tests that are left to the nightly run")
+    parser.addoption("--smoke", action="store_true", help="only a few tests of each part")
+    parser.addoption(
+        "--changed",
+        nargs="?",
+        const="",
+        metavar="COMMIT",
+        help="only the tests that reach what has changed since a commit, and a few of each part",
+    )
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Who names tests gets all of them. The processes of pytest-xdist inherit the day."""
-    tiers.day()
+    """A contributor who names tests gets all of them. The processes of pytest-xdist are told what was decided."""
     if hasattr(config, "workerinput"):
         config.option.all = config.workerinput["all"]
-    elif config.args_source is not pytest.Config.ArgsSource.TESTPATHS:
+        told = config.workerinput["selection"]
+        config.stash[_SELECTION] = Selection.from_json(told) if told else None
+        return
+    if config.args_source is not pytest.Config.ArgsSource.TESTPATHS and config.option.changed is None:
         config.option.all = True
+    try:
+        changed = config.option.changed
+        config.stash[_SELECTION] = None if changed is None else selection(config.rootpath, changed)
+    except NoCommit as error:
+        raise pytest.UsageError(str(error)) from None
+
+
+_SELECTION = pytest.StashKey[Selection | None]()
 
 
 @pytest.hookimpl(optionalhook=True)
 def pytest_configure_node(node: Any) -> None:
     """Called by pytest-xdist for each of its processes, which reads the command line anew and knows no more than it."""
     node.workerinput["all"] = node.config.option.all
+    chosen = node.config.stash[_SELECTION]
+    node.workerinput["selection"] = chosen.as_json() if chosen else ""
 
 
 def pytest_report_header(config: pytest.Config) -> list[str]:
     """Which tier this is, how its draw is repeated, and what is judged itself for want of present evidence."""
     if config.option.all:
         return ["tier: all"]
+    drawn = f"as drawn by {tiers.SEED}={tiers.seed()}"
+    if config.option.smoke:
+        return [f"tier: smoke, {drawn}"]
+    if chosen := config.stash[_SELECTION]:
+        return [f"tier: changed since {chosen.base}, {drawn}", *chosen.described()]
     from tests.measure import evidence
 
-    lines = [f"tier: short, as drawn by {tiers.DAY}={tiers.day()}"]
+    lines = [f"tier: short, {drawn}"]
     if changed := evidence.exercises_of_another_bench():
         lines.append(f"judged whole, as the bench or the scenario has changed: {' '.join(changed)}")
         lines.append(f"(shorter again after {evidence.COMMAND})")
     return lines
+
+
+def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
+    """Skip the files in which no test can be selected: collecting all of them takes half a minute of a processor."""
+    chosen = config.stash[_SELECTION]
+    path = collection_path.relative_to(config.rootpath).as_posix()
+    ours = collection_path.suffix == ".py" and path.startswith("tests/")
+    return True if ours and chosen and not chosen.may_be_in(path) and not tiers.is_smoke(path) else None
 
 
 @pytest.hookimpl(wrapper=True)
@@ -143,11 +178,24 @@ def pytest_collection() -> Generator[None, object, object]:
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     """Those of this tier, the longest first."""
     if not config.option.all:
-        due = [item.nodeid for item in items if item.get_closest_marker("due")]
-        left = tiers.left_to_all([item.nodeid for item in items], due)
+        left = _left_out(config, items)
         config.hook.pytest_deselected(items=[item for item in items if item.nodeid in left])
         items[:] = [item for item in items if item.nodeid not in left]
     items.sort(key=_rank)
+
+
+def _left_out(config: pytest.Config, items: list[pytest.Item]) -> set[str]:
+    """Return the ids of the tests that are not of this tier."""
+    ids = [item.nodeid for item in items]
+    due = [item.nodeid for item in items if item.get_closest_marker("due")]
+    chosen = config.stash[_SELECTION]
+    if config.option.smoke:
+        return set(ids) - tiers.smoke(ids)
+    if chosen is None or chosen.because:
+        return tiers.left_to_all(ids, due)
+    left = tiers.left_to_all(ids, [])
+    reaching = [one for one in ids if one not in left and chosen.includes(one)]
+    return set(ids) - (set(reaching) - tiers.too_many(reaching)) - tiers.smoke(ids)
 
 
 def _rank(item: pytest.Item) -> int:

@@ -5,13 +5,13 @@ from __future__ import annotations
 import ast
 import functools
 import re
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
 
 from autograder import course, exercises
+from tests.reach.imports import imports_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -71,45 +71,6 @@ GRADING_FROM_BELOW = (
 )
 MOST_FILES = 15
 """In one folder of the package: a stranger must be able to read their names."""
-
-
-@dataclass(frozen=True)
-class Import:
-    """A name that a file imports.
-
-    Attributes:
-        line: The line of the statement.
-        level: The number of dots of a relative import; 0 if the name is full.
-        name: The name behind the dots.
-        for_types: Whether it is imported for types alone, and does not run.
-    """
-
-    line: int
-    level: int
-    name: str
-    for_types: bool
-
-
-@functools.cache
-def imports_of(path: Path) -> tuple[Import, ...]:
-    """The imports of a file, whether at the top or inside a function."""
-    tree = ast.parse(path.read_text(encoding="utf-8"))
-    for_types = {
-        id(inner)
-        for node in ast.walk(tree)
-        if isinstance(node, ast.If) and ast.unparse(node.test).endswith("TYPE_CHECKING")
-        for statement in node.body
-        for inner in ast.walk(statement)
-    }
-    found = []
-    for node in ast.walk(tree):
-        if isinstance(node, ast.Import | ast.ImportFrom):
-            above = f"{node.module}." if isinstance(node, ast.ImportFrom) and node.module else ""
-            level = node.level if isinstance(node, ast.ImportFrom) else 0
-            found += [
-                Import(node.lineno, level, above + alias.name, id(node) in for_types) for alias in node.names
-            ]
-    return tuple(found)
 
 
 @functools.cache
@@ -307,9 +268,8 @@ def _modules(folder: Path) -> dict[str, Path]:
 
 def _runs(path: Path, module: str, *, types: bool) -> set[str]:
     """The full names of what a module imports when it runs; each may be a module or something in one."""
-    package = module.split(".") if path.name == "__init__.py" else module.split(".")[:-1]
     return {
-        ".".join([*(package[: len(package) - one.level + 1] if one.level else []), one.name])
+        one.full(one.name, module, is_package=path.name == "__init__.py")
         for one in imports_of(path)
         if types or not one.for_types
     }

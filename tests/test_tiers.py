@@ -16,17 +16,19 @@ BANK = "tests/judge/test_bank.py::test_answer_is_judged_right["
 IDS = [f"{BANK}lab.{exercise}/right/{number}.py]" for exercise in "ab" for number in range(9)]
 
 
-def test_as_many_of_each_group_are_drawn_and_other_ones_each_day(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_as_many_of_each_group_are_drawn_and_other_ones_by_another_word(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     chosen = []
-    for day in ("2026-01-01", "2026-01-01", "2026-01-02"):
-        monkeypatch.setenv(tiers.DAY, day)
+    for word in ("0123456789ab", "0123456789ab", "ba9876543210"):
+        monkeypatch.setenv(tiers.SEED, word)
         chosen.append(set(IDS) - tiers.left_to_all(IDS, []))
     assert chosen[0] == chosen[1] != chosen[2]
     assert [sum(f"lab.{exercise}/" in one for one in chosen[0]) for exercise in "ab"] == [2, 2]
 
 
 def test_no_draw_is_spent_on_what_is_left_to_all(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(tiers, "NIGHTLY", IDS[:7])
+    monkeypatch.setattr(tiers, "NIGHTLY", tuple(IDS[:7]))
     assert set(IDS[:9]) - tiers.left_to_all(IDS, []) == set(IDS[7:9])
 
 
@@ -36,7 +38,7 @@ def test_what_is_due_runs_whatever_is_drawn() -> None:
 
 
 def test_every_name_in_the_lists_is_a_tests(request: pytest.FixtureRequest) -> None:
-    names = [*tiers.NIGHTLY, *(draw.tests for draw in tiers.DRAWS)]
+    names = [*tiers.NIGHTLY, *(draw.tests for draw in (*tiers.DRAWS, *tiers.SMOKE, *tiers.LONG))]
     root = Path(__file__).parents[1]
     missing = [name for name in names if not (root / name.partition("::")[0]).exists()]
     functions = [name.partition("::") for name in names if "::" in name]

@@ -1,15 +1,19 @@
-"""The two tiers: what ``./course test`` runs, and what only ``./course test --all`` does. Decided here alone.
+"""The tiers: what ``./course test`` runs, and with ``--changed``, ``--smoke`` and ``--all``. Decided here alone.
 
-A test that is named here is left to ``--all``; of those that are drawn, some run each day, and all that are marked
-``due``: something that they depend on has changed. Whoever names files or folders of tests gets all of them.
+A test in ``NIGHTLY`` is left to ``--all``. Of those in ``DRAWS`` some run, which the commit decides, and all that are
+marked ``due``: something that they depend on has changed. ``--changed`` runs those of the short tier that reach a
+change (``tests/reach/``), of the longest of them only as many as ``LONG`` says, and those of ``SMOKE``, which
+``--smoke`` runs alone. A contributor who names files or folders of tests gets all of them.
 """
 
 from __future__ import annotations
 
+import functools
 import os
+import subprocess
 from collections import defaultdict
 from dataclasses import dataclass
-from datetime import UTC, datetime
+from pathlib import Path
 from random import Random
 from typing import TYPE_CHECKING, Any
 
@@ -18,8 +22,8 @@ import pytest
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-DAY = "COURSE_TEST_DAY"
-"""The variable that repeats the draw of a day, such as ``2026-11-23``."""
+SEED = "COURSE_TEST_DRAW"
+"""The variable that repeats a draw: the abbreviated hash of a commit, or any other word."""
 
 NIGHTLY = (
     # Killed and interrupted: each kills a whole batch, again and again.
@@ -50,9 +54,9 @@ NIGHTLY = (
     # A class once more by stock nbgrader, and by each student's Validate: the class itself is graded in both tiers.
     "tests/grading/new_classes/test_sample_class.py::test_plain_nbgrader_gives_the_same_points",
     "tests/grading/new_classes/test_sample_class.py::test_validate_tells_a_student_the_truth",
-    # Three programs and all their mistakes, at each missing event; each program's own exercise is tried each day.
+    # Three programs and all their mistakes, at each missing event; each program's own exercise is tried in both tiers.
     "tests/judge/test_missing_events.py::test_no_exercise_needs_an_event_to_come_to_a_verdict[lab_1_4.programs]",
-    # All notebooks in one folder; two of them are executed each day.
+    # All notebooks in one folder; two of them are executed in both tiers.
     "tests/masters/test_run_again.py",
     # The longest exercise at each missing event, a hundred seconds; the others stay.
     "tests/judge/test_missing_events.py::test_no_exercise_needs_an_event_to_come_to_a_verdict[bugs_2.counting_clock]",
@@ -84,7 +88,7 @@ NIGHTLY = (
     "tests/browser/test_untrusted_pages.py::test_feedback_by_plain_nbgrader",
     "tests/browser/test_untrusted_pages.py::test_the_texts_do_what_they_are_meant_to_where_nobody_cleans_them",
     "tests/browser/test_watch.py",
-    # The longest of the masters that are graded in boxes; another one is, each day.
+    # The longest of the masters that are graded in boxes; another one is, in both tiers.
     "tests/workspaces/test_graded_notebooks.py::test_the_master_gets_full_marks[lab_1_2]",
     # Builds of workspaces, of which the first and the failing one stay.
     "tests/workspaces/builds/test_colcon.py::test_a_changed_byte_is_another_build",
@@ -100,7 +104,7 @@ NIGHTLY = (
 
 @dataclass(frozen=True)
 class Draw:
-    """Tests of which some run each day, of those that no line above leaves to ``--all``.
+    """Tests of which some run, of those that no line above leaves to ``--all``.
 
     Attributes:
         tests: The beginning of their ids.
@@ -160,15 +164,53 @@ DRAWS = (
 )
 
 
-def day() -> str:
-    """The day that decides on what is drawn: today, in UTC, or the one that the variable names."""
-    return os.environ.setdefault(DAY, datetime.now(UTC).date().isoformat())
+SMOKE = (
+    # An answer to an exercise of each role, judged itself.
+    *(
+        Draw(f"{_LIVE}[{exercise}/right/", 1)
+        for exercise in ("lab_1_2.talker", "lab_1_2.listener", "lab_1_3.server", "lab_1_3.client")
+    ),
+    *(
+        Draw(f"{_LIVE}[{exercise}/right/", 1)
+        for exercise in ("lab_1_4.server", "lab_1_4.client", "exercise_1_1.package")
+    ),
+    # An attack on each layer of the box, and a class of three notebooks.
+    *(
+        Draw(f"tests/attacks/test_attacks.py::test_it_is_defeated[{family}-", 1)
+        for family in ("forging", "socket", "reading", "writing", "breaking", "network", "shadowing")
+    ),
+    Draw("tests/attacks/test_attacks.py::test_an_honest_student_has_what_was_earned", 9),
+    Draw("tests/grading/new_classes/test_sample_class.py::test_every_sample_earns_what_it_must[", 3),
+    Draw("tests/grading/new_classes/test_sample_class.py::test_gradebook_csv_and_feedback_say_the_same", 1),
+    # What reads the whole repository, or a page of which any command may be typed.
+    *(Draw(f"tests/test_{name}.py::", 1000) for name in ("docs", "english", "imports", "size", "tiers")),
+)
+"""Tests that run whatever has changed: a minute of two cores."""
+LONG = (
+    Draw(f"{_LIVE}[", 8),
+    Draw("tests/judge/test_missing_events.py::", 8),
+)
+"""Of these, ``--changed`` runs no more than so many, if more of them reach the change."""
+
+
+@functools.cache
+def _commit() -> str:
+    """The abbreviated hash of the commit that is checked out; a fixed word outside of a clone."""
+    command = ["git", "rev-parse", "--short=12", "HEAD"]
+    root = Path(__file__).parents[1]
+    done = subprocess.run(command, cwd=root, capture_output=True, text=True, check=False)
+    return done.stdout.strip() or "no commit"
+
+
+def seed() -> str:
+    """The word that decides on what is drawn: the variable's, or the commit, so that a commit always draws the same."""
+    return os.environ.get(SEED) or _commit()
 
 
 def drawn(names: Iterable[str], number: int) -> set[str]:
-    """So many of these names, other ones each day."""
+    """So many of these names, other ones in another commit."""
     listed = sorted(names)
-    return set(Random(f"{day()} {listed[0]}").sample(listed, min(number, len(listed)))) if listed else set()
+    return set(Random(f"{seed()} {listed[0]}").sample(listed, min(number, len(listed)))) if listed else set()
 
 
 def due(value: Any, name: str, changed: bool) -> Any:
@@ -192,13 +234,37 @@ def left_to_all(ids: Sequence[str], due: Iterable[str]) -> set[str]:
         ids: Of all tests.
         due: Of those that run whatever is drawn.
     """
-    left = {one for one in ids if any(one.startswith(name) for name in NIGHTLY)}
-    for draw in DRAWS:
+    left = {one for one in ids if one.startswith(NIGHTLY)}
+    return (left | _not_drawn(DRAWS, [one for one in ids if one not in left])) - set(due)
+
+
+def smoke(ids: Sequence[str]) -> set[str]:
+    """The ids of the tests that run whatever has changed."""
+    return {
+        one
+        for draw in SMOKE
+        for one in drawn((one for one in ids if one.startswith(draw.tests)), draw.number)
+    }
+
+
+def is_smoke(path: str) -> bool:
+    """Return whether some test of a file runs whatever has changed."""
+    return any(draw.tests.startswith(f"{path}::") for draw in SMOKE)
+
+
+def too_many(ids: Sequence[str]) -> set[str]:
+    """Of the ids of tests that reach a change, those that ``--changed`` leaves to the short tier."""
+    return _not_drawn(LONG, ids)
+
+
+def _not_drawn(draws: Iterable[Draw], ids: Iterable[str]) -> set[str]:
+    left = set[str]()
+    for draw in draws:
         groups: dict[str, list[str]] = defaultdict(list)
         for one in ids:
-            if one.startswith(draw.tests) and one not in left:
+            if one.startswith(draw.tests):
                 rest = one.removeprefix(draw.tests)
                 groups[rest.partition(draw.group)[0] if draw.group else ""].append(one)
         for group in groups.values():
             left |= set(group) - drawn(group, draw.number)
-    return left - set(due)
+    return left

@@ -1,0 +1,1 @@
+"""Which tests reach a changed file: for ``./course test --changed``."""
