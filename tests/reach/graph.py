@@ -222,10 +222,10 @@ class Graph:
                 if both := new & by_word[word]:
                     waiting[other] = waiting.get(other, 0) | both
             for word in self.words.get(node, ()):
-                pairs = self.conditional.get(word)
-                if pairs and (fresh := new & ~by_word[word]):
+                fresh = new & ~by_word[word] if word in self.conditional else 0
+                if fresh:
                     by_word[word] |= fresh
-                    for owner, other in pairs:
+                    for owner, other in self.conditional[word]:
                         if both := fresh & found[owner]:
                             waiting[other] = waiting.get(other, 0) | both
         return found

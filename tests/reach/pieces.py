@@ -212,9 +212,9 @@ class _Reader(ast.NodeVisitor):
         arguments = node.args
         if _name_of(node).endswith("attr") and len(arguments) > 1 and isinstance(arguments[0], ast.Name):
             text = arguments[1].value if isinstance(arguments[1], ast.Constant) else ""
-            if str(text).isidentifier():
+            if isinstance(text, str) and text.isidentifier():
                 self.piece.chains.add(f"{arguments[0].id}.{text}")
-                self.piece.attributes.add(str(text))
+                self.piece.attributes.add(text)
                 arguments = arguments[2:]
         for inner in (node.func, *self._without_command(arguments), *node.keywords):
             self.visit(inner)
