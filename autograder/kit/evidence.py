@@ -163,7 +163,11 @@ _OF_A_TRACEBACK = (
     "Extension modules: ",
     "  <no Python frame>",
     "Thread 0x",
-    "Current thread 0x",
+    "Current thread",
+    # Python 3.14 adds the calls of compiled code, below the words "Current thread's C stack trace".
+    "  Binary file ",
+    "  <truncated rest of calls>",
+    "  <cannot get C stack on this system>",
     "During handling of the above exception",
     "The above exception was the direct cause",
 )

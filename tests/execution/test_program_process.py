@@ -87,7 +87,7 @@ PROGRAMS = {
 UNEQUAL = re.compile(
     r"\[\d+\.\d+\]"  # the time of a log line
     r"|0x[0-9a-f]+"
-    r"|(?m:^Extension modules: .*\n)"
+    r"|(?m:^(?:Extension modules: |Current thread's C stack|  Binary file |  <truncated rest ).*\n)"
     # A crash shows the calls that a fork began with, after the program's own.
     r'|  File "(?:[^"]*/(?:autograder/boxes|autograder/execution|environment/ros2_command)/[^"]*|<frozen runpy>)", .*\n'
 )

@@ -145,6 +145,10 @@ ABORTED = tuple(
         "Thread 0x00007fb7af88c4c0 (most recent call first):",
         "  <no Python frame>",
         "",
+        "Current thread's C stack trace (most recent call first):",
+        '  Binary file "/usr/bin/python3.14", at _Py_DumpStack+0x49 [0x5a1b2c]',
+        "  <truncated rest of calls>",
+        "",
         "Extension modules: yaml._yaml, rclpy._rclpy_pybind11 (total: 2)",
     )
 )

@@ -278,6 +278,33 @@ def test_an_answer_was_left_lying_only_if_it_was_so_in_each_run(
     assert (first.recognize(Evidence(runs, Reference("x", {}))) is not None) == is_told
 
 
+SEGMENTATION_FAULT = """\
+Fatal Python error: Segmentation fault
+
+Current thread 0x00007f2a4c1d0740 [python3.14] (most recent call first):
+  File "/usr/lib/python3.14/ctypes/__init__.py", line 559 in string_at
+  File "talker.py", line 4 in crash
+  File "talker.py", line 5 in <module>
+
+Current thread's C stack trace (most recent call first):
+  Binary file "/usr/bin/python3.14", at _Py_DumpStack+0x49 [0x55d0c1a2b3c9]
+  Binary file "/lib/x86_64-linux-gnu/libc.so.6", at +0x3c050 [0x7f2a4c20d050]
+  <truncated rest of calls>
+
+Extension modules: yaml._yaml, rclpy._rclpy_pybind11 (total: 2)
+"""
+"""What Python 3.14 prints; earlier versions print neither the thread's name nor the C stack."""
+
+
+def test_the_c_stack_of_a_crash_in_compiled_code_is_neither_its_traceback_nor_its_words() -> None:
+    lines = ["before", *SEGMENTATION_FAULT.splitlines()]
+    part = Part("part", {}, [Event(0.1, "output", "stderr", {"text": line}) for line in lines])
+    first, outermost, *_, last = part.traceback.splitlines()
+    assert (first, last) == ("Traceback (most recent call last):", "Segmentation fault")
+    assert outermost == '  File "talker.py", line 5, in <module>'
+    assert [line for line in part.said() if line] == ["before"]
+
+
 def told(traceback: str, *before: Event) -> str:
     """What the diagnosis of a subject says that ended with this traceback."""
     _, advice = _found(traceback, before)
