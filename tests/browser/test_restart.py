@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING
 import nbformat
 import pytest
 
-from autograder.cards.html_rendering import waiting_bundle
+from autograder.cards.html_rendering import card_bundle, waiting_bundle
+from autograder.verdict import CriterionResult, State, Verdict
 
 sys.path.insert(0, str(Path(__file__).parent))
 from open_notebook import OpenNotebook, look, opened_page
@@ -54,6 +55,11 @@ def page(browser: Browser, lab: str, chapters: Path) -> Iterator[Page]:
     cell = next(one for one in notebook.cells if one.source.startswith('check("lab_1_2.listener"'))
     data = waiting_bundle("lab_1_2.listener", "Checking: run 2 of your code, 3.0 s …")
     cell.outputs = [nbformat.v4.new_output("display_data", data)]
+    cell = next(one for one in notebook.cells if one.source.startswith('check("lab_1_2.wall"'))
+    to_come = CriterionResult("stops", "Stops", 10.0, None, "", "")
+    so_far = Verdict("lab_1_2.wall", "The wall", State.CHECKING, 0.0, 10.0, (to_come,))
+    data = card_bundle(so_far, notice="Checking: run 1 of your code, 9.41 s …")
+    cell.outputs = [nbformat.v4.new_output("display_data", data)]
     file.write_text(nbformat.writes(notebook), encoding="utf-8")
     with opened_page(browser) as page:
         page.goto(lab.format("lab/tree/01_ros2_fundamentals/lab_1_2.ipynb"))
@@ -63,8 +69,12 @@ def page(browser: Browser, lab: str, chapters: Path) -> Iterator[Page]:
 def test_a_card_that_was_saved_while_its_check_went_on_says_so(page: Page) -> None:
     from playwright.sync_api import expect
 
-    card = OpenNotebook(page).cell(r'^check\("lab_1_2\.listener"').locator(".agc")
-    expect(card).to_contain_text("The notebook was closed during this check")
+    for exercise in ("listener", "wall"):
+        card = OpenNotebook(page).cell(rf'^check\("lab_1_2\.{exercise}"').locator(".agc")
+        expect(card).to_contain_text("The notebook was closed during this check")
+        expect(card).not_to_contain_text("Checking")
+        expect(card).not_to_contain_text("TO COME")
+    look(page, "closed-during-its-check")
 
 
 def test_check_runs_what_a_new_kernel_lacks_and_a_card_ends_with_its_kernel(page: Page) -> None:

@@ -60,6 +60,7 @@ class Progress:
         known: What the judge knows so far, in a sentence.
         verdict: The criteria that are decided so far; None as long as the judge has not told any.
         began: The time at which the check began, in seconds of a monotonic clock.
+        is_interrupted: True if the student has interrupted the check.
         on_step: Called after each change of the step.
         on_news: Called as soon as the card should show a newer verdict.
     """
@@ -68,6 +69,7 @@ class Progress:
     known: str = ""
     verdict: Verdict | None = None
     began: float = field(default_factory=time.monotonic)
+    is_interrupted: bool = False
     on_step: Callable[[], None] = lambda: None
     on_news: Callable[[], None] = lambda: None
 
@@ -83,8 +85,15 @@ class Progress:
         self.step = step
         self.on_step()
 
+    def interrupt(self) -> None:
+        """Say from now on that the check was interrupted, because it may take seconds to stop the student's code."""
+        self.is_interrupted = True
+        self.on_news()
+
     def words(self) -> str:
         """Return the progress in a sentence. If the check has already taken long, a second one says what is known."""
+        if self.is_interrupted:
+            return "The check was interrupted. It ends as soon as your code has been stopped."
         seconds = time.monotonic() - self.began
         words = f"Checking: {self.step}, {duration(seconds)} …"
         if seconds < LONG:
@@ -175,16 +184,21 @@ class CardDisplay:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        self._stop_updating()
-        if error is not None and self._handle is not None:
-            earlier = _shown.get(self.exercise)
-            if earlier is not None:
-                notice = "This is the result of an earlier check: the last one was interrupted."
-                card = _dated(earlier, notice)
-            else:
-                words = "The check was interrupted, so there is no result: run it again."
-                card = html_rendering.waiting_bundle(self.exercise, words, over=True)
-            update_card(self._handle, card)
+        try:
+            self._stop_updating()
+        finally:  # also after another interrupt, or the card would say for ever that the check goes on
+            if error is not None and self._handle is not None:
+                self._say_interrupted()
+
+    def _say_interrupted(self) -> None:
+        earlier = _shown.get(self.exercise)
+        if earlier is not None:
+            notice = "This is the result of an earlier check: the last one was interrupted."
+            card = _dated(earlier, notice)
+        else:
+            words = "The check was interrupted, so there is no result: run it again."
+            card = html_rendering.waiting_bundle(self.exercise, words, over=True)
+        update_card(self._handle, card)
 
     def show(self, verdict: Verdict) -> None:
         """Show the result on the card; outside a notebook, print it."""

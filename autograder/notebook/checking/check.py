@@ -197,6 +197,9 @@ def converse(link: JudgeLink, exercise: str, subject: Any, progress: Progress) -
                         progress.take(order.verdict, order.words)
                     case messages.Judged() | messages.Refused():
                         return _verdict_in(exercise, order)
+        except KeyboardInterrupt:
+            progress.interrupt()
+            raise
         finally:
             if run is not None:
                 run.stop()

@@ -169,6 +169,50 @@ def meanwhile(progress):
     assert "agc-waiting" not in card.data["text/html"].partition("<style>")[0]
 
 
+def test_an_interrupt_is_on_the_card_before_the_code_has_been_stopped(run: Callable[..., list[Any]]) -> None:
+    interrupted = """
+shown = []
+usual = card_display.html_rendering.waiting_bundle
+def waiting_bundle(title, words, **how):
+    shown.append(words)
+    return usual(title, words, **how)
+card_display.html_rendering.waiting_bundle = waiting_bundle
+
+def meanwhile(progress):
+    import time
+    progress.interrupt()
+    while not any("The check was interrupted. It ends as soon as" in words for words in shown):
+        time.sleep(0.01)
+scores[:] = [5.0]
+"""
+    assert run(interrupted, "check('lab', Talker); card_display.html_rendering.waiting_bundle = usual")
+
+
+def test_another_interrupt_does_not_leave_a_card_that_goes_on(run: Callable[..., list[Any]]) -> None:
+    interrupted = """
+displayed = []
+usual = card_display.display_card
+def display_card(card):
+    displayed.append(usual(card))
+    return displayed[-1]
+card_display.display_card = display_card
+
+def meanwhile(progress):
+    import time
+    while not displayed:
+        time.sleep(0.01)
+    raise KeyboardInterrupt
+
+class Interrupted(card_display.ProgressUpdater):
+    def stop(self):
+        super().stop()
+        raise KeyboardInterrupt
+card_display.ProgressUpdater = Interrupted
+"""
+    _, (card, *_) = run(interrupted, "try:\n    check('lab', Talker)\nexcept KeyboardInterrupt:\n    pass")
+    assert "The check was interrupted, so there is no result" in card.data["text/plain"]
+
+
 def test_an_interrupted_check_shows_none_of_its_own_lines(run: Callable[..., list[Any]]) -> None:
     interrupted = "def meanwhile(progress):\n    raise KeyboardInterrupt"
     *_, (error,) = run(interrupted, "check('lab', Talker)", allow_errors=True)

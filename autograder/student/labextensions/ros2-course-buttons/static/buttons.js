@@ -18,6 +18,7 @@ window._JUPYTERLAB["ros2-course-buttons"] = (() => {
   // For each key, meters a second ahead and radians a second to the left.
   const KEYS = { ArrowUp: [0.5, 0], ArrowDown: [-0.5, 0], ArrowLeft: [0, 1.5], ArrowRight: [0, -1.5] };
   const SILENCE = 20; // seconds until it is sure that Validate does not begin
+  const SETTLES = 20; // tenths of a second in which a page comes to rest after the end of a cell
   const AGAIN = 300; // milliseconds; the robot obeys a command for a second
 
   const SHOWN = `
@@ -79,7 +80,7 @@ window._JUPYTERLAB["ros2-course-buttons"] = (() => {
       shared = scope;
     },
     async get() {
-      const [{ Notification }, { INotebookTracker }, { PageConfig }] = await Promise.all(
+      const [{ Notification }, { INotebookTracker, NotebookActions }, { PageConfig }] = await Promise.all(
         ["@jupyterlab/apputils", "@jupyterlab/notebook", "@jupyterlab/coreutils"].map(module_),
       );
       const say = message => Notification.info(message, { autoClose: 5000 });
@@ -126,11 +127,36 @@ window._JUPYTERLAB["ros2-course-buttons"] = (() => {
             if (!card) continue;
             const why = whyOf(check(panel, place));
             card.classList.replace("agc-waiting", "agc-over");
+            // A card that grows counts the seconds in a notice, and has rows that were to come.
+            card.querySelector(".agc-notice")?.remove();
+            for (const row of card.querySelectorAll(".agc-open .agc-result")) row.textContent = "NOT JUDGED";
             card.querySelector(".agc-state").textContent = why;
             card.setAttribute("aria-label", why);
             outputs.set(at, { ...output, data: { "text/html": card.outerHTML, "text/plain": why } });
           }
         }
+      }
+
+      // After Shift+Enter the view follows the next cell, so that the head of a card would be above it. A card that fits
+      // comes into view as a whole, another one with its head at the top. Who has gone to another cell stays there.
+      async function showVerdict(panel, cell) {
+        const { content } = panel;
+        const isHere = () => [0, 1].includes(content.activeCellIndex - content.widgets.indexOf(cell));
+        const view = content.node.querySelector(".jp-WindowedPanel-outer") ?? content.node;
+        let goesOn = true; // until the student scrolls, presses a key or clicks
+        const end = new AbortController();
+        for (const name of ["wheel", "keydown", "pointerdown"])
+          window.addEventListener(name, () => { goesOn = false; }, { capture: true, signal: end.signal });
+        // JupyterLab draws outputs and moves the view for some time after the end of a cell.
+        for (let turn = 0; turn < SETTLES && goesOn && isHere(); turn++) {
+          const card = cell.node.querySelector(".agc:not(.agc-waiting)");
+          const head = card?.querySelector(".agc-head").getBoundingClientRect();
+          const box = view.getBoundingClientRect();
+          if (head && (head.top < box.top || head.bottom > box.bottom))
+            card.scrollIntoView({ block: card.offsetHeight < box.height ? "nearest" : "start" });
+          await new Promise(done => setTimeout(done, 100));
+        }
+        end.abort();
       }
 
       // Why a check has no result whose kernel has ended. If the check itself ends it, a third one would, too. Its card
@@ -286,6 +312,10 @@ window._JUPYTERLAB["ros2-course-buttons"] = (() => {
         autoStart: true,
         optional: [INotebookTracker],
         activate(app, tracker) {
+          NotebookActions.executed.connect((_, { notebook: content, cell }) => {
+            const panel = tracker?.find(one => one.content === content);
+            if (panel && isCheck(cell)) showVerdict(panel, cell);
+          });
           document.addEventListener("click", event => {
             const panel = notebook(app);
             if (panel && event.target.closest?.("jp-button, button")?.textContent.trim() === "Validate") tellOfValidation(panel);
