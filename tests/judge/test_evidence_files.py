@@ -6,6 +6,7 @@ import json
 import math
 import random
 import zlib
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -102,6 +103,29 @@ def test_what_is_expected_of_each_exercise_comes_back_as_it_is(exercise_id: str)
     ]
     assert (kept.at, kept.verdict, kept.cut) == (1.5, VERDICT, "")
     assert kept.reference == evidence_files.reference_digest(exercise_id)
+
+
+def test_the_record_of_the_solution_in_a_class_s_drawing_comes_back() -> None:
+    practice = replace(EXPECTED, parts=[Part("drawing 0")])
+    drawn = Part("drawing 0f1e", {}, [Event(0.0, "noted", "/level", {"values": [[1]]})])
+    seen = Evidence([Part("drawing 0f1e", {}, [Event(0.1, "noted", "/level", {"values": [[2]]})])], practice)
+    evidence = Evidence(seen.parts, practice, real_time=True, before=seen)
+    found = evidence_files.evidence_of(
+        evidence_files.unpack(evidence_files.pack(VERDICT, evidence, "abc", at=1.5, expected=[drawn])),
+        practice,
+    )
+    assert found.reference.parts == [drawn]
+    assert found.before is not None
+    assert found.before.reference.parts == [drawn]
+    assert [list(look.parts) for look in (found.before, found)] == [list(seen.parts)] * 2
+
+
+def test_evidence_of_an_earlier_course_is_judged_with_the_practice_drawings() -> None:
+    practice = replace(EXPECTED, parts=[Part("drawing 0"), Part("drawing 1")])
+    data = evidence_files.pack(VERDICT, Evidence([Part("drawing 1")], practice), "abc", at=1.5)
+    assert b"the solution" not in evidence_files.lines_of(data)
+    found = evidence_files.evidence_of(evidence_files.unpack(data), practice)
+    assert found.reference is practice
 
 
 def test_both_looks_come_back() -> None:

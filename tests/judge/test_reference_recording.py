@@ -134,3 +134,63 @@ def _record(monkeypatch: pytest.MonkeyPatch, look: _Looks, exercise: Exercise = 
     bare = Reference(exercise.id, {})
     monkeypatch.setattr(reference_recording, "_endpoints_of_solution", lambda *_: bare)
     return reference_recording.record(exercise, cast("Any", _Subject()), domain_id=1)
+
+
+PRACTICE = Reference(
+    "lab_9_1.talker",
+    {},
+    [Part("drawing 0", {}, [Event(0.0, "message", "/chatter", {"fields": {"data": 1}})])],
+)
+
+
+@pytest.mark.parametrize(
+    ("numbers", "attempt", "recorded"),
+    [
+        pytest.param((2, 2), 0, 2, id="it tells, and the solution does the same twice"),
+        pytest.param((1, 2, 2), 1, 2, id="in the first drawing, the answer to a practice drawing is right"),
+        pytest.param((2, 3, 4, 4), 1, 4, id="in the first drawing, the solution does not do the same twice"),
+        pytest.param((2, None, 2), 0, 2, id="a look is doubtful"),
+        pytest.param((1, 1, 1, 1, 1), 3, 1, id="no drawing tells, so the last one counts"),
+    ],
+)
+def test_a_drawing_of_a_class_is_drawn_again_unless_it_tells(
+    numbers: tuple[int | None, ...], attempt: int, recorded: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    look = _Looks(*numbers)
+    (part,) = _record_drawing(monkeypatch, look).parts
+    assert part.name == ("drawing x" if not attempt else f"drawing x.{attempt}")
+    assert part.events[0].data["number"] == recorded
+    assert look.taken == len(numbers)
+
+
+def test_a_solution_that_does_not_do_the_same_twice_is_not_recorded(monkeypatch: pytest.MonkeyPatch) -> None:
+    with pytest.raises(reference_recording.NotRecordable, match="did not do the same twice"):
+        _record_drawing(monkeypatch, _Looks(*range(10, 18)))
+
+
+def test_a_drawing_is_not_drawn_again_when_the_time_is_over(monkeypatch: pytest.MonkeyPatch) -> None:
+    look = _Looks(1, 1)
+    assert _record_drawing(monkeypatch, look, limit=0.0).parts[0].name == "drawing x"
+
+
+def _record_drawing(monkeypatch: pytest.MonkeyPatch, look: _Looks, limit: float = 60.0) -> Reference:
+    def drawn(exercise: Exercise, subject: object, reference: Reference, *more: Any, **options: Any) -> Seen:
+        seen = look(exercise, subject, reference, *more, **options)
+        named = [replace(part, name=reference.drawings[0]) for part in seen.evidence.parts]
+        return replace(seen, evidence=replace(seen.evidence, parts=named))
+
+    def as_the_solution(evidence: Evidence) -> Finding:
+        mine, due = (
+            part.events[0].data["fields"]["data"] for part in (evidence.main, evidence.reference.parts[0])
+        )
+        return Finding(mine == due, str(due), str(mine))
+
+    monkeypatch.setattr(reference_recording, "look", drawn)
+    monkeypatch.setattr(reference_recording, "load_reference", lambda _: PRACTICE)
+    exercise = replace(
+        EXERCISE,
+        limit=limit,
+        criteria=(Criterion("same", "Says the same", 10, as_the_solution),),
+        mistakes=(),
+    )
+    return reference_recording.record_drawing(exercise, cast("Any", _Subject()), "drawing x", domain_id=1)

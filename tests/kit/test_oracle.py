@@ -11,7 +11,7 @@ import pytest
 from autograder.kit.bench import Pace
 from autograder.kit.counterparts import Qos
 from autograder.kit.evidence import Event, Evidence, Part, Reference, Variant
-from autograder.kit.oracle.same_as_solution import SameAsSolution, Sets, To
+from autograder.kit.oracle.same_as_solution import SameAsSolution, Serves, Sets, To
 from autograder.kit.oracle.steps import Turn
 
 if TYPE_CHECKING:
@@ -96,6 +96,54 @@ def failed(part: Part) -> dict[str, tuple[str, str]]:
 def test_the_solution_in_the_same_drawing_decides() -> None:
     assert failed(run(RIGHT)) == {}
     assert set(failed(run(RIGHT, drawing=0))) == {"cmd_vel"}
+
+
+def test_a_drawing_that_is_not_known_is_an_error() -> None:
+    with pytest.raises(KeyError, match="has no part 'drawing 7'"):
+        failed(run(RIGHT, drawing=7))
+
+
+def test_a_subject_that_was_given_no_drawing_has_no_points() -> None:
+    """For example, a subject that could not be started."""
+    nothing = replace(evidence_of(run(RIGHT)), parts=[])
+    findings = [one.judge(nothing) for one in exercise().criteria]
+    assert not any(finding.passed for finding in findings)
+
+
+def test_the_name_of_a_drawing_says_which_inputs_are_given() -> None:
+    """A recording has the practice drawings or those that it names; a check gives one that the reference has."""
+
+    def given(*recorded: str, drawings: Sequence[str] = ()) -> list[tuple[str, float]]:
+        bench = _Bench(Reference("a.b", INTERFACE, [Part(name) for name in recorded], drawings=drawings))
+        draws: list[float] = []
+
+        def gives(random: Random) -> list[To]:
+            draws.append(random.random())
+            return [To("/scan", draws[-1])]
+
+        made = SameAsSolution("a.b", "A", "B", gives=gives, tells={"/cmd_vel": "data"}).exercise()
+        draws.clear()
+        made.scenario(bench)  # type: ignore[arg-type]
+        return list(zip(bench.parts, draws, strict=True))
+
+    practice = given()
+    assert [name for name, _ in practice] == [f"drawing {number}" for number in range(4)]
+    assert given("drawing 2") == [practice[2]]
+    of_a_class = given(drawings=["drawing 0f1e"])
+    assert given("drawing 0f1e") == of_a_class
+    assert [name for name, _ in of_a_class] == ["drawing 0f1e"]
+    assert of_a_class[0][1] not in dict(practice).values()
+
+
+def test_an_exercise_without_drawn_inputs_has_no_drawings() -> None:
+    def made(**more: Any) -> Exercise:
+        return SameAsSolution("a.b", "A", "B", tells={"/cmd_vel": "data"}, **more).exercise()
+
+    assert not made(gives=lambda _: [To("/scan", 1.0)]).is_drawn
+    assert made(gives=lambda random: [To("/scan", random.random())]).is_drawn
+    assert made(
+        gives=lambda _: [1.0], serves={"/where": Serves(lambda random: {"data": random.random()})}
+    ).is_drawn
 
 
 def test_a_card_shows_the_first_step_that_differs() -> None:
@@ -281,6 +329,10 @@ class _Bench:
 
     def __init__(self, reference: Reference) -> None:
         self.reference, self.made = reference, list[tuple[str, Qos]]()
+        self.random, self.parts = Random(1), list[str]()
+
+    def part(self, name: str) -> None:
+        self.parts.append(name)
 
     def listen(self, topic: str, _: str, *, qos: Qos) -> None:
         self.made.append((topic, qos))
