@@ -24,7 +24,7 @@ RETURNED = "returned"
 
 
 class Returns(SameAsSolution):
-    """An exercise about a function without ROS, which gets a list and returns a list that is as long.
+    """An exercise about a function without ROS, which gets a list and returns a list or a tuple that is as long.
 
     It is called twice with the same list, so what the first call leaves behind shows in the second.
 
@@ -95,7 +95,7 @@ class Returns(SameAsSolution):
 
 
 def _returned(bench: Bench) -> list[Any]:
-    """Return the list that the function returned, or that a program printed last; an empty one if it is no list."""
+    """Return the list or tuple that the function returned, or that a program printed last; else an empty list."""
     seen = bench.seen()
     value = value_of(seen.returned or "".join(seen.said()[-1:]))
-    return value if isinstance(value, list) else []
+    return [*value] if isinstance(value, (list, tuple)) else []
