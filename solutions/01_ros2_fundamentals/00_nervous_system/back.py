@@ -4,6 +4,7 @@ from itertools import groupby
 
 from autograder.kit.mission.driving import movement
 from autograder.kit.mission.mission import Mission, Moment
+from autograder.kit.mission.moment import number_of
 
 COUNT = (
     "Compare with the task: 16 × linear.x = 0.5, then 4 × angular.z = 1.57, then 16 × linear.x = 0.5, then all numbers "
@@ -12,6 +13,8 @@ COUNT = (
 THERE, BACK = "Drives into the right room", "Comes back into the left room"
 
 
+FASTEST_TURN = 2.0
+"""The most radians per second that the robot turns."""
 PARTS = 4
 """The most parts of a way that a card names."""
 
@@ -22,6 +25,13 @@ def way(now: Moment) -> str:
     told = ", then ".join(f"{count} × {said}" for said, count in parts[:PARTS])
     more = ", and more" if parts[PARTS:] else ""
     return f"{told}{more}. It ended at x = {now.pose.x:.1f} m, y = {now.pose.y:.1f} m"
+
+
+def too_fast(now: Moment) -> str:
+    """Return the fastest turn that was commanded, in radians per second; empty if the robot turns so fast."""
+    turns = (abs(number_of(command, "angular", "z")) for command in now.part.of("message", now.topic))
+    fastest = max(turns, default=0.0)
+    return f"{fastest:g}" if fastest > FASTEST_TURN and BACK not in now.reached else ""
 
 
 EXERCISE = Mission(
@@ -35,6 +45,12 @@ EXERCISE = Mission(
     ],
     never=[("Touches no wall", lambda now: now.bumped, "touches", 2)],
     knows=[
+        (
+            "too_fast",
+            too_fast,
+            "Your robot is told to turn with {} radians per second, and it turns by at most 2 in a second.",
+            "Turn more slowly, with more commands.",
+        ),
         (
             "wrong_movement",
             lambda now: now.bumped and way(now),
