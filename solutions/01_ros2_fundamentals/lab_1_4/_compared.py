@@ -93,6 +93,7 @@ def goals_seen(evidence: Evidence) -> Goals:
     )
     last = [one for one in second if len(one.due) == LAST_ORDER + 1]
     older = ended_by_a_younger(run)
+    asked_again = older or (first[LONG].was_canceled_too_late and first[LONG_ALONE].accepted)
     later = [one for one in (first[YOUNGER], first[LONG_ALONE]) if one.accepted]
 
     def sent(*numbers: int) -> list[ComparedGoal]:
@@ -106,7 +107,7 @@ def goals_seen(evidence: Evidence) -> Goals:
         welcome=[*sent(*range(len(first))), *third, *last],
         bad=[one for one in second if one not in last],
         last=last,
-        canceled=third or ([first[LONG_ALONE]] if older else [first[LONG], *later]),
+        canceled=third or ([first[LONG_ALONE]] if asked_again else [first[LONG], *later]),
         ended_for_another=older,
         sent=sent,
         longest=longest,
