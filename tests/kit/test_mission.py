@@ -36,7 +36,7 @@ class Ros:
     ):
         self.pace, self.random = Pace.FAST, Random("seed")
         self.reference = Reference("a.b", interface, more.get("recorded", ()))
-        self.moment, self.heard = 100.0, dict[str, Any]()
+        self.moment, self.heard, self.before = 100.0, dict[str, Any](), more.get("before")
         self._answer, self._hangs_at = answer, more.get("hangs_at", 1e9)
         self.events: list[Event] = []
         self.asked_whether_it_spins = False

@@ -66,7 +66,7 @@ class Mission:
         world: The world at the beginning.
         draws: Draws the steps, which the judge takes one after the other: another :class:`World`, :class:`To` a topic
             or service, a :class:`Goal` for an action, seconds of the subject's time to let pass, or a condition to
-            await. A condition has to hold for a robot that gives up, too: otherwise the mission lasts ``within``.
+            await. A condition has to hold for a robot that gives up, too: it is awaited until the mission is over.
         reaches: The lines about what must hold at some moment: text and condition.
         never: The lines about what must hold at no moment. They count only if a line of ``reaches`` was reached.
         same: The lines about a fact at the end that must be the solution's: text, and a function that returns the fact
@@ -81,10 +81,12 @@ class Mission:
         serves: For services other than a lamp's switch, a function that returns the fields of the answer.
         late: For services that answer their first request late, the delay in seconds of the subject's time.
         roles: The roles of the subject's endpoints, the most telling first.
-        within: Seconds of the subject's time for the whole mission.
+        within: Seconds of the subject's time for the whole mission: so many that only a robot that never arrives fails
+            by them. With fewer, the world that was drawn decides about a slow one.
         until: The mission is over a second after this holds; by default, after all of ``reaches`` were reached.
         quiet: The mission is over if the robot has not moved, which may be because it pushes against a wall, and the
-            subject has sent nothing for so many seconds.
+            subject has sent nothing for so many seconds. If something has to be reached, to repeat the last message is
+            nothing, and a robot that circles under one command is over, too.
         threads: The number of threads that spin a class of a notebook.
         points: The points of the exercise, in equal parts for the lines without points.
 

@@ -34,6 +34,7 @@ EXERCISE = Mission(
     draws=lambda random: [World(start=Pose(random.uniform(0.8, 1.4), 2.0, AWAY))],
     late={"/lamp": 1.5},
     until=lambda now: bool(now.part.of("result")),
+    within=60.0,
     drives=("Drives one round", "round", 2),
     rate=("Twice a second", "rate", 1),
     same=[
