@@ -19,6 +19,8 @@ from rclpy.action import ActionClient, ActionServer
 from rclpy.action import client as client_module
 from rclpy.executors import SingleThreadedExecutor
 
+from autograder.dds_discovery import claim_free_domain
+
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
     from types import TracebackType
@@ -80,8 +82,8 @@ class WatchedClient(ActionClient):
 @pytest.fixture
 def spun() -> Iterator[Callable[[str], Any]]:
     """Return a function that makes a node, which a thread of its own spins until the test ends."""
-    context = rclpy.Context()
-    context.init()
+    claim, context = claim_free_domain(), rclpy.Context()
+    context.init(domain_id=claim.domain)
     ends: list[Callable[[], object]] = []
 
     def make(name: str) -> Any:
@@ -97,6 +99,7 @@ def spun() -> Iterator[Callable[[str], Any]]:
     for end in ends:
         end()
     context.shutdown()
+    claim.release()
 
 
 def answer_of(future: Future) -> Any:

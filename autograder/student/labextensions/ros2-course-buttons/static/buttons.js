@@ -127,9 +127,8 @@ window._JUPYTERLAB["ros2-course-buttons"] = (() => {
             if (!card) continue;
             const why = whyOf(check(panel, place));
             card.classList.replace("agc-waiting", "agc-over");
-            // A card that grows counts the seconds in a notice, and has rows that were to come.
-            card.querySelector(".agc-notice")?.remove();
-            for (const row of card.querySelectorAll(".agc-open .agc-result")) row.textContent = "NOT JUDGED";
+            // A card that grows counts the seconds in a notice, and has points and rows that were to come.
+            for (const part of card.querySelectorAll(".agc-notice, .agc-badge, .agc-score, .agc-bar, .agc-body")) part.remove();
             card.querySelector(".agc-state").textContent = why;
             card.setAttribute("aria-label", why);
             outputs.set(at, { ...output, data: { "text/html": card.outerHTML, "text/plain": why } });
