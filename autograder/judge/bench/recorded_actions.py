@@ -113,15 +113,15 @@ class ScriptedActionServer:
 
     def send_feedback(self, **fields: Any) -> None:
         """Send one feedback message for the current goal."""
-        message = self._type.Impl.FeedbackMessage(goal_id=self._goal_id)
-        message.feedback = filled(self._type.Feedback, fields, f"The feedback of {self._place.name}")
+        feedback = filled(self._type.Feedback, fields, f"The feedback of {self._place.name}")
+        message = self._type.Impl.FeedbackMessage(goal_id=self._goal_id, feedback=feedback)
         self._place.record("feedback", fields=dict(fields))
         self._feedback.publish(message)
 
     def finish(self, status: str, **fields: Any) -> None:
         """End the current goal with a status (a key of :data:`STATUS`) and a result that has these fields."""
-        response = self._type.Impl.GetResultService.Response(status=STATUS[status])
-        response.result = filled(self._type.Result, fields, f"The result of {self._place.name}")
+        result = filled(self._type.Result, fields, f"The result of {self._place.name}")
+        response = self._type.Impl.GetResultService.Response(status=STATUS[status], result=result)
         self._place.record("result", status=status, fields=dict(fields))
         self._set_status(STATUS[status])
         with self._lock:
