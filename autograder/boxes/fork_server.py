@@ -213,7 +213,7 @@ class ForkServer:
             if mode == BESIDE:
                 variables["PATH"] = os.environ.get(
                     "PATH", os.defpath
-                )  # bubblewrap may be where no box can see it
+                )  # a box may not see bubblewrap's folder
             self._process = python_child(*arguments, environment=variables).start(
                 stdin=subprocess.PIPE,
                 stdout=subprocess.DEVNULL,

@@ -314,7 +314,7 @@ def _own_folders(home: Path, temporary: Path, log: Path) -> dict[str, str]:
 def _kept(given: Mapping[str, str]) -> dict[str, str]:
     """Return the variables that Python and ROS need. Search paths keep only folders that a box sees."""
     kept = listed_environment(given)
-    seen = (*SYSTEM, *_python_prefixes(), *_ros_prefixes(given))
+    seen = (*map(Path, SYSTEM), *_python_prefixes(), *_ros_prefixes(given))
     for name in SEARCH_PATHS & kept.keys():
         entries = kept.pop(name).split(os.pathsep)
         if entries := [entry for entry in entries if any(map(Path(entry).is_relative_to, seen))]:

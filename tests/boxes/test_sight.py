@@ -24,6 +24,7 @@ from autograder.execution.notebook_processes import BoxedProcesses, NotebookSett
 from autograder.execution.notebook_runner import run_notebook
 from autograder.messages.judge_messages import SOCKET_VARIABLE
 from autograder.safe_files import scratch_folder
+from environment import ros_flavour
 from environment.place import Place
 from environment.ros_flavour import Ros
 
@@ -323,7 +324,7 @@ def sourced(tmp_path: Path) -> dict[str, str]:
 def test_a_sourced_ros_is_part_of_the_installation_and_a_workspace_is_not(
     tmp_path: Path, sourced: dict[str, str], monkeypatch: pytest.MonkeyPatch, recorded: Ros | None, seen: str
 ) -> None:
-    monkeypatch.setattr(visible_host.ros_flavour, "load", lambda _: recorded)
+    monkeypatch.setattr(ros_flavour, "load", lambda _: recorded)
     found = [path for path in visible_host._installation(sourced) if path.is_relative_to(tmp_path)]
     assert found == [tmp_path / seen] * bool(seen)
     got = visible_host.box_environment(given=sourced)

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 
-from environment import bootstrap
+from environment import bootstrap, system_packages
 from environment.place import Place, environment_paths
 from environment.ros_flavour import Ros
 from environment.setup_steps import Setup, SetupError
@@ -196,7 +196,7 @@ def test_a_set_up_removes_what_earlier_ones_have_left(
     (place.notes / "setup.log").chmod(0o644)
     monkeypatch.setattr(Setup, "steps", lambda *_: [])
     monkeypatch.setattr(Setup, "compile_modules", lambda _: None)
-    monkeypatch.setattr(bootstrap.system_packages, "require", lambda *_: None)
+    monkeypatch.setattr(system_packages, "require", lambda *_: None)
     monkeypatch.setattr(bootstrap, "_provide", lambda *_: None)
     bootstrap.set_up(place, {"PATH": os.environ["PATH"]}, with_tests=False)
     assert [path.name for path in place.notes.iterdir()] == ["setup.log"]

@@ -52,7 +52,7 @@ def read_overlays(folder: Path) -> tuple[Path, ...]:
         folder: The folder of the class, to which a path in the file may be relative.
 
     Raises:
-        GradingError: The file cannot be used, or names something else than an installed workspace.
+        GradingError: The file cannot be used, or names a folder that is not an installed workspace.
     """
     found = tuple(Path(folder, Path(name).expanduser()) for name in read_class_file(folder).overlays)
     for path in found:

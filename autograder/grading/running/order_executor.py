@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import contextlib
 import functools
+import os
 import sys
 import threading
 import warnings
@@ -19,6 +20,7 @@ import msgspec
 
 from autograder import course
 from autograder.boxes.fork_server import ForkServers
+from autograder.boxes.visible_host import OVERLAYS
 from autograder.grading.grading_task import Task
 from autograder.grading.running.task_execution import execute, ros_variables, runners_of
 from autograder.grading.running.worker_messages import (
@@ -36,6 +38,7 @@ from autograder.grading.running.worker_messages import (
 from autograder.judge import controlled_judge
 from autograder.messages.json_lines import Hangup, Lines
 from autograder.process_trees import adopt_orphans, end_descendants
+from autograder.workspaces.builds.install_folder import with_prefixes
 
 if TYPE_CHECKING:
     from autograder.boxes.fork_server import Addresses
@@ -153,6 +156,9 @@ def main(arguments: list[str]) -> None:
             be executed in boxes.
     """
     adopt_orphans()
+    # The processes that it starts get these variables, as far as they lead to what a box sees.
+    overlays = [Path(entry) for entry in os.environ.get(OVERLAYS, "").split(os.pathsep) if entry]
+    os.environ.update(with_prefixes(os.environ, overlays))
     # A setup.py of a student may cause thousands of these warnings when it is parsed.
     warnings.simplefilter("ignore", SyntaxWarning)
     executor, grader = Executor(Path(arguments[0])), Lines.with_parent()

@@ -20,7 +20,6 @@ from autograder.grading.running.worker_messages import ADDRESS, Broken, Command,
 from autograder.messages.json_lines import Hangup, Lines, Silent
 from autograder.process_trees import end_processes_in, end_soon
 from autograder.safe_files import unnamed_file
-from autograder.workspaces.builds.install_folder import with_prefixes
 from environment.python_child import python_child
 
 if TYPE_CHECKING:
@@ -46,11 +45,7 @@ class ProcessLink:
 
     def __init__(self, *words: str, scratch: Path | None, overlays: Sequence[Path] = ()) -> None:
         self._words, self._scratch = words, scratch
-        # The process also gets the search paths, because it hands on those that lead to what a box sees.
-        self._variables = {
-            **with_prefixes(os.environ, overlays),
-            OVERLAYS: os.pathsep.join(map(str, overlays)),
-        }
+        self._overlays = os.pathsep.join(map(str, overlays))
         self._silent_starts = 0
 
     def __enter__(self) -> Self:
@@ -104,7 +99,7 @@ class ProcessLink:
             child = python_child(
                 "-m",
                 *self._words,
-                environment={**self._variables, **course.variables()},
+                environment={**os.environ, **course.variables(), OVERLAYS: self._overlays},
                 folder=None if self._scratch is None else "/",
             )
             self._process = child.start(
