@@ -14,6 +14,7 @@ and, where they differ from the usual:
     # at_most = true                         it may earn less, where the machine is busy
     # boxed_only = true                      it would harm this machine without a box
     # refused = true                         the instructor is to be told of it; `grade` ends with code 2 then
+    # says = "SEARCHED by me"                what its pages or its evidence must have, or else it was never run
 
 In a file of `bank/*/*.py` cells follow:
 
@@ -73,6 +74,7 @@ class Attack:
         at_most: It may earn less than that.
         boxed_only: Not to be run without a box.
         refused: What lies there is no file, and the instructor is told.
+        says: What its pages or its evidence must have, because it shows that the attack was run.
 
     """
 
@@ -87,6 +89,7 @@ class Attack:
     at_most: bool = False
     boxed_only: bool = False
     refused: bool = False
+    says: str = ""
 
     @property
     def is_program(self) -> bool:

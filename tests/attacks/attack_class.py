@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Any, Self
 
 import nbformat
 import ordinary_user
+import planting
 from attack_bank import HERE, USUAL, Attack
 
 from autograder import course
@@ -25,8 +26,10 @@ from autograder.grading.new_classes.new_class import new_class
 from autograder.kit import reported_texts
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Sequence
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
     from pathlib import Path
+
+    from planting import Planted
 
 CELL_SECONDS = 8.0
 NOTEBOOK_SECONDS = 100.0
@@ -72,12 +75,19 @@ class Traps:
         self._udp.bind(("127.0.0.1", 0))
         self.udp_port = int(self._udp.getsockname()[1])
         self._open.callback(self._udp.close)
+        self.planted: Mapping[str, str] = {}
 
     def __enter__(self) -> Self:
         return self
 
     def __exit__(self, *_: object) -> None:
         self._open.close()
+
+    def plant(self, words: Mapping[str, str]) -> Planted:
+        """Plant secrets around the class, which disappear with these traps."""
+        planted = planting.plant(words, self._open)
+        self.planted = planted.secrets
+        return planted
 
     def datagrams(self) -> list[bytes]:
         """What has arrived by UDP."""
@@ -142,6 +152,15 @@ class Graded:
         files = [f for step in ("autograded", "feedback") for f in (self.path / step / student).rglob("*")]
         return "\n".join(f.read_text(errors="replace") for f in sorted(files) if f.is_file())
 
+    def everything_made(self) -> Iterator[bytes]:
+        """What the batch has made, about anybody: pages, tables, the gradebook, results and evidence."""
+        tops = [self.path / name for name in ("autograded", "feedback", "export", "grades.csv")]
+        stores = [self.path / "gradebook.db", self.path / ".autograder" / "class.db"]
+        for path in (*tops, *stores):
+            for file in sorted(path.rglob("*")) if path.is_dir() else [path]:
+                if file.is_file():
+                    yield from planting.everything_in(file)
+
 
 def _listeners_texts() -> str:
     """Python that draws the texts which the judge sends to a listener: the course is public, its boxes are not."""
@@ -166,6 +185,21 @@ class AttackClass:
         new_class(self.path, HERE / "course", cell_seconds=CELL_SECONDS, notebook_seconds=NOTEBOOK_SECONDS)
         with (self.path / "nbgrader_config.py").open("a") as config:
             config.writelines(f"c.WireExecute.{name} = {value}\n" for name, value in LIMITS.items())
+        self._words = {
+            "<<class>>": str(self.path),
+            "<<home>>": str(traps.home),
+            "<<repository>>": str(course.root()),
+            "<<environment>>": sys.prefix,
+            "<<tcp_port>>": str(traps.tcp_port),
+            "<<udp_port>>": str(traps.udp_port),
+            "<<abstract>>": traps.abstract,
+            "<<mark>>": traps.mark,
+            "<<listeners_texts>>": _listeners_texts(),
+            "<<random>>": secrets.token_hex(4),
+            "<<reference>>": str(next(course.root().glob("solutions/*/lab_1_2/talker.reference.json"))),
+        }
+        self._planted = traps.plant(self._words)
+        self._words["<<planted>>"] = repr([str(path) for path in self._planted.paths])
         self._hand_in_honest_work()
 
     def hand_in(self, attack: Attack) -> None:
@@ -200,6 +234,8 @@ class AttackClass:
             ],
             env={
                 **os.environ,
+                **self._planted.variables,
+                **planting.overlay_of(self._traps.home),
                 "HOME": str(self._traps.home),
                 "ATTACK_CANARY": self._traps.secrets["environment"],
             },
@@ -273,19 +309,8 @@ class AttackClass:
 
     def _known(self, cells: Sequence[tuple[str, str, str]]) -> Iterator[tuple[str, str, str]]:
         """Fill in what an attacker who knows the grader's machine would know."""
-        words = {
-            "<<class>>": str(self.path),
-            "<<home>>": str(self._traps.home),
-            "<<repository>>": str(course.root()),
-            "<<environment>>": sys.prefix,
-            "<<tcp_port>>": str(self._traps.tcp_port),
-            "<<udp_port>>": str(self._traps.udp_port),
-            "<<abstract>>": self._traps.abstract,
-            "<<mark>>": self._traps.mark,
-            "<<listeners_texts>>": _listeners_texts(),
-        }
         # First, because there are words of the others in them.
-        words = {**{f"<<{part.stem}>>": part.read_text() for part in HERE.glob("parts/*.py")}, **words}
+        words = {**{f"<<{part.stem}>>": part.read_text() for part in HERE.glob("parts/*.py")}, **self._words}
         for kind, name, source in cells:
             for word, meaning in words.items():
                 source = source.replace(word, meaning)

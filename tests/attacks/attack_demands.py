@@ -34,6 +34,12 @@ def objections(attack: Attack, graded: Graded, traps: Traps) -> list[str]:
             for name, text in traps.secrets.items()
             if text in about
         ),
+        *([f"it has never said {attack.says!r}"] if attack.says and not _has_said(attack, graded) else []),
+        *(
+            ["the grader keeps a secret that it has found"]
+            if attack.says and _keeps_a_leak(attack, graded)
+            else []
+        ),
         *(f"it reached the trap outside ({visitor})" for visitor in traps.visitors if attack.name in visitor),
         *(f"its page runs {element}" for element in _active(graded, attack.name)),
     ]
@@ -58,11 +64,28 @@ def general_objections(chosen: Iterable[Attack], graded: Graded, traps: Traps) -
         *(f"{student} has {graded.points(student)}, not {points}: {list(graded.rows.get(student, {}).values())}"
           for student, points in HONEST.items() if graded.points(student) != points),
         *(f"{name} was changed" for name in changed),
+        *(f"what is planted as {name} came out" for name in _came_out(graded, traps)),
         *(f"{name} was left behind" for name in traces()),
         *(f"a datagram came out: {data[:50]!r}" for data in traps.datagrams() if traps.mark.encode() in data),
         *(f"the trap outside was reached: {visitor}" for visitor in traps.visitors),
         *(f"a process lives on: {process}" for process in processes_left(graded.path, traps.mark)),
     ]  # fmt: skip
+
+
+def _has_said(attack: Attack, graded: Graded) -> bool:
+    return any(attack.says.encode() in made for made in graded.everything_made())
+
+
+def _keeps_a_leak(attack: Attack, graded: Graded) -> bool:
+    """Whether a secret stands in evidence, which pages do not show whole."""
+    return any(f"{LEAK} {attack.name} ".encode() in made for made in graded.everything_made())
+
+
+def _came_out(graded: Graded, traps: Traps) -> list[str]:
+    secrets = {name: text.encode() for name, text in traps.planted.items()}
+    return sorted(
+        {name for made in graded.everything_made() for name, text in secrets.items() if text in made}
+    )
 
 
 def _was_put_right(name: str, graded: Graded) -> bool:
