@@ -328,7 +328,7 @@ def judge(exercise: Exercise, evidence: Evidence, seed: str) -> Verdict:
         Unreadable: The subject did what no judge can read.
     """
     # The decision on more events would take minutes. The bank's answers have at most about a thousand in a part.
-    if sum(len(part.events) for part in evidence) >= MAX_EVENTS:
+    if sum(len(part.events) for part in evidence) > MAX_EVENTS:
         raise Unreadable(FLOOD)
     if unreadable := [event for part in evidence for event in part.of("unreadable")]:
         raise Unreadable(unreadable[0].name)

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING
 
 from autograder import exercises
 from autograder.judge import evidence_files, one_check
-from autograder.judge.check_process import Child
 from autograder.judge.bench.recorder import MAX_EVENTS
+from autograder.judge.check_process import Child
 from autograder.kit.evidence import Event, Evidence, Part
 from autograder.verdict import State
 
@@ -111,7 +111,7 @@ def test_more_events_than_the_judge_reads_are_zero_with_a_reason(monkeypatch: py
 
     def look(*words: object, **_: object) -> one_check.Seen:
         looks.append(str(words[3]))
-        return one_check.Seen(with_events(exercise, MAX_EVENTS, "matched"), doubtful=False)
+        return one_check.Seen(with_events(exercise, MAX_EVENTS + 1, "matched"), doubtful=False)
 
     monkeypatch.setattr(one_check, "look", look)
     subject: object = Anybody()
@@ -126,13 +126,13 @@ def test_more_events_than_the_judge_reads_are_zero_with_a_reason(monkeypatch: py
     assert verdict.diagnosis
     assert verdict.diagnosis.key == "undecidable"
     assert len(looks) == 1  # another look would bring the same events
-    assert one_check.decide(exercise, with_events(exercise, MAX_EVENTS, "matched"), "s") == replace(
+    assert one_check.decide(exercise, with_events(exercise, MAX_EVENTS + 1, "matched"), "s") == replace(
         verdict, seconds=0.0
     )
 
 
 def test_as_many_events_as_the_judge_reads_are_judged() -> None:
     exercise = exercises.get("lab_1_2.listener")
-    verdict = one_check.decide(exercise, with_events(exercise, MAX_EVENTS - 1, "parameters"), "s")
+    verdict = one_check.decide(exercise, with_events(exercise, MAX_EVENTS, "parameters"), "s")
     assert verdict.diagnosis
     assert verdict.diagnosis.key != "undecidable"

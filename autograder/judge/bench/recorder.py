@@ -18,7 +18,9 @@ if TYPE_CHECKING:
     from autograder.judge.bench.judge_nodes import Wire
 
 MAX_EVENTS = 20_000
-"""The maximum number of events in one part, so that a flood does not fill the memory."""
+"""The maximum number of events in one part, so that a flood does not fill the memory. The event after these is the last
+that is recorded; it shows that the subject said and sent too much.
+"""
 MAX_SAID = 1_000_000
 """The maximum number of characters of output and log in one part. If a subject writes more, the oldest are dropped."""
 MAX_TEXT = 50_000
@@ -100,12 +102,16 @@ class Recorder:
             self._size += size
             if kind in _SPEECH:
                 self._said += size
-                if self._said > MAX_SAID or len(self._events) >= MAX_EVENTS:
-                    self._forget_old_words()
-            if len(self._events) < MAX_EVENTS:
+            if self._said > MAX_SAID or len(self._events) == MAX_EVENTS:
+                self._forget_old_words()
+            if not self._is_full:
                 t = (time.monotonic() if moment is None else moment) - self._start
                 self._events.append(Event(t, kind, name[:MAX_NAME], kept, self.simulated_now))
             self._changed.notify_all()
+
+    @property
+    def _is_full(self) -> bool:
+        return len(self._events) > MAX_EVENTS
 
     def _forget_old_words(self) -> None:
         """Drop the older half of the subject's output, so that much output does not displace other events."""
@@ -153,7 +159,7 @@ class Recorder:
             True if the condition held in time.
 
         Raises:
-            Unreadable: The record is full, so what comes now is not in it.
+            Unreadable: The record is full, although the older words were dropped. What comes now is not in it.
         """
         slowness = (lambda: 1.0) if wall else None
         patience = Patience(within, slowness=slowness)
@@ -161,7 +167,7 @@ class Recorder:
         heard = self._count
         while True:
             self._hurry()
-            if len(self._events) >= MAX_EVENTS:
+            if self._is_full:
                 raise Unreadable(FLOOD)
             # Read the count before the condition, so that an event during the check is not slept through below.
             seen = self._count

@@ -1,7 +1,7 @@
 """What a node answers about its parameters, as it is compared with the solution.
 
-A subject may serve these services itself, and then answers whatever it likes. An answer of another form than rclpy's is
-noted in words, so that it is a difference from the solution.
+A subject may serve these services itself, and then answers whatever it likes. An answer that rclpy's services never give
+is noted in words, so that it is a difference from the solution.
 """
 
 from __future__ import annotations

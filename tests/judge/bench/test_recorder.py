@@ -72,10 +72,19 @@ def test_a_flood_is_cut(monkeypatch: object) -> None:
     book = Recorder()
     for number in range(recorder.MAX_EVENTS + 5):
         book.record("message", "/flood", number=number)
-    assert len(book.part().events) == recorder.MAX_EVENTS
+    assert len(book.part().events) == recorder.MAX_EVENTS + 1
     # What a scenario waits for now may be missing from the record, so no scenario goes on.
     with pytest.raises(Unreadable, match=FLOOD):
         book.wait(lambda: True, 0.0)
+
+
+@pytest.mark.parametrize("kind", ["output", "request"])
+def test_a_flood_of_words_fills_no_record(kind: str) -> None:
+    book = Recorder()
+    for _ in range(recorder.MAX_EVENTS):
+        book.record("output", "stdout", text="")
+    book.record(kind, "last", text="")
+    assert book.wait(lambda: book.part().events[-1].name == "last", 0.0)
 
 
 @pytest.mark.parametrize("text", ["", "a line", "x" * 1000])
