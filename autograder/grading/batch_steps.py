@@ -13,6 +13,7 @@ from autograder.grading.batch_work import (
     due_dates,
     find_work,
     forget_unneeded_documents,
+    moved_points,
     without_grade,
     would_change,
 )
@@ -100,6 +101,7 @@ class Batch:
         self._run_again: Counter[str] = Counter()
         self._reused = 0
         self._written = 0
+        self._moved: list[Difference] = []
 
     @functools.cached_property
     def _writer(self) -> Writer:
@@ -322,6 +324,7 @@ class Batch:
             would_change=tuple(changes) if self._asked.dry_run else None,
             executed=self._run_again.total(),
             run_again={why: count for why, count in self._run_again.items() if why},
+            moved=tuple(self._moved),
             reused=self._reused,
             written=self._written,
             seconds=time.monotonic() - self._began,
@@ -381,6 +384,7 @@ class Batch:
             self._problems.append(str(error))
             work.rows = tuple(without_grade(row) for row in rows)
         else:
+            self._moved += moved_points(work, rows, self._entered.get(work.key))
             work.rows = rows
             work.written = True
             self._written += 1

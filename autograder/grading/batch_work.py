@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
     from datetime import datetime
 
+    from autograder.grading.class_records import Attempt
     from autograder.grading.classes.class_directory import ClassDirectory
     from autograder.grading.classes.gradebook_reading import Entries
     from autograder.grading.grading_task import GradedCell
@@ -202,6 +203,22 @@ def would_change(
                     Difference(*work.key, LATE, before, after, note=then.why_late(directory.time_zone))
                 )
     return changes
+
+
+def moved_points(work: Work, rows: Iterable[Row], earlier: Attempt | None) -> Iterator[Difference]:
+    """Yield the judge's points that differ from those of the attempt before, although the submission is the same.
+
+    Args:
+        rows: The new results of the submission.
+        earlier: The attempt that was in the gradebook before; None if there was none.
+    """
+    if earlier is not None and earlier.made_from.handed_in == work.made_from.handed_in:
+        before = {row.exercise: row for row in earlier.rows}
+        for row in rows:
+            old = before.get(row.exercise, row)
+            if old.score != row.score:
+                points, diagnoses = (old.score, row.score), (old.diagnosis, row.diagnosis)
+                yield Difference(*work.key, row.exercise, *points, *diagnoses)
 
 
 def _foreseen(

@@ -61,6 +61,7 @@ class GradeReport:
         would_change: After a dry run, the points that would change; None if points were entered.
         executed: The number of notebooks that were executed.
         run_again: The number of notebooks that were executed again, by the reason.
+        moved: The points of unchanged submissions that differ from those of the run before.
         reused: The number of notebooks whose result was already known.
         written: The number of submissions that this run entered into the gradebook.
         seconds: The duration of the run, in seconds of wall time.
@@ -78,6 +79,7 @@ class GradeReport:
     would_change: tuple[Difference, ...] | None = None
     executed: int = 0
     run_again: Mapping[str, int] = field(default_factory=dict)
+    moved: tuple[Difference, ...] = ()
     reused: int = 0
     written: int = 0
     seconds: float = 0.0
@@ -121,6 +123,7 @@ def report_json(report: GradeReport) -> bytes:
             "notices": [name_as_text(text) for text in report.notices],
             "would_change": report.would_change,
             "run_again": report.run_again,
+            "moved": report.moved,
             "totals": {
                 "executed": report.executed,
                 "reused": report.reused,
@@ -230,6 +233,8 @@ def show(report: GradeReport, console: Console | None = None) -> None:
         plain_line(console, f"note         {notice}")
     for why, count in report.run_again.items():
         plain_line(console, f"run again    {counted(count, 'notebook')}: {why}")
+    for change in report.moved:
+        plain_line(console, f"moved        {change.line()}")
     for problem in report.problems:
         plain_line(console, f"problem      {problem}", "red")
     if report.note:

@@ -23,6 +23,9 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
+    from autograder.execution.executed_cells import Execution
+    from autograder.grading.grading_task import Task
+
 JUDGE, CARDS, EXERCISE, OF_ANOTHER_LAB = COURSE
 
 pytestmark = pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning")
@@ -85,6 +88,33 @@ def test_a_change_of_the_course(
     assert said == [f"run again    2 notebooks: {words}" for words in why]
     assert tiny.scores("ada") == {TALKER: 4, LISTENER: 7}
     assert tiny.grade().executed == 0
+
+
+def test_points_that_move_without_a_new_submission_are_listed(
+    tiny: TinyClass, fake_engine: FakeEngine, course: Callable[..., None], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    tiny.submit("ada", 4, 7)
+    tiny.submit("ben", 4, 7)
+    assert tiny.grade().moved == ()
+    course(EXERCISE)
+    tiny.submit("ben", 10, 10)
+    execute = fake_engine.execute
+
+    def stricter(task: Task) -> Execution:
+        execution = execute(task)
+        lower = {index: replace(one, score=one.score - 1) for index, one in execution.verdicts.items()}
+        return replace(execution, verdicts=lower)
+
+    monkeypatch.setattr(fake_engine, "execute", stricter)
+    report = tiny.grade()
+    console = Console(file=io.StringIO(), width=200)
+    show(report, console)
+    said = [line for line in console.file.getvalue().splitlines() if line.startswith("moved")]  # type: ignore[attr-defined]
+    assert said == [
+        "moved        ada  lab_1_2.talker  4 → 3",
+        "moved        ada  lab_1_2.listener  7 → 6",
+    ]
+    assert len(json.loads(report_json(report))["moved"]) == 2
 
 
 def test_a_corrected_sentence_on_a_card_makes_pages_again_and_executes_nothing(
