@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from autograder.kit.evidence import Event, Evidence, Part, Reference
-from autograder.kit.mistakes.hangs import HANGS
+from autograder.kit.mistakes.hangs import ENDLESS, ENDLESS_LOOP, HANGS, LOOPS
 
 RCLPY = "/venv/lib/python3.11/site-packages/rclpy"
 WAIT = '  File "/usr/lib/python3.11/threading.py", line 320 in wait'
@@ -69,3 +69,35 @@ def test_call_line_and_callback_are_those_of_one_thread() -> None:
 def test_no_stack_names_nothing() -> None:
     evidence = Evidence([Part("part")], Reference("x", {}))
     assert not any(mistake.recognize(evidence) for mistake in HANGS)
+
+
+IN_A_LOOP = IN_CALLBACK["a loop"].replace(
+    "Thread 0x00007f (", "Thread ros-spin in the loop of line 12: while left > 0.0: ("
+)
+
+
+def _shown(text: str, busy: float, *more: Event) -> Evidence:
+    stack = Event(9.0, "stack", "subject", {"text": text, "busy": busy})
+    return Evidence([Part("part", {}, [*more, stack])], Reference("x", {}))
+
+
+def test_a_callback_that_uses_the_processor_is_in_a_loop_and_the_loop_is_quoted() -> None:
+    advice = ENDLESS_LOOP.recognize(_shown(IN_A_LOOP, LOOPS))
+    assert advice is not None
+    assert "Your callback work() does not come to an end" in advice.text
+    assert "It is in the loop of line 12: `while left > 0.0:`." in advice.text
+    assert ENDLESS_LOOP.certain
+
+
+def test_a_callback_that_sleeps_or_waits_for_the_processor_is_in_no_proven_loop() -> None:
+    assert ENDLESS_LOOP.recognize(_shown(IN_A_LOOP, LOOPS / 2)) is None
+
+
+def test_a_goal_with_far_too_much_feedback_is_in_a_loop() -> None:
+    noted = Event(8.0, "noted", ENDLESS, {"feedback": 19})
+    advice = ENDLESS_LOOP.recognize(_shown(IN_A_LOOP, 0.0, noted))
+    assert advice is not None
+    assert (
+        "Your callback work() does not come to an end: to one goal it has sent 19 feedback messages"
+        in advice.text
+    )

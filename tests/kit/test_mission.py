@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from contextlib import suppress
 from dataclasses import replace
 from itertools import pairwise
 from random import Random
@@ -26,6 +27,10 @@ if TYPE_CHECKING:
 TWIST, ODOMETRY, LASER = "geometry_msgs/msg/Twist", "nav_msgs/msg/Odometry", "sensor_msgs/msg/LaserScan"
 BRAKE = {"publisher": {"/cmd_vel": TWIST}, "subscription": {"/scan": LASER, "/odom": ODOMETRY}}
 IN_THE_WAY = World(Walls([Wall((3.0, -1.0), (3.0, 1.0))]), Pose(0.0, 0.0, 0.0))
+
+
+class Confirmed(Exception):
+    """The look in real time goes as the first one went."""
 
 
 class Ros:
@@ -82,6 +87,9 @@ class Ros:
             self.record("feedback", action, fields={"distance": distance})
 
         return SimpleNamespace(await_goal=lambda _: None, send_feedback=send)
+
+    def confirm(self) -> None:
+        raise Confirmed
 
     def note_whether_it_spins(self) -> None:
         self.asked_whether_it_spins = True
@@ -377,3 +385,77 @@ def test_the_way_through_each_world_in_which_the_robot_drove_is_kept() -> None:
 def test_the_way_is_no_part_of_a_recording() -> None:
     _, bench = driven(mission(), brakes(0.9))
     assert "ways" not in dump_reference(Reference("a.b", BRAKE, [bench.seen()]), ["noted"])
+
+
+def follows(*way: tuple[int, float, float]) -> Callable[[Ros], None]:
+    """Return a subject that goes by a counter: so many commands with a speed and a turn, and so on; then it stands."""
+    commands = [(speed, turn) for count, speed, turn in way for _ in range(count)]
+
+    def drive(ros: Ros) -> None:
+        ros.command(*(commands.pop(0) if commands else (0.0, 0.0)))
+
+    return drive
+
+
+AHEAD, BACK, CIRCLE = (80, 0.5, 0.0), (20, 0.0, 1.0), (999, 0.5, 1.0)
+THERE = {
+    "world": World(),
+    "reaches": [("Comes far", lambda now: now.pose.x > 99)],
+    "never": (),
+    "within": 60.0,
+}
+
+
+def ends_at(answer: Callable[[Ros], object], **more: Any) -> float:
+    """Return at which second a mission ends, in a look that confirms the first one or goes to its own end."""
+    bench = Ros(answer, BRAKE, **more)
+    with suppress(Confirmed):
+        mission(**THERE).scenario(bench)  # type: ignore[arg-type]
+    return bench.moment - 100.0
+
+
+def first_look(answer: Callable[[Ros], object]) -> Evidence:
+    bench = Ros(answer, BRAKE)
+    mission(**THERE).scenario(bench)  # type: ignore[arg-type]
+    return Evidence([bench.seen()], bench.reference)
+
+
+@pytest.mark.parametrize(
+    ("way", "ends"),
+    [
+        ([AHEAD, BACK, AHEAD], 10.2),  # at the second change
+        ([(999, 0.5, 0.0)], 9.8),  # at the wall
+        ([(50, 0.5, 0.0)], 7.8),  # where it stands for good
+        ([(2, 0.1, 0.0), (2, 0.2, 0.0), (999, 0.5, 0.0)], 9.8),  # several changes at its start prove nothing
+    ],
+)
+def test_a_look_that_goes_as_the_first_one_ends(way: list[Any], ends: float) -> None:
+    assert ends_at(follows(*way), before=first_look(follows(*way))) == pytest.approx(ends, abs=0.5)
+
+
+@pytest.mark.parametrize(
+    "way", [[AHEAD, BACK, AHEAD], [AHEAD, (999, 0.0, 0.0)], [(999, 0.0, 0.0)], [(40, 0.5, 0.0), BACK, AHEAD]]
+)
+def test_a_look_that_goes_another_way_than_the_first_one_goes_to_its_end(way: list[Any]) -> None:
+    """Such as that of a node which goes by the computer's clock, and did not get on in simulated time."""
+    before = first_look(follows((999, 0.5, 0.0)))
+    assert ends_at(follows(*way), before=before) == ends_at(follows(*way))
+
+
+def test_the_same_commands_at_other_times_confirm_nothing() -> None:
+    slow, quick = [(120, 0.1, 0.0), BACK, AHEAD], [(60, 0.1, 0.0), BACK, AHEAD]
+    assert ends_at(follows(*quick), before=first_look(follows(*slow))) == ends_at(follows(*quick))
+
+
+def test_a_robot_that_stands_goes_on_as_long_as_it_says_something_new() -> None:
+    said = iter(range(100_000))
+    assert ends_at(lambda ros: ros.command(0.0, next(said) * 1e-9)) > 20.0
+
+
+def test_a_robot_that_circles_under_one_command_ends_its_mission_soon() -> None:
+    assert ends_at(follows(CIRCLE)) < 10.0
+    assert ends_at(follows((30, 0.2, 1.0), (999, 0.0, -0.1))) > 20.0
+
+
+def test_a_robot_that_stands_and_repeats_its_command_ends_its_mission_soon() -> None:
+    assert ends_at(follows((10, 0.5, 0.0))) < 10.0

@@ -2,7 +2,6 @@
 
 from autograder.kit.mission.mission import Mission, Moment, Pose, World
 
-
 LEFT = "Turns to the left where there is more room"
 ENOUGH = 45.0
 """Seconds for each of the two turns: a robot of a fifth of the speed needs less, wherever it starts."""
