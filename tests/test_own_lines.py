@@ -6,9 +6,10 @@ import subprocess
 from typing import TYPE_CHECKING
 
 import msgspec
+import pytest
 
 from autograder.messages.judge_messages import OwnLines
-from autograder.own_lines import LONGEST_LINE, MOST_NAMES, MOST_OF_A_NAME, own_lines
+from autograder.own_lines import LONGEST_LINE, MOST_NAMES, MOST_OF_A_NAME, loop_around, own_lines
 from environment.python_child import python_child
 
 if TYPE_CHECKING:
@@ -74,3 +75,29 @@ def test_a_process_reads_the_files_of_a_program_and_runs_none(tmp_path: Path) ->
     output = subprocess.run(reader.command, env=reader.environment, capture_output=True, check=True).stdout
     (line, *_) = msgspec.json.decode(output, type=OwnLines).lines
     assert (line.name, line.place, line.number) == ("create_timer", "talker.py", 1)
+
+
+LOOPS = """def dock(self, goal):
+    for scan in goal.scans:
+        while left > 0.0:
+            self.forward()
+        self.stop()
+    return left
+"""
+
+
+@pytest.mark.parametrize(
+    ("line", "loop"),
+    [
+        (3, "3: while left > 0.0:"),
+        (4, "3: while left > 0.0:"),
+        (5, "2: for scan in goal.scans:"),
+        (6, ""),
+    ],
+)
+def test_the_innermost_loop_around_a_line_is_quoted(line: int, loop: str) -> None:
+    assert loop_around(LOOPS, line) == loop
+
+
+def test_code_that_cannot_be_read_has_no_loop() -> None:
+    assert loop_around("while True", 1) == ""

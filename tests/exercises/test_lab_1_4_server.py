@@ -200,6 +200,21 @@ def test_each_goal_is_canceled_for_itself(more: list[Event], lost: set[str], key
         assert told[0] == key
 
 
+@pytest.mark.parametrize(
+    ("again", "is_right"),
+    [({}, True), ({"cancel": False, "return_code": 3, "status": 4}, False), ({"status": 4}, False)],
+)
+def test_a_goal_that_was_over_before_the_request_came_is_sent_again(
+    again: dict[str, Any], is_right: bool
+) -> None:
+    """A busy judge may ask too late, and then another goal, alone, tells whether it can be canceled."""
+    too_late = {"cancel": False, "return_code": 3, "status": 4}
+    right = [*goal(ALONE, 5), *goal(BESIDE, 4), *goal(AGAIN, 3)]
+    seen = evidence([*right, *later(LONG, **too_late), *later(LONG_ALONE, **again)])
+    assert ("cancel" not in failed(seen)) is is_right
+    assert "cancel" in failed(evidence([*right, *later(LONG, **too_late)]))
+
+
 def test_a_goal_that_is_canceled_only_if_it_is_alone_is_mixed_up_and_not_ignored() -> None:
     ignored = goal(LONG, 20, feedback=[[0, 1, 1], [0, 1, 1, 2]], cancel=True, sequence=FIBONACCI)
     right = [*goal(ALONE, 5), *goal(BESIDE, 4), *goal(AGAIN, 3)]

@@ -1,4 +1,4 @@
-"""A notebook's path is being built until its report says that the build has ended."""
+"""What the judge learns of a notebook's subject: whether it is being built, and whether it is in a loop."""
 
 from __future__ import annotations
 
@@ -6,9 +6,12 @@ from typing import Any, cast
 
 import pytest
 
+from autograder.judge import notebook_subject
 from autograder.judge.bench.recorder import Recorder
-from autograder.judge.notebook_subject import NotebookPath
+from autograder.judge.notebook_subject import NotebookPath, NotebookSubject
+from autograder.kit.mistakes.hangs import LOOPS
 from autograder.kit.runners import WorkspaceReport, workspace_report_line
+from autograder.messages.judge_messages import Stacks
 from autograder.messages.run_messages import Output
 
 
@@ -27,3 +30,24 @@ def test_the_report_of_a_build_ends_it(line: str, building: bool) -> None:
     assert path.is_building
     path._take_of_run(Output(1, line), Recorder())
     assert path.is_building is building
+
+
+@pytest.mark.parametrize(
+    ("used", "asked", "busy"),
+    [
+        pytest.param([0.0], 1, 0.0, id="it waits"),
+        pytest.param([3.0, 3.0], 2, 0.0, id="it waits, and has worked before"),
+        pytest.param([0.5, 0.6, 0.7, 2.0, 2.6, 9.0], 5, 2.1, id="it loops on a busy machine"),
+        pytest.param([1.0, 1.5, 1.5], 3, 0.5, id="its work ends"),
+    ],
+)
+def test_a_loop_is_told_by_the_processor_time_that_the_subject_uses(
+    monkeypatch: pytest.MonkeyPatch, used: list[float], asked: int, busy: float
+) -> None:
+    monkeypatch.setattr(notebook_subject, "ASK_AGAIN", 0.0)
+    subject = NotebookSubject(cast("Any", None))
+    recorder, answers = Recorder(), [Stacks(0, f"stack {n}", one) for n, one in enumerate(used, 1)]
+    monkeypatch.setattr(subject, "_tell", lambda _: subject._take_of_run(answers.pop(0), recorder))
+    assert subject.stack() == f"stack {asked}"
+    assert subject.busy == pytest.approx(busy)
+    assert (subject.busy >= LOOPS) is (busy >= LOOPS)

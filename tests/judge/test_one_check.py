@@ -92,6 +92,26 @@ def test_the_last_look_that_is_needed_decides(
     assert (checked.evidence.before is not None) is (len(looks) == 2)
 
 
+@pytest.mark.parametrize(("first", "doubtful"), [("bad", False), ("good", True)])
+def test_a_look_that_goes_as_the_first_one_leaves_its_verdict(
+    monkeypatch: pytest.MonkeyPatch, first: str, doubtful: bool
+) -> None:
+    stored = evidence_files.load_reference(USUAL.id)
+    looks = iter([(first, False), ("cut short", True)])
+
+    def look(*_: Any, **__: object) -> one_check.Seen:
+        name, confirms = next(looks)
+        return one_check.Seen(Evidence([Part(name)], stored), doubtful, confirms=confirms)
+
+    monkeypatch.setattr(one_check, "look", look)
+    monkeypatch.setattr(Crowding, "too_busy", True)
+    subject: Any = Anybody()
+    checked = one_check.check(exercise(), subject, stored, seed="s", domain_id=0)
+    assert (checked.evidence.main.name, checked.evidence.before) == (first, None)
+    assert checked.verdict.passed is (first == "good")
+    assert next(looks, None) is None
+
+
 @pytest.mark.parametrize(
     ("judged", "seen", "too_busy", "crowded"),
     [

@@ -89,6 +89,7 @@ def test_the_solution_is_recorded_with_several_lists_and_a_subject_gets_one_of_t
     ("function", "passes", "key"),
     [
         (right, True, ""),
+        (lambda numbers: tuple(right(numbers)), True, ""),
         (lambda numbers: [2.0 * number + 1e-5 for number in numbers], True, ""),
         (lambda numbers: [2 * number + 1 for number in numbers], False, ""),
         (lambda numbers: right(numbers)[:-1], False, ""),

@@ -212,3 +212,28 @@ def test_a_subject_that_asks_for_input_finds_none_and_the_front_end_shows_no_box
         assert kernel._input_request("another cell") == "an answer to another cell"
     assert ended == ["EOF when reading a line"]
     assert "_input_request" not in vars(kernel)
+
+
+LOOPING = """def work(over):
+    while not over.is_set():
+        sum(range(100))
+"""
+
+
+def test_a_stack_quotes_the_loop_of_the_student_and_counts_its_processor_time(tmp_path: Path) -> None:
+    file, names, over = tmp_path / "cell.py", dict[str, Any](), threading.Event()
+    file.write_text(LOOPING)
+    exec(compile(LOOPING, str(file), "exec"), names)
+    captured = CapturedOutput(lambda *_: None)
+    thread = threading.Thread(target=names["work"], args=(over,), daemon=True)
+    thread.start()
+    waiting = threading.Thread(target=over.wait, daemon=True)
+    waiting.start()
+    try:
+        while (told := captured.stacks())[1] <= 0.0:
+            pass
+    finally:
+        over.set()
+    assert f"Thread {thread.name} in the loop of line 2: while not over.is_set(): (most recent" in told[0]
+    assert f"Thread {waiting.name} (most recent" in told[0]
+    assert "autograder" not in told[0]
