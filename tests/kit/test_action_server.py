@@ -189,14 +189,14 @@ def test_a_goal_is_canceled_after_so_many_messages_unless_it_is_over(
     assert not sender.finish(0, 1)
 
 
-@pytest.mark.parametrize(("most", "noted"), [(1, [15]), (9, []), (None, [13])])
+@pytest.mark.parametrize(("most", "noted"), [(1, [33]), (40, []), (None, [31])])
 def test_a_goal_for_which_feedback_comes_without_end_is_not_awaited(
     monkeypatch: pytest.MonkeyPatch, most: int | None, noted: list[int]
 ) -> None:
     for limits in ("QUIET", "GOAL_LIMIT"):
         monkeypatch.setattr(f"autograder.kit.oracle.goal_sender.{limits}", {"fast": 1.0})
     *begin, feedback = [event for event in events_of(0) if event.kind != "result_heard"][:3]
-    bench: Any = Bench(*begin, *[feedback] * 25)
+    bench: Any = Bench(*begin, *[feedback] * 60)
     told: list[int] = []
     bench.note = lambda _, feedback: told.append(feedback)
     sender = GoalSender(bench, bench, most=most)

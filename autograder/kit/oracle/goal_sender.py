@@ -18,8 +18,8 @@ QUIET = {Pace.FAST: 3.0, Pace.REAL_TIME: 8.0}
 """The judge no longer waits if no event comes for this many seconds of wall time."""
 GOAL_LIMIT = {Pace.FAST: 15.0, Pace.REAL_TIME: 30.0}
 """The judge no longer waits if nothing comes of a goal for this many seconds, even if the node says other things."""
-TOO_MUCH = 12
-"""A goal does not end if the server has sent so much feedback more than twice what is due. No seconds limit a goal for
+TOO_MUCH = 30
+"""A goal does not end if the server has sent so much feedback more than twice the most. No seconds limit a goal for
 which feedback comes, so that a server may be slow, and the load of the machine changes nothing.
 """
 CANCEL_LIMIT = {Pace.FAST: 4.0, Pace.REAL_TIME: 8.0}
@@ -45,8 +45,8 @@ class GoalSender:
         caller: The judge's client.
         due: Returns how many feedback messages a goal must have sent when its result comes. A busy judge may receive
             them after the result, so it waits for them.
-        most: The most feedback messages that a goal of the solution sends, infinity if that is unknown; by default as
-            many as are due.
+        most: The most feedback messages of a goal; by default as many as those of a server that tells everything again
+            each time.
         simulated: True if the subject may follow simulated time, which then goes on while goals are at work.
     """
 
@@ -166,10 +166,15 @@ class GoalSender:
 
     def _note_endless(self) -> bool:
         """Return True if a goal has sent too much feedback to end rightly, and note that."""
-        goals = [one for one in all_goals(self.bench.seen()) if not one.over]
-        due = [max(0, self._due(one)) if self._most is None else self._most for one in goals]
-        sent = [len(one.feedback) for one, most in zip(goals, due, strict=True)
-                if len(one.feedback) > 2 * most + TOO_MUCH]  # fmt: skip
+        sent = [
+            len(one.feedback)
+            for one in all_goals(self.bench.seen())
+            if not one.over and len(one.feedback) > 2 * self._most_of(one) + TOO_MUCH
+        ]
         if sent and not self.bench.seen().of("noted", ENDLESS):
             self.bench.note(ENDLESS, feedback=max(sent))
         return bool(sent)
+
+    def _most_of(self, sent: SentGoal) -> float:
+        due = max(0, self._due(sent))
+        return due * (due + 3) / 2 if self._most is None else self._most

@@ -11,7 +11,6 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from itertools import product, zip_longest
-from math import inf
 from random import Random
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
@@ -53,6 +52,8 @@ DRAWING = "drawing "
 """The beginning of a drawing's name. The rest is the seed: a number for practice, a secret one for a class."""
 PAUSE = 0.75
 """Seconds of the subject's time after each input. Whatever the input changes must be published by then."""
+MANY = 100
+"""The most feedback messages of a goal that are expected if the feedback is not compared."""
 TOLERANCE = 1e-3
 """The tolerance for numbers, absolute or relative to the larger one."""
 NOTHING: Mapping[str, Any] = MappingProxyType({})
@@ -380,11 +381,11 @@ class SameAsSolution:
         return True
 
     def _most_feedback(self, bench: Bench, action: str) -> float:
-        """Return the most feedback messages that a goal of the solution sends; infinity if that is not compared."""
+        """Return the most feedback messages that a goal of the solution sends; many if that is not compared."""
         noted = [event.data["values"] for part in bench.reference.parts for event in part.of("noted", action)]
-        paths = next(output.paths for output in self._of(Kind.STEPS) if output.name == action)
+        paths = next((output.paths for output in self._of(Kind.STEPS) if output.name == action), ())
         told = [i for i, path in enumerate(paths) if path.startswith("feedback")]
-        return max((len(row[i]) for values in noted for row in values for i in told), default=inf)
+        return max((len(row[i]) for values in noted for row in values for i in told), default=MANY)
 
     def _describe(self, bench: Bench) -> bool:
         """Note the types and ranges of the parameters. Return False if the subject does not answer."""
