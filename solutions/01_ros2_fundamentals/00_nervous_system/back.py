@@ -49,7 +49,8 @@ EXERCISE = Mission(
             "too_fast",
             too_fast,
             "Your robot is told to turn with {} radians per second, and it turns by at most 2 in a second.",
-            "Turn more slowly, with more commands.",
+            "angular.z is in radians per second, and half a turn is 3.14 radians. Turn more slowly, with more "
+            "commands.",
         ),
         (
             "wrong_movement",
