@@ -31,7 +31,7 @@ _NEWS = (
     "cancel_answer",
     "result_heard",
 )
-"""The kinds of events with which the subject does something else than to repeat a message."""
+"""The kinds of events with which the subject does something new, besides messages."""
 _CIRCLE = 7.0
 """Radians that a robot turns under one command without an end: a little more than a circle."""
 

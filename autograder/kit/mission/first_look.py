@@ -18,13 +18,13 @@ if TYPE_CHECKING:
 CHANGES, OVER = 2, 4.0
 """The number of changes of the commands that must be the same, and the seconds that they must span at least.
 
-A node that goes by another clock than ROS's changes its commands at other moments in simulated time. A single change
+A node that does not go by ROS's clock changes its commands at other moments in simulated time. A single change
 may be a matter of a counter, and several at once may be a matter of its start.
 """
 AT_THE_SAME_TIME = 0.75
 """Seconds between two changes that count as the same: a command may be late, and the laser sees twice a second."""
 STOOD = 2.5
-"""Seconds for which a robot stands where it stood at the end of the first look, after the same commands."""
+"""Seconds for which a robot stands at the place at which the first look ended, after the same commands."""
 NEAR = 0.3
 """The distance in meters between two places that count as the same."""
 

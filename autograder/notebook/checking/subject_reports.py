@@ -40,7 +40,7 @@ if TYPE_CHECKING:
 
 
 _COURSE = f"{Path(__file__).parents[2]}/"
-"""The folder of this package, whose calls are no student's and left out of the stacks."""
+"""The folder of this package. The stacks leave its calls out, because no student wrote them."""
 
 
 class CapturedOutput:
