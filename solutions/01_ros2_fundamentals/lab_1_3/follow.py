@@ -2,43 +2,32 @@
 
 from random import Random
 
+from autograder.kit.oracle.drawings import dealt, levels, mixed, scans
 from autograder.kit.oracle.same_as_solution import SameAsSolution, To
 
-AHEAD = {"far": (0.95, 3.0), "near": (0.1, 0.65)}
-COURSE = (
-    "far",
-    True,
-    "far",
-    "near",
-    "far",
-    False,
-    "far",
-    "near",
-    True,
-    "near",
-    "far",
-    True,
-    "far",
-    False,
-    "far",
-)
-"""The steps: a truth value is a request, a distance is a scan."""
-RAYS = 36
+NEAR = 0.8
+"""The distance in meters up to which a robot that follows stands still."""
 
 
-def step(kind: str | bool, random: Random) -> To:
-    """Return a request, or a scan whose first ray is far or near."""
-    if isinstance(kind, bool):
-        return To("/follow", {"data": kind})
-    sides = [random.uniform(0.1, 3.0) for _ in range(RAYS - 1)]
-    return To("/scan", {"ranges": [random.uniform(*AHEAD[kind]), *sides]})
+def steps(random: Random) -> list[To]:
+    """Return scans and requests. A robot that follows meets all levels; a new one, and one that stays, meet a few."""
+    walls = levels(NEAR)
+    far, near = [wall for wall in walls if wall > NEAR], [wall for wall in walls if wall < NEAR]
+    asked = mixed(random, [True, True, True, False, False, False], bool)
+    follows, stays = dealt(random, walls, asked.count(True)), dealt(random, far, asked.count(False))
+    aheads = [[random.choice(far), random.choice(near)]]
+    aheads += [(follows if data else stays).pop() for data in asked]
+    told = iter(scans(random, NEAR, [ahead for each in aheads for ahead in each]))
+    answered = [[next(told) for _ in each] for each in aheads]
+    requests = [[], *([To("/follow", {"data": data})] for data in asked)]
+    return [step for pair in zip(requests, answered, strict=True) for steps in pair for step in steps]
 
 
 EXERCISE = SameAsSolution(
     "lab_1_3.follow",
     "Lab 1.3 · Follow or stay",
     "Serve follow, and answer each scan with a command: drive only while the robot follows and the wall is far.",
-    gives=lambda random: [step(kind, random) for kind in COURSE],
+    gives=steps,
     tells={"/cmd_vel": ("linear.x", "angular.z"), "/follow": ("success", "message")},
     every=True,
     roles=("service", "publisher", "subscription"),

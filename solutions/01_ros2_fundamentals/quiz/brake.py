@@ -1,13 +1,19 @@
 """The chapter in short: a brake that hears a best-effort sensor, and says for each distance whether to brake."""
 
+from autograder.kit.oracle.drawings import levels, mixed
 from autograder.kit.oracle.same_as_solution import SameAsSolution, To
 
-DISTANCES = ((0.6, 3.0), (0.05, 0.4), (0.05, 0.4), (0.6, 3.0), (0.6, 3.0), (0.05, 0.4), (0.6, 3.0))
+NEAR = 0.5
+"""The distance in meters below which the brake is on. At the distance itself, which every float holds, it is off."""
+
 EXERCISE = SameAsSolution(
     "quiz.brake",
     "The chapter in short · A brake that hears its sensor",
     "Hear a sensor that offers best effort, and say for each distance whether to brake.",
-    gives=lambda random: [To("/distance", random.uniform(*meters)) for meters in DISTANCES],
+    gives=lambda random: [
+        To("/distance", distance)
+        for distance in mixed(random, [*levels(NEAR), NEAR, *levels(NEAR)[2:5]], lambda meters: meters < NEAR)
+    ],
     tells={"/brake": "data"},
     qos=["/distance"],
     every=True,
