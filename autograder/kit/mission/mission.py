@@ -79,7 +79,8 @@ class Mission:
         senses: For topics that the course's robot does not have, a function that returns the fields of a message, or
             nothing for silence. None stands for what the course's robot senses.
         serves: For services other than a lamp's switch, a function that returns the fields of the answer.
-        late: For services that answer their first request late, the delay in seconds of the subject's time.
+        late: For services that answer late, a function that draws the delays in seconds of the subject's time: that of
+            the first request, and perhaps of later ones. Other requests are answered at once.
         roles: The roles of the subject's endpoints, the most telling first.
         within: Seconds of the subject's time for the whole mission: so many that only a robot that never arrives fails
             by them. With fewer, the world that was drawn decides about a slow one.
@@ -119,7 +120,7 @@ class Mission:
         knows: Sequence[Sequence[Any]] = (),
         senses: Mapping[str, Callable[[Moment], Mapping[str, Any] | None]] = NOTHING,
         serves: Mapping[str, Callable[[Moment], Mapping[str, Any]]] = NOTHING,
-        late: Mapping[str, float] = NOTHING,
+        late: Mapping[str, Callable[[Random], Sequence[float]]] = NOTHING,
         roles: Sequence[str] = ("publisher",),
         within: float = 30.0,
         until: Callable[[Moment], bool] | None = None,
@@ -166,7 +167,8 @@ class Mission:
             bench.listen(topic, kind)
         first, *others = steps = [*self._draws(bench.random)] or [self._world]
         world, steps = (first, others) if isinstance(first, World) else (self._world, steps)
-        robot = Robot(bench, world, self._senses, self._serves, self._late)
+        late = {service: draws(bench.random) for service, draws in self._late.items()}
+        robot = Robot(bench, world, self._senses, self._serves, late)
         course = Course(bench, robot, self._lines, self._within, self._quiet)
         journey = Journey(bench, robot, course.go)
         bench.start(threads=self._threads)

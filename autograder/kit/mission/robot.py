@@ -13,7 +13,7 @@ from autograder.robot.motion import STILL, TICK, Velocity, move, towards
 from autograder.robot.sensors import OBEYS_FOR, SCAN_EVERY, laser_scan, look_around, odometry
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Mapping, Sequence
 
     from autograder.kit.bench import Bench
     from autograder.kit.counterparts import ActionCounterpart, Speaker
@@ -65,7 +65,7 @@ class Robot:
         world: The world at the beginning.
         senses: What the robot tells on topics: the fields of a message, or None for what the course's robot tells.
         serves: What the robot answers to calls of services that do not switch the lamp: the fields of an answer.
-        late: The services that answer late, with the delay in seconds of the subject's time.
+        late: The services that answer late, with the delays of their answers in seconds of the subject's time.
     """
 
     def __init__(
@@ -74,7 +74,7 @@ class Robot:
         world: World,
         senses: Mapping[str, Callable[[Moment], Mapping[str, Any] | None]],
         serves: Mapping[str, Callable[[Moment], Mapping[str, Any]]],
-        late: Mapping[str, float],
+        late: Mapping[str, Sequence[float]],
     ) -> None:
         ends = bench.reference.interface
         self._bench, self._senses, self._serves = bench, senses, serves
@@ -85,8 +85,8 @@ class Robot:
         for topic, kind in ends.get("subscription", {}).items():
             self._sensors[topic] = bench.speak(topic, kind), kind
         for service, kind in ends.get("client", {}).items():
-            delay = {1: late[service]} if service in late else {}
-            bench.serve(service, kind, partial(self._answer, service), late=delay)
+            delays = dict(enumerate(late.get(service, ()), 1))
+            bench.serve(service, kind, partial(self._answer, service), late=delays)
         self._walks = [Walk(bench, action, kind) for action, kind in ends.get("action_client", {}).items()]
         self.now = Moment(bench.seen(), self._topic, world, world.start)
 

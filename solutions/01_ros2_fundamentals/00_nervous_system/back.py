@@ -1,6 +1,7 @@
 """The first notebook, at its end: a robot drives through the door, turns around, and comes back."""
 
 from itertools import groupby
+from math import cos
 
 from autograder.kit.mission.driving import movement
 from autograder.kit.mission.mission import Mission, Moment
@@ -11,8 +12,6 @@ COUNT = (
     "0. self.count is 0 for the first command, so the first sixteen have the counts 0 to 15."
 )
 THERE, BACK = "Drives into the right room", "Comes back into the left room"
-
-
 FASTEST_TURN = 2.0
 """The most radians per second that the robot turns."""
 PARTS = 4
@@ -34,13 +33,18 @@ def too_fast(now: Moment) -> str:
     return f"{fastest:g}" if fastest > FASTEST_TURN and BACK not in now.reached else ""
 
 
+def faces_left(now: Moment) -> bool:
+    """Return True if the robot has turned around, so that it does not come back in reverse."""
+    return cos(now.pose.heading) < 0
+
+
 EXERCISE = Mission(
     "00_nervous_system.back",
     "The robotic nervous system · There and back",
     "Drive through the door into the right room, turn around, and come back through the door.",
     reaches=[
         (THERE, lambda now: now.pose.x > 4.5, "there", 3),
-        (BACK, lambda now: THERE in now.reached and now.pose.x < 3.5, "back", 3),
+        (BACK, lambda now: THERE in now.reached and now.pose.x < 3.5 and faces_left(now), "back", 3),
         ("Stands still there", lambda now: BACK in now.reached and now.stood > 2.0, "stands", 2),
     ],
     never=[("Touches no wall", lambda now: now.bumped, "touches", 2)],
@@ -56,6 +60,12 @@ EXERCISE = Mission(
             "wrong_movement",
             lambda now: now.bumped and way(now),
             "Your robot drives against a wall. Its commands were {}.",
+            COUNT,
+        ),
+        (
+            "wrong_movement",
+            lambda now: THERE in now.reached and now.pose.x < 3.5 and not faces_left(now) and way(now),
+            "Your robot comes back in reverse: it does not turn around. Its commands were {}.",
             COUNT,
         ),
         (

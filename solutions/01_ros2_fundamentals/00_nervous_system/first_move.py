@@ -10,7 +10,7 @@ EXERCISE = Mission(
     "Tell the robot every half second to drive straight ahead at 0.5 meters per second.",
     drives=("Drives straight ahead", "velocity", 6),
     rate=("Keeps telling it", "rate", 4),
-    within=9.0,
+    within=13.0,
 ).exercise(
     text={
         "Twice a second this driver makes a command": "rate",

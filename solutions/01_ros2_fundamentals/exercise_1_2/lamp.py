@@ -1,21 +1,61 @@
 """Exercise 1.2, a robot's lamp: a client in a callback calls once for each change, and does not wait there."""
 
+from dataclasses import replace
+from itertools import pairwise
+from random import Random
+
 from autograder.kit.mission.mission import Mission, Moment, Pose, World
+from autograder.kit.oracle.drawings import levels, mixed
 from autograder.kit.rules import value
 
-PLACES = ((2.8, 2.9), (3.1, 3.2), (5.1, 5.2), (4.8, 4.9), (2.8, 2.9), (3.1, 3.2))
-"""The places of the robot, one after the other: x in meters, on both sides of the door, each near the limit.
+DOOR, NEAR = 4.0, 1.0
+"""Where the door is, as x in meters, and how near the robot has to be, in meters."""
+STAYS = 0.6
+"""Seconds for which the robot stays at a place."""
+RIGHT = "once for each change, before the robot goes on"
+"""What is said of all right calls."""
 
-In a wider range, chance would decide whether a wrong limit shows.
-"""
-CHANGES = 5
-"""How often the lamp has to change there: on and off by turns."""
+
+def is_near(x: float) -> bool:
+    """Return True if the lamp has to be on at a place."""
+    return abs(x - DOOR) < NEAR
+
+
+def places(random: Random) -> list[World | float]:
+    """Return places at all levels around the nearness of the door, on both of its sides, in drawn order."""
+    distances, sides = levels(NEAR), [*random.sample((1, 1, -1, -1), 4), *random.sample((1, 1, -1, -1), 4)]
+    order = mixed(random, [DOOR + side * far for side, far in zip(sides, distances, strict=True)], is_near)
+    return [step for x in order for step in (World(start=Pose(x, 2.0, 0.0)), STAYS)]
+
+
+def delays(random: Random) -> list[float]:
+    """Draw how late the lamp answers, in seconds. The robot tells its place several times meanwhile."""
+    return [random.choice((0.15, 0.2, 0.25, 0.3, 0.35)) for _ in levels(NEAR)]
+
+
+def changes(now: Moment) -> list[bool]:
+    """Return how the lamp had to change so far: to on, or to off."""
+    told = [event.data["fields"] for event in now.part.of("sent", "/odom")]
+    due = [False, *(is_near(fields["pose"]["pose"]["position"]["x"]) for fields in told)]
+    return [new for old, new in pairwise(due) if new != old]
 
 
 def calls(now: Moment) -> str:
-    """Return in words what was asked of the lamp, in order."""
-    switched = ["on" if value(event) else "off" for event in now.part.of("request", "/lamp")]
-    return ", ".join(switched) or "no call"
+    """Return in words what was asked of the lamp, in order, if anything is wrong with that."""
+    asked: list[bool] = []
+    too_early = False
+    for number, event in enumerate(now.part.events):
+        if (event.kind, event.name) == ("request", "/lamp"):
+            asked.append(bool(value(event)))
+            before = replace(now, part=replace(now.part, events=now.part.events[:number]))
+            too_early |= asked != changes(before)
+    told, due = (", ".join("on" if one else "off" for one in ones) for ones in (asked, changes(now)))
+    if told != due:
+        return f"{told or 'no call'}; due were {due}"
+    if too_early:
+        return f"{told}, but the robot was elsewhere then"
+    was_everywhere = now.leg + 1 == len(levels(NEAR))
+    return RIGHT if was_everywhere else f"{told or 'no call'}, and no answer after that"
 
 
 EXERCISE = Mission(
@@ -23,9 +63,8 @@ EXERCISE = Mission(
     "Exercise 1.2 · The lamp at the door",
     "Switch the robot's lamp on when it comes near the door, and off when it leaves.",
     roles=("client", "subscription"),
-    draws=lambda random: [
-        step for place in PLACES for step in (World(start=Pose(random.uniform(*place), 2.0, 0.0)), 0.6)
-    ],
+    draws=places,
+    late={"/lamp": delays},
     same=[("Calls once for each change, in time", calls, "lamp", 10)],
     knows=[
         (
@@ -36,7 +75,7 @@ EXERCISE = Mission(
         ),
         (
             "too_many_calls",
-            lambda now: (count := len(now.part.of("request"))) > CHANGES and count,
+            lambda now: (count := len(now.part.of("request"))) > len(changes(now)) and count,
             "Your node called the service lamp {} times, and the lamp had to change less often.",
             "Store in self.is_on what the lamp is now, and call only if it has to change.",
             {"certain": True},

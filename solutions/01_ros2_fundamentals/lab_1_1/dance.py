@@ -8,7 +8,7 @@ EXERCISE = Mission(
     "Tell the robot every half second to drive in a circle.",
     drives=("Drives in a circle", "velocity", 6),
     rate=("Keeps telling it", "rate", 4),
-    within=9.0,
+    within=13.0,
 ).exercise(
     text={
         "publishes a `Twist` on `/cmd_vel` every 0.5 seconds": "rate",

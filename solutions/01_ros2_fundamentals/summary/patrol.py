@@ -32,7 +32,7 @@ EXERCISE = Mission(
     "Drive one round, switch the lamp on, then walk towards the door and cancel the walk in front of it.",
     roles=("publisher", "client", "action_client"),
     draws=lambda random: [World(start=Pose(random.uniform(0.8, 1.4), 2.0, AWAY))],
-    late={"/lamp": 1.5},
+    late={"/lamp": lambda random: [random.choice((1.3, 1.5, 1.7))]},
     until=lambda now: bool(now.part.of("result")),
     within=60.0,
     drives=("Drives one round", "round", 2),

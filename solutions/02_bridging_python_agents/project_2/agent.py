@@ -4,15 +4,38 @@ from math import cos, pi, remainder, sin, tau
 from random import Random
 from typing import Any
 
+from autograder.kit.oracle.drawings import levels, shuffled
 from autograder.kit.oracle.returns import Returns
 
-AT_HOME, CLOSE, AWAY, FAR = (0.0, 0.0), (0.05, 0.25), (0.35, 0.45), (0.8, 1.2)
-MISSION = (
-    *(("home", AT_HOME), ("home", AWAY), ("home", CLOSE), ("lamp", FAR), ("lamp", FAR), ("lamp", AWAY)),
-    *(("lamp", CLOSE), ("lamp", CLOSE), ("lamp", FAR), ("home", FAR), ("home", AWAY), ("home", AWAY)),
-    *(("home", CLOSE), ("home", AWAY), ("lamp", FAR), ("lamp", CLOSE)),
-)
-"""Which place is near, and how near in meters. The lamp is known from the third observation on."""
+THERE = 0.3
+"""The distance in meters below which the robot is at the lamp, and at home."""
+*CLOSE, JUST_THERE = [level for level in levels(THERE) if level < THERE]
+NOT_YET, *AWAY = [level for level in levels(THERE) if level > THERE]
+FAR, OBSERVATIONS = (0.8, 0.9, 1.0, 1.1, 1.2), 16
+
+
+def way(random: Random) -> tuple[list[tuple[str, float]], int]:
+    """Draw which place is near, and how near in meters; and the number of observations without a lamp.
+
+    Each phase lasts for a drawn time, and has what would end another one. The first observation is from home.
+    """
+    search = shuffled(random, [("home", random.choice(CLOSE)), ("lamp", random.choice(CLOSE))])
+    search = [("home", 0.0), *search[: random.randint(1, 2)]]
+    go = [("lamp", NOT_YET), ("lamp", random.choice(AWAY)), ("home", random.choice(CLOSE))]
+    back = [
+        ("lamp", random.choice(CLOSE)),
+        ("home", NOT_YET),
+        ("home", random.choice(AWAY)),
+        ("home", random.choice(FAR)),
+    ]
+    done = [
+        ("lamp", random.choice(CLOSE)),
+        ("home", random.choice(AWAY)),
+        *(("lamp", far) for far in FAR[:3]),
+    ]
+    seen = [*search, ("lamp", random.choice(FAR)), *shuffled(random, go), ("lamp", JUST_THERE)]
+    seen += [*shuffled(random, back), ("home", JUST_THERE)]
+    return [*seen, *shuffled(random, done)][:OBSERVATIONS], len(search)
 
 
 def mission(random: Random) -> list[list[Any]]:
@@ -22,13 +45,15 @@ def mission(random: Random) -> list[list[Any]]:
         "lamp": (round(random.uniform(4.0, 5.5), 2), round(random.uniform(0.5, 3.5), 2)),
     }
     seen: list[list[Any]] = []
-    for number, (place, near) in enumerate(MISSION):
-        away, around = random.uniform(*near), random.uniform(-pi, pi)
-        off = random.choice((-1, 1)) * (random.uniform(0.8, 2.5) if number % 2 else random.uniform(0.05, 0.2))
+    (near, unlit), first = way(random), random.choice((0, 1))
+    for number, (place, away) in enumerate(near):
+        around = random.uniform(-pi, pi)
+        is_off = (number + first) % 2
+        off = random.choice((-1, 1)) * (random.uniform(0.8, 2.5) if is_off else random.uniform(0.05, 0.2))
         (x, y), heading = places[place], remainder(around + pi + off, tau)
-        lamp = list(places["lamp"]) if number > 1 else None
+        lamp = list(places["lamp"]) if number >= unlit else None
         pose = (x + away * cos(around), y + away * sin(around), heading)
-        seen.append([*(round(number, 2) for number in pose), lamp])
+        seen.append([*(round(number, 4) for number in pose), lamp])
     return seen
 
 

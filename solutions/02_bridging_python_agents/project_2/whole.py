@@ -71,7 +71,7 @@ EXERCISE = Mission(
         *(world(random), on_the_way_back, To("/stop", True), PRESSED, To("/stop", False)),
     ],
     serves={"/where": where},
-    late={"/where": 1.5},
+    late={"/where": lambda random: [random.choice((1.2, 1.5, 1.7))]},
     senses={"/odom": lambda now: {} if now.since(OUT) < SILENT else None},
     reaches=[
         (WAITS, goes_on, "waits"),
