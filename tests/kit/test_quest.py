@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from random import Random
 from typing import TYPE_CHECKING, Any
 from unittest.mock import MagicMock
@@ -229,6 +230,78 @@ def test_a_notebook_s_function_has_to_return_what_it_names() -> None:
 
     assert told("'mia/open'")[0] == 7
     assert told("('/mia/open', 1)") == (0, "not_returned")
+
+
+def test_a_function_that_prints_the_name_and_raises_has_returned_nothing() -> None:
+    said = part(OPEN, "/mia/open", name="there", ending="")
+    started = Event(0.1, "subject", "started", {"accepted": []})
+    assert not Search(replace(said, events=[started, *said.events])).has_answered
+    raised = Event(8.0, "subject", "raised", {"traceback": "TimeoutError: nobody"})
+    assert not Search(replace(said, events=[started, *said.events, raised])).returned
+
+
+NOBODY = Robot(nodes=NOA.nodes)
+RAISED = {"traceback": 'Traceback (most recent call last):\n  File "x"\nTimeoutError: no node obeys'}
+
+
+def limited(*said: str, ending: tuple[str, dict[str, Any]], at: float = 0.6) -> Part:
+    """Return a run of a function that was told to wait for 0.45 s, and for which there was nothing to find."""
+    start = Event(0.0, "subject", "started", {"accepted": ["patience_sec"]})
+    lines = [Event(0.1, "output", "stdout", {"text": line}) for line in said]
+    return Part(
+        "none", {**vars(NOBODY), "patience_sec": 0.45}, [start, *lines, Event(at, "subject", *ending)]
+    )
+
+
+@pytest.mark.parametrize(
+    ("run", "fault"),
+    [
+        (limited("looking at /noa/motors", ending=("raised", RAISED)), ""),
+        (
+            limited(ending=("raised", {"traceback": "RuntimeError: no robot"})),
+            "raised RuntimeError: no robot",
+        ),
+        (limited(ending=("returned", {"value": "None"})), "returned None"),
+        (limited(ending=("raised", RAISED), at=0.05), "gave up after 0.1 s, although patience_sec was 0.45"),
+        (limited(ending=("raised", RAISED), at=8.0), "gave up after 8.0 s, although patience_sec was 0.45"),
+        (part(NOBODY, "None", name="none"), ""),
+        (part(NOBODY, NOA_SAID, name="none"), "named noa, /noa/drive"),
+        (part(NOBODY, "looking", name="none", ending=""), "still looking after 12 s"),
+        (Part("none"), "not reached"),
+    ],
+)
+def test_a_function_raises_timeout_error_if_there_is_nothing_and_a_program_ends(
+    run: Part, fault: str
+) -> None:
+    assert Search(run).limit_fault == fault
+
+
+def test_who_finds_nothing_anywhere_has_not_given_up() -> None:
+    quest = Quest(lambda _: {"there": MIA, "none": NOBODY})
+    exercise = quest.exercise(
+        "a.b", "A", "B", finds={"robot": "Finds it", "topic": "And its topic"}, gives_up="Gives up"
+    )
+    assert [criterion.points for criterion in exercise.criteria] == [4, 4, 2]
+    none = limited(ending=("raised", RAISED))
+    assert _judged(exercise, part(MIA, SAID, name="there"), none)[0] == 10
+    assert _judged(exercise, part(MIA, "nobody", name="there"), none)[0] == 0
+    returns = limited(ending=("returned", {"value": "None"}))
+    assert _judged(exercise, part(MIA, SAID, name="there"), returns) == (8, "silent_end")
+
+
+@pytest.mark.parametrize(("in_a_cell", "late"), [(True, ["/mia/motors"]), (False, [])])
+def test_only_a_function_is_made_to_wait_for_what_comes_late(in_a_cell: bool, late: list[str]) -> None:
+    seen = part(MIA, SAID)
+    bench = MagicMock(
+        pace=Pace.FAST, random=Random(0), seen=lambda: seen, keep=lambda _: False, in_a_cell=in_a_cell
+    )
+    bench.await_end.return_value = True
+    quest = Quest(lambda _: {"one": replace(MIA, late=["/mia/motors"]), "none": NOBODY})
+    quest.exercise("a.b", "A", "B", finds={"robot": "Finds it"}, gives_up="Gives up")
+    quest.scenario(bench)
+    first = bench.part.call_args_list[0].kwargs
+    assert list(first["late"]) == late
+    assert first["patience_sec"] >= 4
 
 
 def test_a_slow_subject_s_time_begins_with_its_own_node_not_with_the_robot_s() -> None:

@@ -106,6 +106,10 @@ _TEXTS = {
         "Return {0[1]} (a program prints it). If your code does that, it did not find all of it: go through everything "
         "that the graph gives, such as all ends of a topic, and not only the first.",
     ),
+    "silent_end": (
+        "If what you look for does not exist, your function has to raise TimeoutError. Yours {}.",
+        "After the loop with the limit, raise TimeoutError: its caller then knows that there is nothing.",
+    ),
     "never_ended": (
         "Your function was still busy when the time was over.",
         "Looking at the graph needs no spin. Wait with a limit for what you look for, and return.",
@@ -140,6 +144,7 @@ class Quest:
 
     def __init__(self, draws: Callable[[Random], Mapping[str, Robot]], noun: str = "robot") -> None:
         self._draws, self._noun, self._names = draws, noun, tuple(draws(Random(0)))
+        self._has_keys = False
 
     def seen(self, evidence: Evidence) -> Searches:
         """Return all runs of the subject, also those that were not reached."""
@@ -148,7 +153,14 @@ class Quest:
     expected = seen  # each robot says what is right
 
     def exercise(
-        self, exercise_id: str, title: str, task: str, *, finds: Mapping[str, str], **more: Any
+        self,
+        exercise_id: str,
+        title: str,
+        task: str,
+        *,
+        finds: Mapping[str, str],
+        gives_up: str = "",
+        **more: Any,
     ) -> Exercise:
         """Return the exercise about an answer with several keys, each of which is a criterion.
 
@@ -157,11 +169,16 @@ class Quest:
             title: The title of the card.
             task: One sentence that states the task.
             finds: The line of the card for each key of the answer.
+            gives_up: The line of the card, worth two points, for a robot without anything to find: a function raises
+                TimeoutError after ``patience_sec`` seconds. A program has to end, and is never made to wait.
             more: See :meth:`autograder.kit.draft.Draft.exercise`.
         """
+        self._has_keys = True
         draft = Draft(exercise_id, title, task, self)
         for key, line in finds.items():
             draft.asks(key, line, self.finds(key))
+        if gives_up:
+            draft.asks("limit", gives_up, self.gives_up, points=2)
         return draft.exercise(**{"counts": {"": ACCEPTED}, **more})
 
     # --- the scenario --------------------------------------------------------------------------------------------
@@ -173,7 +190,10 @@ class Quest:
         for name, robot in robots.items():
             if not robot.answer and bench.keep(name):
                 continue
-            between = PATIENCE_IN_LATE if robot.late else PATIENCE_ELSEWHERE[bench.pace]
+            if self._has_keys and not bench.in_a_cell:
+                robot = replace(robot, late=())
+            long = robot.late or (self._has_keys and robot.answer)
+            between = PATIENCE_IN_LATE if long else PATIENCE_ELSEWHERE[bench.pace]
             patience = {PATIENCE: giving_up.drawn_patience(bench, between)} if takes_patience else {}
             bench.part(name, **asdict(robot), **patience)
             self._meets(bench, robot, patience, LATENESS)
@@ -184,8 +204,9 @@ class Quest:
                 self._meets(bench, robot, patience, SOON)
             search = Search(bench.seen())
             bench.stop()
-            if not takes_patience and not (search.given and search.has_answered):
-                return  # each criterion needs all robots
+            each_needs_all = robot.answer and (self._has_keys or not takes_patience)
+            if each_needs_all and not (search.given and search.has_answered):
+                return
 
     def _meets(self, bench: Bench, robot: Robot, patience: Mapping[str, float], lateness: float) -> None:
         _put(bench, robot, late=False)
@@ -241,6 +262,14 @@ class Quest:
         did = "says again and again that it looks" if giving_up.goes_on_waiting(absent) else "it did"
         return Finding(not wrong, f"says {giving_up.NOT_AVAILABLE} and ends by itself", wrong or did)
 
+    def gives_up(self, evidence: Evidence) -> Finding:
+        """Decide whether the subject gives up in time if there is nothing to find; it must find what exists."""
+        seen = self.seen(evidence)
+        wrong = Search(_absent(seen)).limit_fault
+        if _looked_once(seen) or not any(search.has() for search in seen.values()):
+            wrong = "it does not look long enough to find anything"
+        return Finding(not wrong, "ends in time, with a TimeoutError", wrong or "it did")
+
     # --- mistakes ------------------------------------------------------------------------------------------------
 
     @property
@@ -276,7 +305,11 @@ class Quest:
 
     def _silent_end(self, evidence: Evidence) -> Advice | None:
         seen = self.seen(evidence)
-        return giving_up.silent_end(_absent(seen), _found(seen), self._noun)
+        if not self._has_keys:
+            return giving_up.silent_end(_absent(seen), _found(seen), self._noun)
+        says, next_step = _TEXTS["silent_end"]
+        fault = Search(_absent(seen)).limit_fault
+        return Advice(says.format(fault), next_step) if fault.startswith(("returned", "raised")) else None
 
 
 def _put(bench: Bench, robot: Robot, *, late: bool) -> None:
@@ -343,7 +376,9 @@ def _not_returned(seen: Searches) -> Search | None:
 
 
 def _invented(seen: Searches) -> bool:
-    first, *others = [search.given for search in seen.values()]
+    # With several keys, a subject has no answer if there is nothing to find.
+    has_keys = any(len(search.robot.answer) > 1 for search in seen.values())
+    first, *others = [search.given for search in seen.values() if search.robot.answer or not has_keys]
     return bool(first) and bool(others) and all(given == first for given in others)
 
 

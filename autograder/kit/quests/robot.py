@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import re2
 
+from autograder.kit import giving_up
 from autograder.kit.giving_up import NOT_AVAILABLE
 
 if TYPE_CHECKING:
@@ -119,16 +120,48 @@ class Search:
 
     @property
     def has_answered(self) -> bool:
-        """True if the subject has ended, or has given a whole answer. A program may stay."""
+        """True if the subject has ended, or has given a whole answer. A program may stay.
+
+        A function that has to return a name has not answered by printing it.
+        """
+        if self.is_function and len(self.robot.answer) == 1:
+            return self.part.ending is not None
         whole = self.robot.answer.keys() <= self.given.keys() if len(self.robot.answer) > 1 else self.has()
         return self.part.ending is not None or whole
 
     @property
+    def is_function(self) -> bool:
+        """True if the subject is a notebook's function, which returns or raises; a program can do neither."""
+        ending = self.part.ending
+        has_ended = ending is not None and ending.name in ("returned", "raised")
+        return has_ended or self.part.first("subject", "started") is not None
+
+    @property
     def returned(self) -> bool:
         """True if a notebook's function that has named the right name has also returned it; a program returns none."""
-        value = self.part.returned
-        is_single = value is not None and len(self.robot.answer) == 1
-        return not is_single or _plain(str(value).strip("'\"")) in map(_plain, self.robot.answer.values())
+        if not self.is_function or len(self.robot.answer) != 1:
+            return True
+        return _plain(str(self.part.returned).strip("'\"")) in map(_plain, self.robot.answer.values())
+
+    @property
+    def limit_fault(self) -> str:
+        """What is wrong with the end of a run in which there is nothing to find, in words; empty if nothing is.
+
+        A function has to raise TimeoutError when its patience is over. A program, which can raise nothing, has to end.
+        """
+        part = self.part
+        if not part.events:
+            return "not reached"
+        if part.ending is None:
+            limit = f"still looking after {giving_up.GIVE_UP_LIMIT:g} s"
+            return "" if giving_up.goes_on_waiting(part) else limit
+        if not self.is_function:
+            named = [text or listed for _, text, listed in _ENTRY.findall("\n".join(part.said()))]
+            return f"named {', '.join(filter(None, named))}" if any(named) else ""
+        if part.returned is not None:
+            return f"returned {part.returned}"
+        raised = part.traceback.rstrip().rpartition("\n")[2]
+        return giving_up.broken_patience(part) if raised.startswith("TimeoutError") else f"raised {raised}"
 
     @property
     def astray(self) -> list[str]:

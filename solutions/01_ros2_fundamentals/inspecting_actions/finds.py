@@ -1,32 +1,52 @@
 """Inspecting actions: find out which node serves an action, and of which type it is. Its clients come first."""
 
 from random import Random
+from typing import Any
 
+from autograder.kit.oracle.drawings import shuffled
 from autograder.kit.quests.quest import Quest
 from autograder.kit.quests.robot import Robot
 
 TYPES = ("small_robot_interfaces/action/WalkTo", "my_robot_interfaces/action/Fibonacci")
-NAMES, WORDS = ("kit", "mia", "noa", "pip", "zoe"), ("dock", "go", "move", "roll", "travel")
+NAMES = (
+    *("ada", "ben", "cleo", "dan", "eva", "finn", "gil", "hana", "ivo", "jan"),
+    *("kit", "lea", "mia", "noa", "oda", "pip", "rosa", "sam", "tom", "zoe"),
+)
+WORDS = ("climb", "dock", "go", "lift", "move", "roll", "seek", "travel", "turn", "wait")
+LATE, NONE = "a robot that comes late", "no node serves it"
 
 
-def robots(random: Random) -> dict[str, Robot]:
-    """Draw three robots, each with a client, between a crane and a lift with actions of another type.
+def robot(random: Random, names: list[str], kind: str, type_name: str) -> Robot:
+    """Draw a robot with a client, between others with actions of drawn types whose names begin alike.
 
     The graph lists nodes in the order in which they are made. So a subject that takes the first action that is served,
     or the last one, is wrong.
     """
-    drawn = {}
-    for n, name, word in zip("123", random.sample(NAMES, 3), random.sample(WORDS, 3), strict=True):
-        action, other = {f"/{word}": TYPES[n == "2"]}, TYPES[n != "2"]
-        nodes = {
-            f"/boss{n}": {"subscribes": action},
-            f"/crane{n}": {"publishes": {f"/crane{n}/move": other}},
-            f"/{name}": {"publishes": action},
-            f"/lift{n}": {"publishes": {f"/lift{n}/move": other}, "subscribes": action},
-        }
-        answer = {"node": f"/{name}", "type": action[f"/{word}"]}
-        drawn[f"robot {n}"] = Robot(asked=(f"/{word}",), answer=answer, nodes=nodes)
-    return drawn
+    own, client, one, other = (f"/{names.pop()}" for _ in range(4))
+    word, second, third = random.sample(WORDS, 3)
+    asked = f"/{word}_{second}"
+    shorter, longer = shuffled(random, (f"/{word}", f"{asked}_{third}"))
+    action = {asked: type_name}
+    beside: dict[str, dict[str, Any]] = {
+        client: {"subscribes": action},
+        one: {"publishes": {shorter: random.choice(TYPES)}},
+        other: {"publishes": {longer: random.choice(TYPES)}, "subscribes": action},
+    }
+    nodes = shuffled(random, list(beside.items()))
+    if kind == NONE:
+        return Robot(asked=(asked,), nodes=dict(nodes))
+    nodes.insert(random.choice((1, 2)), (own, {"publishes": action}))
+    late = (own, nodes[-1][0]) if kind == LATE else ()
+    return Robot(asked=(asked,), answer={"node": own, "type": type_name}, nodes=dict(nodes), late=late)
+
+
+def robots(random: Random) -> dict[str, Robot]:
+    """Draw two robots that are there, one that comes late, and a place without one. Their order is drawn, too."""
+    names, (walks, counts) = shuffled(random, NAMES), TYPES
+    kinds = shuffled(random, ("robot 1", "robot 2", LATE, NONE))
+    # Neither type is that of all robots.
+    found = iter(shuffled(random, (walks, counts, random.choice(TYPES))))
+    return {kind: robot(random, names, kind, walks if kind == NONE else next(found)) for kind in kinds}
 
 
 EXERCISE = Quest(robots).exercise(
@@ -34,7 +54,12 @@ EXERCISE = Quest(robots).exercise(
     "Inspecting actions · Who serves it",
     "Find who serves an action.",
     finds={"node": "Finds the node that serves the action", "type": "Finds the type of the action"},
+    gives_up="Gives up if no node serves it",
     arguments="the full name of an action",
     sample_arguments=("/nothing",),
-    text={"`node`, the name of the node that serves it": "node", "`type`, its type": "type"},
+    text={
+        "`node`, the name of the node that serves it": "node",
+        "`type`, its type": "type",
+        "It raises `TimeoutError` if no node serves the action for `patience_sec` seconds.": "limit",
+    },
 )

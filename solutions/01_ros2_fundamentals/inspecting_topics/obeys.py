@@ -1,31 +1,54 @@
 """Inspecting topics: find out what any robot is called, and which topic it obeys."""
 
 from random import Random
+from typing import Any
 
+from autograder.kit.oracle.drawings import shuffled
 from autograder.kit.quests.quest import Quest
 from autograder.kit.quests.robot import Robot
 
-TWIST, OTHER = "geometry_msgs/msg/Twist", "geometry_msgs/msg/Accel"
-NAMES, WORDS = ("kit", "mia", "noa", "pip", "zoe"), ("drive", "go", "move", "roll", "steer")
+TWIST, ANOTHER, BEGINS_ALIKE = (f"geometry_msgs/msg/{name}" for name in ("Twist", "Accel", "TwistStamped"))
+NAMES = (
+    *("ada", "ben", "cleo", "dan", "eva", "finn", "gil", "hana", "ivo", "jan"),
+    *("kit", "lea", "mia", "noa", "oda", "pip", "rosa", "sam", "tom", "zoe"),
+)
+WORDS, TEMPTING = ("drive", "go", "move", "push", "roll", "speed", "steer", "turn", "velocity"), "cmd_vel"
+"""The words for topics: which node a topic belongs to, and whether it obeys it, only the graph tells. The usual word is
+that of a topic of another type.
+"""
+LATE, NONE = "a robot that comes late", "no robot obeys"
 
 
-def robots(random: Random) -> dict[str, Robot]:
-    """Draw three robots. Each is between a lift and a crane, which obey another type; a joystick obeys nothing.
+def robot(random: Random, names: list[str], kind: str) -> Robot:
+    """Draw a robot among others that obey another type, or that only publish a Twist.
 
     The graph lists nodes in the order in which they are made. So a subject that takes the first topic with a
     subscription, or the last one, is wrong.
     """
-    drawn = {}
-    for n, name, word in zip("123", random.sample(NAMES, 3), random.sample(WORDS, 3), strict=True):
-        obeys = f"/{name}/{word}"  # in the list of topics neither the first nor the last with a Twist
-        nodes = {
-            f"/lift{n}": {"subscribes": {f"/lift{n}/cmd_vel": OTHER}},
-            f"/joystick{n}": {"publishes": {f"/joystick{n}/cmd_vel": TWIST}},
-            f"/{name}": {"publishes": {f"/{name}/velocity": TWIST}, "subscribes": {obeys: TWIST}},
-            f"/crane{n}": {"subscribes": {f"/crane{n}/cmd_vel": OTHER}},
-        }
-        drawn[f"robot {n}"] = Robot(answer={"robot": f"/{name}", "topic": obeys}, nodes=nodes)
-    return drawn
+    own, *others = (f"/{names.pop()}" for _ in range(4))
+    places = random.sample(NAMES, 8)
+    topics = iter([f"/{place}/{word}" for place, word in zip(places, random.sample(WORDS, 8), strict=True)])
+    obeys = next(topics)
+    heard = shuffled(random, [(next(topics), ANOTHER), (obeys, TWIST)])
+    right: dict[str, Any] = {"publishes": {next(topics): TWIST}, "subscribes": dict(heard)}
+    beside: list[dict[str, Any]] = [
+        {"subscribes": {f"/{random.choice(NAMES)}/{TEMPTING}": ANOTHER}},
+        {"subscribes": {next(topics): BEGINS_ALIKE}, "publishes": {next(topics): TWIST}},
+        {"subscribes": {next(topics): ANOTHER}, "publishes": {next(topics): TWIST}},
+    ]
+    nodes = list(zip(others, shuffled(random, beside), strict=True))
+    nodes.insert(random.choice((1, 2)), (own, right))
+    if kind == NONE:
+        del right["subscribes"][obeys]
+        return Robot(nodes=dict(nodes))
+    late = (own, nodes[-1][0]) if kind == LATE else ()
+    return Robot(answer={"robot": own, "topic": obeys}, nodes=dict(nodes), late=late)
+
+
+def robots(random: Random) -> dict[str, Robot]:
+    """Draw two robots that are there, one that comes late, and a place without one. Their order is drawn, too."""
+    names = shuffled(random, NAMES)
+    return {kind: robot(random, names, kind) for kind in shuffled(random, ("robot 1", "robot 2", LATE, NONE))}
 
 
 EXERCISE = Quest(robots).exercise(
@@ -33,5 +56,10 @@ EXERCISE = Quest(robots).exercise(
     "Inspecting topics · What it obeys",
     "Find a robot, and what it obeys.",
     finds={"robot": "Finds what the robot is called", "topic": "Finds the topic that it obeys"},
-    text={"`robot`, the name of the node that obeys": "robot", "the topic to which it subscribes": "topic"},
+    gives_up="Gives up if no node obeys",
+    text={
+        "`robot`, the name of the node that obeys": "robot",
+        "the topic to which it subscribes": "topic",
+        "It raises `TimeoutError` if there is no such node for `patience_sec` seconds.": "limit",
+    },
 )
