@@ -16,9 +16,9 @@ EXERCISE = Mission(
     # Where the wall is depends on what the laser sees twice a second, each time a quarter of a meter further on: so a
     # limit of any size is right or wrong in all of these worlds.
     draws=lambda random: [blocked(random.choice((3.5, 3.75, 4.25, 4.5)))],
-    # After a request to cancel, the robot brakes for half a meter.
+    # After a request to cancel, the robot brakes for half a meter: it ends 0.75 to 1 m away.
     reaches=[
-        ("Stands in front of the wall", lambda now: 0.4 < now.ahead < 1.2 and now.stood > 2.0, "stands", 4)
+        ("Stands in front of the wall", lambda now: 0.6 < now.ahead < 1.05 and now.stood > 2.0, "stands", 4)
     ],
     same=[
         ("Sends the robot to the point", lambda now: now.sent("/walk_to"), "goal", 2),
