@@ -46,13 +46,30 @@ PATHS = ("status", "feedback.left", "result.place.arrived")
         (Goal(ACTION, {}), part(), ["SUCCEEDED", [5, 4, 3, 2, 1], True]),
         (Goal(ACTION, {}), part(status=ABORTED), ["ABORTED", [5, 4, 3, 2, 1], True]),
         (Goal(ACTION, {}), part(accepted=False), ["REJECTED", [], None]),
-        (Goal(ACTION, {}, cancel_after=2), part(status=CANCELED), ["CANCELED", [5, 4], None]),
+        (Goal(ACTION, {}, cancel_after=2), part(status=CANCELED), ["CANCELED", [5, 4], True]),
     ],
 )
 def test_what_comes_of_a_goal_is_its_status_its_feedback_and_its_result(
     step: Goal, seen: Part, came: list[Any]
 ) -> None:
     assert step.outcomes(seen, PATHS) == [came]
+
+
+def test_a_subject_that_works_on_after_a_cancel_has_another_status() -> None:
+    events = events_of(0, status=CANCELED)
+    place = next(n for n, event in enumerate(events) if event.kind == "feedback_heard")
+    cancel = [
+        Event(3.0, "cancel_sent", ACTION, {"goal": 0}),
+        Event(3.1, "cancel_answer", ACTION, {"goal": 0, "accepted": True, "arrived": 3.1}),
+    ]
+    step, paths = Goal(ACTION, {}, cancel_after=1), ("status", "result.place.arrived", "result.place.x")
+    events[-1] = replace(
+        events[-1], data={**events[-1].data, "fields": {"place": {"arrived": False, "x": 3.5}}}
+    )
+    soon = Part("main", {}, [*events[: place + 5], *cancel, *events[place + 5 :]])
+    assert step.outcomes(soon, paths) == [["CANCELED, long after the request", False, None]]
+    late = [replace(event, data={**event.data, "arrived": 8.5}) for event in cancel]
+    assert step.outcomes(replace(soon, events=[*events, *late]), paths) == [["CANCELED", False, None]]
 
 
 class Noting:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from math import inf
 from random import Random
 from typing import TYPE_CHECKING, Any
 
@@ -11,8 +12,8 @@ import pytest
 from autograder.kit.bench import Pace
 from autograder.kit.counterparts import Qos
 from autograder.kit.evidence import Event, Evidence, Part, Reference, Variant
-from autograder.kit.oracle.same_as_solution import SameAsSolution, Serves, Sets, To
-from autograder.kit.oracle.steps import Turn
+from autograder.kit.oracle.same_as_solution import SameAsSolution, Sets, To
+from autograder.kit.oracle.steps import Turn, answer_delays
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -359,3 +360,14 @@ class _Hung(_Bench):
 
     def note(self, name: str, **data: Any) -> None:
         self.noted.append((name, data))
+
+
+def test_an_input_says_when_the_call_is_answered_that_it_leads_to() -> None:
+    steps = [
+        To("/stop", True),
+        To("/ask", 1, answered=2.5),
+        0.5,
+        To("/ask", 2, answered=inf),
+        To("/ask", 3, answered=0.0),
+    ]
+    assert answer_delays(steps) == ({1: 2.5}, {2})

@@ -330,13 +330,18 @@ class SubjectTime:
         """Wait until the subject has handled the messages that it received, and the judge has recorded its own.
 
         Each node has to answer two requests, one after the other, so that its executor has made a whole round in
-        between. A node that failed to answer before, in this part, is left out.
+        between. A node that failed to answer before, in this part, is left out. If a node that follows the judge's
+        clock is slow, real time has to tell whether its callback sleeps: in simulated time, that would cost nothing.
         """
         limit = ANSWER_LIMIT if self._pace is Pace.FAST else PATIENT_ANSWER
         nodes = [] if self._subject.ended else self._presence.counterparts()
         clocked = {node.full for node in nodes if self._clock is not None and node in self._clock.nodes}
-        if self._clock is not None and clocked - self._deaf and not self._clock.keeps_up():
-            self._deaf |= clocked
+        if self._clock is not None and clocked - self._deaf:
+            began = time.monotonic()
+            if not self._clock.keeps_up():
+                self._deaf |= clocked
+            if time.monotonic() - began > SLOW_STEP:
+                self._doubt()
         for _ in range(2):
             asked = [node for node in nodes if node.full not in self._deaf | clocked]
             clients = [self._client_of(node) for node in asked]

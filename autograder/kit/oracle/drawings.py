@@ -1,6 +1,6 @@
 """Words for drawing inputs, so that each drawing alone tells right from wrong: levels around a limit, and an order.
 
-A subject that counts its inputs, or that has another limit than the task, must fail in each drawing. So the order of
+A subject that counts its inputs, or whose limit is not that of the task, must fail in each drawing. So the order of
 the cases is drawn, and the inputs near a limit are the levels of a ladder: no two usual numbers have the same levels
 below them.
 """

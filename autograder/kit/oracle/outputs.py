@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     from autograder.kit.evidence import Event, Part
     from autograder.kit.rules import Rate
 
+NUMBER = "number of the message"
+"""The path of the number of a message, counted from 1: it shows what was published before the judge listened."""
 ONE_MISSING_IN = 4
 """One more or one fewer of this many messages may come, because each node asks and tells at its own moments."""
 
@@ -64,14 +66,18 @@ class Output:
             return f"Keeps the rate on {self.name}"
         if self.kind is Kind.RETURNED:
             return "Returns the right values"
+        told = [path for path in self.paths if path != NUMBER]
         # Every message of std_msgs has only a field named data, so this name alone says nothing on a card.
-        what = "value" if self.paths == ("data",) else " and ".join(self.paths)
+        what = "value" if told == ["data"] else " and ".join(told)
         return f"Says the right {what} on {self.name}"
 
     def values(self, events: Sequence[Event]) -> list[list[Any]]:
         """Return the fields that are compared, for each message or answer among the events."""
-        told = [e.data["fields"] for e in events if e.kind in ("message", "answered") and e.name == self.name]
-        return [[pick(fields, path) for path in self.paths] for fields in told]
+        told = [e.data for e in events if e.kind in ("message", "answered") and e.name == self.name]
+        return [
+            [data["number"] if path == NUMBER else pick(data["fields"], path) for path in self.paths]
+            for data in told
+        ]
 
     def compared(self, seen: Part, expected: Part) -> Finding:
         """Decide whether a subject's outputs are those of another run in the same drawing. Show the first that is not.

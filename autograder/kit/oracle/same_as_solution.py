@@ -24,7 +24,7 @@ from autograder.kit.mistakes.crashes import CRASHES, OTHER_CRASHES
 from autograder.kit.mistakes.hangs import ENDLESS_LOOP
 from autograder.kit.model import Advice, Finding, Mistake
 from autograder.kit.oracle.goal_sender import GoalSender
-from autograder.kit.oracle.outputs import Kind, Output
+from autograder.kit.oracle.outputs import NUMBER, Kind, Output
 from autograder.kit.oracle.parameter_answers import (
     DESCRIBE,
     DESCRIBED,
@@ -34,7 +34,7 @@ from autograder.kit.oracle.parameter_answers import (
     received,
 )
 from autograder.kit.oracle.standing_clock import KEY, noted_before, on_another_clock
-from autograder.kit.oracle.steps import Goal, Serves, Sets, Step, To, Turn
+from autograder.kit.oracle.steps import Goal, Sets, Step, To, Turn, answer_delays
 from autograder.kit.recipes.own_scenario import ENDPOINTS, QUIET, Met, OwnScenario, meet
 
 if TYPE_CHECKING:
@@ -44,7 +44,7 @@ if TYPE_CHECKING:
     from autograder.kit.evidence import Evidence, Part, Reference
     from autograder.kit.model import Exercise
 
-__all__ = ["Goal", "SameAsSolution", "Serves", "Sets", "To"]
+__all__ = ["Goal", "SameAsSolution", "Sets", "To"]
 
 DRAWINGS = 4
 """The number of practice drawings of the inputs, which every hand-out contains."""
@@ -154,11 +154,13 @@ class SameAsSolution:
             "result.arrived")``.
         lists: The same for topics of which all messages are compared, in order, however they are spread over the steps.
             The last ones may be missing, or be more.
-        serves: The services that the subject calls, by name, and how the judge answers: at once, late or never.
+        serves: The services that the subject calls, by name, with a function that draws the fields of an answer. An
+            input says when the call is answered that it leads to (:attr:`To.answered`).
         parameters: The names of the parameters whose description (type and range) is compared, and which values of
             them are taken and which are refused with a reason, if a step :class:`Sets` them.
         waits: Seconds of wall time before the first step. What the subject says by itself so early is compared, too.
-        late_after: Seconds of the subject's time after which the judge subscribes, and asks for the last message, too.
+        late_after: Seconds of the subject's time after which the judge gives the first input. It subscribes only after
+            that, and asks for the last message, too.
         qos: The topics on which the QoS counts: the judge's endpoint gets the QoS of the solution's, and an endpoint
             that does not match gets or tells nothing.
         every: The topics of which all messages of a step are compared, not only the last one, because the task asks for
@@ -193,7 +195,7 @@ class SameAsSolution:
         gives: Callable[[Random], Sequence[Step]],
         tells: Mapping[str, str | tuple[str, ...]] = NOTHING,
         lists: Mapping[str, str | tuple[str, ...]] = NOTHING,
-        serves: Mapping[str, Serves] = NOTHING,
+        serves: Mapping[str, Callable[[Random], Mapping[str, Any]]] = NOTHING,
         parameters: Sequence[str] = (),
         waits: float = 0.0,
         late_after: float = 0.0,
@@ -214,13 +216,17 @@ class SameAsSolution:
             Kind.LIST: lists,
             Kind.PARAMETER: dict.fromkeys(parameters, DESCRIBED),
         }
+        steps = gives(Random(0))
+        # What was published before the judge listened shows only in the number of a message.
+        also = {self._told: (NUMBER,)} if late_after and steps else {}
         self._outputs = [
-            Output(name, (paths,) if isinstance(paths, str) else paths, kind, tolerance)
+            Output(
+                name, (*((paths,) if isinstance(paths, str) else paths), *also.get(kind, ())), kind, tolerance
+            )
             for kind, outputs in kinds.items()
             for name, paths in outputs.items()
         ]
         self._outputs += [Output(name, (), Kind.RATE, tolerance, period) for name, period in rates.items()]
-        steps = gives(Random(0))
         self._is_drawn = steps != gives(Random(1)) or bool(serves)
         # A clock that stands still tells which clock a node asks. Then no other clock makes it right.
         stands = any(isinstance(step, To) and step.stands for step in steps)
@@ -260,7 +266,7 @@ class SameAsSolution:
 
     def _gives_to(self, bench: Bench, part: str, steps: Sequence[Step], drawn: Random) -> None:
         """Run the subject once, and give it all steps of one drawing."""
-        serve = partial(self._serve, bench, drawn)
+        serve = partial(self._serve, bench, steps, drawn)
         plays = partial(self._plays, steps)
         meet(bench, part, plays, serve, listens=not self._late_after, qos=self._matching(bench.reference))
 
@@ -271,15 +277,19 @@ class SameAsSolution:
             raise ValueError(f"qos: on {usual} the solution has the default QoS, which each answer has")
         return {topic: recorded[topic] for topic in self._qos}
 
-    def _serve(self, bench: Bench, drawn: Random, service: str, kind: str) -> None:
-        how = self._serves[service]
-        bench.serve(service, kind, lambda _: how.answer(drawn), late=how.late, never=how.never)
+    def _serve(self, bench: Bench, steps: Sequence[Step], drawn: Random, service: str, kind: str) -> None:
+        draws, (late, never) = self._serves[service], answer_delays(steps)
+        bench.serve(service, kind, lambda _: draws(drawn), late=late, never=never)
 
     def _plays(self, steps: Sequence[Step], met: Met) -> bool:
         """Give the subject all steps. Return False as soon as the subject does not answer."""
         bench = met.bench
         if self._late_after:
             bench.run_time(self._late_after)
+            unheard, steps = steps[:1], steps[1:]
+            inputs = [step for step in unheard if not isinstance(step, (int, float))]
+            if not (all(self._given(met, step) for step in inputs) and bench.run_time(self._pause)):
+                return False
             for topic, kind in bench.reference.interface["publisher"].items():
                 bench.listen(topic, kind, qos=Qos.LATCHED)
             bench.wait_until(lambda e: bool(e.main.of("mismatch") or e.main.of("message")), QUIET[bench.pace])
@@ -346,7 +356,8 @@ class SameAsSolution:
             if isinstance(step, Goal) and output.name == step.name:
                 until = following.first if following else None
                 values = step.outcomes(replace(seen, events=seen.events[:until]), output.paths)
-            elif output.name not in self._every:
+            elif output.name not in self._every or (self._late_after and turn.number == 0):
+                # A publisher may keep more than its last message for late subscribers.
                 values = values[-1:]
             if stood and bench.before:
                 values = noted_before(bench.before.part(seen.name), output.name, turn.number, values)

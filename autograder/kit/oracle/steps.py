@@ -2,22 +2,26 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import reduce
-from math import inf
-from random import Random  # noqa: TC003  (an alias of types needs it)
+from math import inf, isinf
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from autograder.kit.in_words import counted
-from autograder.kit.outcomes import all_goals, end_of
+from autograder.kit.outcomes import CANCELED, all_goals, end_of
 from autograder.kit.rules import sent_times
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Container, Mapping, Sequence
+    from collections.abc import Mapping, Sequence
 
     from autograder.kit.evidence import Event, Part
     from autograder.kit.oracle.goal_sender import GoalSender
     from autograder.kit.outcomes import SentGoal
+
+WORKS_ON = 4
+"""The number of feedback messages after the answer to a cancel request that show a subject which does not look at it.
+One that looks before each piece of its work may send one, or two if it works in several threads.
+"""
 
 
 class To(NamedTuple):
@@ -33,25 +37,22 @@ class To(NamedTuple):
     name: str
     value: Any
     stands: float = 0.0
+    answered: float | None = None
 
     def __str__(self) -> str:
         """Return the input in words, for the card."""
         return self.name + (f", then {self.stands:g} s while the robot's time stood" if self.stands else "")
 
 
-@dataclass(frozen=True)
-class Serves:
-    """A service of the judge that the subject calls.
+def answer_delays(steps: Sequence[Step]) -> tuple[dict[int, float], set[int]]:
+    """Return when the judge answers the calls that inputs lead to: the delays of late answers, and those never sent.
 
-    Attributes:
-        answer: Draws the fields of an answer.
-        late: The requests, counted from 1, that are answered late, with the delay in seconds of the subject's time.
-        never: The requests that are never answered.
+    Both are by the number of the call, counted from 1, in the order of the inputs that say when they are answered.
     """
-
-    answer: Callable[[Random], Mapping[str, Any]]
-    late: Mapping[int, float] = field(default_factory=dict)
-    never: Container[int] = ()
+    asked = [step.answered for step in steps if isinstance(step, To) and step.answered is not None]
+    delays = dict(enumerate(asked, 1))
+    never = {number for number, delay in delays.items() if isinf(delay)}
+    return {number: delay for number, delay in delays.items() if delay and number not in never}, never
 
 
 @dataclass(frozen=True)
@@ -83,7 +84,9 @@ class Goal:
         name: The name of the action, such as ``"/dock"``.
         fields: The fields of the goal.
         cancel_after: The number of feedback messages after which the judge requests to cancel the goal; None if it does
-            not. Of such a goal, the result is not compared, and of its feedback only these messages.
+            not. Of such a goal, only these feedback messages are compared, and the truth values of its result: the rest
+            depends on the moment of the request. A subject that works on long after it has accepted the request, and
+            then cancels, has another status.
         beside: Another goal that is sent while this one is served; None for a goal alone.
         after: For the goal ``beside`` another one: the number of feedback messages of the first goal after which it is
             sent; 0 for the same moment. Meanwhile the subject's time passes, so that its timers fire.
@@ -149,10 +152,13 @@ class Goal:
     def _outcome(self, sent: SentGoal, path: str) -> Any:
         part, _, field_path = path.partition(".")
         if part == "status":
-            return end_of(sent)
+            is_late = sent.sent_after(sent.cancel_answered_at) > WORKS_ON
+            works_on = sent.status == CANCELED and is_late
+            return f"{end_of(sent)}, long after the request" if works_on else end_of(sent)
         if part == "feedback":
             return [pick(fields, field_path) for fields in sent.feedback[: self.cancel_after]]
-        return None if self.cancel_after is not None or not sent.result else pick(sent.result, field_path)
+        value = pick(sent.result, field_path) if sent.result else None
+        return value if self.cancel_after is None or isinstance(value, bool) else None
 
 
 Step = To | Sets | Goal | float

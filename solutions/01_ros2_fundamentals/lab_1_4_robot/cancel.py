@@ -1,18 +1,29 @@
 """Lab 1.4 on the robot: an action that docks, and that a client can cancel on its way."""
 
+from random import Random
+
+from autograder.kit.oracle.drawings import drawn_until, scan, shuffled
 from autograder.kit.oracle.same_as_solution import Goal, SameAsSolution, To
+
+
+def steps(random: Random) -> list[To | Goal]:
+    """Return goals in drawn order, of which two are canceled. The last one is not, so it shows what a cancel leaves."""
+    short = [Goal("/dock", {"x": random.choice(ways)}) for ways in ((0.25, 0.5), (0.5, 0.75))]
+    ways = random.sample((2.5, 2.75, 3.0), 2)
+    long = [Goal("/dock", {"x": x}, cancel_after=random.randint(1, 2)) for x in ways]
+    goals = drawn_until(lambda: shuffled(random, [*short, *long]), lambda order: order[-1] in short)
+    return [scan(random, 9.0, 9.0), *goals]
+
 
 EXERCISE = SameAsSolution(
     "lab_1_4_robot.cancel",
     "Lab 1.4, on the robot · A dock that can be canceled",
     "Serve dock: drive that far and send the distance that is left, or stop when a client cancels.",
-    gives=lambda random: [
-        To("/scan", {"ranges": [9.0] * 36}),
-        Goal("/dock", {"x": random.choice((0.25, 0.5))}),
-        Goal("/dock", {"x": 4.0}, cancel_after=2),
-        Goal("/dock", {"x": random.choice((0.75, 1.0))}),
-    ],
-    tells={"/dock": ("status", "feedback.distance", "result.arrived"), "/cmd_vel": "linear.x"},
+    gives=steps,
+    tells={
+        "/dock": ("status", "feedback.distance", "result.arrived"),
+        "/cmd_vel": ("linear.x", "angular.z"),
+    },
     roles=("action_server", "publisher", "subscription"),
 ).exercise(
     text={
