@@ -266,8 +266,9 @@ class Quest:
         """Decide whether the subject gives up in time if there is nothing to find; it must find what exists."""
         seen = self.seen(evidence)
         wrong = Search(_absent(seen)).limit_fault
-        if _looked_once(seen) or not any(search.has() for search in seen.values()):
-            wrong = "it does not look long enough to find anything"
+        there = [search for search in seen.values() if search.robot.answer]
+        if not all(search.has(*list(search.robot.answer)[:1]) for search in there) or _looked_once(seen):
+            wrong = "it does not find what exists, so this shows nothing"
         return Finding(not wrong, "ends in time, with a TimeoutError", wrong or "it did")
 
     # --- mistakes ------------------------------------------------------------------------------------------------
