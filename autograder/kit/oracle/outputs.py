@@ -75,7 +75,7 @@ class Output:
         """Return the fields that are compared, for each message or answer among the events."""
         told = [e.data for e in events if e.kind in ("message", "answered") and e.name == self.name]
         return [
-            [data["number"] if path == NUMBER else pick(data["fields"], path) for path in self.paths]
+            [data.get("number") if path == NUMBER else pick(data["fields"], path) for path in self.paths]
             for data in told
         ]
 

@@ -2,19 +2,27 @@
 
 from random import Random
 
+from autograder.kit.oracle.drawings import shuffled
 from autograder.kit.oracle.same_as_solution import SameAsSolution, To
 
+WIDTH, HEIGHT, WALLS = 6, 4, 6
+INSIDE = (0.2, 0.8, 0.4, 0.7, 0.3, 0.9)
+"""Where in its cell a point is, in both directions: a program that rounds takes the next cell for some of them."""
 
-def wall(random: Random) -> To:
-    """Return a point inside of a cell."""
-    return To("/wall", {"x": random.randrange(6) + random.uniform(0.1, 0.9), "y": random.randrange(4) + 0.5})
+
+def walls(random: Random) -> list[To]:
+    """Return points in different cells, and at the end one of them again. The first comes before the judge listens."""
+    cells = random.sample([(x, y) for x in range(WIDTH) for y in range(HEIGHT)], WALLS)
+    places = zip(cells, shuffled(random, INSIDE), shuffled(random, INSIDE), strict=True)
+    met = [To("/wall", {"x": x + right, "y": y + up}) for (x, y), right, up in places]
+    return [*met, random.choice(met)]
 
 
 EXERCISE = SameAsSolution(
     "lab_2_1.map",
     "Lab 2.1 · A map for those who come late",
     "Publish a map that late subscribers get, and publish it again when a wall is met.",
-    gives=lambda random: [wall(random) for _ in range(6)],
+    gives=walls,
     tells={"/map": ("info.width", "info.height", "data")},
     late_after=1.0,
     every=True,
