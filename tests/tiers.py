@@ -58,6 +58,8 @@ NIGHTLY = (
     "tests/judge/test_missing_events.py::test_no_exercise_needs_an_event_to_come_to_a_verdict[lab_1_4.programs]",
     # All notebooks in one folder; two of them are executed in both tiers.
     "tests/masters/test_run_again.py",
+    # The same three programs and their mistakes, with whatever a subject can do.
+    "tests/judge/test_hostile_subjects.py::test_no_subject_ends_its_judge[lab_1_4.programs]",
     # The longest exercise at each missing event, a hundred seconds; the others stay.
     "tests/judge/test_missing_events.py::test_no_exercise_needs_an_event_to_come_to_a_verdict[bugs_2.counting_clock]",
     # Recording what builds packages, or a changed exercise; what has changed in truth is recorded in both tiers.
@@ -129,6 +131,7 @@ BUILT = (
 )
 """Exercises whose answers are built or launched: seven seconds of a processor each, where others take two."""
 DRAWS = (
+    Draw("tests/judge/test_hostile_subjects.py::test_no_subject_ends_its_judge[", 12),
     Draw(f"{_LIVE}[", 2, "/"),
     *(Draw(f"{_LIVE}[{exercise}/", 1) for exercise in BUILT),
     Draw("tests/attacks/test_attacks.py::test_it_is_defeated[", 1, "-"),

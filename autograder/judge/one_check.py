@@ -15,7 +15,7 @@ from autograder import exercises, kit
 from autograder.judge.bench.bench import Confirmed, TestBench
 from autograder.judge.bench.recorder import MAX_EVENTS
 from autograder.judge.bench.subject_time import Unanswered
-from autograder.judge.bench.unreadable import FLOOD, NAME, Unreadable
+from autograder.judge.bench.unreadable import FLOOD, NAME, UnreadableSubject
 from autograder.judge.machine_fitness import (
     NOT_DELIVERED,
     SEEN_SO_FAR,
@@ -214,7 +214,7 @@ def _check(
             crowded = not certain and (seen.unmet or (again and crowding.too_busy and not seen.confirms))
             if not certain and not (delivered and delivers()):
                 raise NotDelivered(NOT_DELIVERED)
-    except Unreadable as error:
+    except UnreadableSubject as error:
         verdict = _undecidable(exercise, seed, error.why)
     except TooBusy:
         # The machine left no time for a further look, but the last whole one may prove a mistake, such as a wrong name.
@@ -269,7 +269,7 @@ def decide(exercise: Exercise, evidence: Evidence, seed: str) -> Verdict:
     """Return the verdict that follows from evidence; a fail if the subject did what no judge can read."""
     try:
         return judge(exercise, evidence, seed)
-    except Unreadable as error:
+    except UnreadableSubject as error:
         return _undecidable(exercise, seed, error.why)
 
 
@@ -325,13 +325,13 @@ def judge(exercise: Exercise, evidence: Evidence, seed: str) -> Verdict:
     """Return the verdict that follows from the evidence.
 
     Raises:
-        Unreadable: The subject did what no judge can read.
+        UnreadableSubject: The subject did what no judge can read.
     """
     # The decision on more events would take minutes. The bank's answers have at most about a thousand in a part.
     if sum(len(part.events) for part in evidence) > MAX_EVENTS:
-        raise Unreadable(FLOOD)
+        raise UnreadableSubject(FLOOD)
     if unreadable := [event for part in evidence for event in part.of("unreadable")]:
-        raise Unreadable(unreadable[0].name)
+        raise UnreadableSubject(unreadable[0].name)
     lost = {event.data["costs"]: event for part in evidence for event in part.of("misnamed")}
     criteria = tuple(_result(exercise, one, evidence, lost.get(one.name)) for one in exercise.criteria)
     passed = all(criterion.passed for criterion in criteria)

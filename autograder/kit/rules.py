@@ -232,7 +232,7 @@ def value(event: Event) -> Any:
 
 def value_of(text: str) -> Any:
     """Return the Python value that a subject's text stands for; None if it stands for none that Python can write."""
-    # The documentation of literal_eval lists these errors, for texts that are not literals, or are too deep or too long.
+    # The documentation of literal_eval lists these errors, for texts that are not literals, or too deep or too long.
     with contextlib.suppress(ValueError, TypeError, SyntaxError, MemoryError, RecursionError):
         value = ast.literal_eval(text)
         repr(value)  # a number in another base may have more digits than Python writes

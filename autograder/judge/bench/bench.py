@@ -21,7 +21,7 @@ from autograder.judge.bench.recorder import Place, Recorder
 from autograder.judge.bench.ros_interfaces import MisfitError, expected_hashes, served_hashes, service_fields
 from autograder.judge.bench.subject_presence import GRAPH_POLL, MATCH, Presence
 from autograder.judge.bench.subject_time import SubjectTime, silent
-from autograder.judge.bench.unreadable import Unreadable
+from autograder.judge.bench.unreadable import UnreadableSubject
 from autograder.judge.machine_fitness import JudgeFailed
 from autograder.kit.bench import STEP, Pace
 from autograder.kit.counterparts import Qos
@@ -180,7 +180,7 @@ class TestBench:
         """End the block as soon as the subject does what no judge can read, and record that."""
         try:
             yield
-        except Unreadable as error:
+        except UnreadableSubject as error:
             self._recorder.record("unreadable", error.why)
 
     def close(self) -> None:

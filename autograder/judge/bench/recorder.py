@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
-from autograder.judge.bench.unreadable import FLOOD, Unreadable
+from autograder.judge.bench.unreadable import FLOOD, UnreadableSubject
 from autograder.judge.machine_fitness import Patience
 from autograder.kit.evidence import REPORTS, Event, Part
 
@@ -159,7 +159,7 @@ class Recorder:
             True if the condition held in time.
 
         Raises:
-            Unreadable: The record is full, although the older words were dropped. What comes now is not in it.
+            UnreadableSubject: The record is full, although the older words were dropped. What comes now is not in it.
         """
         slowness = (lambda: 1.0) if wall else None
         patience = Patience(within, slowness=slowness)
@@ -168,7 +168,7 @@ class Recorder:
         while True:
             self._hurry()
             if self._is_full:
-                raise Unreadable(FLOOD)
+                raise UnreadableSubject(FLOOD)
             # Read the count before the condition, so that an event during the check is not slept through below.
             seen = self._count
             if condition():

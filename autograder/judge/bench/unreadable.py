@@ -17,7 +17,7 @@ _FULL_NAME = re2.compile(r"(/[A-Za-z_][A-Za-z0-9_]*)+")
 """Matches the full name of a node, topic, service or action (design.ros2.org, "Topic and Service name mapping")."""
 
 
-class Unreadable(Exception):
+class UnreadableSubject(Exception):
     """The judge cannot read what the subject does.
 
     Attributes:
@@ -36,10 +36,10 @@ def checked(name: str) -> str:
     No ROS library makes another name, but a program can change the bytes of a name in its own memory.
 
     Raises:
-        Unreadable: ROS does not allow the name.
+        UnreadableSubject: ROS does not allow the name.
     """
     if not _FULL_NAME.fullmatch(name):
-        raise Unreadable(NAME)
+        raise UnreadableSubject(NAME)
     return name
 
 
@@ -48,9 +48,9 @@ def names_are_read() -> Iterator[None]:
     """Read names on the ROS graph in the block, or in the decorated function.
 
     Raises:
-        Unreadable: A name is not valid UTF-8; rclpy then raises UnicodeDecodeError.
+        UnreadableSubject: A name is not valid UTF-8; rclpy then raises UnicodeDecodeError.
     """
     try:
         yield
     except UnicodeDecodeError as error:
-        raise Unreadable(NAME) from error
+        raise UnreadableSubject(NAME) from error

@@ -1,6 +1,6 @@
 """What a node answers about its parameters, as it is compared with the solution.
 
-A subject may serve these services itself, and then answers whatever it likes. An answer that rclpy's services never give
+A subject may serve these services itself, and then answers whatever it likes. An answer that no service of rclpy gives
 is noted in words, so that it is a difference from the solution.
 """
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, cast
 import pytest
 
 from autograder.judge.bench.discovery import NodeName, counterparts, every_node, subject_nodes, topic_ends
-from autograder.judge.bench.unreadable import NAME, Unreadable
+from autograder.judge.bench.unreadable import NAME, UnreadableSubject
 
 if TYPE_CHECKING:
     from rclpy.node import Node
@@ -73,13 +73,13 @@ class Undecodable(SeenBy):
 
 @pytest.mark.parametrize("judge", [SeenBy(f"talker{name}!") for name in IMPOSSIBLE] + [Undecodable()])
 def test_a_name_that_ros_does_not_allow_makes_the_graph_unreadable(judge: Any) -> None:
-    with pytest.raises(Unreadable, match=NAME):
+    with pytest.raises(UnreadableSubject, match=NAME):
         every_node(judge, "")
 
 
 @pytest.mark.parametrize("query", [topic_ends, lambda judge: counterparts(judge, ["/a"], [])])
 def test_so_does_such_a_name_of_a_topic_or_at_its_end(query: Any) -> None:
-    with pytest.raises(Unreadable, match=NAME):
+    with pytest.raises(UnreadableSubject, match=NAME):
         query(Undecodable())
 
 

@@ -11,7 +11,7 @@ import pytest
 from autograder.judge import machine_fitness
 from autograder.judge.bench import recorder
 from autograder.judge.bench.recorder import Recorder
-from autograder.judge.bench.unreadable import FLOOD, Unreadable
+from autograder.judge.bench.unreadable import FLOOD, UnreadableSubject
 from autograder.judge.machine_fitness import SLOWEST, Patience
 
 
@@ -74,7 +74,7 @@ def test_a_flood_is_cut(monkeypatch: object) -> None:
         book.record("message", "/flood", number=number)
     assert len(book.part().events) == recorder.MAX_EVENTS + 1
     # What a scenario waits for now may be missing from the record, so no scenario goes on.
-    with pytest.raises(Unreadable, match=FLOOD):
+    with pytest.raises(UnreadableSubject, match=FLOOD):
         book.wait(lambda: True, 0.0)
 
 
