@@ -101,7 +101,7 @@ def record_drawing(exercise: Exercise, subject: Subject, name: str, *, domain_id
 
     People review the practice drawings, and the bank's answers are judged with them. A drawing of a class was never
     tried. So it is drawn again if it does not tell right answers from wrong ones, or if the solution does not do the
-    same twice. If no drawing tells, the task has the same answer whatever the inputs are, and the last one counts.
+    same twice. If no drawing tells, the last one counts. If all practice drawings have the same answer, none can tell.
 
     Args:
         name: The name of the drawing, of which the exercise draws the inputs.
@@ -114,6 +114,8 @@ def record_drawing(exercise: Exercise, subject: Subject, name: str, *, domain_id
     """
     began, practice = time.monotonic(), load_reference(exercise.id)
     subject.begin(domain_id)
+    first, *others = practice.parts
+    can_tell = any(tells(exercise, replace(practice, parts=[first]), [other]) for other in others)
     for attempt in range(DRAWN_AGAIN + 1):
         bare = replace(practice, parts=(), variants=(), drawings=(f"{name}.{attempt}" if attempt else name,))
         looks = _clear_looks(exercise, subject, bare, domain_id)
@@ -121,8 +123,8 @@ def record_drawing(exercise: Exercise, subject: Subject, name: str, *, domain_id
             continue
         recorded = replace(bare, parts=parts, drawings=())
         drawn = as_recorded(recorded, exercise.recorded)
-        is_last = attempt == DRAWN_AGAIN or time.monotonic() - began > exercise.limit / 3
-        if is_last or tells(exercise, drawn, practice):
+        is_last = not can_tell or attempt == DRAWN_AGAIN or time.monotonic() - began > exercise.limit / 3
+        if is_last or tells(exercise, drawn, practice.parts):
             again = next(looks, None)
             if again is not None and judge(exercise, Evidence(again, drawn), SEED).passed:
                 return recorded
@@ -134,16 +136,14 @@ def record_drawing(exercise: Exercise, subject: Subject, name: str, *, domain_id
     )
 
 
-def tells(exercise: Exercise, drawn: Reference, practice: Reference) -> bool:
+def tells(exercise: Exercise, drawn: Reference, practice: Sequence[Part]) -> bool:
     """Return True if a drawing tells right answers from wrong ones: no known wrong answer passes in it.
 
     The known wrong answers are those that do not look at their inputs, but do what is right in a practice drawing.
     """
     (mine,) = drawn.parts
     outputs = _outputs(drawn, mine)
-    return all(
-        any(differences(_outputs(drawn, part), outputs, exercise.tolerance)) for part in practice.parts
-    )
+    return all(any(differences(_outputs(drawn, part), outputs, exercise.tolerance)) for part in practice)
 
 
 def _outputs(reference: Reference, part: Part) -> Reference:

@@ -13,7 +13,7 @@ from autograder.kit.evidence import Event, Evidence, Part, Reference
 from autograder.kit.model import Advice, Criterion, Exercise, Finding, Mistake
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
 
 
 def _has_first(evidence: Evidence) -> Finding:
@@ -136,11 +136,8 @@ def _record(monkeypatch: pytest.MonkeyPatch, look: _Looks, exercise: Exercise = 
     return reference_recording.record(exercise, cast("Any", _Subject()), domain_id=1)
 
 
-PRACTICE = Reference(
-    "lab_9_1.talker",
-    {},
-    [Part("drawing 0", {}, [Event(0.0, "message", "/chatter", {"fields": {"data": 1}})])],
-)
+def _said(number: int, name: str) -> Part:
+    return Part(name, {}, [Event(0.0, "message", "/chatter", {"fields": {"data": number}})])
 
 
 @pytest.mark.parametrize(
@@ -150,7 +147,7 @@ PRACTICE = Reference(
         pytest.param((1, 2, 2), 1, 2, id="in the first drawing, the answer to a practice drawing is right"),
         pytest.param((2, 3, 4, 4), 1, 4, id="in the first drawing, the solution does not do the same twice"),
         pytest.param((2, None, 2), 0, 2, id="a look is doubtful"),
-        pytest.param((1, 1, 1, 1, 1), 3, 1, id="no drawing tells, so the last one counts"),
+        pytest.param((1, 9, 1, 9, 9), 3, 9, id="no drawing tells, so the last one counts"),
     ],
 )
 def test_a_drawing_of_a_class_is_drawn_again_unless_it_tells(
@@ -168,12 +165,20 @@ def test_a_solution_that_does_not_do_the_same_twice_is_not_recorded(monkeypatch:
         _record_drawing(monkeypatch, _Looks(*range(10, 18)))
 
 
+def test_a_drawing_is_not_drawn_again_if_the_answer_is_always_the_same(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    assert _record_drawing(monkeypatch, _Looks(1, 1), practice=(1, 1)).parts[0].name == "drawing x"
+
+
 def test_a_drawing_is_not_drawn_again_when_the_time_is_over(monkeypatch: pytest.MonkeyPatch) -> None:
     look = _Looks(1, 1)
     assert _record_drawing(monkeypatch, look, limit=0.0).parts[0].name == "drawing x"
 
 
-def _record_drawing(monkeypatch: pytest.MonkeyPatch, look: _Looks, limit: float = 60.0) -> Reference:
+def _record_drawing(
+    monkeypatch: pytest.MonkeyPatch, look: _Looks, limit: float = 60.0, practice: Sequence[int] = (1, 9)
+) -> Reference:
     def drawn(exercise: Exercise, subject: object, reference: Reference, *more: Any, **options: Any) -> Seen:
         seen = look(exercise, subject, reference, *more, **options)
         named = [replace(part, name=reference.drawings[0]) for part in seen.evidence.parts]
@@ -185,8 +190,9 @@ def _record_drawing(monkeypatch: pytest.MonkeyPatch, look: _Looks, limit: float 
         )
         return Finding(mine == due, str(due), str(mine))
 
+    known = Reference("lab_9_1.talker", {}, [_said(one, f"drawing {n}") for n, one in enumerate(practice)])
     monkeypatch.setattr(reference_recording, "look", drawn)
-    monkeypatch.setattr(reference_recording, "load_reference", lambda _: PRACTICE)
+    monkeypatch.setattr(reference_recording, "load_reference", lambda _: known)
     exercise = replace(
         EXERCISE,
         limit=limit,
