@@ -142,9 +142,7 @@ def test_an_exercise_without_drawn_inputs_has_no_drawings() -> None:
 
     assert not made(gives=lambda _: [To("/scan", 1.0)]).is_drawn
     assert made(gives=lambda random: [To("/scan", random.random())]).is_drawn
-    assert made(
-        gives=lambda _: [1.0], serves={"/where": Serves(lambda random: {"data": random.random()})}
-    ).is_drawn
+    assert made(gives=lambda _: [1.0], serves={"/where": lambda random: {"data": random.random()}}).is_drawn
 
 
 def test_a_card_shows_the_first_step_that_differs() -> None:
