@@ -66,9 +66,8 @@ class Part:
     def _place_behind(self, event: Event) -> int:
         try:
             return self.events.index(event) + 1
-        except (
-            ValueError
-        ):  # a line of a subject that said so much that the recorder has dropped its older lines
+        except ValueError:
+            # A line of a subject that said so much that the recorder has dropped its older lines.
             return sum(one.t <= event.t for one in self.events)
 
     @functools.cached_property
