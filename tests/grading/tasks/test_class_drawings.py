@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -137,6 +138,19 @@ def test_a_drawing_is_recorded_again_if_what_it_comes_from_has_changed(
     monkeypatch.setattr(course_version, "course_files", lambda: changed)
     tiny.grade()
     assert engine.recorded == engine.recorded[:1] * (1 + is_recorded_again)
+
+
+def test_on_a_cluster_the_solution_runs_on_the_machine_of_the_class(
+    tiny: TinyClass, engine: Recorder, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    elsewhere = Recorder()
+    workers = contextlib.nullcontext(elsewhere.execute_all)
+    monkeypatch.setattr(execution_backends, "on_cluster", lambda *_: workers)
+    monkeypatch.setattr(execution_backends, "check_dask", lambda: None)
+    tiny.submit("ada")
+    tiny.grade(scheduler="tcp://10.0.0.1:8786")
+    assert (engine.given, elsewhere.recorded) == ({}, [])
+    assert elsewhere.given == {"ada": engine.recorded[0]}
 
 
 def test_a_damaged_file_is_recorded_again(tiny: TinyClass, engine: Recorder) -> None:
