@@ -233,13 +233,12 @@ class CommandSubject(InOwnProcesses):
         descriptors: list[int] = []
         if self._box is not None:
             command, descriptors = self._box.start_of(command, environment)
+            environment = {}  # the command line has them; a box sees the environment of its first process
         try:
             return subprocess.Popen(
                 command,
                 cwd=self._cwd,
-                env=environment
-                if self._box is None
-                else {},  # the box has been told the variables of the command
+                env=environment,
                 stdin=subprocess.DEVNULL,
                 stdout=subprocess.PIPE,
                 stderr=subprocess.PIPE,

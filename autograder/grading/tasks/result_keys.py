@@ -53,18 +53,12 @@ class ResultKeys:
         names = [str(path.relative_to(folder)) for path in paths]
         contents = [path.read_bytes() for path in paths]
         configuration = (self._directory.path / CONFIG_NAME).read_bytes()
+        switches = (self._directory.is_sandbox_off, *self._directory.overlays)
         return ResultKey(
             released=_hash_of([assignment, *names, *contents]),
             exercises=files.version(SHARED, *files.labs(b"\n".join(contents))),
             judge=files.version(JUDGE),
-            settings=_hash_of(
-                [
-                    configuration,
-                    self._directory.secret,
-                    str(self._directory.is_sandbox_off),
-                    *map(str, self._directory.overlays),
-                ]
-            ),
+            settings=_hash_of([configuration, self._directory.secret, *map(str, switches)]),
             grader=files.version(GRADER),
         )
 
