@@ -2,7 +2,12 @@
 
 from __future__ import annotations
 
+import contextlib
+import gzip
+import os
+import sqlite3
 import sys
+import zlib
 from collections import Counter
 from dataclasses import replace
 from pathlib import Path
@@ -15,6 +20,7 @@ sys.path.append(str(Path(__file__).parent))  # not first: other folders have a c
 from attack_bank import FAMILIES, HERE, Attack, attacks
 from attack_class import HONEST, Graded, Traps
 from attack_demands import general_objections, objections
+from planting import plant
 
 from autograder import exercises
 
@@ -127,6 +133,45 @@ def test_a_visit_outside_is_seen(attack: Attack, graded: Graded, traps: Traps) -
     traps.visitors.append("mallory was here")
     assert objections(attack, graded, traps)
     assert general_objections([], graded, traps)
+
+
+def test_a_planted_secret_is_seen_wherever_it_comes_out_of_a_box(
+    attack: Attack, graded: Graded, traps: Traps
+) -> None:
+    traps.planted = {"a solution": "planted-0123456789abcdef"}
+    assert general_objections([], graded, traps) == []
+    write_page(graded, "<pre>planted-0123456789abcdef</pre>")
+    assert len(general_objections([], graded, traps)) == 1
+    write_page(graded, "")
+    (graded.path / ".autograder").mkdir()
+    packed = zlib.compress(b"before " + gzip.compress(b"LEAK: mallory planted-0123456789abcdef") + b" behind")
+    with sqlite3.connect(graded.path / ".autograder" / "class.db") as store:
+        store.execute("CREATE TABLE evidence (data)")
+        store.execute("INSERT INTO evidence VALUES (?)", [packed])
+    assert len(general_objections([], graded, traps)) == 1
+    assert objections(attack, graded, traps) == []
+    assert len(objections(replace(attack, says="LEAK: mallory"), graded, traps)) == 1
+
+
+def test_an_attack_that_was_never_run_is_seen(attack: Attack, graded: Graded, traps: Traps) -> None:
+    assert len(objections(replace(attack, says="I was run"), graded, traps)) == 1
+
+
+def test_each_planted_text_disappears_again(tmp_path: Path) -> None:
+    words = {
+        f"<<{word}>>": str(tmp_path / word)
+        for word in ("environment", "repository", "class", "home", "reference")
+    }
+    for own in (tmp_path / "reference", tmp_path / "class" / ".autograder" / "secret"):
+        own.parent.mkdir(parents=True, exist_ok=True)
+        own.write_text("own")
+    before = sorted(tmp_path.rglob("*"))
+    with contextlib.ExitStack() as at_end:
+        planted = plant({**words, "<<random>>": f"test_{os.getpid()}"}, at_end)
+        assert all(path.is_file() for path in planted.paths)
+        assert len(planted.secrets) == len(planted.paths) + len(planted.variables)
+    (tmp_path / "class" / "gradebook.db").unlink()
+    assert sorted(tmp_path.rglob("*")) == before
 
 
 def test_what_goes_wrong_with_the_batch_is_seen(graded: Graded, traps: Traps, tmp_path: Path) -> None:

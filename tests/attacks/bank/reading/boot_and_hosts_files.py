@@ -18,7 +18,7 @@ for name, most in (("/etc/passwd", 1), ("/etc/group", 1), ("/etc/hosts", 1)):
         if len(lines := file.read().splitlines()) > most:
             print("LEAK:", name, len(lines))
 for name in ("/etc/shadow", "/etc/pip.conf", "/etc/machine-id", "/etc/environment", "/etc/profile.d", "/etc/gitconfig", "/run/secrets", "/var/log",
-             "/var/lib/systemd/coredump", "/var/mail", "/root/.bashrc", "/run/user", "/sys/firmware", "/sys/class/dmi"):
+             "/var/lib/systemd/coredump", "/var/mail", "/root" "/.bashrc", "/run/user", "/sys/firmware", "/sys/class/dmi"):
     if os.path.exists(name):
         print("LEAK:", name)
 with open("/proc/self/mountinfo") as file:
