@@ -13,7 +13,7 @@ from autograder.kit.bench import Pace
 from autograder.kit.counterparts import Qos
 from autograder.kit.evidence import Event, Evidence, Part, Reference, Variant
 from autograder.kit.oracle.same_as_solution import SameAsSolution, Sets, To
-from autograder.kit.oracle.steps import Turn, answer_delays
+from autograder.kit.oracle.steps import Step, Turn, answer_delays
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -361,7 +361,7 @@ class _Hung(_Bench):
 
 
 def test_an_input_says_when_the_call_is_answered_that_it_leads_to() -> None:
-    steps = [
+    steps: list[Step] = [
         To("/stop", True),
         To("/ask", 1, answered=2.5),
         0.5,
