@@ -2,7 +2,7 @@
 
 from random import Random
 
-from autograder.kit.oracle.drawings import dealt, levels, mixed, scans
+from autograder.kit.oracle.drawings import dealt, levels, mixed, scans, shuffled
 from autograder.kit.oracle.same_as_solution import SameAsSolution, To
 
 NEAR = 0.8
@@ -14,7 +14,11 @@ def steps(random: Random) -> list[To]:
     walls = levels(NEAR)
     far, near = [wall for wall in walls if wall > NEAR], [wall for wall in walls if wall < NEAR]
     asked = mixed(random, [True, True, True, False, False, False], bool)
-    follows, stays = dealt(random, walls, asked.count(True)), dealt(random, far, asked.count(False))
+    hands = asked.count(True)
+    # After each request there is a wall at which it shows whether the robot follows.
+    each_hand = zip(dealt(random, far, hands), dealt(random, near, hands), strict=True)
+    follows = [shuffled(random, a + b) for a, b in each_hand]
+    stays = dealt(random, far, asked.count(False))
     aheads = [[random.choice(far), random.choice(near)]]
     aheads += [(follows if data else stays).pop() for data in asked]
     told = iter(scans(random, NEAR, [ahead for each in aheads for ahead in each]))
