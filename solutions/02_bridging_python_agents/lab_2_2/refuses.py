@@ -2,12 +2,11 @@
 
 from random import Random
 
+from autograder.kit.oracle.drawings import shuffled
 from autograder.kit.oracle.same_as_solution import SameAsSolution, Sets, To
 
-
-def limits(random: Random) -> list[Sets]:
-    """Return a change of each limit, within its range."""
-    return [Sets("max_forward", random.uniform(0.2, 0.9)), Sets("max_turn", random.uniform(0.3, 1.9))]
+LOWER, HIGHER = 0.65, 1.37
+"""New limits, as multiples of those that hold: both are within the ranges, also after one another."""
 
 
 def fast(random: Random) -> To:
@@ -18,10 +17,28 @@ def fast(random: Random) -> To:
 
 
 def steps(random: Random) -> list[To | Sets]:
-    """Return changes before the button is pressed, while it is pressed, and after that."""
+    """Return changes to higher and to lower limits, before the button is pressed, meanwhile, and after that."""
     pressed, released = (To("/stop", {"data": data}) for data in (True, False))
-    during: list[To | Sets] = [pressed, *limits(random), released, fast(random)]
-    return [*limits(random), fast(random), *during, *limits(random), fast(random)]
+    limits = {"max_forward": 0.5, "max_turn": 1.0}
+    told: list[To | Sets] = []
+    for factor in shuffled(random, (LOWER, HIGHER)):
+        limits = {name: round(limit * factor, 4) for name, limit in limits.items()}
+        changes = [Sets(name, value) for name, value in limits.items()]
+        during = [
+            Sets(name, round(value * beside, 4))
+            for name, value in limits.items()
+            for beside in (LOWER, HIGHER)
+        ]
+        told += [
+            *shuffled(random, changes),
+            fast(random),
+            pressed,
+            *shuffled(random, during),
+            released,
+            fast(random),
+        ]
+    last = [Sets(name, round(limit * random.choice((LOWER, HIGHER)), 4)) for name, limit in limits.items()]
+    return [*told, *shuffled(random, last), fast(random)]
 
 
 EXERCISE = SameAsSolution(

@@ -2,6 +2,7 @@
 
 from random import Random
 
+from autograder.kit.oracle.drawings import drawn_until, shuffled
 from autograder.kit.oracle.same_as_solution import SameAsSolution, To
 
 
@@ -20,15 +21,32 @@ def button(pressed: bool) -> To:
 STILL = To("/agent_vel", {"linear": {"x": 0.0}})
 """A command of an agent that stands: it does not release the stop."""
 
+
+def steps(random: Random) -> list[To | float]:
+    """Return three rounds in drawn order: commands, the press, what happens until the release, and what comes after."""
+    held = shuffled(random, [command(random), STILL, command(random)])
+    long: list[To | float] = [command(random), button(True), *held, 3.2, command(random), button(False), 0.9]
+    silent: list[To | float] = [
+        command(random),
+        command(random),
+        button(True),
+        0.9,
+        command(random),
+        button(False),
+        button(False),
+    ]
+    # By now the watchdog has stopped the robot, so only the button can publish once more.
+    short: list[To | float] = [command(random), 0.9, button(True), button(False)]
+    # It comes later than another round, so that a button that works only once is noticed.
+    rounds = drawn_until(lambda: shuffled(random, [long, silent, short]), lambda order: order[0] is not short)
+    return [*(step for each in rounds for step in each), command(random), 0.9]
+
+
 EXERCISE = SameAsSolution(
     "lab_2_2.stop",
     "Lab 2.2 · The red button",
     "Stop the robot when the button is pressed, and hold it until it is released.",
-    gives=lambda random: [
-        *(command(random), command(random), button(True), command(random), STILL, command(random), 3.2),
-        *(command(random), button(False), 0.9, command(random), button(True), command(random)),
-        *(button(False), button(False), command(random), 0.9),
-    ],
+    gives=steps,
     tells={"/cmd_vel": ("linear.x", "angular.z"), "/stop": ("success", "message")},
     every=True,
     pause=0.3,
