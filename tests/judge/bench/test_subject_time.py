@@ -20,11 +20,13 @@ from autograder.judge.bench.discovery import NodeName
 from autograder.judge.bench.judge_nodes import Wire
 from autograder.judge.bench.recorder import Recorder
 from autograder.judge.bench.subject_time import FIRST, NodeClock, SimulatedClock
+from autograder.kit.bench import Pace
+from autograder.kit.evidence import Reference
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from conftest import Spun, SubjectNode
+    from conftest import BenchOf, Spun, SubjectNode
     from rclpy.node import Node
 
 pytestmark = pytest.mark.ros
@@ -197,6 +199,39 @@ def test_one_clock_steps_every_node_that_the_judge_meets(subject_node: SubjectNo
             ticks.clear()
         assert clock.run(2.0, lambda: False)
         assert [len(ticks) for ticks in fired.values()] == [4, 4]
+
+
+SLEEPER = """
+import time
+import rclpy
+from std_msgs.msg import String
+
+rclpy.init()
+node = rclpy.create_node("subject")
+told = node.create_publisher(String, "told", 10)
+node.create_subscription(String, "ask", lambda message: (time.sleep(0.4), told.publish(message)), 10)
+rclpy.spin(node)
+"""
+"""A program whose callback sleeps, which costs nothing while the judge's clock waits for it."""
+
+
+def test_a_callback_that_sleeps_has_to_be_confirmed_in_real_time(bench_of: BenchOf) -> None:
+    text = "std_msgs/msg/String"
+    reference = Reference("a test", {"publisher": {"/told": text}, "subscription": {"/ask": text}})
+    with bench_of(SLEEPER, reference, Pace.FAST) as bench:
+        bench.part("only")
+        bench.listen("/told", text)
+        asks = bench.speak("/ask", text)
+        bench.start()
+        bench.await_endpoint("subscription", "/ask")
+        bench.await_attention()
+        assert bench.run_time(0.1)
+        # The steps before may have been slow on a busy machine.
+        bench.doubtful = False
+        asks.send(data="a question")
+        bench.settle()
+        assert bench.doubtful
+        bench.stop()
 
 
 def seconds(node: Node) -> float:
