@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import json
 from itertools import pairwise, product
 from random import Random
 from typing import TYPE_CHECKING
 
 import pytest
 
+from autograder import exercises
+from autograder.judge.evidence_files import parse_reference
 from autograder.kit.oracle.drawings import (
     LADDER,
     dealt,
@@ -20,6 +23,8 @@ from autograder.kit.oracle.drawings import (
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
+
+    from autograder.kit.evidence import Part
 
 LIMIT = 0.8
 WRONG = (0.5, 0.8, 0.9, 1.1, 1.25, 1.5)
@@ -72,3 +77,24 @@ def test_cases_are_dealt_to_hands_none_of_which_is_empty() -> None:
 def test_an_impossible_drawing_is_an_error() -> None:
     with pytest.raises(ValueError, match="none of"):
         drawn_until(lambda: shuffled(Random(0), (1, 2)), lambda order: len(order) > 2)
+
+
+def _told(part: Part) -> str:
+    """Return all outputs of a run in a drawing, and what the subject has made of its endpoints."""
+    return json.dumps([[event.name, event.data] for event in part.of("noted")])
+
+
+@pytest.mark.parametrize(
+    "exercise_id", [one for one in exercises.all_ids() if exercises.reference_path(one).exists()]
+)
+def test_each_recorded_drawing_alone_tells_the_recorded_wrong_answers_apart(exercise_id: str) -> None:
+    reference = parse_reference(json.loads(exercises.reference_path(exercise_id).read_text()))
+    for drawing in reference.parts:
+        runs = {"the solution": _told(drawing)}
+        runs |= {
+            variant.text: _told(part)
+            for variant in reference.variants
+            for part in variant.parts
+            if part.name == drawing.name
+        }
+        assert len(set(runs.values())) == len(runs), drawing.name
