@@ -51,8 +51,8 @@ class World(Ros):
         return SimpleNamespace(**vars(super().serve_action(action, kind)), finish=finish)
 
 
-def explores(pace: float) -> Subject:
-    """Return the explorer of Lab 2.0, so many times as fast as the solution."""
+def explores(pace: float, right: float = -1.0) -> Subject:
+    """Return the explorer of Lab 2.0, so many times as fast as the solution; ``right`` is what it does for right."""
     turn = 0.0
 
     def answer(ros: Ros) -> None:
@@ -60,11 +60,11 @@ def explores(pace: float) -> Subject:
         if not (scan := ros.heard.get("/scan")):
             return
         rays = scan["ranges"]
-        ahead, left, right = min([*rays[-3:], *rays[:4]]), min(rays[7:12]), min(rays[25:30])
+        ahead, left, other = min([*rays[-3:], *rays[:4]]), min(rays[7:12]), min(rays[25:30])
         if turn and ahead > 1.0:
             turn = 0.0
         elif not turn and ahead < 0.6:
-            turn = 1.0 if left > right else -1.0
+            turn = 1.0 if left > other else right
         ros.command(0.0 if turn else 0.4 * pace, turn * pace)
 
     return answer
@@ -141,6 +141,12 @@ def test_a_slow_robot_gets_the_same_points_in_each_world(
 def test_an_explorer_passes_however_slow_it_is(pace: float) -> None:
     (lines,) = verdicts("lab_2_0.explorer", lambda: explores(pace))
     assert all(lines)
+
+
+@pytest.mark.parametrize("pace", PACES)
+def test_an_explorer_that_always_turns_left_gets_no_points_for_the_right(pace: float) -> None:
+    found = verdicts("lab_2_0.explorer", lambda: explores(pace, right=1.0))
+    assert not any(lines[1] or lines[2] for lines in found)
 
 
 @pytest.mark.parametrize("limit", [0.9, 1.0, 1.1, 1.25, 1.5, 1.6, 1.75, 1.8, 2.0, 2.2])

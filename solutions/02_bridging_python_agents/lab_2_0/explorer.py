@@ -2,7 +2,7 @@
 
 from autograder.kit.mission.mission import Mission, Moment, Pose, World
 
-LEFT = "Turns to the left where there is more room"
+LEFT, RIGHT = (f"Turns to the {side} where there is more room" for side in ("left", "right"))
 ENOUGH = 45.0
 """Seconds for each of the two turns: a robot of a fifth of the speed needs less, wherever it starts."""
 
@@ -36,17 +36,17 @@ EXERCISE = Mission(
     reaches=[
         (
             LEFT,
-            lambda now: now.leg == 0 and now.pose.x > 3 and turned(now) > 0.7,
+            lambda now: now.leg == 0 and now.pose.x > 3 and turned(now) > 0.7 and now.velocity.turn > 0,
             "left",
         ),
         (
-            "Turns to the right where there is more room",
-            lambda now: now.leg == 1 and now.pose.x > 3 and turned(now) < -0.7,
+            RIGHT,
+            lambda now: now.leg == 1 and now.pose.x > 3 and turned(now) < -0.7 and now.velocity.turn < 0,
             "right",
         ),
         (
             "Drives on after the turn",
-            lambda now: now.leg == 1 and turned(now) < -0.7 and now.velocity.forward,
+            lambda now: RIGHT in now.reached and turned(now) < -0.7 and now.velocity.forward,
             "on",
         ),
     ],
