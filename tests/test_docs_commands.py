@@ -11,6 +11,7 @@ import pytest
 
 from autograder import exercises
 from environment.ros2_command.commands import COMMANDS, ELSEWHERE
+from tests.cases import cases
 from tests.documented_commands import (
     COURSE,
     PAGES,
@@ -192,29 +193,7 @@ def test_a_student_is_added_by_hand(tmp_path: Path, monkeypatch: pytest.MonkeyPa
 
 @pytest.mark.parametrize(
     "line",
-    [
-        "./course grad CLASS",
-        "./course grade",
-        "./course grade CLASS --dry",
-        "./course grade CLASS another",
-        "./course setup --with dask",
-        "./course test tests/nowhere",
-        "./course test --every",
-        "./course nbgrader autograd lab_1_2",
-        "./course nbgrader autograde lab_1_2 --forse",
-        "./course jupyter labs",
-        "autograder export CLASS --to excel",
-        "colcon biuld",
-        "git clon ADDRESS",
-        "pip instal .",
-        "pip wheel --no-dep-s .",
-        "ros2 topic ecko /chatter",
-        "ros2 topic echo --onze /chatter",
-        "ros2 service call /lamp",
-        "python -m tests.measure banc",
-        "python -m environment.lok",
-        "python -m benchmarks.cluster now",
-    ],
+    cases(__file__, "a_command_that_its_program_refuses_is_found"),
 )
 def test_a_command_that_its_program_refuses_is_found(line: str, pytestconfig: pytest.Config) -> None:
     for text in (f"```console\n$ {line}   # as it is typed\n```\n", f"Type `{line}` here."):

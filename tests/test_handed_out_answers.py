@@ -16,6 +16,7 @@ import pytest
 
 from autograder.masters.master_files import masters
 from autograder.student.handout import hand_out
+from tests.cases import cases
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -25,21 +26,7 @@ CODE = re.compile(r"^```\{code-cell\}[^\n]*\n(?::[^\n]*\n)*(.*?)^```", re.MULTIL
 CHECK = re.compile(r'^check\("(\w+\.\w+)", (\w+)\)', re.MULTILINE)
 OFFERING = {"create_service": 0, "create_publisher": 0, "create_subscription": 0, "ActionServer": 1}
 """What puts an endpoint on the graph, and which of its arguments is the type; the name comes next."""
-PROGRAM = """
-{imports}
-import rclpy
-from rclpy.executors import ExternalShutdownException, MultiThreadedExecutor
-
-{given}
-
-rclpy.init()
-executor = MultiThreadedExecutor(4)
-executor.add_node({name}())
-try:
-    executor.spin()
-except (KeyboardInterrupt, ExternalShutdownException):
-    pass
-"""
+PROGRAM = cases(__file__, "PROGRAM")
 Endpoints = frozenset[tuple[str, str, str]]
 
 

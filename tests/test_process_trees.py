@@ -10,6 +10,7 @@ import psutil
 import pytest
 
 from autograder.process_trees import end_each, kill, known
+from tests.cases import cases
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="only Linux has it")
 
@@ -49,25 +50,7 @@ def test_a_parent_that_has_ended_already_is_noticed() -> None:
     assert done.stdout == ""
 
 
-DAEMON = """
-import os, subprocess, sys
-from autograder.process_trees import adopt_orphans, end_descendants
-adopt_orphans()
-# The usual way into the background: a child in a session of its own whose parent ends.
-middle = subprocess.Popen([sys.executable, "-c", '''
-import os, subprocess
-p = subprocess.Popen(["sleep", "600"], start_new_session=True)
-print(p.pid, flush=True)
-'''], stdout=subprocess.PIPE)
-daemon = int(middle.stdout.readline())
-middle.wait()
-print(end_descendants())
-try:
-    os.kill(daemon, 0)
-    print("alive")
-except ProcessLookupError:
-    print("gone")
-"""
+DAEMON = cases(__file__, "DAEMON")
 
 
 def test_a_daemon_does_not_outlive_the_submission() -> None:

@@ -10,6 +10,7 @@ from typing import Any
 
 import pytest
 
+from tests.cases import cases
 from tests.size import (
     CEILINGS,
     DECISIONS,
@@ -61,29 +62,7 @@ def test_no_ceiling_is_above_an_earlier_one() -> None:
             assert not wrong, "\n".join(["use [[raised]]:", *wrong])
 
 
-TEXT = '''"""Docstring
-of two lines."""
-
-import os
-from a import (
-    _of_a,
-)
-
-# comment
-ROWS = (
-    Row("x", 1),
-    Row("y", -1),
-)
-"""Says what the rows are."""
-SUM = 1 + 2
-
-
-class Thing:
-    """A thing."""
-
-    def _hidden(self) -> None:
-        self._own = os._exit  # why
-'''
+TEXT = cases(__file__, "TEXT")
 
 
 def test_lines_that_are_not_logic_are_not_counted() -> None:

@@ -11,32 +11,12 @@ from rich.console import Console
 from autograder.authoring.notebook_execution import NothingToExecuteError, execute_command
 from autograder.masters.chapter_building import build
 from autograder.masters.master_cells import MASTER_HEADER
+from tests.cases import cases
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-GOOD = """
-# Lab 9.1: Doubling
-
-Two is doubled.
-
-```{code-cell} ipython3
-:tags: [solution]
-
-def double(number):
-    ### BEGIN SOLUTION
-    # TODO: return twice the number.
-    return 2 * number
-    ### END SOLUTION
-    return 0
-```
-
-See it:
-
-```{code-cell} ipython3
-double(2)
-```
-"""
+GOOD = cases(__file__, "GOOD")
 DIVIDES = """
 What is one divided by it?
 

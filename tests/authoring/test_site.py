@@ -31,6 +31,7 @@ from autograder.masters.master_files import masters
 from autograder.masters.source_notebooks import SET_UP_CELL as SET_UP_CELL
 from autograder.masters.source_notebooks import service_links, source_notebook
 from environment.python_child import python_child
+from tests.cases import cases
 
 pytest.importorskip("sphinx_book_theme")
 ROOT = Path(__file__).resolve().parents[2]
@@ -165,20 +166,7 @@ def test_a_line_that_was_printed_in_two_pieces_is_one_line_without_the_folder_of
     assert [output.text for output in cell.outputs] == ["in /home/you/course/ros2_ws"]
 
 
-SHOW = """\
-import base64, contextvars, threading
-from IPython.display import HTML, display
-
-def picture(x):
-    drawn = f'<svg xmlns="http://www.w3.org/2000/svg"><circle cx="{x}"/></svg>'
-    return HTML(f'<img src="data:image/svg+xml;base64,{base64.b64encode(drawn.encode()).decode()}">')
-
-def move():
-    for x in range(1, 6):
-        handle.update(picture(x))
-
-handle = display(picture(0), display_id=True)
-cell = contextvars.copy_context()"""
+SHOW = cases(__file__, "SHOW")
 MEANWHILE = """\
 thread = threading.Thread(target=cell.run, args=(move,))
 thread.start()

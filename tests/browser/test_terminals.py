@@ -14,29 +14,13 @@ from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook
 sys.path.insert(0, str(Path(__file__).parent))
 from open_notebook import OpenNotebook, look, until
 
+from tests.cases import cases
+
 if TYPE_CHECKING:
     from playwright.sync_api import Page
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
-TEXT = """\
-Type in two terminals:
-
-```bash
-# the domain of the notebook
-echo $ROS_DOMAIN_ID > first.txt  # and once more:
-echo again >> first.txt
-```
-
-```bash
-pwd > second.txt
-```
-
-This is not a command:
-
-```python
-print("no")
-```
-"""
+TEXT = cases(__file__, "TEXT")
 
 
 @pytest.fixture

@@ -155,15 +155,15 @@ def check_unplaced(said: str, class_: list[Pupil], waiting: tuple[str, ...] = WA
     """Each file that waits for a place is named with its student, the reason and what to type."""
     what_to_type = {
         "py": "it is not a notebook",
-        "other lab": "say --assignment own",
+        "other lab": "write the assignment under assignment in collected.csv",
         "tar.gz": "the archive cannot be read",
     }
     for pupil in class_:
         if pupil.oddity in waiting:
-            words = what_to_type.get(pupil.oddity, f"unpack it into a folder named {pupil.id}")
+            words = what_to_type.get(pupil.oddity, f"unpack the file into a folder named {pupil.id}")
             assert re.search(rf"canvas\.zip/\S+lab_1_2\S*[ :].*\b{pupil.id}\b.*{words}", said), said
         elif pupil.oddity in UNPLACED:
-            assert "say --assignment own" not in said, said
+            assert what_to_type["other lab"] not in said, said
 
 
 def grade_by_hand(formgrader: Formgrader, class_: list[Pupil], expected: dict[str, float]) -> dict[str, str]:

@@ -10,24 +10,12 @@ from pathlib import Path
 
 import pytest
 
+from tests.cases import cases
+
 ROOT = Path(__file__).resolve().parents[2]
 
 # Stands in for environment/bootstrap.py: notes its arguments, makes what the script looks for.
-SET_UP = """\
-import os, pathlib, sys
-root = pathlib.Path(__file__).resolve().parent.parent
-with (root / "ran.txt").open("a") as log:
-    print("set-up", *[word for word in sys.argv[1:] if word != sys.argv[2]], file=log)
-if (root / "broken").exists():
-    sys.exit(2)
-programs = root / ".venv/bin"
-programs.mkdir(parents=True, exist_ok=True)
-(root / ".venv/course").mkdir(exist_ok=True)
-if not (programs / "python").exists():
-    (programs / "python").symlink_to(sys.executable)
-(root / ".venv/course/token").write_text(sys.argv[2] + "\\n")
-(root / ".venv/course/libraries.sh").write_text("export LD_LIBRARY_PATH='/course lib'\\n")
-"""
+SET_UP = cases(__file__, "SET_UP")
 PROGRAM = """\
 #!/bin/sh
 line="$(basename "$0")$(for word; do printf ' [%s]' "$word"; done)"

@@ -9,26 +9,12 @@ import sys
 import pytest
 
 from environment.ros_report import INTERFACE_FIELDS, interface_fields
+from tests.cases import cases
 
 pytestmark = pytest.mark.ros
 
 # A server whose answer has a text where a number belongs.
-WRONG_TYPE = """
-import rclpy
-from my_robot_interfaces.srv import AddTwoInts
-
-response = AddTwoInts.Response()
-response.sum = "three"
-rclpy.init()
-node = rclpy.create_node("wrong_type")
-publisher = node.create_client(AddTwoInts, "add_two_ints")
-request = AddTwoInts.Request()
-request.a = "three"
-try:
-    publisher.call_async(request)
-except Exception as error:
-    print("caught", type(error).__name__)
-"""
+WRONG_TYPE = cases(__file__, "WRONG_TYPE")
 
 
 def test_the_fields_are_those_of_the_course_text() -> None:

@@ -20,24 +20,12 @@ from environment.lock import (
     main,
     split_blocks,
 )
+from tests.cases import cases
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-RESOLUTION = """\
-# a comment of the resolver
-numpy==2.4.6 ; python_full_version < '3.12' \\
-    --hash=sha256:aa
-    # via ros-rclpy
-numpy==2.5.5 ; python_full_version >= '3.12' \\
-    --hash=sha256:bb
-ros-rclpy==7.1.6 \\
-    --hash=sha256:cc
-ruff==0.17.5 \\
-    --hash=sha256:dd
-six==1.17.0 \\
-    --hash=sha256:ee
-"""
+RESOLUTION = cases(__file__, "RESOLUTION")
 
 
 def lock_text(name: str) -> str:

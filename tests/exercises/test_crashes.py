@@ -7,6 +7,7 @@ import pytest
 from autograder.kit.evidence import Event, Evidence, Part, Reference
 from autograder.kit.mistakes.crashes import CRASHES, OTHER_CRASHES, meant, traceback_of
 from autograder.verdict import ASKS_FOR_INPUT
+from tests.cases import cases
 
 NO_CONTEXT = "object does not support the context manager protocol"
 NO_ASYNC = "object does not support the asynchronous context manager protocol"
@@ -142,29 +143,7 @@ HEAD = 'Traceback (most recent call last):\n  File "client.py", line 9, in <modu
 
 @pytest.mark.parametrize(
     ("rest", "expected"),
-    [
-        ('  File "client.py", line 5, in run\n    raise GoalFailed("refused")\nGoalFailed: refused', True),
-        (
-            '  File "client.py", line 5, in run\n    assert handle.accepted, "refused"\nAssertionError: refused',
-            True,
-        ),
-        (
-            '  File "client.py", line 5, in run\n    x = names[7]\n        ~~~~~^^^\nIndexError: out of range',
-            False,
-        ),
-        (
-            '  File "client.py", line 5, in run\n    node.send(1)\n'
-            '  File "/venv/lib/python3.11/site-packages/rclpy/action/client.py", line 3, in send\n'
-            "    raise TypeError()\nTypeError",
-            False,
-        ),
-        (
-            '  File "/ros2_ws/install/my_robot_pkg/lib/python3.12/site-packages/my_robot_pkg/client.py", line 5, '
-            'in run\n    raise RuntimeError("no service")\nRuntimeError: no service',
-            True,
-        ),
-        ("RuntimeError: no line of the program is known", False),
-    ],
+    cases(__file__, "the_innermost_line_tells"),
 )
 def test_the_innermost_line_tells(rest: str, expected: bool) -> None:
     assert meant(HEAD + rest) is expected

@@ -17,6 +17,7 @@ from autograder.kit.goal_reports import (
     unshown_feedback,
 )
 from autograder.kit.mistakes.goal_mistakes import NOT_RETURNED
+from tests.cases import cases
 
 REFERENCE = Reference(
     "lab_1_4.client", {"action_client": {"/fibonacci": "my_robot_interfaces/action/Fibonacci"}}
@@ -69,20 +70,7 @@ def test_a_function_that_returns_another_value_is_told_which(value: str, rejecte
 
 @pytest.mark.parametrize(
     ("success", "aborted", "told"),
-    [
-        ("Result: [1, 2, 3]", "Result: [1, 2, 3]", False),
-        ("succeeded: [1, 2, 3]", "aborted", True),
-        ("status 4, [1, 2, 3]", "status 6, [1, 2, 3]", True),
-        ("Fertig: [1, 2, 3]", "Daraus wurde nichts.", False),
-        ("succeeded: [1, 2, 3]", "the goal was canceled", False),
-        ("succeeded: [1, 2, 3]", "succeeded!", False),
-        ("the goal SUCCEEDED with status 4", "the goal SUCCEEDED with status 6", True),
-        ("done", "the goal was rejected", False),
-        ("4 (4 is SUCCEEDED, 6 is ABORTED)", "4 (4 is SUCCEEDED, 6 is ABORTED)", False),
-        ("4 (4 is SUCCEEDED, 6 is ABORTED)", "6 (4 is SUCCEEDED, 6 is ABORTED)", False),
-        ("[4] [1, 2, 3]", "[6] [1, 2, 3]", False),
-        ("[x] SUCCEEDED [ ] ABORTED", "[ ] SUCCEEDED [x] ABORTED", True),
-    ],
+    cases(__file__, "an_abort_is_told_by_its_name_or_by_the_number_of_its_status"),
 )
 def test_an_abort_is_told_by_its_name_or_by_the_number_of_its_status(
     success: str, aborted: str, told: bool

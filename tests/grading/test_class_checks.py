@@ -14,6 +14,7 @@ from tiny_class import TALKER, FakeEngine, TinyClass
 from autograder.grading.class_checks import check_configuration
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.grading_errors import GradingError
+from tests.cases import cases
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -53,24 +54,7 @@ def test_what_the_conversion_honours_is_not_refused(tiny: TinyClass, line: str) 
 
 @pytest.mark.parametrize(
     ("line", "option"),
-    [
-        (
-            'c.Autograde.autograde_preprocessors.append("nbgrader.preprocessors.ClearOutput")',
-            "Autograde.autograde_preprocessors",
-        ),
-        ("c.Autograde.permissions = 664", "Autograde.permissions"),
-        ("c.SaveAutoGrades.enabled = False", "SaveAutoGrades.enabled"),
-        ('c.CourseDirectory.feedback_directory = "out"', "CourseDirectory.feedback_directory"),
-        (
-            'c.GenerateFeedback.preprocessors = ["nbgrader.preprocessors.ClearOutput"]',
-            "GenerateFeedback.preprocessors",
-        ),
-        ('c.HTMLExporter.template_name = "lab"', "HTMLExporter.template_name"),
-        ("c.WireExecute.memory = 4_000_000_000", "WireExecute.memory"),
-        ("c.Execute.timeout = 300", "Execute.timeout"),
-        ("c.ExecutePreprocessor.timeout = 300", "ExecutePreprocessor.timeout"),
-        ("c.IgnorePattern.pattern = 'x'", "IgnorePattern.pattern"),
-    ],
+    cases(__file__, "what_it_does_not_know_is_refused"),
 )
 def test_what_it_does_not_know_is_refused(tiny: TinyClass, line: str, option: str) -> None:
     tiny.configure(line)

@@ -21,7 +21,7 @@ from autograder.grading.course_version import (
     part_of,
 )
 from autograder.grading.running import task_dispatcher
-from tests.test_imports import imports_of
+from tests.reach.imports import imports_of
 
 ROOT = Path(__file__).resolve().parents[2]
 # What git keeps of these counts. That list is not taken from the code under test.

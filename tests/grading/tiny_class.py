@@ -25,76 +25,15 @@ from autograder.grading.running.task_dispatcher import Done
 sys.path.insert(0, str(Path(__file__).parent))  # for fake_judge, which a worker imports by that name
 from fake_judge import verdict
 
+from tests.cases import cases
+
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
     from autograder.grading.grading_task import Task
     from autograder.grading.reporting.grade_report import GradeReport
 
-MASTER = """\
----
-jupytext:
-  formats: md:myst
-kernelspec:
-  display_name: Python 3 (ipykernel)
-  name: python3
----
-
-# Tiny
-
-Two answers, two checks.
-
-```{code-cell} ipython3
-import os
-import pathlib
-import socket
-
-
-def check(exercise, subject):
-    with socket.socket(socket.AF_UNIX) as judge:
-        judge.connect(os.environ["AUTOGRADER_JUDGE_SOCKET"])
-        judge.sendall(str(subject()).encode())
-        judge.shutdown(socket.SHUT_WR)
-        judge.recv(1)
-    return 10.0
-```
-
-```{code-cell} ipython3
-:tags: [solution]
-def Talker():
-    \"\"\"The talker's points.\"\"\"
-    ### BEGIN SOLUTION
-    # TODO: return ten.
-    return 10
-    ### END SOLUTION
-```
-
-```{code-cell} ipython3
-:tags: [check]
-check("lab_1_2.talker", Talker)
-```
-
-Between the two.
-
-:::{hint} How many points?
-Ten.
-:::
-
-```{code-cell} ipython3
-:tags: [solution]
-def Listener():
-    \"\"\"The listener's points.\"\"\"
-    ### BEGIN SOLUTION
-    # TODO: return ten.
-    return 10
-    ### END SOLUTION
-```
-
-```{code-cell} ipython3
-:tags: [check]
-check("lab_1_2.listener", Listener)
-```
-"""
+MASTER = cases(__file__, "MASTER")
 
 COURSE = {
     "autograder/judge/check_server.py": b"the judge",

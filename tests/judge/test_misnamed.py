@@ -14,6 +14,7 @@ from autograder.judge.one_check import decide, misnamed
 from autograder.judge.timeline.verdict_timeline import moments
 from autograder.kit.evidence import Event, Evidence, Part, Reference
 from autograder.verdict import CriterionResult, State, Verdict
+from tests.cases import cases
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -68,38 +69,8 @@ def test_a_name_is_wrong_if_exactly_one_endpoint_can_be_meant(
     assert {facts["costs"] for facts in found.values()} <= {"topic"}, "the first that failed"
 
 
-TALKER = """
-import rclpy
-from rclpy.node import Node
-from std_msgs.msg import String
-class Talker(Node):
-    def __init__(self):
-        super().__init__("talker_node")
-        self.publisher = self.create_publisher(String, "{topic}", 10)
-        self.create_timer({period}, self.say)
-        self.count = 0
-    def say(self):
-        self.publisher.publish(String(data=f"Hello, world! {{self.count}}"))
-        self.count += 1
-rclpy.init()
-rclpy.spin(Talker())
-"""
-THREE = """
-import sys
-import rclpy
-from my_robot_interfaces.srv import AddTwoInts
-rclpy.init()
-node = rclpy.create_node("three_ints")
-client = node.create_client(AddTwoInts, "add_two_int")
-if not client.wait_for_service(timeout_sec=5.0):
-    sys.exit("service not available")
-def ask(a, b):
-    future = client.call_async(AddTwoInts.Request(a=a, b=b))
-    rclpy.spin_until_future_complete(node, future)
-    return future.result().sum
-a, b, c = map(int, sys.argv[1:4])
-print("Sum:", ask(ask(a, b), c))
-"""
+TALKER = cases(__file__, "TALKER")
+THREE = cases(__file__, "THREE")
 
 
 def checked(tmp_path: Path, exercise: str, program: str) -> tuple[Verdict, Evidence]:

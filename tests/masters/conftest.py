@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from autograder.masters.master_cells import MASTER_HEADER as HEADER_LINES
+from tests.cases import cases
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -45,47 +46,4 @@ def ten_points() -> Points:
     return lambda check: 10.0
 
 
-SMALL_MASTER = '''\
-# Lab 9.1: Doubling
-
-Some text.
-
-+++
-
-## Given
-
-```{code-cell} ipython3
-import math
-```
-
-## Write it
-
-```{code-cell} ipython3
-:tags: [solution]
-
-def double(number: int) -> int:
-    """Twice the number."""
-    ### BEGIN SOLUTION
-    # TODO: return twice the number.
-    return 2 * number
-    ### END SOLUTION
-```
-
-:::{hint} Where do I begin?
-With `number`.
-:::
-
-:::{hint} And then?
-Add it to itself.
-:::
-
-```{code-cell} ipython3
-print(double(21))
-```
-
-```{code-cell} ipython3
-:tags: [check]
-
-check("lab_9_1.double", double)
-```
-'''
+SMALL_MASTER = cases(__file__, "SMALL_MASTER")

@@ -10,47 +10,13 @@ import pytest
 from autograder.masters.master_files import MasterError
 from autograder.masters.notebook_release import release_text
 from autograder.masters.source_notebooks import Points, source_notebook
+from tests.cases import cases
 
 if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
-MASTER = """\
-Text.
-
-```{code-cell} ipython3
-LIMIT = 3
-print(LIMIT)
-```
-
-```{code-cell} ipython3
-:tags: [solution]
-
-def double(number: int) -> int:
-    \"\"\"Twice the number.\"\"\"
-    ### BEGIN SOLUTION
-    # TODO: return twice the number.
-    return 2 * number
-    ### END SOLUTION
-```
-
-```{code-cell} ipython3
-:tags: [solution]
-:grade_id: double_py
-
-%%writefile double.py
-### COPY LIMIT
-
-
-### BEGIN SOLUTION
-# TODO: copy double to this place.
-### COPY double
-### END SOLUTION
-
-
-print(double(LIMIT))
-```
-"""
+MASTER = cases(__file__, "MASTER")
 
 
 def test_the_master_writes_the_whole_program(write_master: Callable[[str], Path], ten_points: Points) -> None:

@@ -14,49 +14,12 @@ from autograder.masters.code_cells import WrittenFile, find_region, python_of, s
 from autograder.masters.notebook_release import release_text
 from autograder.masters.reference_solutions import reference_source
 from autograder.masters.source_notebooks import Points, source_notebook
+from tests.cases import cases
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-MASTER = """\
-A folder.
-
-```{code-cell} ipython3
-%%bash
-mkdir -p made
-echo shell >> made/log
-```
-
-```{code-cell} ipython3
-:tags: [solution]
-:grade_id: hello_py
-
-%%writefile made/hello.py
-TEXT = "it's here"
-### BEGIN SOLUTION
-# TODO: print the text.
-print(TEXT)
-### END SOLUTION
-```
-
-```{code-cell} ipython3
-:tags: [solution]
-:grade_id: launch_file
-
-%%writefile made/launch.yaml
-launch:
-  ### BEGIN SOLUTION
-  # TODO: start it.
-  - node: {pkg: a, exec: b}
-  ### END SOLUTION
-```
-
-```{code-cell} ipython3
-:tags: [check]
-
-check("lab_9_1.hello", "made")
-```
-"""
+MASTER = cases(__file__, "MASTER")
 
 
 @pytest.fixture

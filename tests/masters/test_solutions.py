@@ -11,98 +11,14 @@ import pytest
 from autograder.masters.master_files import MasterError
 from autograder.masters.reference_solutions import reference_source, solution_files
 from autograder.masters.source_notebooks import Points, named_cells
+from tests.cases import cases
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
 ROOT = Path(__file__).resolve().parents[2]
-LAB = """\
-# Lab
-
-```{code-cell} ipython3
-:tags: [solution]
-
-def double(number: int) -> int:
-    \"\"\"Twice the number.\"\"\"
-    ### BEGIN SOLUTION
-    # TODO: return twice the number.
-    return 2 * number
-    ### END SOLUTION
-```
-
-```{code-cell} ipython3
-:tags: [solution]
-:grade_id: asked
-
-%%bash
-### BEGIN SOLUTION
-# TODO: ask.
-ros2 topic list
-### END SOLUTION
-```
-
-```{code-cell} ipython3
-:tags: [check]
-
-check("lab_9_1.double", double)
-```
-
-```{code-cell} ipython3
-:tags: [solution]
-
-def half(number: int) -> int:
-    \"\"\"Half the number.\"\"\"
-    ### BEGIN SOLUTION
-    # TODO: return half the number.
-    return number // 2
-    ### END SOLUTION
-```
-
-```{code-cell} ipython3
-:tags: [check]
-
-check("lab_9_1.half", half)
-```
-"""
-PROGRAM = """\
-Text.
-
-```{code-cell} ipython3
-import math
-
-HALF = 0.5
-noise = print("a demonstration")
-math.mood = "good"
-```
-
-Text.
-
-```{code-cell} ipython3
-:tags: [solution]
-
-def double(number: int) -> int:
-    '''Twice the number.'''
-    ### BEGIN SOLUTION
-    # TODO: return it.
-    return 2 * number
-    ### END SOLUTION
-```
-
-Text.
-
-```{code-cell} ipython3
-:tags: [check]
-
-check("lab_9_1.double", double)
-```
-
-Text.
-
-```{code-cell} ipython3
-@staticmethod
-def later(): ...
-```
-"""
+LAB = cases(__file__, "LAB")
+PROGRAM = cases(__file__, "PROGRAM")
 
 
 def made(folder: Path, why: str | None) -> dict[str, dict[str, object]]:

@@ -6,6 +6,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.cases import cases
+
 CHAPTER = Path(__file__).resolve().parents[2] / "solutions" / "01_ros2_fundamentals"
 
 
@@ -16,34 +18,7 @@ def text_of(lab: str) -> str:
 
 @pytest.mark.parametrize(
     ("lab", "untrue", "true"),
-    [
-        # The judge demands each message, and two may have one text.
-        (
-            "lab_1_2",
-            "no line comes twice",
-            "If the same text arrives twice, log it twice.",
-        ),
-        ("lab_1_2", "not spun does nothing", "A node that is not spun calls no callbacks"),
-        # ROS 1 sent its messages directly, too.
-        (
-            "00_nervous_system",
-            "so that this is possible: messages go directly",
-            "a topic can have a *deadline*",
-        ),
-        # An execute callback that awaits can be canceled with one thread.
-        (
-            "lab_1_4_robot",
-            "**Common pitfall.** A cancel request works only with",
-            "because it is `async` and awaits, can be canceled with one thread",
-        ),
-        ("lab_1_4_robot", "Pages about ROS 1 call", "Other texts say *preemptable*"),
-        # Inside one program a second type is an error.
-        (
-            "inspecting_topics",
-            "gives no error if they do not",
-            "only inside one program a second type for a name is an error",
-        ),
-    ],
+    cases(__file__, "what_was_untrue_is_said_as_it_is"),
 )
 def test_what_was_untrue_is_said_as_it_is(lab: str, untrue: str, true: str) -> None:
     text = text_of(lab)

@@ -16,6 +16,7 @@ import pytest
 
 from autograder import exercises
 from autograder.verdict import State
+from tests.cases import cases
 from tests.mutation import equivalents
 from tests.mutation.mutants import Mutant, mutants, sampled
 from tests.mutation.operators import LINES, PYTHON
@@ -28,23 +29,7 @@ if TYPE_CHECKING:
 
     from autograder.authoring.answer_bank import Answer
 
-TALKER = '''"""Right."""
-import rclpy
-from std_msgs.msg import String
-
-rclpy.init()
-node = rclpy.create_node("talker")
-publisher = node.create_publisher(String, "chatter", 10)
-
-
-def say():
-    for word in ("é", "b"):
-        publisher.publish(String(data=f"Hello {word}"))
-
-
-node.create_timer(0.5, say)
-rclpy.spin(node)
-'''
+TALKER = cases(__file__, "TALKER")
 SUBJECT = Subject("exercise_1_2.three_ints", "made_up.py", TALKER)
 
 

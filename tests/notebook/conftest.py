@@ -21,6 +21,7 @@ from std_msgs.msg import String
 from autograder.dds_discovery import claim_free_domain
 from autograder.notebook.nodes.background_nodes import stop_all
 from autograder.notebook.nodes.ros_session import start_ros
+from tests.cases import cases
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -271,38 +272,7 @@ def _answers(message: Any, request: str) -> bool:
     return bool(message["parent_header"].get("msg_id") == request)
 
 
-NODE_CLASSES = """
-import queue, threading, time
-import rclpy
-from rclpy.node import Node
-from std_msgs.msg import String
-from autograder.notebook.nodes.background_nodes import spin_in_background, spinning, stop_all
-from autograder.notebook.nodes.ros_session import start_ros
-
-class TalkerNode(Node):
-    def __init__(self, name="talker_node", text="hello"):
-        super().__init__(name)
-        self.text = text
-        self.publisher = self.create_publisher(String, "chatter", 10)
-        self.create_timer(0.005, self.tick)
-
-    def tick(self):
-        self.publisher.publish(String(data=self.text))
-
-class ListenerNode(Node):
-    def __init__(self):
-        super().__init__("listener_node")
-        self.heard = queue.SimpleQueue()
-        self.create_subscription(String, "chatter", self.hear, 10)
-
-    def hear(self, message):
-        self.heard.put(message.data)
-
-def hear(number, listener):
-    return [listener.heard.get(timeout=180) for _ in range(number)]
-
-start_ros()
-"""
+NODE_CLASSES = cases(__file__, "NODE_CLASSES")
 
 
 @pytest.fixture(scope="module")

@@ -6,30 +6,12 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from tests.cases import cases
+
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-START = """
-import time
-from geometry_msgs.msg import Twist
-from rclpy.node import Node
-from autograder.notebook import spin_in_background, start_robot, start_ros
-start_ros()
-def until(holds):
-    while not holds():
-        time.sleep(0.01)
-def drive(robot):
-    to = robot.state.pose.x + 0.2
-    node = Node("driver")
-    publisher = node.create_publisher(Twist, "/cmd_vel", 10)
-    command = Twist()
-    command.linear.x = 0.5
-    node.create_timer(0.1, lambda: publisher.publish(command))
-    driving = spin_in_background(node, name="driver")
-    until(lambda: robot.state.pose.x > to)
-    driving.stop()
-    until(lambda: robot.state.velocity.forward == 0)
-"""
+START = cases(__file__, "START")
 
 pytestmark = pytest.mark.ros
 

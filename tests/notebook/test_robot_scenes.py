@@ -11,6 +11,7 @@ from small_robot_interfaces.action import WalkTo
 
 from autograder.notebook.robot_drivers import SAYS_EVERY, CornerHunt, Scene, Spiral, Tour
 from autograder.robot.motion import ROOM, START, STILL, TICK, Moved, Pose, move
+from tests.cases import cases
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -116,30 +117,7 @@ def test_behind_a_wall_it_walks_no_further(node: FakeNode) -> None:
     assert play(spiral)[0].bumped, "an arc of a billion steps takes no more memory than one"
 
 
-CELLS = """
-robot = start_robot()
-heard = Node("listener_node")
-heard.create_subscription(String, "chatter", lambda message: print(message.data), 10)
-with spinning(heard):
-    robot.talk("chatter")
-    robot.wait()
-print(robot.state.velocity.forward, robot.state.says == "", robot.state.pose.x > 3)
-""", """
-from my_robot_interfaces.action import Fibonacci
-other = Node("fibonacci_server")
-feedback = other.create_publisher(Fibonacci.Impl.FeedbackMessage, "fibonacci/_action/feedback", 10)
-robot = start_robot()
-robot.wait()
-robot.walk_numbers(Fibonacci, "fibonacci")
-while not feedback.get_subscription_count():
-    time.sleep(0.01)
-feedback.publish(Fibonacci.Impl.FeedbackMessage(feedback=Fibonacci.Feedback(partial_sequence=[0, 1, 1, 2])))
-while not robot.state.says:
-    time.sleep(0.01)
-robot.wait()
-print(round(robot.state.pose.x, 1), round(robot.state.pose.y, 1))
-robot.stop()
-"""  # fmt: skip
+CELLS = cases(__file__, "CELLS")  # fmt: skip
 
 
 @pytest.mark.ros

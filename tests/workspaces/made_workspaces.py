@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from autograder.workspaces.packages import Package, find_packages
+from tests.cases import cases
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -61,21 +62,7 @@ find_package(rosidl_default_generators REQUIRED)
 rosidl_generate_interfaces(${PROJECT_NAME} "srv/AddTwoInts.srv")
 ament_package()
 """
-INTERFACE_PACKAGE_XML = """<?xml version="1.0"?>
-<package format="3">
-  <name>my_robot_interfaces</name>
-  <version>0.0.0</version>
-  <description>Mine</description>
-  <maintainer email="ada@example.com">Ada</maintainer>
-  <license>MIT</license>
-  <buildtool_depend>ament_cmake</buildtool_depend>
-  <buildtool_depend>rosidl_default_generators</buildtool_depend>
-  <member_of_group>rosidl_interface_packages</member_of_group>
-  <export>
-    <build_type>ament_cmake</build_type>
-  </export>
-</package>
-"""
+INTERFACE_PACKAGE_XML = cases(__file__, "INTERFACE_PACKAGE_XML")
 DEFINITION = "int64 a\nint64 b\n---\nint64 sum\n"
 
 

@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING
 import pytest
 import yaml
 
+from tests.cases import cases
+
 if TYPE_CHECKING:
     import subprocess
     from collections.abc import Callable, Iterator
@@ -226,22 +228,7 @@ def test_ctrl_c_cancels_the_goal(servers: Running, start: Callable[..., Running]
     servers.wait_for("was canceled")
 
 
-CTRL_C_WHILE_FEEDBACK_IS_TAKEN = """
-import os, signal, sys
-from rclpy.action.client import ActionClient
-from environment.ros2_command.main import main
-
-take_data = ActionClient.take_data
-
-def interrupted(client):
-    if client._is_feedback_ready:
-        ActionClient.take_data = take_data
-        os.kill(os.getpid(), signal.SIGINT)
-    return take_data(client)
-
-ActionClient.take_data = interrupted
-sys.exit(main())
-"""
+CTRL_C_WHILE_FEEDBACK_IS_TAKEN = cases(__file__, "CTRL_C_WHILE_FEEDBACK_IS_TAKEN")
 
 
 def test_ctrl_c_cancels_the_goal_also_while_a_message_is_taken(

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from tests.cases import cases
+
 if TYPE_CHECKING:
     import subprocess
     from collections.abc import Callable
@@ -17,81 +19,7 @@ if TYPE_CHECKING:
 pytest.importorskip("rclpy")
 pytestmark = pytest.mark.ros
 
-FILES = {
-    "py": """\
-from launch import LaunchDescription
-from launch.actions import DeclareLaunchArgument, GroupAction
-from launch.substitutions import LaunchConfiguration
-from launch_ros.actions import Node, PushRosNamespace
-
-
-def generate_launch_description():
-    return LaunchDescription([
-        DeclareLaunchArgument('topic', default_value='news'),
-        DeclareLaunchArgument('words', default_value='Good day'),
-        GroupAction([
-            PushRosNamespace('room'),
-            Node(
-                package='demo_pkg',
-                executable='talker',
-                name='anchor',
-                output='screen',
-                remappings=[('chatter', LaunchConfiguration('topic'))],
-                parameters=[{'words': LaunchConfiguration('words'), 'rate': 20.0}],
-            ),
-            Node(
-                package='demo_pkg',
-                executable='listener',
-                namespace='left',
-                output='screen',
-                remappings=[('chatter', ['/room/', LaunchConfiguration('topic')])],
-            ),
-        ]),
-    ])
-""",
-    "xml": """\
-<launch>
-  <arg name="topic" default="news"/>
-  <arg name="words" default="Good day"/>
-  <group>
-    <push_ros_namespace namespace="room"/>
-    <node pkg="demo_pkg" exec="talker" name="anchor" output="screen">
-      <remap from="chatter" to="$(var topic)"/>
-      <param name="words" value="$(var words)"/>
-      <param name="rate" value="20.0"/>
-    </node>
-    <node pkg="demo_pkg" exec="listener" namespace="left" output="screen">
-      <remap from="chatter" to="/room/$(var topic)"/>
-    </node>
-  </group>
-</launch>
-""",
-    "yaml": """\
-launch:
-- arg: {name: topic, default: news}
-- arg: {name: words, default: Good day}
-- group:
-    children:
-    - push_ros_namespace: {namespace: room}
-    - node:
-        pkg: demo_pkg
-        exec: talker
-        name: anchor
-        output: screen
-        remap:
-        - {from: chatter, to: $(var topic)}
-        param:
-        - {name: words, value: $(var words)}
-        - {name: rate, value: 20.0}
-    - node:
-        pkg: demo_pkg
-        exec: listener
-        namespace: left
-        output: screen
-        remap:
-        - {from: chatter, to: /room/$(var topic)}
-""",
-}
+FILES = cases(__file__, "FILES")
 
 
 @pytest.mark.parametrize("kind", FILES)

@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from tests.cases import cases
+
 if TYPE_CHECKING:
     import subprocess
     from collections.abc import Callable
@@ -107,28 +109,7 @@ def test_output_of_all_processes_can_be_shown(ros2: Ros2, write: Callable[[str],
 
 @pytest.mark.parametrize(
     ("actions", "error"),
-    [
-        ("Node(package='no_such_pkg', executable='x'),", "package 'no_such_pkg' not found, searching: ["),
-        (
-            "Node(package='demo_pkg', executable='tlaker'),",
-            "executable 'tlaker' not found on the libexec directory",
-        ),
-        (
-            "Node(package='demo_pkg', executable='says', nmae='x'),",
-            "unexpected keyword argument 'nmae' (test.launch.py, line 9)",
-        ),
-        (
-            "DeclareLaunchArgument('rate'),",
-            "missing required argument 'rate' (description: 'no description given')",
-        ),
-        ("LogInfo(msg=LaunchConfiguration('rate')),", "launch configuration 'rate' does not exist"),
-        (
-            "Node(package='demo_pkg', executable='says', output='scren'),",
-            "scren is not a valid standard output",
-        ),
-        ("ExecuteProcess(cmd=['echo', 'a'], output='screen', output_format='{oops}'),", "'oops'"),
-        ("LogInfo(msg='a'", "SyntaxError"),
-    ],
+    cases(__file__, "an_error_in_the_launch_file"),
 )
 def test_an_error_in_the_launch_file(
     actions: str, error: str, ros2: Ros2, write: Callable[[str], str]

@@ -13,6 +13,8 @@ from launch.substitution import SubstitutionFailure, perform
 from launch.typed import InvalidConditionExpressionError, truth, value_of_text
 from launch_ros.names import check_namespace, check_node_name, inner_namespace
 
+from tests.cases import cases
+
 if TYPE_CHECKING:
     from pathlib import Path
 
@@ -28,29 +30,7 @@ def context() -> LaunchContext:
 
 @pytest.mark.parametrize(
     ("text", "value"),
-    [
-        ("", ""),
-        ("plain", "plain"),
-        ("$(var name)", "talker"),
-        ("a/$(var name)/b", "a/talker/b"),
-        ("$(var nothing fallback)", "fallback"),
-        ("$(var nothing 'two words')", "two words"),
-        ("$(var nothing '')", ""),
-        ("$(env ROBOT)", "r2"),
-        ("$(env NOTHING none)", "none"),
-        ("$(dirname)/b.yaml", "/w/launch/b.yaml"),
-        ("$(var $(env KEY name))", "talker"),
-        ("$(eval '$(var rate) * 2')", "5.0"),
-        ("$(eval 1 + 1)", "2"),
-        ('$(eval \'"$(var name)" == "talker"\')', "True"),
-        ("$(not $(var yes))", "false"),
-        ("$(and true $(var yes))", "true"),
-        ("$(equals $(var name) talker)", "true"),
-        ("$(if $(var yes) a b)", "a"),
-        ("cost: $5", "cost: $5"),
-        (r"\$(var name)", "$(var name)"),
-        ("$(command 'echo hello there')", "hello there\n"),
-    ],
+    cases(__file__, "substitutions_in_texts"),
 )
 def test_substitutions_in_texts(text: str, value: str, context: LaunchContext) -> None:
     assert perform(context, parse_text(text)) == value

@@ -23,6 +23,7 @@ from autograder.grading.classes import class_directory
 from autograder.grading.classes.class_directory import ClassDirectory, switch_sandbox_off
 from autograder.grading.grading_errors import GradingError
 from autograder.grading.running import task_dispatcher
+from tests.cases import cases
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -132,21 +133,7 @@ def test_a_failure_on_a_crowded_worker_counts_only_where_nothing_else_runs_there
     assert unboxed.scores("dora")[TALKER] == 6
 
 
-PICKLER = """
-import os, pickle
-from distributed import get_worker
-from autograder.grading.cluster import dask_calls as calls
-
-class Bomb:
-    def __reduce__(self):
-        return os.system, ({command!r},)
-
-def execute_order(order):
-    get_worker().log_event("warn", {{"message": pickle.dumps(Bomb())}})
-    return b""
-
-calls.execute_order = execute_order
-"""
+PICKLER = cases(__file__, "PICKLER")
 
 # Every client of Dask reads what workers warn of. This one is what the grader would be without its client.
 STOCK_CLIENT = """

@@ -12,6 +12,7 @@ from typing import Any
 import pytest
 
 from autograder.grading.cluster.inert_pickle import Inert, loads
+from tests.cases import cases
 
 
 class Calls:
@@ -63,23 +64,7 @@ def test_an_error_keeps_its_words_as_tblib_writes_it() -> None:
     assert "own words" in str(error)
 
 
-CLIENT = """
-import pickle, _pickle, sys
-sys.argv = ["dask_client"]
-originals = {_pickle.loads, _pickle.load, _pickle.Unpickler, pickle._loads, pickle._load, pickle._Unpickler}
-from autograder.grading.cluster import dask_client
-own = {"pickle", "_pickle", "_compat_pickle"}
-for name, module in list(sys.modules.items()):
-    if name in own or name == "__main__":
-        continue
-    for attribute, value in list(vars(module).items()) if module is not None else ():
-        try:
-            found = value in originals
-        except Exception:
-            continue
-        if found:
-            print(f"{name}.{attribute}")
-"""
+CLIENT = cases(__file__, "CLIENT")
 
 
 def test_nothing_in_the_client_process_has_kept_the_real_one() -> None:

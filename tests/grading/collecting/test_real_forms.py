@@ -42,6 +42,7 @@ from autograder.grading.collecting.collect import collect
 from autograder.grading.collecting.collected_files import LineState
 from autograder.grading.collecting.downloaded_files import read_list
 from autograder.grading.table.students_csv import read_students_csv
+from tests.cases import cases
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -49,51 +50,12 @@ if TYPE_CHECKING:
     from tiny_class import TinyClass
 
 UTC = ZoneInfo("UTC")
-METADATA = """\
-submission_409194023:
-  :submitters:
-  - :name: Ada Lovelace
-    :sid: '4711'
-    :email: ada.love@uni.example
-  :created_at: 2026-04-26 17:34:00.861687000 Z
-  :score: 2.0
-  :results:
-    output: |-
-      submission_500000001:
-        :submitters:
-submission_500000001:
-  :submitters:
-  - :name: Ben Baer
-    :email: ben@uni.example
-  - :name: José Núñez
-    :email: jose@uni.example
-  :created_at: 2026-04-27 08:00:00.000000000 Z
-submission_600000002:
-  :submitters:
-  - :sid: 333
-submission_700000003:
-  :submitters: []
-"""
+METADATA = cases(__file__, "METADATA")
 
 
 @pytest.mark.parametrize(
     ("form", "name", "who", "file"),
-    [
-        ("canvas", "doejane_340934_208490284_MyWork.ipynb", "doejane", "MyWork.ipynb"),
-        ("canvas", "doejane_LATE_340934_208490284_MyWork-1.ipynb", "doejane", "MyWork-1.ipynb"),
-        ("canvas", "doejane_late_12345_67890_assignment1.ipynb", "doejane", "assignment1.ipynb"),
-        ("blackboard", "Homework 1_jd5072_attempt_2019-01-31-02-51-33_hw.ipynb", "jd5072", "hw.ipynb"),
-        ("blackboard", "MB submission_jdoe_attempt_2019-08-27-10-52-33_M_D.ipynb", "jdoe", "M_D.ipynb"),
-        (
-            "brightspace",
-            "271836-442356 - Jane Doe - Dec 5, 2024 1149 AM - Crawler.ipynb",
-            "Jane Doe",
-            "Crawler.ipynb",
-        ),
-        ("moodle", "Jane Doe_657737_assignsubmission_file_/lab.ipynb", "Jane Doe", "lab.ipynb"),
-        ("moodle", "Jane Doe_657737_assignsubmission_file_lab.ipynb", "Jane Doe", "lab.ipynb"),
-        ("gradescope", "assignment_8046601_export/submission_409194023/lab.ipynb", "409194023", "lab.ipynb"),
-    ],
+    cases(__file__, "a_name_says_whose_it_is"),
 )
 def test_a_name_says_whose_it_is(form: str, name: str, who: str, file: str) -> None:
     found = read_path(name.split("/"), form)
@@ -104,41 +66,7 @@ def test_a_name_says_whose_it_is(form: str, name: str, who: str, file: str) -> N
 
 @pytest.mark.parametrize(
     ("name", "text", "number", "time"),
-    [
-        (
-            "Grades-ROS.csv",
-            "Identifier,Full name,Email address,Status,Grade,Maximum Grade,Grade can be changed,"
-            "Last modified (submission),Last modified (grade),Feedback comments\n"
-            'Participant 12,Jane Doe,j@d.example,Submitted for grading,,20,Yes,"{}",-,\n',
-            "12",
-            "Wednesday, September 23, 2020, 9:00 PM",
-        ),
-        (
-            "Grades-ROS.csv",
-            'Identifier,Full name,Grade,Last modified (submission)\nParticipant 12,Jane Doe,,"{}"\n',
-            "12",
-            "Wednesday, 23 September 2020, 9:00 PM",
-        ),
-        (
-            "submissions.csv",
-            "id,user_id,login_id,submitted_at,late,attempt\n77,12,jdoe,{},true,2\n",
-            "12",
-            "2020-09-23T21:00:00Z",
-        ),
-        (
-            "scores.csv",
-            "First Name,Last Name,SID,Email,Sections,Total Score,Max Points,Status,Submission ID,Submission Time,"
-            "Lateness (H:M:S)\nJane,Doe,999,j@d.example,s,8,10,Graded,12,{},49:00:00\n",
-            "12",
-            "2020-09-23 21:00:00 +0000",
-        ),
-        (
-            "grades.csv",
-            "github_username,roster_identifier,submission_timestamp\njdoe,Jane Doe,{}\n",
-            "jdoe",
-            "2020-09-23 21:00:00 UTC",
-        ),
-    ],
+    cases(__file__, "a_list_says_who_a_number_is_and_when"),
 )
 def test_a_list_says_who_a_number_is_and_when(name: str, text: str, number: str, time: str) -> None:
     entries = read_list(name, text.format(time).encode())
@@ -219,34 +147,7 @@ def test_no_list_becomes_longer_than_it_was_typed() -> None:
 
 @pytest.mark.parametrize(
     ("text", "expected"),
-    [
-        (
-            "Student,ID,SIS User ID,SIS Login ID,Section,Quiz 1 (23)\n    Points Possible,,,,,10.00\n"
-            '"Lovelace, Ada",101,,ada,XC 101,8.00\n"Student, Test",9,,x,XC 101,\n',
-            ("ada", "Ada", "Lovelace", "", {"canvas": "101"}),
-        ),
-        (
-            "Student,ID,SIS User ID,SIS Login ID,Section,H2 (154),Homework Current Score\n,,,,,Manual Posting,\n"
-            '    Points Possible,,,,,10.00,(read only)\n"Lovelace, Ada",101,9001,ada@uni.example,MATH 1,2.5,80\n',
-            ("ada@uni.example", "Ada", "Lovelace", "", {"canvas": "101"}),
-        ),
-        (
-            '"First name",Surname,"Email address",Groups\nAda,Lovelace,ada@uni.example,"A, G1_1"\n',
-            ("ada@uni.example", "Ada", "Lovelace", "ada@uni.example", {}),
-        ),
-        (
-            "\ufeffFirst name,Last name,ID number,Email address,Groups\nAda,Lovelace,ada,ada@uni.example,A\n",
-            ("ada", "Ada", "Lovelace", "ada@uni.example", {}),
-        ),
-        (
-            "First name,Surname,Email address\nAda,Lovelace,ada@uni.example\n",
-            ("ada@uni.example", "Ada", "Lovelace", "ada@uni.example", {}),
-        ),
-        (
-            "First Name,Last Name,SID,Email,Role,Section\nAda,Lovelace,ada,ada@uni.example,Student,1\n",
-            ("ada", "Ada", "Lovelace", "ada@uni.example", {}),
-        ),
-    ],
+    cases(__file__, "a_list_of_the_lms_is_a_list_of_students"),
 )
 def test_a_list_of_the_lms_is_a_list_of_students(
     tiny: TinyClass, text: str, expected: tuple[object, ...]

@@ -15,6 +15,7 @@ from tiny_class import TALKER
 
 from autograder.grading.collecting.collect import collect
 from autograder.grading.reporting.export_files import export
+from tests.cases import cases
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -79,23 +80,7 @@ def test_points_and_pages_go_back_to_where_they_came_from(
             assert archive.namelist() == [PAGES[lms]]
 
 
-LISTS = {
-    "moodle": (
-        'ID;"Vollständiger Name";E-Mail-Adresse;Bewertung;Bestwertung\n'
-        'Teilnehmer/in31;"Ada Lovelace";ada.love@uni.example;;"20,00"\n',
-        "Teilnehmer/in31;Ada Lovelace;ada.love@uni.example;11,5;20,00\n",
-    ),
-    "brightspace": (
-        "OrgDefinedId,Username,Last Name,First Name,lab_1_2 Points Grade <Numeric MaxPoints:20>,"
-        "End-of-Line Indicator\n#S101,#ada,Lovelace,Ada,,#\n#S9,#x,X,Y,3,#\n",
-        "#S101,#ada,Lovelace,Ada,11.5,#\n#S9,#x,X,Y,3,#\n",
-    ),
-    "blackboard": (
-        "Last Name,First Name,Username,lab_1_2 [Total Pts: 20 Score] |123\nLovelace,Ada,ada,\n",
-        "Lovelace,Ada,ada,11.5\n",
-    ),
-    "sakai": ('Student ID,Student Name,lab_1_2 [20]\nada,"Lovelace, Ada",\n', 'ada,"Lovelace, Ada",11.5\n'),
-}
+LISTS = cases(__file__, "LISTS")
 
 
 @pytest.mark.parametrize("lms", LISTS)

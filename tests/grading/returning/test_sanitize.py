@@ -18,23 +18,10 @@ from autograder.grading.rebuilding import nbformat_nodes
 from autograder.grading.returning.page_exporter import PageExporter
 from autograder.grading.returning.picture_sizes import PixelBudget
 from autograder.grading.returning.sanitize import TYPED, as_typed, make_harmless
+from tests.cases import cases
 
 SIZE = 100_000
-PARSED_FOR_MINUTES = (
-    "\n ",
-    "a.",
-    "'''\"",
-    'f"{',
-    "[a](",
-    "[",
-    "$$",
-    "\\begin{a}",
-    "> ",
-    "<b a=",
-    "&",
-    "*a_b",
-    "# a\n",
-)
+PARSED_FOR_MINUTES = cases(__file__, "PARSED_FOR_MINUTES")
 EXPORTER = PageExporter()
 NAMES = {"notebook": "lab", "score": 0.0, "max_score": 0.0, "late_penalty": 0.0}
 PYTHON = {"language_info": {"name": "python", "pygments_lexer": "ipython3"}}

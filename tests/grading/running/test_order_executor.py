@@ -27,6 +27,7 @@ from autograder.grading.running import execution_backends, order_executor
 from autograder.grading.running.task_execution import _a_check_was_stopped
 from autograder.grading.running.worker_messages import ADDRESS, Answered, Drop, Give, Joined, News, Order
 from autograder.messages.json_lines import Lines
+from tests.cases import cases
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -306,20 +307,7 @@ def test_an_executor_that_waits_for_what_never_comes_ends_with_its_batch(tmp_pat
         executor.wait()
 
 
-DROPPED = """
-import sys, threading
-from types import SimpleNamespace
-from autograder.grading.running import order_executor as executor
-def execute(task, judge, scratch, addresses, began):
-    ended = threading.Event()
-    began(SimpleNamespace(abandon=lambda: ended.set() or print("abandoned", flush=True)))
-    print("at work", flush=True)
-    ended.wait(10)
-    raise RuntimeError("the boxes are gone" if ended.is_set() else "still at work")
-executor.execute = execute
-executor.Executor.fork_servers = lambda *_, **__: None
-executor.main([sys.argv[1], "1"])
-"""
+DROPPED = cases(__file__, "DROPPED")
 
 
 @pytest.mark.parametrize("dropped", [True, False])

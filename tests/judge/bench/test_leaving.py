@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from autograder.kit.evidence import Evidence, Reference
+from tests.cases import cases
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -20,24 +21,7 @@ if TYPE_CHECKING:
 pytestmark = pytest.mark.ros
 
 TOPIC, TYPE = "/chatter", "std_msgs/msg/String"
-LEAVING_TALKER = """
-import os
-import sys
-import time
-
-import rclpy
-from std_msgs.msg import String
-
-rclpy.init()
-node = rclpy.create_node("talker")
-publisher = node.create_publisher(String, "chatter", 10)
-while not os.path.exists(sys.argv[1]):
-    time.sleep(0.01)
-node.destroy_node()
-rclpy.shutdown()
-time.sleep(0.5)
-print("last words", flush=True)
-"""
+LEAVING_TALKER = cases(__file__, "LEAVING_TALKER")
 """Without the wait its last words were lost, and that it ends by itself."""
 
 

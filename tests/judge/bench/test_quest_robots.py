@@ -12,6 +12,7 @@ from autograder.kit.draft import Draft
 from autograder.kit.evidence import Evidence, Reference
 from autograder.kit.quests.quest import Quest
 from autograder.kit.quests.robot import Robot
+from tests.cases import cases
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -24,21 +25,7 @@ if TYPE_CHECKING:
 
 pytestmark = pytest.mark.ros
 
-FINDS = """
-import time
-import rclpy
-
-rclpy.init()
-node = rclpy.create_node("finder")
-obeyed = []
-while not obeyed:
-    time.sleep(0.05)
-    for name, space in node.get_node_names_and_namespaces():
-        if name == "motors":
-            topics = node.get_subscriber_names_and_types_by_node(name, space)
-            robot, obeyed = space, [topic for topic, types in topics if "geometry_msgs/msg/Twist" in types]
-print({"robot": robot, "topic": obeyed[0]})
-"""
+FINDS = cases(__file__, "FINDS")
 
 
 def robots(random: Random) -> dict[str, Robot]:

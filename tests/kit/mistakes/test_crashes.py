@@ -9,6 +9,7 @@ import pytest
 
 from autograder.kit.evidence import Event, Evidence, Part, Reference
 from autograder.kit.mistakes.crashes import CRASHES, OTHER_CRASHES
+from tests.cases import cases
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -88,81 +89,7 @@ def test_the_card_names_what_to_mend(last: str) -> None:
 
 @pytest.mark.parametrize(
     ("code", "last", "advice"),
-    [
-        (
-            "execute_callback=compute(),",
-            "TypeError: compute() missing 1 required positional argument: 'goal_handle'",
-            "pass only its name, without parentheses",
-        ),
-        (
-            "if not client.goal_handle.accepted:",
-            "AttributeError: 'NoneType' object has no attribute 'accepted'",
-            "client.goal_handle is None",
-        ),
-        (
-            "cancel_future = self.goal_handle.cancel_goal_async()",
-            "AttributeError: 'NoneType' object has no attribute 'cancel_goal_async'",
-            "store its result in self.goal_handle",
-        ),
-        (
-            "future = client.actions.send_goal_async(goal, feedback_callback=client.on_feedback())",
-            "TypeError: FibonacciClient.on_feedback() missing 1 required positional argument: 'message'",
-            "Pass only the method's name, client.on_feedback, without",
-        ),
-        (
-            "self.create_subscription(String, 'chatter', self.hear(), 10)",
-            "TypeError: Listener.hear() missing 1 required positional argument: 'message'",
-            "The parentheses after hear call the method at once",
-        ),
-        (
-            "self.create_subscription(String, 'chatter', None, 10)",
-            "RuntimeError: Subscription.__init__(): callback should be either be callable with one argument",
-            "the callback has to take exactly one message",
-        ),
-        (
-            "total = fut.result().sum",
-            "AttributeError: 'NoneType' object has no attribute 'sum'",
-            "Wait before you read the answer: rclpy.spin_until_future_complete(your_node, fut)",
-        ),
-        (
-            "print(goal.get_result_async().result().status)",
-            "AttributeError: 'NoneType' object has no attribute 'status'",
-            "your_future.done() tells you",
-        ),
-        (
-            "return first.sum + second.sum",
-            "AttributeError: 'NoneType' object has no attribute 'sum'",
-            "the result of a future is None until",
-        ),
-        (
-            "print(replies[0].sum)",
-            "AttributeError: 'Future' object has no attribute 'sum'",
-            "read replies[0].result().sum",
-        ),
-        (
-            "print(cli.call_async(request).sum)",
-            "AttributeError: 'Future' object has no attribute 'sum'",
-            "Your code reads sum from a future.",
-        ),
-        ("cmd.x = 0.5", "AttributeError: 'Twist' object has no attribute 'x'", "cmd.linear.x = 0.5 drives"),
-        ("m.data = 'hi'", "AttributeError: 'String' object attribute 'data' is read-only", "m = String()"),
-        (
-            "future = client.call_async(AddTwoInts.Request(x=a, y=b))",
-            "AssertionError: Invalid arguments passed to constructor: x, y",
-            "AddTwoInts.Request has no field called x, y",
-        ),
-        (
-            "message = String(date='hello')",
-            "AssertionError: Invalid arguments passed to constructor: date",
-            "has no field called date",
-        ),
-        (
-            "print(log.info)",
-            "AttributeError: 'Timer' object has no attribute 'info'",
-            "log has the type Timer",
-        ),
-        ("feedback.publish_feedback(1)", "TypeError: ", "feedback = Fibonacci.Feedback()"),
-    ],
+    cases(__file__, "the_line_that_raised_tells_what_to_write"),
 )
 def test_the_line_that_raised_tells_what_to_write(code: str, last: str, advice: str) -> None:
     frames = (
@@ -230,20 +157,7 @@ def test_a_program_s_traceback_has_lines_of_the_generated_module_in_it() -> None
 
 @pytest.mark.parametrize(
     ("code", "last", "says"),
-    [
-        (
-            "self.get_logger()",
-            "'Twist' object has no attribute 'get_logger'",
-            "Make self the first parameter",
-        ),
-        (
-            "self.create_action_server(f)",
-            "'Talker' object has no attribute 'create_action_server'",
-            "Talker has no create_action_server",
-        ),
-        ("msg.get_logger()", "'String' object has no attribute 'get_logger'", "no field called get_logger"),
-        ("self.msg.publisher_count", "'String' object has no attribute 'publisher_count'", "no field called"),
-    ],
+    cases(__file__, "self_is_the_message_only_where_the_line_says_self"),
 )
 def test_self_is_the_message_only_where_the_line_says_self(code: str, last: str, says: str) -> None:
     frames = f'Traceback (most recent call last):\n  File "talker.py", line 3, in tick\n    {code}\n'
@@ -278,21 +192,7 @@ def test_an_answer_was_left_lying_only_if_it_was_so_in_each_run(
     assert (first.recognize(Evidence(runs, Reference("x", {}))) is not None) == is_told
 
 
-SEGMENTATION_FAULT = """\
-Fatal Python error: Segmentation fault
-
-Current thread 0x00007f2a4c1d0740 [python3.14] (most recent call first):
-  File "/usr/lib/python3.14/ctypes/__init__.py", line 559 in string_at
-  File "talker.py", line 4 in crash
-  File "talker.py", line 5 in <module>
-
-Current thread's C stack trace (most recent call first):
-  Binary file "/usr/bin/python3.14", at _Py_DumpStack+0x49 [0x55d0c1a2b3c9]
-  Binary file "/lib/x86_64-linux-gnu/libc.so.6", at +0x3c050 [0x7f2a4c20d050]
-  <truncated rest of calls>
-
-Extension modules: yaml._yaml, rclpy._rclpy_pybind11 (total: 2)
-"""
+SEGMENTATION_FAULT = cases(__file__, "SEGMENTATION_FAULT")
 """What Python 3.14 prints; earlier versions print neither the thread's name nor the C stack."""
 
 

@@ -12,37 +12,14 @@ from nbformat.v4 import new_code_cell, new_notebook
 from nbgrader.validator import Validator
 
 from autograder.notebook.checking import card_display
+from tests.cases import cases
 
 if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
 # A judge whose verdicts are known: the next of `scores`, after what `meanwhile` does.
-JUDGE = """
-import autograder.notebook.checking.card_display as card_display
-import importlib
-from autograder.notebook import check, unwatch
-checking = importlib.import_module("autograder.notebook.checking.check")
-from autograder.verdict import CriterionResult, Diagnosis, State, Verdict
-
-usual_display = globals().setdefault("usual_display", dict(vars(card_display)))
-vars(card_display).update(usual_display)
-scores, meanwhile = [], lambda progress: None
-
-def verdict(exercise, subject, progress):
-    meanwhile(progress)
-    score = scores.pop(0)
-    text = CriterionResult("text", "Says the right string", 10.0, score == 10, "a", "b")
-    state = State.PASSED if score == 10 else State.FAILED
-    return Verdict(exercise, "The talker", state, score, 10.0, (text,), Diagnosis("text", "It says b.", "Say a."))
-
-checking._ask = verdict
-unwatch()  # or a real judge would check the next test's class again in the background, and change its cards
-card_display.SOON = 0.01
-
-class Talker:
-    pass
-"""
+JUDGE = cases(__file__, "JUDGE")
 
 
 @pytest.fixture

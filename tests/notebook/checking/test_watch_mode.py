@@ -9,6 +9,7 @@ import pytest
 
 from autograder.messages.judge_messages import SOCKET_VARIABLE
 from autograder.notebook.checking import watch_mode
+from tests.cases import cases
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -17,34 +18,7 @@ LIMIT = 180.0
 """Seconds after which a test gives up waiting for a card."""
 
 # The judge answers at once, unless `patient` is set: then its check goes on until somebody hangs up.
-JUDGE = """
-import threading
-from autograder.notebook import unwatch, watch
-from autograder.notebook.checking import card_display, watch_mode
-from autograder.notebook.checking.judge_link import JudgeUnreachable
-from autograder.verdict import CriterionResult, Diagnosis, State, Verdict
-
-patient, scores = threading.Event(), []
-
-class Link:
-    def __init__(self):
-        self.closed = threading.Event()
-    def close(self):
-        self.closed.set()
-
-def converse(link, exercise, subject, progress):
-    progress.doing(f"run 1 of {subject.text}")
-    if patient.is_set():
-        progress.known = "So far: “It says b.”"
-        link.closed.wait()
-        raise JudgeUnreachable("hung up")
-    score = scores.pop(0)
-    state = State.PASSED if score == 10 else State.FAILED
-    text = CriterionResult("text", "Says the right string", 10.0, score == 10, "a", "b")
-    return Verdict(exercise, "The talker", state, score, 10.0, (text,), Diagnosis("text", "It says b.", "Say a."))
-
-watch_mode.JudgeLink, watch_mode.converse = Link, converse
-"""
+JUDGE = cases(__file__, "JUDGE")
 TALKER = "class Talker:\n    text = {!r}"
 
 

@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from tests.cases import cases
+
 if TYPE_CHECKING:
     import subprocess
     from collections.abc import Callable
@@ -14,27 +16,7 @@ if TYPE_CHECKING:
 
 pytestmark = pytest.mark.ros
 
-MADE = """
-import re, sys
-from autograder.notebook import start_ros
-from my_robot_interfaces.action import Fibonacci
-from my_robot_interfaces.srv import AddTwoInts
-from rclpy.action import ActionClient, ActionServer
-from rclpy.node import Node
-from std_msgs.msg import String
-
-class OwnClient(ActionClient):
-    pass
-
-start_ros()
-node = Node("node")
-ways = (
-    lambda kind: ActionServer(node, kind, "fibonacci", print),
-    lambda kind: ActionServer(node=node, action_name="fibonacci", execute_callback=print, action_type=kind),
-    lambda kind: ActionClient(node, kind, "fibonacci"),
-    lambda kind: OwnClient(node, action_name="fibonacci", action_type=kind),
-)
-"""
+MADE = cases(__file__, "MADE")
 WRONG = """
 wrong = (Fibonacci.Goal, Fibonacci.Goal(), Fibonacci.Result, Fibonacci.Feedback, AddTwoInts, AddTwoInts.Request, String)
 for kind in wrong:

@@ -10,66 +10,17 @@ from typing import TYPE_CHECKING
 import pytest
 from jupyter_client.manager import KernelManager
 
+from tests.cases import cases
+
 if TYPE_CHECKING:
     from pathlib import Path
 
 
 pytestmark = pytest.mark.ros
 
-SET_UP = """
-import threading, time
-import rclpy
-from rclpy.node import Node
-from my_robot_interfaces.srv import AddTwoInts
-from autograder.notebook.nodes.background_nodes import spin_in_background, spinning, stop_all
-from autograder.notebook.nodes.ros_session import start_ros
-start_ros()
-begun = threading.Event()
-def make(name, callback):
-    node = Node(name)
-    node.client = node.create_client(AddTwoInts, "nobody_serves_this")
-    node.create_timer(0.001, lambda: (begun.set(), callback(node)))
-    return node
-def sleep_for_ever(node):
-    while True:
-        time.sleep(0.01)
-"""
+SET_UP = cases(__file__, "SET_UP")
 
-LEFT_BEHIND = {
-    "a spinning node": "b = spin_in_background(make('a', lambda node: None))",
-    "many threads": "b = spin_in_background(make('a', lambda node: time.sleep(0.002)), threads=4)",
-    "a background that nobody keeps": "spin_in_background(make('a', lambda node: None))",
-    "a callback in an endless loop": "b = spin_in_background(make('a', sleep_for_ever))",
-    "a callback in a call nobody answers": (
-        "b = spin_in_background(make('a', lambda node: node.client.call(AddTwoInts.Request())))"
-    ),
-    "a callback that catches everything": """
-def stubborn(node):
-    while True:
-        try:
-            time.sleep(0.01)
-        except BaseException:
-            pass
-b = spin_in_background(make('a', stubborn))""",
-    "a ROS that was shut down": """
-b = spin_in_background(make('a', lambda node: None))
-begun.wait(20)
-rclpy.shutdown()""",
-    "a block that sys.exit() leaves": """
-import sys
-with spinning(make('a', lambda node: None)):
-    begun.wait(20)
-    sys.exit()""",
-    "a block that was entered by hand": "spinning(make('a', lambda node: None)).__enter__()",
-    "an unfinished await": """
-async def ask():
-    begun.set()
-    await node.client.call_async(AddTwoInts.Request())
-node = make('a', lambda node: None)
-node.create_timer(0.001, ask)
-b = spin_in_background(node)""",
-    "nothing that ever started": "block = spinning(make('a', lambda node: begun.set())); begun.set()",
-}
+LEFT_BEHIND = cases(__file__, "LEFT_BEHIND")
 
 
 @pytest.mark.parametrize("left", LEFT_BEHIND.values(), ids=LEFT_BEHIND.keys())

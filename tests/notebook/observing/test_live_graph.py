@@ -9,29 +9,12 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from autograder.notebook.observing.graph_picture import watch_graph
+from tests.cases import cases
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-START = """
-import threading, time
-import rclpy
-from rclpy.node import Node
-from std_msgs.msg import String
-from autograder.notebook import start_ros, watch_graph, spin_in_background
-import autograder.notebook.observing.graph_picture as graph_picture
-start_ros()
-graph_picture.PERIOD = 0.02
-pictures = []
-usual = graph_picture.GraphPicture
-def noted(*parts):
-    pictures.append(usual(*parts))
-    return pictures[-1]
-graph_picture.GraphPicture = noted
-def await_picture(good):
-    while not any(good(picture) for picture in list(pictures)):
-        time.sleep(0.01)
-"""
+START = cases(__file__, "START")
 
 pytestmark = pytest.mark.ros
 
