@@ -163,7 +163,7 @@ def test_what_knows_the_hand_out_by_heart_has_no_points(
     graded: dict[tuple[str, str], tuple[float, str]],
 ) -> None:
     assert [graded["honest", exercise] for exercise in (NODE, FUNCTION)] == [(10, ""), (10, "")]
-    # The node keeps the rate that the task asks for, which is half of the points.
+    # The node keeps the rate that the task asks for, which is half of the points and depends on no input.
     assert graded["heart", NODE][0] == 5
     assert graded["heart", FUNCTION][0] == 0
 
