@@ -2,7 +2,10 @@
 
 from random import Random
 
-from autograder.kit.oracle.same_as_solution import SameAsSolution, Serves, To
+from lab_2_3._questions import PAUSE, row
+
+from autograder.kit.oracle.drawings import shuffled
+from autograder.kit.oracle.same_as_solution import SameAsSolution, To
 
 
 def decision(random: Random) -> dict[str, object]:
@@ -11,11 +14,20 @@ def decision(random: Random) -> dict[str, object]:
 
 
 def steps(random: Random) -> list[To | float]:
-    """Return observations: one alone, three in a row, and two of which the first is old. Some numbers fall."""
-    low, *rest = sorted(random.sample(range(1, 100), 6))
-    numbers = [rest[0], *reversed(rest[1:4]), low, rest[4]]
-    first, *row, fifth, sixth = (To("/seen", number) for number in numbers)
-    return [first, 1.6, *row, 2.1, fifth, 0.6, sixth, 1.6]
+    """Return observations in drawn order: one alone, two and three in a row. Some numbers fall, and some rise.
+
+    In a row, only the decision about the last observation matters. Of three it is the first to come, of two the last.
+    An agent that thinks about one after the other says it in a later step.
+    """
+    one, *numbers = random.sample(range(1, 100), 6)
+    fifth, sixth = sorted(numbers[:2])
+    falling = sorted(numbers[2:], reverse=True)
+    rows = [
+        row(random, "/seen", [one], (random.choice((0, 1, 2)),)),
+        row(random, "/seen", falling, random.choice(((3, 4, 2), (4, 3, 2)))),
+        row(random, "/seen", [fifth, sixth], (2, 3)),
+    ]
+    return [step for each in shuffled(random, rows) for step in each]
 
 
 EXERCISE = SameAsSolution(
@@ -24,9 +36,9 @@ EXERCISE = SameAsSolution(
     "Let the agent think in a thread of its own, and throw decisions about old observations away.",
     gives=steps,
     tells={"/told": "data", "/beat": "data"},
-    serves={"/oracle": Serves(decision, late={1: 1.0, 2: 1.8, 3: 0.8, 4: 0.8, 5: 1.5, 6: 0.8})},
+    serves={"/oracle": decision},
     every=("/told",),
-    pause=0.5,
+    pause=PAUSE,
     roles=("publisher", "subscription", "client"),
 ).exercise(
     text={
