@@ -2,43 +2,44 @@
 
 from random import Random
 
+from autograder.kit.oracle.drawings import dealt, drawn_until, levels, mixed
 from autograder.kit.oracle.returns import Returns
 
-AHEAD = {"far": (1.1, 3.0), "between": (0.65, 0.95), "near": (0.2, 0.55)}
-COURSE = (
-    "between",
-    "far",
-    "between",
-    "near",
-    "between",
-    "near",
-    "far",
-    "between",
-    "near",
-    "near",
-    "between",
-    "far",
-    "near",
-)
-"""Where the wall ahead is. Between the two distances, only what was decided before says what is right.
-
-So a new agent drives at the first wall, and one that has seen the last wall turns.
-"""
+NEAR, FREE = 0.6, 1.0
+"""A turn begins below the first distance in meters, and ends above the second. No wall is exactly there."""
+BEGIN, DRIVE_ON = [*levels(NEAR)[:4], 0.5], [*levels(NEAR)[4:], 0.9]
+TURN_ON, END = [*levels(FREE)[:4], 0.5], levels(FREE)[4:]
+"""The walls ahead at which a turn begins, an agent drives on, a turn goes on, and a turn ends."""
+SIDES = ((2.0, 1.4), (0.9, 0.5), (1.4, 2.0), (0.5, 0.9), (1.0, 1.0))
+"""The room on the left and on the right, at the beginning of each turn."""
 
 
-def observation(number: int, wall: str, random: Random) -> list[float]:
-    """Return what is seen: more room on the left, then more on the right, and so on; at the last wall, equal room."""
-    sides = sorted(random.sample((0.5, 0.9, 1.4, 2.0), 2), reverse=number % 2 == 0)
-    if number == len(COURSE) - 1:
-        sides = [1.0, 1.0]
-    return [round(random.uniform(*AHEAD[wall]), 2), *sides]
+def observations(random: Random) -> list[list[float]]:
+    """Return what an agent sees that begins five turns and ends four. While it turns, another side has more room.
+
+    The first wall says nothing to a new agent, and tells one that still turns.
+    """
+    cycles = zip(
+        dealt(random, DRIVE_ON, 5),
+        random.sample(BEGIN, 5),
+        mixed(random, SIDES, lambda sides: sides[0] > sides[1]),
+        [*dealt(random, TURN_ON, 4), []],
+        [*([end] for end in random.sample(END, 4)), []],
+        strict=True,
+    )
+    seen: list[list[float]] = []
+    for drive_on, begin, (left, right), turn_on, end in cycles:
+        seen += [[ahead, *random.choice(SIDES)] for ahead in drive_on]
+        other = [2.0, 1.4] if left == right else [right, left]
+        seen += [[begin, left, right], *([ahead, *other] for ahead in (*turn_on, *end))]
+    return seen
 
 
 EXERCISE = Returns(
     "lab_2_0.agent",
     "Lab 2.0 · An agent that explores",
     "Return the command for each observation: drive ahead, and turn away in front of a wall.",
-    gives=lambda random: [observation(number, wall, random) for number, wall in enumerate(COURSE)],
+    gives=lambda random: drawn_until(lambda: observations(random), lambda seen: NEAR < seen[0][0] < FREE),
 ).exercise(
     text={
         "If it turns, and the wall ahead is farther than 1 meter, it stops turning.": "returned",
