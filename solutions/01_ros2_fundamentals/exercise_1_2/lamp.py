@@ -28,11 +28,6 @@ def places(random: Random) -> list[World | float]:
     return [step for x in order for step in (World(start=Pose(x, 2.0, 0.0)), STAYS)]
 
 
-def delays(random: Random) -> list[float]:
-    """Draw how late the lamp answers, in seconds. The robot tells its place several times meanwhile."""
-    return [random.choice((0.15, 0.2, 0.25, 0.3, 0.35)) for _ in levels(NEAR)]
-
-
 def changes(now: Moment) -> list[bool]:
     """Return how the lamp had to change so far: to on, or to off."""
     told = [event.data["fields"] for event in now.part.of("sent", "/odom")]
@@ -64,7 +59,6 @@ EXERCISE = Mission(
     "Switch the robot's lamp on when it comes near the door, and off when it leaves.",
     roles=("client", "subscription"),
     draws=places,
-    late={"/lamp": delays},
     same=[("Calls once for each change, in time", calls, "lamp", 10)],
     knows=[
         (

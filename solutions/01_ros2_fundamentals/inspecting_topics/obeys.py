@@ -3,7 +3,7 @@
 from random import Random
 from typing import Any
 
-from autograder.kit.oracle.drawings import shuffled
+from autograder.kit.oracle.drawings import drawn_until, shuffled
 from autograder.kit.quests.quest import Quest
 from autograder.kit.quests.robot import Robot
 
@@ -16,7 +16,7 @@ WORDS, TEMPTING = ("drive", "go", "move", "push", "roll", "speed", "steer", "tur
 """The words for topics: which node a topic belongs to, and whether it obeys it, only the graph tells. The usual word is
 that of a topic of another type.
 """
-LATE, NONE = "a robot that comes late", "no robot obeys"
+FIRST, SECOND, LATE, NONE = "robot 1", "robot 2", "a robot that comes late", "no robot obeys"
 
 
 def robot(random: Random, names: list[str], kind: str) -> Robot:
@@ -36,7 +36,11 @@ def robot(random: Random, names: list[str], kind: str) -> Robot:
         {"subscribes": {next(topics): BEGINS_ALIKE}, "publishes": {next(topics): TWIST}},
         {"subscribes": {next(topics): ANOTHER}, "publishes": {next(topics): TWIST}},
     ]
-    nodes = list(zip(others, shuffled(random, beside), strict=True))
+    # In one run, a node whose type begins alike comes first.
+    order = drawn_until(
+        lambda: shuffled(random, beside), lambda order: kind != FIRST or order[0] is beside[1]
+    )
+    nodes = list(zip(others, order, strict=True))
     nodes.insert(random.choice((1, 2)), (own, right))
     if kind == NONE:
         del right["subscribes"][obeys]
@@ -48,7 +52,7 @@ def robot(random: Random, names: list[str], kind: str) -> Robot:
 def robots(random: Random) -> dict[str, Robot]:
     """Draw two robots that are there, one that comes late, and a place without one. Their order is drawn, too."""
     names = shuffled(random, NAMES)
-    return {kind: robot(random, names, kind) for kind in shuffled(random, ("robot 1", "robot 2", LATE, NONE))}
+    return {kind: robot(random, names, kind) for kind in shuffled(random, (FIRST, SECOND, LATE, NONE))}
 
 
 EXERCISE = Quest(robots).exercise(
