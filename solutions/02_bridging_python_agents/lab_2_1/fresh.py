@@ -2,30 +2,47 @@
 
 from random import Random
 
+from autograder.kit.oracle.drawings import drawn_until, levels, mixed, scans
 from autograder.kit.oracle.same_as_solution import SameAsSolution, To
 
-WALL = {"far": (0.95, 3.0), "near": (0.1, 0.65)}
+NEAR = 0.8
+"""The distance in meters up to which the robot stands still."""
+PAUSE, FRESH, OLD = 0.45, 0.5, 0.25
+"""Seconds of the subject's time after each scan; until a scan is 0.95 s old; and until it is 1.2 s old.
+
+The subject's timer rings at any moment of its 0.2 s. The four scans that grow old come 1.65 s after one another, so
+they meet it at four moments, a quarter of its period apart. One of these shows whatever the subject takes for old at
+0.95 s, or for fresh at 1.05 s.
+"""
 
 
-def scan(wall: str, random: Random, stands: float = 0.0) -> To:
-    """Return a scan with a wall ahead, and others around."""
-    ranges = [random.uniform(*WALL[wall]), *(random.uniform(0.1, 3.0) for _ in range(35))]
-    return To("/scan", {"ranges": ranges}, stands)
+def steps(random: Random) -> list[To | float]:
+    """Return scans with the wall ahead at all levels; every other one grows old before the next one comes.
+
+    The robot's time stands still after the second scan, before any grows old: a node on another clock is noticed there.
+    """
+    walls = drawn_until(
+        lambda: mixed(random, levels(NEAR), lambda wall: wall > NEAR),
+        lambda walls: len({wall > NEAR for wall in walls[::2]}) == 2,
+    )
+    far = random.choice([wall for wall in walls if wall > NEAR])
+    early, still, *told = scans(random, NEAR, [random.choice(walls), far, *walls])
+    grow_old: list[list[To | float]] = [
+        [old, FRESH, OLD, new] for old, new in zip(told[::2], told[1::2], strict=True)
+    ]
+    start = random.choice((0.5, 0.55, 0.6, 0.65))
+    return [start, early, still._replace(stands=1.2), *(step for each in grow_old for step in each)]
 
 
 EXERCISE = SameAsSolution(
     "lab_2_1.fresh",
     "Lab 2.1 · Fresh or old",
     "Say how old the newest scan is, and drive only while it is fresh and the wall ahead is far.",
-    gives=lambda random: [
-        *(0.6, scan("far", random), scan("near", random), scan("far", random, stands=1.2), 1.3),
-        scan("near", random),
-        *(scan("far", random), scan("far", random), 1.4, 0.6, scan("far", random)),
-    ],
-    tells={"/known": "data", "/cmd_vel": "linear.x"},
+    gives=steps,
+    tells={"/known": "data", "/cmd_vel": ("linear.x", "angular.z")},
     rates={"/known": 0.2, "/cmd_vel": 0.2},
     qos=["/scan"],
-    pause=0.6,
+    pause=PAUSE,
 ).exercise(
     text={
         "returns `nothing` as long as no scan has come": "known",
