@@ -26,7 +26,7 @@ def steps(random: Random) -> list[To | float]:
         lambda walls: len({wall > NEAR for wall in walls[::2]}) == 2,
     )
     far = random.choice([wall for wall in walls if wall > NEAR])
-    early, still, *told = scans(random, NEAR, [random.choice(walls), far, *walls])
+    early, still, *told = scans(random, NEAR, [max(walls), far, *walls])
     grow_old: list[list[To | float]] = [
         [old, FRESH, OLD, new] for old, new in zip(told[::2], told[1::2], strict=True)
     ]
