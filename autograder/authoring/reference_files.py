@@ -23,7 +23,7 @@ from autograder.judge.controlled_judge import JudgeDied, JudgeProcess
 from autograder.judge.recording_differences import differences
 from autograder.kit.evidence import Variant
 from autograder.masters.master_files import MasterError
-from autograder.masters.reference_solutions import reference_source
+from autograder.masters.reference_solutions import ReferenceSolution, reference_source
 from autograder.messages.judge_messages import SOCKET_VARIABLE, Report
 from autograder.safe_files import HeldFolder
 from environment.python_child import installed_program
@@ -169,14 +169,19 @@ def program(exercise_id: str, *, solved: bool = True) -> str:
     Raises:
         CannotRecord: No master checks the exercise, or its master cannot be used.
     """
+    solution = reference_solution(exercise_id, solved=solved)
+    return f"{solution.source}\n\n{solution.check_cell(exercise_id)}"
+
+
+def reference_solution(exercise_id: str, *, solved: bool = True) -> ReferenceSolution:
+    """Return everything that a notebook defines before the check of an exercise; for the errors see :func:`program`."""
     master = exercises.path(exercise_id).with_name(course.LAB)
     if not master.is_file() or exercise_id not in master.read_text(encoding="utf-8"):
         raise CannotRecord(f"{master} does not check {exercise_id}")
     try:
-        solution = reference_source(master, exercise_id, solved=solved)
+        return reference_source(master, exercise_id, solved=solved)
     except MasterError as error:
         raise CannotRecord(str(error)) from error
-    return f"{solution.source}\n\n{solution.check_cell(exercise_id)}"
 
 
 def _run(file: Path, socket: Path) -> str:

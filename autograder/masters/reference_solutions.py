@@ -45,10 +45,12 @@ class ReferenceSolution:
             current folder.
         subject: The subject as Python text: the name of the class or function that the check cell judges, or the path
             of the files.
+        own: The solution cells of this exercise, as they stand in ``source``: those since the check before.
     """
 
     source: str
     subject: str
+    own: tuple[str, ...] = ()
 
     def check_cell(self, exercise: str) -> str:
         """Return the code that checks the subject, for a program that does not come from a notebook."""
@@ -71,12 +73,17 @@ def reference_source(
         MasterError: The master cannot be used, or does not check ``exercise``.
     """
     cells: list[MasterCell] = []
+    own: list[str] = []
     for named in named_cells(master, points=points):
         if named.check is not None and named.check.exercise == exercise:
             shell = named.check.is_path
             parts = [part for cell in cells for part in _program_parts(cell, shell=shell, solved=solved)]
-            return ReferenceSolution("\n\n".join(parts) + "\n", named.check.subject)
+            return ReferenceSolution("\n\n".join(parts) + "\n", named.check.subject, tuple(own))
         cells.append(named.cell)
+        if named.check is not None:
+            own.clear()
+        elif named.cell.kind is CellRole.SOLUTION:
+            own.append(named.cell.source)
     raise MasterError(master, None, f"No cell checks '{exercise}'.", f'Write one: check("{exercise}", …).')
 
 
