@@ -6,8 +6,10 @@ Many answers are judged in parallel, each in a fork of a process that has alread
 from __future__ import annotations
 
 import select
-from collections import deque
+import time
 from dataclasses import dataclass, replace
+from functools import partial
+from itertools import islice
 from typing import TYPE_CHECKING, Generic, Protocol, TypeVar
 
 from autograder import exercises
@@ -27,6 +29,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Sequence
     from pathlib import Path
 
+    from autograder.judge.check_process import ChildResult
     from autograder.judge.one_check import Checked
     from autograder.kit.evidence import Reference
     from autograder.messages.judge_messages import Report
@@ -188,6 +191,7 @@ class _Judgeable(Protocol):
 
 
 T = TypeVar("T", bound=_Judgeable)
+W = TypeVar("W")
 
 
 @dataclass(frozen=True)
@@ -235,20 +239,37 @@ def judge_all(
 
 def _judged(turns: Iterable[Turn[T]], jobs: int) -> Iterator[tuple[Turn[T], Verdict | None, str]]:
     """Judge several answers at the same time. Yield each answer with its verdict, or with why it has no verdict."""
+    works = ((turn, partial(_verdict_in_child, turn)) for turn in turns)
+    for turn, outcome in in_children(works, jobs=jobs, limit=_JUDGING_LIMIT):
+        yield turn, from_json(outcome.data) if outcome.data is not None else None, outcome.trouble
+
+
+def in_children(
+    works: Iterable[tuple[W, Callable[[], bytes]]], *, jobs: int, limit: float
+) -> Iterator[tuple[W, ChildResult]]:
+    """Do works in forks of this process, several at the same time. Yield what each belongs to, and its result.
+
+    Args:
+        works: Whatever each work belongs to, and the function that does it.
+        jobs: The number of forks at the same time.
+        limit: Seconds of wall time after which a fork is killed.
+    """
     from autograder.judge.check_process import Child
 
-    waiting = deque(turns)
-    running: dict[int, tuple[Turn[T], Child]] = {}
-    while waiting or running:
-        while waiting and len(running) < jobs:
-            turn = waiting.popleft()
-            child = Child(lambda turn=turn: _verdict_in_child(turn), _JUDGING_LIMIT)  # type: ignore[misc]
-            running[child.reading] = (turn, child)
-        ready, _, _ = select.select(list(running), [], [])
-        for descriptor in ready:
-            turn, child = running.pop(descriptor)
-            outcome = child.result()
-            yield turn, from_json(outcome.data) if outcome.data is not None else None, outcome.trouble
+    waiting = iter(works)
+    running: dict[int, tuple[W, Child]] = {}
+    while True:
+        for owner, work in islice(waiting, jobs - len(running)):
+            child = Child(work, limit)
+            running[child.reading] = (owner, child)
+        if not running:
+            return
+        soonest = min(child.deadline for _, child in running.values())
+        ready, _, _ = select.select(list(running), [], [], max(0.0, soonest - time.monotonic()))
+        late = [at for at, (_, child) in running.items() if child.deadline <= time.monotonic()]
+        for descriptor in {*ready, *late}:
+            owner, child = running.pop(descriptor)
+            yield owner, child.result()
 
 
 def _verdict_in_child(turn: Turn[T]) -> bytes:

@@ -110,10 +110,13 @@ class AnswerSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         command: The command that runs an answer, with placeholders ``{file}`` and ``{workspace}``.
         base: The workspace of all answers, as a path relative to the folder: an answer named ``*.workspace`` edits it,
             and next to any other one, such as a launch file, it is as it is.
+        accepts: The mutants of the solution that may pass, by their keys, as ``try-exercise`` prints them, each with
+            the reason.
     """
 
     command: tuple[str, ...] = ("python3", "{file}")
     base: str = ""
+    accepts: dict[str, str] = {}
 
 
 @dataclass(frozen=True)

@@ -12,6 +12,8 @@ from autograder.authoring import reference_files
 from autograder.authoring.answer_bank import Answer, Turn, answers, answers_folder, judge_all, warm_up
 from autograder.authoring.answer_tables import BadTable, CannotEdit
 from autograder.authoring.exercise_faults import still_to_do, to_do_in_text
+from autograder.authoring.mutants.survey import survey, tell_survey
+from autograder.authoring.mutants.trials import NotOnPaper
 from autograder.cards.text_rendering import card_text
 from autograder.command_name import COMMAND
 from autograder.safe_files import HeldFolder
@@ -171,6 +173,27 @@ def try_exercise(
     for line in to_do_in_text(exercise_id) if only else still_to_do(exercise_id, wanted):
         tell(f"to do: {line}")
     return not surprises and not gifts
+
+
+def try_mutants(exercise_id: str, *, must_be_recorded: bool = True, tell: Callable[[str], object]) -> bool:
+    """Run the mutants of an exercise's solution on paper, and print which of them its drawings do not tell.
+
+    Args:
+        exercise_id: The exercise's id.
+        must_be_recorded: False if the drawings may differ from the recorded ones.
+        tell: Called with each line for the author.
+
+    Returns:
+        False if a mutant passes that may not.
+    """
+    warm_up()
+    try:
+        found = survey(exercise_id, must_be_recorded=must_be_recorded)
+    except NotOnPaper as why:
+        tell(f"{exercise_id}: no mutants on paper: {why}")
+        return True
+    tell_survey(found, tell)
+    return found.is_ready
 
 
 def _chosen(exercise_id: str, only: Sequence[str] = ()) -> list[Answer]:

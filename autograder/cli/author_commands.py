@@ -130,8 +130,17 @@ def new_exercise(
 @click.option(
     "--fast", is_flag=True, help="Leave out the second look at answers that are expected to be wrong."
 )
+@click.option(
+    "--mutants", "only_mutants", is_flag=True, help="Try only the mutants of the solution, recorded or not."
+)
 def try_exercise(
-    exercise: str, only: tuple[str, ...], jobs: int, repeat: int, transcript: Path | None, fast: bool
+    exercise: str,
+    only: tuple[str, ...],
+    jobs: int,
+    repeat: int,
+    transcript: Path | None,
+    fast: bool,
+    only_mutants: bool,
 ) -> None:
     """Record EXERCISE if it is new, judge its sample answers, right and wrong, and show unexpected results."""
     from autograder import exercises
@@ -141,6 +150,10 @@ def try_exercise(
 
     need_ros()
     try:
+        if only_mutants:
+            sys.exit(
+                0 if exercise_trial.try_mutants(exercise, must_be_recorded=False, tell=click.echo) else NO
+            )
         fits = exercise_trial.try_exercise(
             exercise,
             only=only,

@@ -42,7 +42,13 @@ class ChildResult:
 
 
 class Child:
-    """A forked child process that computes some bytes. Create it only while this process has a single thread."""
+    """A forked child process that computes some bytes. Create it only while this process has a single thread.
+
+    Attributes:
+        pid: The id of the process.
+        reading: The file descriptor that becomes readable when the child sends something or ends.
+        deadline: When the child is killed, on the clock of ``time.monotonic``.
+    """
 
     def __init__(self, work: Callable[[], bytes], limit: float, *, close: Sequence[int] = ()) -> None:
         """Fork and start the child.
@@ -54,7 +60,7 @@ class Child:
         """
         sys.stdout.flush()
         sys.stderr.flush()
-        self._deadline = time.monotonic() + limit
+        self.deadline = time.monotonic() + limit
         self._received = bytearray()
         self.reading, writing = os.pipe()
         parent = os.getpid()
@@ -80,12 +86,12 @@ class Child:
         Args:
             within: A shorter limit, in seconds from now.
         """
-        hurried = within is not None and time.monotonic() + within < self._deadline
+        hurried = within is not None and time.monotonic() + within < self.deadline
         # A caller in a hurry may shorten the limit, but must not give the child more time.
         if within is not None:
-            self._deadline = min(self._deadline, time.monotonic() + within)
+            self.deadline = min(self.deadline, time.monotonic() + within)
         while True:
-            remaining = self._deadline - time.monotonic()
+            remaining = self.deadline - time.monotonic()
             ready, _, _ = select.select([self.reading], [], [], max(0.0, remaining))
             if not ready:
                 self.kill()
@@ -107,7 +113,7 @@ class Child:
         if ready:
             self.result(within=1.0)
             return True
-        if time.monotonic() > self._deadline:
+        if time.monotonic() > self.deadline:
             self.kill()
             return True
         return False

@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-import ast
 import difflib
 import hashlib
-from collections import Counter
 from dataclasses import dataclass
+from functools import partial
 from itertools import zip_longest
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
-from tests.mutation.code import Code, Edit
-from tests.mutation.operators import LINES, PYTHON
+from autograder.authoring.mutants import engine
+from autograder.authoring.mutants.code import Code
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -31,8 +30,8 @@ class Mutant:
     """A right answer with one edit.
 
     Attributes:
-        id: Such as ``"lab_1_2.talker/reference:number:1c9d02aa"``. Its last part is made of what is changed, not of
-            where in the file it stands.
+        id: Such as ``"lab_1_2.talker/while_loop_sleep.py:number:1c9d02aa"``. Its last part is made of what is changed,
+            not of where in the file it stands.
         subject: The right answer.
         operator: The name of the operator.
         line: The line of the answer that is changed, from 1.
@@ -76,36 +75,22 @@ class Mutant:
 
 def mutants(subject: Subject) -> list[Mutant]:
     """All first-order mutants of an answer, in the order of its text; no two of them mean the same."""
-    seen = {_meaning(subject, subject.text)}
-    counts: Counter[str] = Counter()
-    found = []
-    for operator, edit in sorted(_edits(subject), key=lambda pair: pair[1].start):
-        text = edit.applied(subject.text)
-        meaning = _meaning(subject, text)
-        if meaning is None or meaning in seen:
-            continue
-        seen.add(meaning)
-        changed = (
-            f"{edit.where}\n{_lines(subject.text, edit)}\n{subject.text[edit.start : edit.end]}\n{edit.text}"
-        )
-        key = hashlib.sha256(changed.encode()).hexdigest()[:8]
-        counts[f"{operator}:{key}"] += 1
-        again = counts[f"{operator}:{key}"]
-        identity = f"{subject.name}:{operator}:{key}" + (f".{again}" if again > 1 else "")
-        line = subject.text.count("\n", 0, edit.start) + 1
-        found.append(Mutant(identity, subject, operator, line, text))
-    return found
+    means = partial(_meaning, subject)
+    return [
+        Mutant(f"{subject.name}:{one.key}", subject, one.operator, one.line, one.text)
+        for one in engine.mutants(subject.text, list(_changes(subject)), means)
+    ]
 
 
-def _edits(subject: Subject) -> Iterator[tuple[str, Edit]]:
+def _changes(subject: Subject) -> Iterator[engine.Change]:
     for start, text, is_python in _pieces(subject):
         if is_python:
-            code = Code(text, subject=subject.root, logs=subject.exercise not in LOGS_FREELY)
-            found = [(operator.__name__, edit) for operator in PYTHON for edit in operator(code)]
+            code = Code(text, logs=subject.exercise not in LOGS_FREELY)
+            found = engine.python_changes(code)
         else:
-            found = [(operator.__name__, edit) for operator in LINES for edit in operator(text)]
-        for name, edit in found:
-            yield name, Edit(edit.start + start, edit.end + start, edit.text, edit.where)
+            found = engine.line_changes(text)
+        for operator, edit in found:
+            yield operator, edit.moved(start)
 
 
 def _pieces(subject: Subject) -> Iterator[tuple[int, str, bool]]:
@@ -124,21 +109,11 @@ def _pieces(subject: Subject) -> Iterator[tuple[int, str, bool]]:
         yield 0, subject.text, subject.answer.endswith(".py") or subject.listed is None
 
 
-def _lines(text: str, edit: Edit) -> str:
-    """The whole lines around an edit, without their indentation."""
-    start = text.rfind("\n", 0, edit.start) + 1
-    end = text.find("\n", edit.end)
-    return text[start : end if end >= 0 else None].strip()
-
-
 def _meaning(subject: Subject, text: str) -> str | None:
     """What a text means to Python, whatever it looks like; None where it means nothing."""
     if subject.listed is not None and not subject.answer.endswith(".py"):
         return text
-    try:
-        return ast.dump(ast.parse(text))
-    except SyntaxError:
-        return None
+    return engine.meaning(text)
 
 
 def sampled(found: list[Mutant], size: int, seed: int) -> list[Mutant]:

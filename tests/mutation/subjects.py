@@ -1,8 +1,10 @@
-"""What is mutated: the master's own solution of each exercise, and two right answers of the bank."""
+"""What is mutated: two right answers of the bank for each exercise.
+
+The drawings of an exercise are chosen with the mutants of its solution, so these say nothing about the judge.
+"""
 
 from __future__ import annotations
 
-import ast
 import tomllib
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -10,15 +12,11 @@ from typing import TYPE_CHECKING
 
 from autograder import exercises
 from autograder.authoring.answer_bank import Answer, answers
-from autograder.authoring.reference_files import CannotRecord, program
-from tests.judge.notebooks import verdict_in_notebook
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
 TABLE = Path(__file__).with_name("subjects.toml")
-REFERENCE = "reference"
-"""What a mutant of the master's solution has in its id in place of a file."""
 
 
 @dataclass(frozen=True)
@@ -27,21 +25,19 @@ class Subject:
 
     Attributes:
         exercise: The exercise's id.
-        answer: The name of its file in the bank, or ``"reference"``.
+        answer: The name of its file in the bank.
         text: The program.
-        root: The class or function that is judged; empty where it is the whole program.
-        listed: The bank's entry; None for the master's solution.
+        listed: The bank's entry; None for one that a test makes up.
     """
 
     exercise: str
     answer: str
     text: str
-    root: str = ""
     listed: Answer | None = None
 
     @property
     def name(self) -> str:
-        """Such as ``"lab_1_2.talker/reference"``."""
+        """Such as ``"lab_1_2.talker/while_loop_sleep.py"``."""
         return f"{self.exercise}/{self.answer}"
 
     def verdict(self, text: str, file: Path, seed: str) -> bytes:
@@ -52,9 +48,8 @@ class Subject:
             file: Where it is to be written.
             seed: What random inputs are drawn from.
         """
+        assert self.listed is not None
         file.write_text(text, encoding="utf-8")
-        if self.listed is None:
-            return verdict_in_notebook(self.exercise, file, seed)
         return replace(self.listed, file=file, edit=None).verdict(seed)
 
 
@@ -64,24 +59,6 @@ def subjects() -> Iterator[Subject]:
     bank = {answer.name: answer for answer in answers()}
     # The judge of a repair is another exercise's, whose answers are changed there.
     for exercise_id in (one.id for one in exercises.unbroken() if not one.hides_causes):
-        reference = _reference(exercise_id)
-        if reference is not None:
-            yield reference
         for name in table[exercise_id]:
             listed = bank[f"{exercise_id}/right/{name}"]
             yield Subject(exercise_id, name, listed.text, listed=listed)
-
-
-def _reference(exercise_id: str) -> Subject | None:
-    """The master's solution as the recording runs it; None where it is files on the disk, as the bank has them."""
-    try:
-        text = program(exercise_id)
-    except CannotRecord:
-        return None
-    check = ast.parse(text).body[-1]
-    assert isinstance(check, ast.Expr)
-    assert isinstance(check.value, ast.Call)
-    judged = check.value.args[1]
-    if not isinstance(judged, ast.Name):
-        return None
-    return Subject(exercise_id, REFERENCE, text, root=judged.id)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from tests.mutation.code import SAYS, Code, Edit, argument, called
+from autograder.authoring.mutants.code import SAYS, Code, Edit, argument, called
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

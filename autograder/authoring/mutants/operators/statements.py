@@ -6,7 +6,7 @@ import ast
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from tests.mutation.code import SAYS, Code, Edit, called, paced
+from autograder.authoring.mutants.code import SAYS, Code, Edit, called, paced
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -4,19 +4,36 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from tests.mutation.operators import lines, names, reports, statements, values, waiting
+from autograder.authoring.mutants.operators import (
+    conditions,
+    lines,
+    names,
+    numbers,
+    outputs,
+    places,
+    reports,
+    state,
+    statements,
+    values,
+    waiting,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
-    from tests.mutation.code import Code, Edit
+    from autograder.authoring.mutants.code import Code, Edit
 
 PYTHON: Sequence[Callable[[Code], Iterator[Edit]]] = (
     *names.OPERATORS,
+    *numbers.OPERATORS,
     *values.OPERATORS,
     *statements.OPERATORS,
     *waiting.OPERATORS,
     *reports.OPERATORS,
+    *conditions.OPERATORS,
+    *places.OPERATORS,
+    *state.OPERATORS,
+    *outputs.OPERATORS,
 )
 """For programs."""
 LINES: Sequence[Callable[[str], Iterator[Edit]]] = lines.OPERATORS

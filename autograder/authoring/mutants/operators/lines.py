@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import re
+import re  # noqa: TID251  (not what a student handed in)
 from typing import TYPE_CHECKING
 
-from tests.mutation.code import Edit
+from autograder.authoring.mutants.code import Edit
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

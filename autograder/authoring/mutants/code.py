@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ast
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -23,17 +23,34 @@ class Edit:
         start: Offset of its first character.
         end: Offset behind its last character.
         text: The replacement.
-        where: What is around it, such as ``"TalkerNode.__init__"``; part of a mutant's id.
+        where: The definitions around the piece, such as ``"TalkerNode.__init__"``; part of a mutant's id.
+        kind: Which of several things the operator did, such as ``"times 0.5"``. The same thing may be done in all
+            places of a method at once; empty if that would mean nothing.
+        also: Further pieces that are replaced at the same time. None of them overlaps another.
     """
 
     start: int
     end: int
     text: str
     where: str = ""
+    kind: str = ""
+    also: tuple[Edit, ...] = ()
+
+    @property
+    def pieces(self) -> list[Edit]:
+        """All pieces that are replaced, in the order of the text."""
+        return sorted((self, *self.also), key=lambda piece: piece.start)
 
     def applied(self, text: str) -> str:
-        """The text with this piece replaced."""
-        return text[: self.start] + self.text + text[self.end :]
+        """Return the text with all pieces replaced."""
+        for piece in reversed(self.pieces):
+            text = text[: piece.start] + piece.text + text[piece.end :]
+        return text
+
+    def moved(self, by: int) -> Edit:
+        """Return the same edit of a text in which everything stands further behind."""
+        also = tuple(piece.moved(by) for piece in self.also)
+        return replace(self, start=self.start + by, end=self.end + by, also=also)
 
 
 class Code:
@@ -74,7 +91,7 @@ class Code:
     def nodes(self) -> tuple[ast.AST, ...]:
         """What may be changed, in the order of the text: no imports, docstrings, types or main guards."""
         found: list[ast.AST] = []
-        for statement in self._wanted():
+        for statement in self.wanted():
             found += [node for node in _changeable(statement, self._logs) if self._is_placed(node)]
         return tuple(
             sorted(found, key=lambda node: (getattr(node, "lineno", 0), getattr(node, "col_offset", 0)))
@@ -107,13 +124,45 @@ class Code:
         start, end = self.span(node)
         return self.text[start:end]
 
-    def replaced(self, node: ast.AST, text: str) -> Edit:
-        """The edit that puts something else in the place of a node."""
-        return Edit(*self.span(node), text, self.where(node))
+    def replaced(self, node: ast.AST, text: str, kind: str = "") -> Edit:
+        """Return the edit that puts something else in the place of a node."""
+        return Edit(*self.span(node), text, self.where(node), kind)
 
-    def wrapped(self, node: ast.AST, form: str) -> Edit:
-        """The edit that puts a node into a form such as ``"abs({})"``."""
-        return self.replaced(node, form.replace("{}", self.source(node)))
+    def wrapped(self, node: ast.AST, form: str, kind: str = "") -> Edit:
+        """Return the edit that puts a node into a form such as ``"abs({})"``."""
+        return self.replaced(node, form.replace("{}", self.source(node)), kind)
+
+    def before(self, statement: ast.stmt, text: str, kind: str = "") -> Edit:
+        """Return the edit that puts a statement in front of another one."""
+        start, _ = self.span(statement)
+        return Edit(start, start, f"{text}\n{self.indentation(statement)}", self.where(statement), kind)
+
+    def functions(self) -> Iterator[ast.FunctionDef | ast.AsyncFunctionDef]:
+        """Yield the functions and methods that may be changed."""
+        yield from self.all(ast.FunctionDef, ast.AsyncFunctionDef)
+
+    def function_of(self, node: ast.AST) -> ast.FunctionDef | ast.AsyncFunctionDef | None:
+        """Return the function or method around a node; None outside of all."""
+        kinds = (ast.FunctionDef, ast.AsyncFunctionDef)
+        around = self.ancestor(node, lambda one: isinstance(one, kinds))
+        return around if isinstance(around, kinds) else None
+
+    def mark(self, node: ast.AST) -> str:
+        """Return a name for a place that edits of other functions leave as it is."""
+        function = self.function_of(node)
+        first = getattr(function, "lineno", 0)
+        return f"{getattr(node, 'lineno', 0) - first}_{getattr(node, 'col_offset', 0)}"
+
+    def own_values(self, node: ast.AST) -> str:
+        """Return the dictionary in which a change keeps values: that of the object, or of the module outside of one."""
+        function = self.function_of(node)
+        first = function.args.args[:1] if function is not None else []
+        return "self.__dict__" if [one.arg for one in first] == ["self"] else "globals()"
+
+    def method(self, callback: ast.expr) -> ast.FunctionDef | ast.AsyncFunctionDef | None:
+        """Return the method that an expression such as ``self.on_scan`` names; None if it names none."""
+        name = self.source(callback).rpartition(".")[2]
+        return next((function for function in self.functions() if function.name == name), None)
 
     def indentation(self, statement: ast.stmt) -> str:
         """The white space in front of a statement's first line."""
@@ -162,7 +211,7 @@ class Code:
     def _offset(self, line: int, column: int) -> int:
         return self._lines[line - 1] + len(self._bytes[line - 1][:column].decode())
 
-    def _wanted(self) -> list[ast.stmt]:
+    def wanted(self) -> list[ast.stmt]:
         """The statements of the module that may be changed: all, or those that the subject needs."""
         if not self._subject:
             return self.tree.body

@@ -1,20 +1,19 @@
-"""Values: message types, QoS, numbers, arithmetic, conditions."""
+"""Values: message types, QoS, arithmetic, conditions."""
 
 from __future__ import annotations
 
 import ast
-import re
+import re  # noqa: TID251  (not what a student handed in)
 from typing import TYPE_CHECKING
 
-from tests.mutation.code import Code, Edit, argument, called, paced
-from tests.mutation.operators.names import ENDPOINTS
-from tests.mutation.operators.waiting import limit_of, limits, pace_of
+from autograder.authoring.mutants.code import Code, Edit, argument, called
+from autograder.authoring.mutants.operators.names import ENDPOINTS
+from autograder.authoring.mutants.operators.numbers import depth_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
 _MOMENT = re.compile("time|deadline|until|give_up")
-_QOS = {"create_publisher": (2, "qos_profile"), "create_subscription": (3, "qos_profile")}
 _OTHER_TYPES = {
     "String": '__import__("std_msgs.msg").msg.Char',
     "AddTwoInts": '__import__("std_srvs.srv").srv.SetBool',
@@ -73,34 +72,6 @@ def qos(code: Code) -> Iterator[Edit]:
             yield Edit(end - len(attribute.attr), end, _POLICIES[attribute.attr], code.where(attribute))
 
 
-def depth_of(call: ast.Call) -> ast.expr | None:
-    """The QoS, or the depth of the queue, that is given for a publisher or a subscription."""
-    place = _QOS.get(called(call))
-    return argument(call, *place) if place else None
-
-
-def number(code: Code) -> Iterator[Edit]:
-    """Another number: a neighbour, or a fifth less and more, half and double.
-
-    Left out are depths, limits, exit codes and the pace of what publishes nothing: those are free, or another
-    operator's matter.
-    """
-    others = {place for call in code.all(ast.Call) for place in (depth_of(call), limit_of(call))}
-    others |= {returned.value for returned in code.all(ast.Return)} | set(limits(code))
-    if not paced(code):
-        others |= {pace_of(call) for call in code.all(ast.Call)}
-    for constant in code.all(ast.Constant):
-        value = constant.value
-        if isinstance(value, bool) or not isinstance(value, (int, float)) or constant in others:
-            continue
-        if isinstance(value, int):
-            yield code.replaced(constant, str(value + 1))
-            yield code.replaced(constant, str(value - 1) if value else "(-1)")
-        else:
-            for factor in (0.8, 1.2, 0.5, 2.0):
-                yield code.replaced(constant, f"{value * factor:.6g}")
-
-
 def arithmetic(code: Code) -> Iterator[Edit]:
     """Plus for minus, and the like."""
     for operation in code.all(ast.BinOp):
@@ -145,9 +116,9 @@ def condition(code: Code) -> Iterator[Edit]:
     """A condition that is turned round, always holds, or never."""
     for node in code.all(ast.If, ast.While, ast.IfExp):
         if "__name__" not in code.source(node.test):
-            yield code.wrapped(node.test, "not ({})")
-            yield code.replaced(node.test, "True")
-            yield code.replaced(node.test, "False")
+            yield code.wrapped(node.test, "not ({})", "turned")
+            yield code.replaced(node.test, "True", "always")
+            yield code.replaced(node.test, "False", "never")
 
 
-OPERATORS = (message_type, qos, number, arithmetic, comparison, connective, condition)
+OPERATORS = (message_type, qos, arithmetic, comparison, connective, condition)

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import ast
-import re
+import re  # noqa: TID251  (not what a student handed in)
 from typing import TYPE_CHECKING
 
-from tests.mutation.code import Code, Edit, argument, called, paced
+from autograder.authoring.mutants.code import Code, Edit, argument, called, paced
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

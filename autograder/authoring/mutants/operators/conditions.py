@@ -1,0 +1,103 @@
+"""Conditions: turned round, looking at one thing of two, holding for ever, one step late."""
+
+from __future__ import annotations
+
+import ast
+from typing import TYPE_CHECKING
+
+from autograder.authoring.mutants.code import Code, Edit, called
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+_TURNED: dict[type[ast.cmpop], tuple[str, str]] = {
+    ast.Lt: ("<", ">"),
+    ast.Gt: (">", "<"),
+    ast.LtE: ("<=", ">="),
+    ast.GtE: (">=", "<="),
+    ast.Eq: ("==", "!="),
+    ast.NotEq: ("!=", "=="),
+}
+
+
+def turned(code: Code) -> Iterator[Edit]:
+    """A comparison that is the other way round."""
+    for compare in code.all(ast.Compare):
+        left = compare.left
+        for operator, right in zip(compare.ops, compare.comparators, strict=True):
+            pair = _TURNED.get(type(operator))
+            if pair is not None:
+                start = code.text.index(pair[0], code.span(left)[1], code.span(right)[0])
+                yield Edit(start, start + len(pair[0]), pair[1], code.where(compare), "turned")
+            left = right
+
+
+def operand_left_out(code: Code) -> Iterator[Edit]:
+    """One of two conditions that is not looked at."""
+    for operation in code.all(ast.BoolOp):
+        word = " and " if isinstance(operation.op, ast.And) else " or "
+        for value in operation.values:
+            rest = [code.source(one) for one in operation.values if one is not value]
+            yield code.replaced(operation, f"({word.join(rest)})")
+
+
+def bound(code: Code) -> Iterator[Edit]:
+    """One bound of two, the lower bound for the upper one, or what is beyond the bounds refused."""
+    for call in code.all(ast.Call):
+        name = called(call)
+        if name not in ("min", "max") or len(call.args) != 2:
+            continue
+        for place, value in enumerate(call.args):
+            yield code.replaced(call, code.source(value), f"left out {name} {1 - place}")
+        start, _ = code.span(call)
+        other = "max" if name == "min" else "min"
+        yield Edit(start, start + 3, other, code.where(call), f"{other} for {name}")
+        inner = next((one for one in call.args if called(one) in ("min", "max") and len(one.args) == 2), None)  # type: ignore[attr-defined]
+        if inner is not None and called(inner) != name:
+            low = next(one for one in call.args if one is not inner)
+            high, value = inner.args  # type: ignore[attr-defined]
+            low, high, value = (code.source(one) for one in (low, high, value))
+            if name == "min":
+                low, high = high, low
+            yield code.replaced(call, f"({value} if {low} <= {value} <= {high} else 0.0)", "zero beyond")
+            yield code.replaced(call, f"({low} if {value} < 0 else {high})", "always a bound")
+
+
+def remembered(code: Code) -> Iterator[Edit]:
+    """A condition that holds for ever once it holds, never again once it does not, or that is one call late."""
+    for node in code.all(ast.If, ast.IfExp):
+        test = code.source(node.test)
+        if "__name__" in test or code.function_of(node) is None:
+            continue
+        name = f"_at_{code.mark(node)}"
+        kept = f"{code.own_values(node)}.setdefault('{name}', [{{}}])"
+        for kind, first, word in (("once true", "False", "or"), ("once false", "True", "and")):
+            box = kept.format(first)
+            yield code.replaced(
+                node.test, f"({box}.append({box}[-1] {word} bool({test})) or {box}[-1])", kind
+            )
+        box = kept.format("False")
+        yield code.replaced(node.test, f"({box}.append(bool({test})) or {box}[-2])", "one call late")
+
+
+def one_side(code: Code) -> Iterator[Edit]:
+    """One of two things compared with a number, not with the other one."""
+    for compare in code.all(ast.Compare):
+        sides = (compare.left, *compare.comparators)
+        are_places = all(isinstance(side, (ast.Attribute, ast.Name)) for side in sides)
+        if len(sides) == 2 and are_places and isinstance(compare.ops[0], (ast.Lt, ast.Gt, ast.LtE, ast.GtE)):
+            for side in sides:
+                for value in ("0.5", "1.0"):
+                    yield code.replaced(side, value)
+
+
+def elif_as_if(code: Code) -> Iterator[Edit]:
+    """A second condition that is looked at in any case."""
+    for node in code.all(ast.If):
+        if len(node.orelse) == 1 and isinstance(node.orelse[0], ast.If):
+            start, _ = code.span(node.orelse[0])
+            if code.text.startswith("elif", start):
+                yield Edit(start, start + 4, "if", code.where(node))
+
+
+OPERATORS = (turned, operand_left_out, bound, remembered, one_side, elif_as_if)

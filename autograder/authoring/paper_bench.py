@@ -1,0 +1,362 @@
+"""A bench on paper: runs an exercise's scenario on a program in this process, in milliseconds.
+
+The scenario and the criteria are the exercise's own. Of the bench it has what a recipe needs that compares a node or a
+function with the solution; anything else raises :class:`autograder.authoring.paper_nodes.UnknownOnPaper`.
+"""
+
+from __future__ import annotations
+
+import inspect
+import json
+import sys
+import traceback
+import types
+from typing import TYPE_CHECKING, Any
+
+from autograder.authoring.paper_nodes import SECOND, Hangs, Network, Publisher, UnknownOnPaper, matches
+from autograder.judge.bench.qos_profiles import profile, qos_of
+from autograder.judge.bench.ros_interfaces import filled, interface, to_data
+from autograder.judge.bench.subject_time import FIRST
+from autograder.kit.bench import STEP, Pace
+from autograder.kit.counterparts import Qos
+from autograder.kit.evidence import Event, Evidence, Part
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Container, Mapping, Sequence
+    from random import Random
+
+    from autograder.authoring.paper_nodes import PaperNode, Service
+    from autograder.kit.evidence import Reference
+
+_OF_PARAMETERS = "parameter"
+"""In the names of the services that every node has."""
+
+
+class PaperBench:
+    """Runs the parts of a scenario on a program. It implements :class:`autograder.kit.bench.Bench`.
+
+    Args:
+        code: The compiled program.
+        root: The name of the class or function that is judged.
+        reference: The record of the solution; without parts while the solution itself is recorded.
+        random: Draws the inputs.
+
+    Attributes:
+        parts: The record of each part that has ended.
+    """
+
+    pace = Pace.FAST
+    before = None
+    in_a_cell = is_waited_for = False
+
+    def __init__(self, code: types.CodeType, root: str, reference: Reference, random: Random) -> None:
+        self.reference, self.random = reference, random
+        self.parts: list[Part] = []
+        self._code, self._root = code, root
+        self._made: dict[str, Any] | None = None
+        self._name, self._inputs = "", dict[str, Any]()
+        self._listens: dict[str, tuple[Any, Qos]] = {}
+        self.events: list[Event] = []
+        self.ended = False
+        self._network = Network(self._hear, self._log)
+
+    def __getattr__(self, name: str) -> Any:
+        raise UnknownOnPaper(f"bench.{name}")
+
+    def part(self, name: str, **inputs: Any) -> None:
+        self._name, self._inputs = name, inputs
+        self.events, self.ended = [], False
+        self._listens = {}
+        self._network = Network(self._hear, self._log)
+
+    def again(self, name: str = "") -> None:
+        if name:
+            raise UnknownOnPaper("bench.again(name)")
+        self.part(self._name, **self._inputs)
+
+    def stop(self) -> None:
+        self.parts.append(self.seen())
+
+    def seen(self) -> Part:
+        return Part(self._name, self._inputs, tuple(self.events))
+
+    def heard(self, topic: str) -> int:
+        return sum(event.kind == "message" and event.name == topic for event in self.events)
+
+    def note(self, name: str, **data: Any) -> None:
+        self.record("noted", name, **data)
+
+    def record(self, kind: str, name: str, **data: Any) -> None:
+        """Record an event."""
+        simulated = self._network.simulated
+        wall = (self._network.wall - _FIRST_WALL) / SECOND
+        self.events.append(Event(wall, kind, name, data, None if simulated is None else simulated / SECOND))
+
+    def start(self, *arguments: Any, **_: Any) -> None:
+        def run() -> None:
+            if self._made is None:
+                module = types.ModuleType("answer")
+                sys.modules[module.__name__] = module  # a dataclass looks there
+                exec(self._code, module.__dict__)
+                self._made = module.__dict__
+            root = self._made[self._root]
+            if inspect.isclass(root):
+                root()
+                return
+            value = root(*json.loads(json.dumps(arguments)))
+            self.record("subject", "returned", value=repr(value))
+            self.ended = True
+
+        self._guarded(run)
+
+    def _guarded(self, run: Callable[[], object]) -> bool:
+        """Run the program's code. Return False if it has ended, now or before."""
+        if self.ended:
+            return False
+        try:
+            run()
+        except UnknownOnPaper:
+            raise
+        except Hangs:
+            self.record("unanswered", self._root)
+            self.ended = True
+        except BaseException:
+            self.record("subject", "raised", traceback=traceback.format_exc())
+            self.ended = True
+        return not self.ended
+
+    def release(self) -> None:
+        pass
+
+    def settle(self) -> None:
+        self._guarded(self._network.spin)
+
+    def await_attention(self) -> None:
+        pass
+
+    def note_whether_it_spins(self) -> None:
+        pass
+
+    def note_where_it_hangs(self) -> None:
+        pass
+
+    def take_in(self) -> None:
+        pass
+
+    def doubt(self) -> None:
+        pass
+
+    @property
+    def moment(self) -> float:
+        """The subject's time now, in seconds."""
+        return (self._network.time - (_FIRST_WALL if self._network.simulated is None else 0)) / SECOND
+
+    def await_end(self, within: float) -> bool:
+        del within
+        return self.ended
+
+    def _endpoints(self) -> dict[str, dict[str, str]]:
+        nodes = self._network.nodes
+        return {
+            "publisher": {end.topic: _type(end.kind) for node in nodes for end in _of(node, "publishers")},
+            "subscription": {
+                end.topic: _type(end.kind) for node in nodes for end in _of(node, "subscriptions")
+            },
+            "service": {
+                end.name: _type(end.kind)
+                for node in nodes
+                for end in _of(node, "services")
+                if _OF_PARAMETERS not in end.name.rpartition("/")[2]
+            },
+            "client": {end.name: _type(end.kind) for node in nodes for end in _of(node, "clients")},
+        }
+
+    def await_endpoint(self, role: str, name: str) -> bool:
+        return not self.ended and name in self._endpoints().get(role, {})
+
+    def watch_graph(self, condition: Callable[[Evidence], bool], within: float) -> bool:
+        del within
+        unusual = [
+            (role, end.topic, str(qos))
+            for role, ends in (("publisher", "publishers"), ("subscription", "subscriptions"))
+            for node in self._network.nodes
+            for end in _of(node, ends)
+            if (qos := _qos(end.profile)) is not Qos.DEFAULT
+        ]
+        nodes = [node.full_name for node in self._network.nodes]
+        self.record("interface", "graph", nodes=nodes, qos=unusual, **self._endpoints())
+        return condition(self._evidence())
+
+    def _evidence(self) -> Evidence:
+        return Evidence([self.seen()], self.reference)
+
+    def listen(self, topic: str, type_name: str, *, qos: Qos = Qos.DEFAULT) -> None:
+        self._listens[topic] = interface(type_name), qos
+        for publisher in self._publishers(topic):
+            if qos is Qos.LATCHED and matches(publisher.profile, profile(qos)):
+                for message in publisher.sent[-max(1, publisher.profile.depth) :]:
+                    self._hear(publisher, message)
+
+    def _publishers(self, topic: str) -> list[Publisher]:
+        return [end for node in self._network.nodes for end in _of(node, "publishers") if end.topic == topic]
+
+    def _hear(self, publisher: Publisher, message: Any) -> None:
+        kind, qos = self._listens.get(publisher.topic, (None, Qos.DEFAULT))
+        if kind is not publisher.kind:
+            return
+        if matches(publisher.profile, profile(qos)):
+            self.record("message", publisher.topic, fields=to_data(message))
+        else:
+            self.record("mismatch", publisher.topic, policy="")
+
+    def _log(self, logger: str, level: int, text: str) -> None:
+        self.record("log", logger, text=text, level=level)
+
+    def speak(self, topic: str, type_name: str, *, qos: Qos = Qos.DEFAULT) -> _Speaker:
+        return _Speaker(self, self._network, topic, type_name, qos)
+
+    def serve(
+        self,
+        service: str,
+        type_name: str,
+        answer: Callable[[Mapping[str, Any]], Mapping[str, Any]],
+        *,
+        hold: int = 0,
+        late: Mapping[int, float] = types.MappingProxyType({}),
+        never: Container[int] = (),
+    ) -> None:
+        if hold:
+            raise UnknownOnPaper("bench.serve(hold=…)")
+        kind, network, count = interface(type_name), self._network, 0
+
+        def take(request: Any, send: Callable[[Any], None]) -> None:
+            nonlocal count
+            count += 1
+            fields = to_data(request)
+            self.record("request", service, fields=fields)
+            response = filled(kind.Response(), dict(answer(fields)))
+
+            def respond() -> None:
+                self.record("response", service, fields=to_data(response))
+                send(response)
+
+            if count in late:
+                network.later(round(late[count] * SECOND), respond)
+            elif count not in never:
+                respond()
+
+        network.served[service] = take
+
+    def call(self, service: str, type_name: str) -> _Caller:
+        return _Caller(self, service, type_name)
+
+    def services(self, name: str) -> list[Service]:
+        """Return the subject's services of a name."""
+        return [end for node in self._network.nodes for end in _of(node, "services") if end.name == name]
+
+    def ask(self, service: Service, request: Any, answered: Callable[[Any], None]) -> None:
+        """Send a request to a service of the subject."""
+        self._guarded(lambda: service.answer(request, answered))
+
+    def run_time(
+        self,
+        seconds: float,
+        *,
+        until: Callable[[], bool] | None = None,
+        quiet: float | None = None,
+        step: float = STEP,
+    ) -> bool:
+        del quiet
+        network = self._network
+        if network.simulated is None:
+            network.begin_simulated_time(round(FIRST * SECOND))
+            if not self._guarded(network.spin):
+                return False
+        assert network.simulated is not None
+        began, end, length = (
+            network.simulated,
+            network.simulated + round(seconds * SECOND),
+            round(step * SECOND),
+        )
+        while network.simulated < end and not (until is not None and until()):
+            network.send_due()
+            if not self._guarded(network.spin):
+                return False
+            # The steps until something is due are made at once.
+            due = min(network.next_due, end) - began
+            steps = max(-(-due // length), (network.simulated - began) // length + 1)
+            network.simulated = min(end, began + steps * length)
+            if not self._guarded(network.spin):
+                return False
+        network.send_due()
+        return self._guarded(network.spin)
+
+    def wait_until(
+        self, condition: Callable[[Evidence], bool], within: float, *, quiet: float | None = None
+    ) -> bool:
+        del quiet
+        self._guarded(self._network.spin)
+        if condition(self._evidence()):
+            return True
+        self._network.wall += round(within * SECOND)
+        self._guarded(self._network.spin)
+        return condition(self._evidence())
+
+    def deliver(self, topic: str, qos: Qos, message: Any) -> None:
+        """Send a message to the subject."""
+        self._network.deliver(topic, profile(qos), message)
+
+
+class _Speaker:
+    def __init__(self, bench: PaperBench, network: Network, topic: str, type_name: str, qos: Qos) -> None:
+        self._bench, self._network, self._topic, self._qos = bench, network, topic, qos
+        self._type = interface(type_name)
+
+    def send(self, **fields: Any) -> None:
+        self._bench.record("sent", self._topic, fields=dict(fields))
+        self._network.deliver(self._topic, profile(self._qos), filled(self._type(), fields))
+
+
+class _Caller:
+    def __init__(self, bench: PaperBench, service: str, type_name: str) -> None:
+        self._bench, self._service, self._type = bench, service, interface(type_name)
+        self._asked = self._answered = 0
+
+    def await_server(self, within: float) -> bool:
+        del within
+        count = len(self._bench.services(self._service))
+        self._bench.record("servers", self._service, count=count)
+        return count > 0
+
+    def ask(self, *requests: Mapping[str, Any]) -> None:
+        for fields in requests:
+            number, self._asked = self._asked, self._asked + 1
+            self._bench.record("asked", self._service, call=number, fields=dict(fields))
+            for server in self._bench.services(self._service)[:1]:
+                request = filled(self._type.Request(), fields)
+                self._bench.ask(server, request, lambda response, number=number: self._take(number, response))
+
+    def _take(self, number: int, response: Any) -> None:
+        self._answered += 1
+        self._bench.record("answered", self._service, call=number, fields=to_data(response))
+
+    def await_answers(self, quiet: float) -> bool:
+        del quiet
+        self._bench.settle()
+        return self._answered >= self._asked
+
+
+_FIRST_WALL = 1_800_000_000 * SECOND
+
+
+def _of(node: PaperNode, ends: str) -> Sequence[Any]:
+    return list(getattr(node, ends))
+
+
+def _type(kind: Any) -> str:
+    package, _, rest = kind.__module__.partition(".")
+    return f"{package}/{rest.split('.')[0]}/{kind.__name__}"
+
+
+def _qos(made: Any) -> Qos:
+    return qos_of({"reliability": made.reliability, "durability": made.durability})
