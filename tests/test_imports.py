@@ -221,6 +221,29 @@ def test_the_process_with_the_gradebook_imports_nothing_that_executes_a_submissi
     assert "autograder.grading.running.order_executor" not in reached
 
 
+def test_no_answer_of_a_student_is_judged_on_paper() -> None:
+    """On paper there are no executors, no stacks and no discovery: only the solution and its mutants run there."""
+    graph = {module: _runs(path, module, types=False) for module, path in _modules(PACKAGE).items()}
+    paper = "autograder.authoring.paper."
+    judging = (
+        "judge",
+        "notebook",
+        "grading",
+        "appeals",
+        "execution",
+        "workspaces",
+        "boxes",
+        "student",
+        "kit",
+    )
+    graph["judges"] = {
+        module for module in graph if module.split(".")[1:2] and module.split(".")[1] in judging
+    }
+    assert "autograder.judge.one_check" in graph["judges"]
+    assert [name for name in _reached("judges", graph) if name.startswith(paper)] == []
+    assert any(name.startswith(paper) for name in _reached("autograder.authoring.exercise_trial", graph))
+
+
 def test_the_grader_reads_no_master() -> None:
     """Reading one loads Jupytext, which takes a tenth of a second in each process that grades."""
     graph = {module: _runs(path, module, types=False) for module, path in _modules(PACKAGE).items()}

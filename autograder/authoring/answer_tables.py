@@ -111,7 +111,7 @@ class AnswerSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         base: The workspace of all answers, as a path relative to the folder: an answer named ``*.workspace`` edits it,
             and next to any other one, such as a launch file, it is as it is.
         accepts: The mutants of the solution that may pass, by their keys, as ``try-exercise`` prints them, each with
-            the reason.
+            the reason. A key may end with ``*``, for all mutants of an operator.
     """
 
     command: tuple[str, ...] = ("python3", "{file}")

@@ -12,7 +12,8 @@ from autograder.authoring import reference_files
 from autograder.authoring.answer_bank import Answer, Turn, answers, answers_folder, judge_all, warm_up
 from autograder.authoring.answer_tables import BadTable, CannotEdit
 from autograder.authoring.exercise_faults import still_to_do, to_do_in_text
-from autograder.authoring.mutants.survey import survey, tell_survey
+from autograder.authoring.mutants.survey import survey, survey_by_judge
+from autograder.authoring.mutants.survey_lines import lines
 from autograder.authoring.mutants.trials import NotOnPaper
 from autograder.cards.text_rendering import card_text
 from autograder.command_name import COMMAND
@@ -172,14 +173,18 @@ def try_exercise(
     # With a part of the answers, what the bank lacks cannot be told.
     for line in to_do_in_text(exercise_id) if only else still_to_do(exercise_id, wanted):
         tell(f"to do: {line}")
-    return not surprises and not gifts
+    tells = bool(only) or try_mutants(exercise_id, tell=tell)
+    return not surprises and not gifts and tells
 
 
-def try_mutants(exercise_id: str, *, must_be_recorded: bool = True, tell: Callable[[str], object]) -> bool:
-    """Run the mutants of an exercise's solution on paper, and print which of them its drawings do not tell.
+def try_mutants(
+    exercise_id: str, *, by_judge: int = 0, must_be_recorded: bool = True, tell: Callable[[str], object]
+) -> bool:
+    """Run the mutants of an exercise's solution, and print which of them its drawings do not tell.
 
     Args:
         exercise_id: The exercise's id.
+        by_judge: If the mutants cannot be run on paper: how many of them the judge checks at the same time; 0 for none.
         must_be_recorded: False if the drawings may differ from the recorded ones.
         tell: Called with each line for the author.
 
@@ -190,9 +195,16 @@ def try_mutants(exercise_id: str, *, must_be_recorded: bool = True, tell: Callab
     try:
         found = survey(exercise_id, must_be_recorded=must_be_recorded)
     except NotOnPaper as why:
-        tell(f"{exercise_id}: no mutants on paper: {why}")
-        return True
-    tell_survey(found, tell)
+        if not by_judge:
+            tell(f"{exercise_id}: no mutants on paper: {why}")
+            return True
+        try:
+            found = survey_by_judge(exercise_id, jobs=by_judge)
+        except NotOnPaper as no_mutants:
+            tell(f"{exercise_id}: no mutants: {no_mutants}")
+            return True
+    for line in lines(found):
+        tell(line)
     return found.is_ready
 
 

@@ -98,7 +98,7 @@ def recording(exercise_id: str) -> str:
         exercise = exercises.get(exercise_id)
     except (exercises.UnknownExercise, exercises.BrokenExercise) as error:
         raise CannotRecord(str(error)) from error
-    report, output = _judged(exercise.id, program(exercise.id), record=True)
+    report, output = judged(exercise.id, program(exercise.id), record=True)
     if report.reference is None or report.verdict is None:
         raise CannotRecord(
             f"{exercise.id}: {report.trouble or 'the solution never called check'}\n{output}".strip()
@@ -143,12 +143,16 @@ def unsolved(exercise_id: str) -> Verdict | None:
     Raises:
         CannotRecord: No master checks the exercise, or its master cannot be used.
     """
-    report, _ = _judged(exercise_id, program(exercise_id, solved=False), record=False)
+    report, _ = judged(exercise_id, program(exercise_id, solved=False))
     return report.verdict
 
 
-def _judged(exercise_id: str, text: str, *, record: bool) -> tuple[Report, str]:
-    """Run a program next to a judge. Return the judge's report, and what the program printed."""
+def judged(exercise_id: str, text: str, *, record: bool = False) -> tuple[Report, str]:
+    """Run a program next to a judge. Return the judge's report, and what the program printed.
+
+    Raises:
+        CannotRecord: The judge died, or the program did not end.
+    """
     with HeldFolder("autograder-record-") as folder:
         file = folder.path / "reference_solution.py"
         file.write_text(text, encoding="utf-8")

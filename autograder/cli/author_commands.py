@@ -55,15 +55,21 @@ def execute(notebooks: tuple[str, ...], jobs: int | None, reports: Path | None) 
     help="Write nothing; fail if a solution now does something different from its recording.",
 )
 def record(exercises: tuple[str, ...], only_check: bool) -> None:
-    """Record what the reference solutions do on the wire. The grader compares answers with the recordings."""
-    from autograder.authoring import reference_files
+    """Record what the reference solutions do on the wire. The grader compares answers with the recordings.
+
+    Then the mutants of each named or changed solution are tried on paper: the recorded drawings have to tell them.
+    """
+    from autograder.authoring import exercise_trial, reference_files
 
     need_ros()
     try:
         changed = reference_files.record(exercises, only_check=only_check, tell=click.echo)
     except reference_files.CannotRecord as error:
         fail(str(error))
-    sys.exit(NO if only_check and changed else 0)
+    if only_check:
+        sys.exit(NO if changed else 0)
+    tried = [exercise_trial.try_mutants(one, tell=click.echo) for one in exercises or changed]
+    sys.exit(0 if all(tried) else NO)
 
 
 @click.command("new-exercise")
@@ -133,6 +139,7 @@ def new_exercise(
 @click.option(
     "--mutants", "only_mutants", is_flag=True, help="Try only the mutants of the solution, recorded or not."
 )
+@click.option("--judge", is_flag=True, help="With --mutants: the judge checks those that paper cannot run.")
 def try_exercise(
     exercise: str,
     only: tuple[str, ...],
@@ -141,6 +148,7 @@ def try_exercise(
     transcript: Path | None,
     fast: bool,
     only_mutants: bool,
+    judge: bool,
 ) -> None:
     """Record EXERCISE if it is new, judge its sample answers, right and wrong, and show unexpected results."""
     from autograder import exercises
@@ -151,9 +159,11 @@ def try_exercise(
     need_ros()
     try:
         if only_mutants:
-            sys.exit(
-                0 if exercise_trial.try_mutants(exercise, must_be_recorded=False, tell=click.echo) else NO
+            by_judge = jobs if judge else 0
+            is_ready = exercise_trial.try_mutants(
+                exercise, by_judge=by_judge, must_be_recorded=False, tell=click.echo
             )
+            sys.exit(0 if is_ready else NO)
         fits = exercise_trial.try_exercise(
             exercise,
             only=only,

@@ -26,8 +26,11 @@ IMPLIED = "the branch before, or after, says the same already"
 FORWARD = "time does not go back, so the newest is the latest"
 FIRST_NONE = "what has been set once is never None again"
 SET_BEFORE = "it is set before it is read"
-_DECLARES = ("create_publisher", "create_subscription", "create_service", "create_client", "create_timer")
-_DECLARES += ("declare_parameter", "add_on_set_parameters_callback")
+ONCE_MORE = "a second subscription keeps the same value once more"
+_DECLARES = (
+    *("create_publisher", "create_subscription", "create_service", "create_client", "create_timer"),
+    *("declare_parameter", "add_on_set_parameters_callback"),
+)
 
 
 def equivalent(solution: Solution, code: Code, mutant: Mutant) -> str:
@@ -52,8 +55,10 @@ def equivalent(solution: Solution, code: Code, mutant: Mutant) -> str:
         around = _around(code, mutant.start, end, ast.Compare)
         return EDGE if around is not None and _has_no_edge(code, around) else ""
     if operator == "swapped":
-        around = [one for one in code.all(ast.stmt) if code.span(one)[0] == mutant.start]
-        return DECLARED if around and all(_declares(one) for one in _pair(code, around[0])) else ""
+        first = next(one for one in code.all(ast.stmt) if code.span(one)[0] == mutant.start)
+        return DECLARED if all(_declares(one) for one in _pair(code, first)) else ""
+    if operator == "doubled" and "create_subscription" in mutant.before:
+        return ONCE_MORE if _only_keeps(code, mutant) else ""
     if operator == "kept" and mutant.kind == "largest" and ".now()" in mutant.before:
         return FORWARD
     if operator == "remembered" and mutant.kind == "once false" and mutant.before.endswith(" is None"):
@@ -65,6 +70,14 @@ def equivalent(solution: Solution, code: Code, mutant: Mutant) -> str:
     if operator in ("operand_left_out", "elif_as_if", "connective", "condition"):
         return IMPLIED if _same_branches(code, mutant) else ""
     return ""
+
+
+def _only_keeps(code: Code, mutant: Mutant) -> bool:
+    """Return True if the callback of a subscription only stores what follows from the message."""
+    call = next(one for one in code.all(ast.Call) if code.span(one)[0] == mutant.start)
+    method = code.method(call.args[2]) if len(call.args) > 2 else None
+    body = [one for one in method.body if not isinstance(one, ast.Expr)] if method is not None else []
+    return bool(body) and all(isinstance(one, (ast.Assign, ast.AnnAssign)) for one in body)
 
 
 def _is_class(code: Code, root: str) -> bool:

@@ -2,24 +2,33 @@
 
 from __future__ import annotations
 
+import fnmatch
 import time
 from collections import defaultdict
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING
 
-from autograder.authoring.answer_bank import answers_folder
+import msgspec
+
+from autograder import exercises
+from autograder.authoring.answer_bank import answers_folder, in_children
 from autograder.authoring.answer_tables import answer_settings
 from autograder.authoring.mutants.code import Code
 from autograder.authoring.mutants.engine import Mutant, in_all_places, mutants, python_changes
 from autograder.authoring.mutants.equivalents import equivalent
 from autograder.authoring.mutants.solutions import Solution, solution
-from autograder.authoring.mutants.trials import FRESH, NotOnPaper, PaperTask, Run, paper_task, run_all
+from autograder.authoring.mutants.trials import FRESH, NotOnPaper, Run, paper_task, run_all
+from autograder.authoring.reference_files import CannotRecord, checked_program, judged
+from autograder.judge import evidence_files
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Mapping, Sequence
 
-SHOWN = 60
-"""The greatest length of a piece of code in a line for the author."""
+CHECKS = 3
+"""How often the judge checks a mutant that passes, each time with other inputs."""
+JUDGING_LIMIT = 300.0
+"""Time limit in seconds of wall time for these checks."""
 
 
 @dataclass(frozen=True)
@@ -37,18 +46,24 @@ class Tried:
     why: str
 
     @property
-    def passes(self) -> bool:
-        """True if every drawing lets it pass."""
-        return bool(self.runs) and all(run.passed for run in self.runs)
-
-    @property
     def passed(self) -> int:
         """The number of drawings that let it pass."""
         return sum(run.passed for run in self.runs)
 
-    def outputs(self, task: PaperTask) -> tuple[str, ...]:
-        """Return the outputs in the practice drawings."""
-        return tuple(run.outputs for run in self.runs[: len(task.practice)])
+    @property
+    def passes(self) -> bool:
+        """True if every drawing lets it pass."""
+        return bool(self.runs) and self.passed == len(self.runs)
+
+    @property
+    def points(self) -> float:
+        """The points that it earns on average."""
+        return sum(run.points for run in self.runs) / max(1, len(self.runs))
+
+    def outputs(self, drawings: int) -> tuple[str, ...]:
+        """Return what it does in the first drawings; empty if it crashes in one of them."""
+        found = tuple(run.outputs for run in self.runs[:drawings])
+        return found if all(found) else ()
 
 
 @dataclass(frozen=True)
@@ -57,17 +72,22 @@ class Survey:
 
     Attributes:
         solution: The solution.
-        task: The exercise on paper.
         tried: Its mutants, each with its runs.
         seconds: Wall time of the survey.
         stale: The author's rows that accept a mutant that is not made, or that does not pass.
+        practice: The number of recorded drawings.
     """
 
     solution: Solution
-    task: PaperTask
     tried: Sequence[Tried]
     seconds: float
-    stale: Sequence[str]
+    stale: Sequence[str] = ()
+    practice: int = 0
+
+    @property
+    def aside(self) -> list[Tried]:
+        """The mutants that pass, and that may."""
+        return [one for one in self.tried if one.passes and one.why]
 
     @property
     def passing(self) -> list[Tried]:
@@ -80,34 +100,29 @@ class Survey:
         return [one for one in self.tried if one.passed and not one.passes and not one.why]
 
     @property
+    def rejected(self) -> list[Tried]:
+        """The mutants that no drawing lets pass."""
+        return [one for one in self.tried if not one.passed]
+
+    @property
     def alike(self) -> list[list[Tried]]:
-        """The groups of mutants at several places that no practice drawing parts."""
+        """The groups of rejected mutants of several meanings that no recorded drawing parts."""
         groups: dict[tuple[str, ...], list[Tried]] = defaultdict(list)
-        for one in self.tried:
-            if one.runs and not one.passes and not one.why:
-                groups[one.outputs(self.task)].append(one)
-        return [
-            group
-            for group in groups.values()
-            if len({(one.mutant.operator, one.mutant.start) for one in group}) > 1
-        ]
+        for one in self.rejected:
+            if did := one.outputs(self.practice):
+                groups[did].append(one)
+        return [group for group in groups.values() if len({_changed(one.mutant) for one in group}) > 1]
 
     @property
     def is_ready(self) -> bool:
-        """True if no mutant passes that may not."""
-        return not self.passing and not self.stale
+        """True if no mutant passes that may not, and each row of the author is needed."""
+        return not (self.passing or self.stale)
 
-    def counts(self) -> dict[str, int]:
-        """Return how many mutants were made, set aside, rejected, passed by chance, and passed."""
-        aside = [one for one in self.tried if one.passes and one.why]
-        rejected = len(self.tried) - len(aside) - len(self.passing) - len(self.by_chance)
-        return {
-            "made": len(self.tried),
-            "set aside": len(aside),
-            "rejected": rejected,
-            "pass by chance": len(self.by_chance),
-            "pass": len(self.passing),
-        }
+
+def _changed(mutant: Mutant) -> tuple[str, int]:
+    """Return what a mutant changes, by which it is another meaning: two wrong numbers in one place are not."""
+    is_number = mutant.operator in ("number", "unit", "number_of_another_place")
+    return "number" if is_number else f"{mutant.operator} {mutant.kind}", mutant.start
 
 
 def own_mutants(of: Solution) -> list[Mutant]:
@@ -132,70 +147,77 @@ def survey(exercise_id: str, *, fresh: int = FRESH, must_be_recorded: bool = Tru
     Raises:
         NotOnPaper: The exercise cannot be run on paper.
     """
-    began = time.monotonic()
-    found = solution(exercise_id)
-    if found is None:
-        raise NotOnPaper("the solution is not one class or function of a notebook")
-    task = paper_task(exercise_id, found.text, found.root, fresh=fresh, must_be_recorded=must_be_recorded)
-    code, accepted = (
-        Code(found.text, subject=found.root),
-        answer_settings(answers_folder(exercise_id)).accepts,
+    began, found = time.monotonic(), _solution(exercise_id)
+    exercise, stored = exercises.get(exercise_id), evidence_files.load_reference(exercise_id)
+    task = paper_task(
+        exercise, stored, found.text, found.root, fresh=fresh, must_be_recorded=must_be_recorded
     )
-    made = own_mutants(found)
-    runs = {mutant.key: of for mutant, of in run_all(task, ((mutant, mutant.text) for mutant in made))}
-    tried = [
-        Tried(one, runs[one.key], equivalent(found, code, one) or accepted.get(one.key, "")) for one in made
-    ]
-    passing = {one.mutant.key for one in tried if one.passes}
-    stale = [key for key in accepted if key not in passing]
-    return Survey(found, task, tried, time.monotonic() - began, stale)
+    from autograder.authoring.mutants.blind_answers import OPERATOR, blind_answers  # imports rclpy
+
+    made = [*own_mutants(found), *blind_answers(task)]
+    runs = {one.key: of for one, of in run_all(task, ((mutant, mutant.text) for mutant in made))}
+    for one in made:
+        if one.operator == OPERATOR:  # the practice drawings, of which it is made, do not count
+            runs[one.key] = runs[one.key][len(task.practice) :]
+    return _survey(found, made, runs, began, len(task.practice))
 
 
-def tell_survey(found: Survey, tell: Callable[[str], object], *, alike: int = 5) -> None:
-    """Print the lists for the author.
+def survey_by_judge(exercise_id: str, *, jobs: int) -> Survey:
+    """Make the mutants of an exercise's solution, and have the judge check them, which takes seconds for each.
 
     Args:
-        found: The survey.
-        tell: Called with each line.
-        alike: The greatest number of groups that are printed of those that no drawing parts.
+        exercise_id: The exercise's id.
+        jobs: The number of mutants to judge at the same time.
+
+    Raises:
+        NotOnPaper: The solution is files, of which no mutants are made.
     """
-    counts = ", ".join(f"{count} {what}" for what, count in found.counts().items())
-    tell(f"{found.task.exercise.id}: mutants of the solution on paper: {counts} ({found.seconds:.0f} s)")
-    drawings = len(found.task.practice) + len(found.task.fresh)
-    lists = (
-        (f"pass in all {drawings} drawings, so a student with this mistake has full marks:", found.passing),
-        (f"pass in some of {drawings} drawings, so chance decides:", found.by_chance),
+    began, found = time.monotonic(), _solution(exercise_id)
+    made = own_mutants(found)
+    works = ((one, partial(_checks, exercise_id, one.text, found.root)) for one in made)
+    runs = {
+        one.key: msgspec.json.decode(outcome.data, type=list[Run]) if outcome.data else []
+        for one, outcome in in_children(works, jobs=jobs, limit=JUDGING_LIMIT)
+    }
+    return _survey(found, made, runs, began, 0)
+
+
+def _checks(exercise_id: str, text: str, root: str) -> bytes:
+    runs: list[Run] = []
+    while len(runs) < CHECKS and all(run.passed for run in runs):
+        try:
+            report, _ = judged(exercise_id, checked_program(exercise_id, text, root))
+        except CannotRecord:
+            return b""
+        verdict = report.verdict
+        score = verdict.score if verdict is not None else 0.0
+        runs.append(Run(f"check {len(runs)}", score, verdict is not None and verdict.passed))
+    return msgspec.json.encode(runs)
+
+
+def _solution(exercise_id: str) -> Solution:
+    found = solution(exercise_id)
+    if found is None or exercises.get(exercise_id).hides_causes:
+        raise NotOnPaper(
+            "its solution is not a class or a function of a notebook, or it repairs another one's"
+        )
+    return found
+
+
+def _reason(accepted: Mapping[str, str], key: str) -> str:
+    return next((why for form, why in accepted.items() if fnmatch.fnmatch(key, form)), "")
+
+
+def _survey(
+    of: Solution, made: Sequence[Mutant], runs: Mapping[str, Sequence[Run]], began: float, practice: int
+) -> Survey:
+    code, accepted = (
+        Code(of.text, subject=of.root),
+        answer_settings(answers_folder(of.exercise)).accepts,
     )
-    for title, listed in lists:
-        for number, one in enumerate(listed):
-            if not number:
-                tell(f"  {title}")
-            chance = "" if one.passes else f" ({one.passed})"
-            tell(f"    {in_words(found.solution, one.mutant)}{chance}   {one.mutant.key}")
-    for group in found.alike[:alike]:
-        tell("  no drawing parts these:")
-        for one in group[:3]:
-            tell(f"    {in_words(found.solution, one.mutant)}")
-        if len(group) > 3:
-            tell(f"    and {len(group) - 3} more")
-    if len(found.alike) > alike:
-        tell(f"  {len(found.alike) - alike} more groups that no drawing parts")
-    for key in found.stale:
-        tell(f"  settings.toml accepts {key}, which does not pass or is not made: take the row out")
-
-
-def in_words(of: Solution, mutant: Mutant) -> str:
-    """Return in one line what is changed in a solution: the line, what stood there, and what stands there now."""
-    source = of.text.splitlines()[mutant.line - 1].strip()
-    before, after = (_short(piece) for piece in (mutant.before, mutant.after))
-    what = f"{mutant.operator.replace('_', ' ')}{f' ({mutant.kind})' * bool(mutant.kind)}"
-    everywhere = f", in {mutant.all_of} places" if mutant.all_of > 1 else ""
-    change = (
-        f"{before} → {after}" if len(after) < SHOWN and "setdefault" not in after else before or "before it"
-    )
-    return f"“{_short(source)}”: {what}{everywhere}: {change}"
-
-
-def _short(text: str) -> str:
-    line = " ".join(text.split())
-    return line if len(line) <= SHOWN else f"{line[:SHOWN]}…"
+    tried = [
+        Tried(one, runs[one.key], equivalent(of, code, one) or _reason(accepted, one.key)) for one in made
+    ]
+    passing = [one.mutant.key for one in tried if one.passes]
+    stale = [form for form in accepted if not fnmatch.filter(passing, form)]
+    return Survey(of, tried, time.monotonic() - began, stale, practice)

@@ -5,14 +5,14 @@ from __future__ import annotations
 import json
 import os
 import resource
+from collections import Counter
 from dataclasses import dataclass, replace
 from functools import partial
 from random import Random
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import msgspec
 
-from autograder import exercises
 from autograder.authoring.answer_bank import in_children
 from autograder.judge import evidence_files
 from autograder.judge.recording_differences import differences
@@ -22,15 +22,16 @@ from autograder.kit.evidence import Evidence, Part, Reference
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
+    from autograder.kit.bench import Bench
     from autograder.kit.model import Exercise
 
 FRESH = 20
 """The number of fresh drawings."""
 CPU_LIMIT = 5
 """Seconds of processor time after which a program counts as one that never ends."""
-LIMIT = 20.0
+LIMIT = 90.0
 """Seconds of wall time after which a program counts as one that waits for ever."""
-TELLING = 6
+TELLING = 4
 """The number of fresh drawings after which a program is not run any more if no drawing so far lets it pass."""
 PLACES = 3
 """Digits behind the point of the numbers by which outputs are told apart."""
@@ -48,13 +49,14 @@ class Run:
         drawing: The name of the drawing.
         points: The points that the program earns.
         passed: True if it earns all.
-        outputs: What was noted of it, as JSON in which equal outputs are equal texts.
+        outputs: What was noted of it, as JSON in which equal outputs are equal texts; empty if it crashed, or if the
+            judge ran it.
     """
 
     drawing: str
     points: float
     passed: bool
-    outputs: str
+    outputs: str = ""
 
 
 @dataclass(frozen=True)
@@ -79,12 +81,19 @@ class PaperTask:
 
 
 def paper_task(
-    exercise_id: str, text: str, root: str, *, fresh: int = FRESH, must_be_recorded: bool = True
+    exercise: Exercise,
+    stored: Reference,
+    text: str,
+    root: str,
+    *,
+    fresh: int = FRESH,
+    must_be_recorded: bool = True,
 ) -> PaperTask:
     """Run the solution on paper, and compare it with its recording.
 
     Args:
-        exercise_id: The exercise's id.
+        exercise: The exercise.
+        stored: The recording of the solution.
         text: The solution.
         root: The name of the class or function that is judged.
         fresh: The number of fresh drawings.
@@ -93,17 +102,18 @@ def paper_task(
     Raises:
         NotOnPaper: The solution cannot be run on paper, or is not as recorded there.
     """
-    exercise = exercises.get(exercise_id)
-    stored = evidence_files.load_reference(exercise_id)
     practice = tuple(part.name for part in stored.parts) if exercise.drawing else (SEED,)
     names = tuple(f"fresh {number}" for number in range(fresh))
     _import_messages(stored)
     work = partial(_recorded, exercise, text, root, stored, (*practice, *names))
     ((_, outcome),) = in_children([("", work)], jobs=1, limit=LIMIT * 2)
     if outcome.data is None:
-        raise NotOnPaper("the solution could not be run on paper; the reason stands above")
-    parts = tuple(msgspec.json.decode(outcome.data, type=list[Part]))
-    of_practice = parts if not exercise.drawing else parts[: len(practice)]
+        raise NotOnPaper("the solution ended the process")
+    recorded = msgspec.json.decode(outcome.data, type=_Recorded)
+    if recorded.trouble:
+        raise NotOnPaper(recorded.trouble)
+    parts = tuple(recorded.parts)
+    of_practice = parts[: len(practice)] if exercise.drawing else parts
     bare = replace(stored, parts=(), variants=())
     now, before = (
         evidence_files.as_recorded(replace(bare, parts=some), exercise.recorded)
@@ -114,7 +124,7 @@ def paper_task(
         raise NotOnPaper(different)
     reference = replace(bare, parts=parts if exercise.drawing else stored.parts)
     task = PaperTask(exercise, root, practice, names, reference, of_practice)
-    (runs,) = (runs for _, runs in run_all(task, [("", text)], jobs=1))
+    ((_, runs),) = run_all(task, [("", text)], jobs=1)
     if lost := [run.drawing for run in runs if not run.passed]:
         raise NotOnPaper(f"the solution does not pass {lost[0]}")
     return task
@@ -139,10 +149,10 @@ def run_all(
 
 def _import_messages(reference: Reference) -> None:
     """Import what every program needs, so that no fork has to."""
-    from autograder.authoring import paper_bench
+    from autograder.authoring.paper import bench
     from autograder.judge.bench.ros_interfaces import interface
 
-    del paper_bench
+    del bench
     for ends in reference.interface.values():
         for kind in ends.values():
             interface(kind)
@@ -150,7 +160,7 @@ def _import_messages(reference: Reference) -> None:
 
 def _alone() -> None:
     """Prepare this fork for one program, whose words nobody reads."""
-    from autograder.authoring.paper_nodes import replace_rclpy
+    from autograder.authoring.paper.nodes import replace_rclpy
 
     resource.setrlimit(resource.RLIMIT_CPU, (CPU_LIMIT, CPU_LIMIT))
     nowhere = os.open(os.devnull, os.O_WRONLY)
@@ -163,37 +173,51 @@ def _played(
     exercise: Exercise, text: str, root: str, reference: Reference, names: Sequence[str]
 ) -> Iterator[tuple[str, list[Part]]]:
     """Run a program in drawings. Yield the name of each, and the record of its parts."""
-    from autograder.authoring.paper_bench import PaperBench
+    from autograder.authoring.paper.bench import PaperBench
 
     code = compile(text, "solution", "exec", dont_inherit=True)
     for name in names:
-        bench = PaperBench(code, root, reference, Random(name))
+        paper = PaperBench(code, root, reference, Random(name))
+        bench = cast("Bench", paper)
         if exercise.drawing:
             exercise.drawing(bench, name)
         else:
             exercise.scenario(bench)
-        yield name, bench.parts
+        yield name, paper.parts
+
+
+@dataclass(frozen=True)
+class _Recorded:
+    """What the solution did on paper, or what paper does not have."""
+
+    parts: list[Part]
+    trouble: str = ""
 
 
 def _recorded(exercise: Exercise, text: str, root: str, stored: Reference, names: Sequence[str]) -> bytes:
-    from autograder.authoring.paper_nodes import replace_rclpy
+    from autograder.authoring.paper.network import UnknownOnPaper
 
-    replace_rclpy()
-    if not exercise.drawing:
-        names = names[:1]
-    played = _played(exercise, text, root, replace(stored, parts=()), names)
-    return msgspec.json.encode([part for _, parts in played for part in parts])
+    _alone()
+    played = _played(
+        exercise, text, root, replace(stored, parts=()), names if exercise.drawing else names[:1]
+    )
+    try:
+        found = _Recorded([part for _, parts in played for part in parts])
+    except UnknownOnPaper as unknown:
+        found = _Recorded([], f"paper has no {unknown}")
+    return msgspec.json.encode(found)
 
 
 def _runs(task: PaperTask, text: str) -> bytes:
     _alone()
-    exercise, found = task.exercise, []
+    exercise, found = task.exercise, list[Run]()
     for name, parts in _played(exercise, text, task.root, task.reference, (*task.practice, *task.fresh)):
         if len(found) == len(task.practice) + TELLING and not any(run.passed for run in found):
             break
         evidence = Evidence(parts, task.reference)
         earned = sum(one.points for one in exercise.criteria if one.judge(evidence).passed)
-        found.append(Run(name, earned, earned == exercise.points, _outputs(parts)))
+        is_whole = all(part.of("noted") and not part.traceback for part in parts)
+        found.append(Run(name, earned, earned == exercise.points, _outputs(parts) if is_whole else ""))
     return msgspec.json.encode(found)
 
 
@@ -203,7 +227,9 @@ def _outputs(parts: Sequence[Part]) -> str:
         for part in parts
         for event in part.of("noted")
     ]
-    return json.dumps(noted, default=str)
+    # How many messages came tells periods apart, which a recording does not keep.
+    counts = Counter(event.name for part in parts for event in part.of("message"))
+    return json.dumps([noted, sorted(counts.items())], default=str)
 
 
 def _rounded(value: Any) -> Any:

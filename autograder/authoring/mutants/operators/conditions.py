@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ast
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from autograder.authoring.mutants.code import Code, Edit, called
 
@@ -52,11 +52,10 @@ def bound(code: Code) -> Iterator[Edit]:
         start, _ = code.span(call)
         other = "max" if name == "min" else "min"
         yield Edit(start, start + 3, other, code.where(call), f"{other} for {name}")
-        inner = next((one for one in call.args if called(one) in ("min", "max") and len(one.args) == 2), None)  # type: ignore[attr-defined]
-        if inner is not None and called(inner) != name:
-            low = next(one for one in call.args if one is not inner)
-            high, value = inner.args  # type: ignore[attr-defined]
-            low, high, value = (code.source(one) for one in (low, high, value))
+        inner: Any = next((one for one in call.args if called(one) == other), None)
+        if inner is not None and len(inner.args) == 2:
+            low = next(code.source(one) for one in call.args if one is not inner)
+            high, value = (code.source(one) for one in inner.args)
             if name == "min":
                 low, high = high, low
             yield code.replaced(call, f"({value} if {low} <= {value} <= {high} else 0.0)", "zero beyond")

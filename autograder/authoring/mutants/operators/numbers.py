@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ast
 from itertools import combinations
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from autograder.authoring.mutants.code import Code, Edit, argument, called, paced
 from autograder.authoring.mutants.operators.waiting import limit_of, limits, pace_of
@@ -70,7 +70,7 @@ def sign(code: Code) -> Iterator[Edit]:
 
 def number_of_another_place(code: Code) -> Iterator[Edit]:
     """A number that stands elsewhere in the same method, or two that change places."""
-    groups: dict[str, list[ast.Constant]] = {}
+    groups: dict[str, list[Any]] = {}
     for constant in numbers(code):
         groups.setdefault(code.where(constant), []).append(constant)
     for group in groups.values():
@@ -92,7 +92,7 @@ def exchange(code: Code, one: ast.expr, other: ast.expr) -> Edit:
     )
 
 
-def numbers(code: Code) -> Iterator[ast.Constant]:
+def numbers(code: Code) -> Iterator[Any]:
     """Yield the numbers that count.
 
     Depths, limits, exit codes and the pace of a program that publishes nothing are free, or the matter of another

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ast
 from itertools import pairwise
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from autograder.authoring.mutants.code import Code, Edit, called
 from autograder.authoring.mutants.operators.numbers import exchange
@@ -55,7 +55,7 @@ def seldom(code: Code) -> Iterator[Edit]:
                 yield code.replaced(said, f"if not ({test}): {source}", "only if not")
 
 
-def _said(code: Code) -> Iterator[ast.Expr]:
+def _said(code: Code) -> Iterator[Any]:
     for statement in code.all(ast.Expr):
         if called(statement.value) in _TELLS:
             yield statement
@@ -105,7 +105,7 @@ def other_clock(code: Code) -> Iterator[Edit]:
 
 
 def other_word(code: Code) -> Iterator[Edit]:
-    """A word for another one, a word that is written otherwise, no word at all; the name of another parameter."""
+    """A word for another one, a word that is written otherwise; the name of another parameter."""
     said, names = [], []
     for constant in code.all(ast.Constant):
         parent = code.parents[constant]
@@ -116,12 +116,11 @@ def other_word(code: Code) -> Iterator[Edit]:
         elif called(parent) not in _NAMES and not isinstance(parent, (ast.JoinedStr, ast.FormattedValue)):
             said.append(constant)
     for constant in said:
-        for other in sorted({one.value for one in said} - {constant.value}):
+        of_the_class = {one.value for one in said if _definition(code, one) == _definition(code, constant)}
+        for other in sorted(of_the_class - {constant.value}):
             yield code.replaced(constant, repr(other), f"for {constant.value}")
         yield code.replaced(constant, repr(constant.value.capitalize()), "capital")
         yield code.replaced(constant, repr(f"{constant.value}."), "dot")
-        if isinstance(code.parents[constant], (ast.Return, ast.IfExp)):
-            yield code.replaced(constant, "None", "no word")
     for constant in names:
         for other in sorted({one.value for one in names} - {constant.value}):
             yield code.replaced(constant, repr(other), f"for {constant.value}")
@@ -129,6 +128,10 @@ def other_word(code: Code) -> Iterator[Edit]:
         for other in said:
             if one.lineno == other.lineno and one.col_offset < other.col_offset and one.value != other.value:
                 yield exchange(code, one, other)
+
+
+def _definition(code: Code, node: ast.AST) -> str:
+    return code.where(node).partition(".")[0]
 
 
 def range_of_parameter(code: Code) -> Iterator[Edit]:
@@ -156,10 +159,10 @@ def threads_of_another_kind(code: Code) -> Iterator[Edit]:
     """No thread, one at a time, or none while one is at work."""
     for statement in code.all(ast.Expr):
         call = statement.value
-        thread = call.func.value if called(call) == "start" and isinstance(call, ast.Call) else None  # type: ignore[attr-defined]
-        if called(thread) != "Thread" or not code.stands_alone(statement):  # type: ignore[arg-type]
+        thread: Any = call.func.value if called(call) == "start" else call
+        if called(thread) != "Thread" or thread is call or not code.stands_alone(statement):
             continue
-        words = {word.arg: word.value for word in thread.keywords}  # type: ignore[union-attr]
+        words = {word.arg: word.value for word in thread.keywords}
         target, given = words.get("target"), words.get("args")
         if target is None or not isinstance(given, ast.Tuple):
             continue

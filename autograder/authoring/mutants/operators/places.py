@@ -58,8 +58,9 @@ def other_field(code: Code) -> Iterator[Edit]:
 
 def _read(code: Code, nodes: Iterator[ast.AST]) -> Iterator[ast.Attribute]:
     for node in nodes:
-        is_read = isinstance(node, ast.Attribute) and isinstance(node.ctx, ast.Load)
-        if is_read and isinstance(node.value, ast.Name) and not _is_called(code, node):
+        if not isinstance(node, ast.Attribute) or _is_called(code, node):
+            continue
+        if isinstance(node.ctx, ast.Load) and isinstance(node.value, ast.Name):
             yield node
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ast
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from autograder.authoring.mutants.code import Code, Edit, called
 
@@ -99,10 +99,10 @@ def read_once(code: Code) -> Iterator[Edit]:
                 yield code.replaced(attribute, defaults[name], "default")
 
 
-def _attributes(code: Code) -> Iterator[tuple[ast.Assign | ast.AnnAssign, str]]:
-    """Yield each assignment to an attribute of self that is not an endpoint, with the attribute's name."""
+def _attributes(code: Code) -> Iterator[tuple[Any, str]]:
+    """Yield each assignment of a value to an attribute of self that is not an endpoint, with the attribute's name."""
     for assign in code.all(ast.Assign, ast.AnnAssign):
-        target = assign.targets[0] if isinstance(assign, ast.Assign) else assign.target
+        target: Any = assign.targets[0] if isinstance(assign, ast.Assign) else assign.target
         if assign.value is None or called(assign.value) in _ENDPOINTS:
             continue
         is_own = isinstance(target, ast.Attribute) and code.source(target.value) == "self"

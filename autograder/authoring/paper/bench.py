@@ -1,7 +1,7 @@
 """A bench on paper: runs an exercise's scenario on a program in this process, in milliseconds.
 
 The scenario and the criteria are the exercise's own. Of the bench it has what a recipe needs that compares a node or a
-function with the solution; anything else raises :class:`autograder.authoring.paper_nodes.UnknownOnPaper`.
+function with the solution; anything else raises :class:`autograder.authoring.paper.network.UnknownOnPaper`.
 """
 
 from __future__ import annotations
@@ -11,9 +11,10 @@ import json
 import sys
 import traceback
 import types
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from autograder.authoring.paper_nodes import SECOND, Hangs, Network, Publisher, UnknownOnPaper, matches
+from autograder.authoring.paper.network import EPOCH, SECOND, Hangs, Network, UnknownOnPaper, matches
 from autograder.judge.bench.qos_profiles import profile, qos_of
 from autograder.judge.bench.ros_interfaces import filled, interface, to_data
 from autograder.judge.bench.subject_time import FIRST
@@ -25,7 +26,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Container, Mapping, Sequence
     from random import Random
 
-    from autograder.authoring.paper_nodes import PaperNode, Service
+    from autograder.authoring.paper.endpoints import Publisher, Service
+    from autograder.authoring.paper.nodes import PaperNode
     from autograder.kit.evidence import Reference
 
 _OF_PARAMETERS = "parameter"
@@ -89,7 +91,7 @@ class PaperBench:
     def record(self, kind: str, name: str, **data: Any) -> None:
         """Record an event."""
         simulated = self._network.simulated
-        wall = (self._network.wall - _FIRST_WALL) / SECOND
+        wall = (self._network.wall - EPOCH) / SECOND
         self.events.append(Event(wall, kind, name, data, None if simulated is None else simulated / SECOND))
 
     def start(self, *arguments: Any, **_: Any) -> None:
@@ -149,7 +151,7 @@ class PaperBench:
     @property
     def moment(self) -> float:
         """The subject's time now, in seconds."""
-        return (self._network.time - (_FIRST_WALL if self._network.simulated is None else 0)) / SECOND
+        return (self._network.time - (EPOCH if self._network.simulated is None else 0)) / SECOND
 
     def await_end(self, within: float) -> bool:
         del within
@@ -334,7 +336,7 @@ class _Caller:
             self._bench.record("asked", self._service, call=number, fields=dict(fields))
             for server in self._bench.services(self._service)[:1]:
                 request = filled(self._type.Request(), fields)
-                self._bench.ask(server, request, lambda response, number=number: self._take(number, response))
+                self._bench.ask(server, request, partial(self._take, number))
 
     def _take(self, number: int, response: Any) -> None:
         self._answered += 1
@@ -344,9 +346,6 @@ class _Caller:
         del quiet
         self._bench.settle()
         return self._answered >= self._asked
-
-
-_FIRST_WALL = 1_800_000_000 * SECOND
 
 
 def _of(node: PaperNode, ends: str) -> Sequence[Any]:

@@ -1,0 +1,71 @@
+"""Says in lines for an author what a survey of mutants has found."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from autograder.authoring.mutants.engine import Mutant
+    from autograder.authoring.mutants.solutions import Solution
+    from autograder.authoring.mutants.survey import Survey, Tried
+
+SHOWN = 60
+"""The greatest length of a piece of code in a line."""
+GROUPS, OF_A_GROUP = 5, 3
+"""The greatest numbers of groups, and of mutants of each, that are listed of those that no drawing parts."""
+
+
+def lines(found: Survey) -> Iterator[str]:
+    """Yield the lines: the counts, then the mutants that pass, those that chance decides, and those that are alike."""
+    counts = {
+        "made": found.tried,
+        "set aside": found.aside,
+        "rejected": found.rejected,
+        "by chance": found.by_chance,
+        "passing": found.passing,
+    }
+    numbers = ", ".join(f"{len(some)} {what}" for what, some in counts.items())
+    yield f"{found.solution.exercise}: mutants of the solution: {numbers} ({found.seconds:.0f} s)"
+    yield from _listed(found.solution, "These have full marks in every drawing:", found.passing)
+    yield from _listed(found.solution, "These have full marks in some drawings:", found.by_chance)
+    for group in found.alike[:GROUPS]:
+        yield "  These do the same in each recorded drawing:"
+        yield from (f"    {in_words(found.solution, one.mutant)}" for one in group[:OF_A_GROUP])
+        if len(group) > OF_A_GROUP:
+            yield f"    and {len(group) - OF_A_GROUP} more"
+    if len(found.alike) > GROUPS:
+        yield f"  {len(found.alike) - GROUPS} more such groups"
+    for one in found.tried:
+        if one.mutant.start < 0 and one.points and not one.passes:
+            yield f"  {in_words(found.solution, one.mutant)} earns {one.points:.1f} points"
+    for key in found.stale:
+        yield f"  settings.toml accepts {key}, which is not made or does not pass: take the row out"
+
+
+def _listed(of: Solution, title: str, listed: Sequence[Tried]) -> Iterator[str]:
+    if listed:
+        yield f"  {title}"
+    for one in listed:
+        share = "" if one.passes else f"{one.passed} of {len(one.runs)}  "
+        yield f"    {share}{in_words(of, one.mutant)}  [{one.mutant.key}]"
+
+
+def in_words(of: Solution, mutant: Mutant) -> str:
+    """Return in one line where a solution is changed, what stands there, and what the mutant has instead."""
+    if mutant.start < 0:
+        return f"an answer that does not look: it {mutant.kind}"
+    source = of.text.splitlines()[mutant.line - 1].strip()
+    name = mutant.operator.replace("_", " ")
+    kind = f", {mutant.kind}" if mutant.kind else ""
+    places = f", in {mutant.all_of} places of the method" if mutant.all_of > 1 else ""
+    # What keeps values between two calls is written in a way that nobody wants to read.
+    is_readable = mutant.before and len(mutant.after) <= SHOWN and "__" not in mutant.after
+    change = f": {_short(mutant.before)} → {_short(mutant.after) or 'nothing'}" if is_readable else ""
+    return f"“{_short(source)}”: {name}{kind}{places}{change}"
+
+
+def _short(text: str) -> str:
+    line = " ".join(text.split())
+    return line if len(line) <= SHOWN else f"{line[:SHOWN]}…"

@@ -1,0 +1,123 @@
+"""What mutants are made of a program: each once, under a key that unrelated edits leave alone."""
+
+from __future__ import annotations
+
+import ast
+
+import pytest
+
+from autograder.authoring.mutants import engine
+from autograder.authoring.mutants.code import Code, Edit
+from autograder.authoring.mutants.engine import Mutant, in_all_places, mutants, python_changes
+
+HANDS = '''"""Hands."""
+
+
+class Hands:
+    def __init__(self):
+        self.last = None
+        self.create_subscription(Twist, "agent", self.limited, 10)
+
+    def limited(self, command, seen):
+        safe = Twist()
+        safe.linear.x = max(-0.5, min(0.5, command.linear.x))
+        safe.angular.z = max(-0.5, min(0.5, command.angular.z))
+        self.last = command
+        now = self.get_clock().now()
+        limit = self.get_parameter("limit").value
+        if seen.left > seen.right and seen.ahead[0] < limit:
+            self.publisher.publish(safe)
+        elif seen.left == seen.right:
+            threading.Thread(target=self.act, args=(now,)).start()
+        return "left" if seen.left > 1.5 else "right"
+'''
+
+
+def made(text: str = HANDS) -> list[Mutant]:
+    changes = python_changes(Code(text))
+    return mutants(text, [*changes, *in_all_places(changes)])
+
+
+def lines(operator: str, kind: str = "") -> list[str]:
+    """Return the changed lines of the mutants of an operator."""
+    return [
+        one.text.splitlines()[one.line - 1].strip()
+        for one in made()
+        if one.operator == operator and kind in ("", one.kind) and one.all_of == 1
+    ]
+
+
+@pytest.mark.parametrize(
+    ("operator", "kind", "line"),
+    [
+        ("number", "times 1.1", 'return "left" if seen.left > 1.65 else "right"'),
+        ("unit", "times 100", 'return "left" if seen.left > 150 else "right"'),
+        ("sign", "lost", "safe.linear.x = max(0.5, min(0.5, command.linear.x))"),
+        ("sign", "zero", "safe.linear.x = max(0.0, min(0.5, command.linear.x))"),
+        ("number_of_another_place", "", 'return "left" if seen.left > 0.5 else "right"'),
+        ("turned", "turned", "if seen.left < seen.right and seen.ahead[0] < limit:"),
+        ("operand_left_out", "", "if (seen.ahead[0] < limit):"),
+        ("bound", "left out max 0", "safe.linear.x = min(0.5, command.linear.x)"),
+        ("bound", "max for min", "safe.linear.x = max(-0.5, max(0.5, command.linear.x))"),
+        ("elif_as_if", "", "if seen.left == seen.right:"),
+        ("one_side", "", "if seen.left > 1.0 and seen.ahead[0] < limit:"),
+        ("other_field", "right for left", 'return "left" if seen.right > 1.5 else "right"'),
+        ("other_field", "", "safe.linear.x = max(-0.5, min(0.5, command.angular.z))"),
+        ("other_element", "index -1", "if seen.left > seen.right and seen.ahead[-1] < limit:"),
+        ("kept", "never written back", "last = command"),
+        ("made_once", "", "safe = self.__dict__.setdefault('_made_Twist', Twist())"),
+        (
+            "read_once",
+            "once",
+            'limit = self.__dict__.setdefault(\'_of_\' + "limit", self.get_parameter("limit").value)',
+        ),
+        ("printed", "published", "print(safe)"),
+        ("other_clock", "the computer's", "now = __import__('rclpy.clock').clock.Clock().now()"),
+        ("other_word", "for left", "return 'right' if seen.left > 1.5 else \"right\""),
+        ("printed", "nothing in one case", 'return None if seen.left > 1.5 else "right"'),
+        ("threads_of_another_kind", "no thread", "self.act(now)"),
+    ],
+)
+def test_an_operator_makes_its_mistake(operator: str, kind: str, line: str) -> None:
+    assert line in lines(operator, kind)
+
+
+def test_the_same_mistake_is_made_in_all_places_of_a_method() -> None:
+    both = [
+        one for one in made() if one.operator == "bound" and one.kind == "left out max 0" and one.all_of > 1
+    ]
+    (one,) = both
+    assert one.all_of == 2
+    assert "max" not in one.text
+    assert one.text.count("min(0.5, ") == 2
+
+
+def test_what_belongs_together_is_changed_together() -> None:
+    (shared,) = [one for one in made() if one.operator == "on_the_class"]
+    assert "class Hands:\n    last = None\n" in shared.text
+    assert "type(self).last = command" in shared.text
+
+
+def test_mutants_that_mean_the_same_fall_together() -> None:
+    changes = [("one", Edit(4, 5, "3")), ("other", Edit(4, 5, "(3)")), ("none", Edit(4, 5, "2 "))]
+    (only,) = mutants("a = 2\n", changes)
+    assert (only.operator, only.before, only.after) == ("one", "2", "3")
+
+
+def test_no_mutant_is_broken_and_each_has_a_key_of_its_own() -> None:
+    found = made()
+    meanings = {ast.dump(ast.parse(one.text)) for one in found}
+    assert len(meanings) == len({one.key for one in found}) == len(found)
+    assert engine.meaning(HANDS) not in meanings
+
+
+def test_other_edits_leave_the_keys_as_they_are() -> None:
+    other = HANDS.replace('"""Hands."""', '"""Hands, and what they do."""\n\n# A comment.\n')
+    assert [one.key for one in made(other)] == [one.key for one in made()]
+
+
+def test_only_what_the_subject_needs_is_changed() -> None:
+    text = "LIMIT = 5.0\nOTHER = 3\n\ndef other():\n    print(OTHER)\n\ndef own():\n    print(LIMIT)\n"
+    changed = {one.line for one in mutants(text, python_changes(Code(text, subject="own")))}
+    assert changed
+    assert changed <= {1, 8}

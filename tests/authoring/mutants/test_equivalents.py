@@ -1,0 +1,96 @@
+"""A mutant is set aside only if a rule shows that it does what the solution does."""
+
+from __future__ import annotations
+
+import pytest
+
+from autograder.authoring.mutants import equivalents
+from autograder.authoring.mutants.code import Code
+from autograder.authoring.mutants.equivalents import equivalent
+from autograder.authoring.mutants.solutions import Solution
+from autograder.authoring.mutants.survey import own_mutants
+
+AGENT = """class Agent(Node):
+    def __init__(self):
+        super().__init__("agent")
+        self.turn = 0.0
+        self.came_at = None
+        self.seen = 0.0
+        self.create_subscription(Scan, "a", self.on_scan, 10)
+        self.create_subscription(Scan, "b", self.decide, 10)
+
+    def on_scan(self, scan):
+        self.seen = scan.ranges[0]
+        self.came_at = self.get_clock().now()
+
+    def decide(self, seen):
+        if self.came_at is None:
+            return "nothing"
+        if self.turn and seen.ahead > 1.1:
+            self.turn = 0.0
+        elif not self.turn and seen.ahead < 0.6:
+            self.turn = 1.0 if seen.left > seen.right else -1.0
+        if seen.count > 4:
+            return max(0.0, min(1.0, self.turn))
+        return "old" if self.get_clock().now() - self.came_at < Duration(seconds=1) else "fresh"
+"""
+SOLUTION = Solution("a.agent", AGENT, "Agent", ((0, len(AGENT)),))
+
+
+def reasons(operator: str, before: str, kind: str = "") -> set[str]:
+    """Return why the mutants that an operator makes of a piece are set aside."""
+    code = Code(AGENT, subject="Agent")
+    return {
+        equivalent(SOLUTION, code, one)
+        for one in own_mutants(SOLUTION)
+        if (one.operator, one.before) == (operator, before) and kind in ("", one.kind)
+    }
+
+
+@pytest.mark.parametrize(
+    ("operator", "before", "kind", "reason"),
+    [
+        ("node_name", '"agent"', "", equivalents.NAME),
+        ("exchanged", "1.0, self.turn", "", equivalents.EXCHANGED),
+        ("comparison", "<", "", equivalents.EDGE),
+        ("on_the_class", "", "", equivalents.ONE_OBJECT),
+        ("elif_as_if", "elif", "", equivalents.IMPLIED),
+        ("kept", "self.came_at = self.get_clock().now()", "largest", equivalents.FORWARD),
+        ("remembered", "self.came_at is None", "once false", equivalents.FIRST_NONE),
+        ("doubled", 'self.create_subscription(Scan, "a", self.on_scan, 10)', "", equivalents.ONCE_MORE),
+        ("late", "", "", equivalents.LATE),
+    ],
+)
+def test_what_does_the_same_is_set_aside(operator: str, before: str, kind: str, reason: str) -> None:
+    assert reasons(operator, before, kind) == {reason}
+
+
+@pytest.mark.parametrize(
+    ("operator", "before", "kind"),
+    [
+        (
+            "comparison",
+            ">",
+            "",
+        ),  # of a whole number; the other two are of 1.1, and of two numbers that are drawn
+        ("operand_left_out", "not self.turn and seen.ahead < 0.6", ""),
+        ("remembered", "self.came_at is None", "once true"),
+        ("kept", "self.seen = scan.ranges[0]", "largest"),
+        ("doubled", 'self.create_subscription(Scan, "b", self.decide, 10)', ""),
+        ("condition", "seen.left > seen.right", "turned"),
+        ("turned", "<", ""),
+    ],
+)
+def test_what_may_differ_is_not(operator: str, before: str, kind: str) -> None:
+    assert "" in reasons(operator, before, kind)
+
+
+def test_state_that_is_set_before_it_is_read_may_begin_again() -> None:
+    code = Code(AGENT, subject="Agent")
+    anew = {
+        (one.where, one.after.split()[0]): equivalent(SOLUTION, code, one)
+        for one in own_mutants(SOLUTION)
+        if one.operator == "anew" and one.kind == "at each call" and one.all_of == 1
+    }
+    assert anew["Agent.on_scan", "self.seen"] == equivalents.SET_BEFORE
+    assert anew["Agent.decide", "self.turn"] == ""
