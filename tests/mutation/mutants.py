@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 from autograder.authoring.mutants import engine
 from autograder.authoring.mutants.code import Code
+from autograder.authoring.mutants.equivalents import equivalent
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -74,12 +75,21 @@ class Mutant:
 
 
 def mutants(subject: Subject) -> list[Mutant]:
-    """All first-order mutants of an answer, in the order of its text; no two of them mean the same."""
+    """All first-order mutants of an answer, in the order of its text; no two of them mean the same.
+
+    Those that a rule shows to be equivalent are left out.
+    """
     means = partial(_meaning, subject)
+    code = Code(subject.text) if _is_python(subject) else None
     return [
         Mutant(f"{subject.name}:{one.key}", subject, one.operator, one.line, one.text)
         for one in engine.mutants(subject.text, list(_changes(subject)), means)
+        if code is None or not equivalent(code, one)
     ]
+
+
+def _is_python(subject: Subject) -> bool:
+    return subject.answer.endswith(".py")
 
 
 def _changes(subject: Subject) -> Iterator[engine.Change]:
@@ -106,14 +116,12 @@ def _pieces(subject: Subject) -> Iterator[tuple[int, str, bool]]:
                 yield start, text, name.endswith(".py")
             start += len(text) + 1
     else:
-        yield 0, subject.text, subject.answer.endswith(".py") or subject.listed is None
+        yield 0, subject.text, _is_python(subject)
 
 
 def _meaning(subject: Subject, text: str) -> str | None:
     """What a text means to Python, whatever it looks like; None where it means nothing."""
-    if subject.listed is not None and not subject.answer.endswith(".py"):
-        return text
-    return engine.meaning(text)
+    return engine.meaning(text) if _is_python(subject) else text
 
 
 def sampled(found: list[Mutant], size: int, seed: int) -> list[Mutant]:

@@ -34,7 +34,7 @@ _SET, _DESCRIBE = "/set_parameters", "/describe_parameters"
 _DIGITS = 4
 """Digits behind the point of the numbers by which an input is found again."""
 Reaction = dict[str, Any]
-"""What the solution did after an input: ``input``, ``messages`` as (seconds, topic, fields), ``answer``."""
+"""The solution's reaction to an input: ``input``, ``messages`` as (seconds, topic, fields), ``answer``."""
 
 
 def blind_answers(task: PaperTask) -> Iterator[Mutant]:

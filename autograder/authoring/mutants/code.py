@@ -70,7 +70,7 @@ class Code:
             logs: Whether what it logs and prints may be changed.
 
         Raises:
-            SyntaxError: It is no Python.
+            SyntaxError: The text is not valid Python.
         """
         self.text = text
         self.tree = ast.parse(text)
@@ -89,7 +89,7 @@ class Code:
 
     @cached_property
     def nodes(self) -> tuple[ast.AST, ...]:
-        """What may be changed, in the order of the text: no imports, docstrings, types or main guards."""
+        """The nodes that may be changed, in the order of the text: no imports, docstrings, types or main guards."""
         found: list[ast.AST] = []
         for statement in self.wanted():
             found += [node for node in _changeable(statement, self._logs) if self._is_placed(node)]
@@ -113,7 +113,7 @@ class Code:
                     yield [statement for statement in body if statement in allowed]
 
     def span(self, node: ast.AST) -> tuple[int, int]:
-        """Where a node begins and ends in the text."""
+        """Return the offsets at which a node begins and ends."""
         assert isinstance(node, (ast.expr, ast.stmt, ast.keyword, ast.arg))
         assert node.end_lineno is not None
         assert node.end_col_offset is not None
@@ -265,7 +265,7 @@ def _is_main_guard(node: ast.AST) -> bool:
 
 
 def called(node: ast.AST) -> str:
-    """The last name of what a call calls: ``"create_timer"`` of ``self.create_timer(…)``; empty where it is no call."""
+    """Return the last name of a called function: ``"create_timer"`` for ``self.create_timer(…)``; empty for no call."""
     if not isinstance(node, ast.Call):
         return ""
     function = node.func

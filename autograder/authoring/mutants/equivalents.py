@@ -14,9 +14,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from autograder.authoring.mutants.engine import Mutant
-    from autograder.authoring.mutants.solutions import Solution
 
-LATE = "how long a callback takes, and when it dies, no drawing looks at"
 NAME = "the name of a node is free"
 EXCHANGED = "min and max take their arguments in any order"
 EDGE = "no drawing is exactly at a number that 32 bits do not hold, or at the very end of a time"
@@ -33,20 +31,18 @@ _DECLARES = (
 )
 
 
-def equivalent(solution: Solution, code: Code, mutant: Mutant) -> str:
-    """Return why a mutant does what the solution does; empty if no rule says so.
+def equivalent(code: Code, mutant: Mutant, root: str = "") -> str:
+    """Return why a mutant does what its program does; empty if no rule says so.
 
     Args:
-        solution: The solution.
-        code: The code of the solution.
+        code: The program.
         mutant: The mutant.
+        root: The name of the class or function that is judged; empty if it is the program.
     """
     operator, end = mutant.operator, mutant.start + len(mutant.before)
-    if operator == "late":
-        return LATE
     if operator == "node_name":
         return NAME
-    if operator == "on_the_class" and _is_class(code, solution.root):
+    if operator == "on_the_class" and _is_class(code, root):
         return ONE_OBJECT
     if operator == "exchanged":
         around = _around(code, mutant.start, end, ast.Call)
@@ -65,7 +61,7 @@ def equivalent(solution: Solution, code: Code, mutant: Mutant) -> str:
         return FIRST_NONE
     if operator == "remembered" and mutant.kind == "once true" and mutant.before.endswith(" is not None"):
         return FIRST_NONE
-    if operator == "anew" and mutant.kind == "at each call":
+    if operator == "begun_again" and mutant.kind == "at each call":
         return SET_BEFORE if _sets_first(code, mutant) else ""
     if operator in ("operand_left_out", "elif_as_if", "connective", "condition"):
         return IMPLIED if _same_branches(code, mutant) else ""
@@ -74,7 +70,8 @@ def equivalent(solution: Solution, code: Code, mutant: Mutant) -> str:
 
 def _only_keeps(code: Code, mutant: Mutant) -> bool:
     """Return True if the callback of a subscription only stores what follows from the message."""
-    call = next(one for one in code.all(ast.Call) if code.span(one)[0] == mutant.start)
+    calls = (one for one in code.all(ast.Call) if called(one) == "create_subscription")
+    call = next(one for one in calls if code.span(one)[0] >= mutant.start)
     method = code.method(call.args[2]) if len(call.args) > 2 else None
     body = [one for one in method.body if not isinstance(one, ast.Expr)] if method is not None else []
     return bool(body) and all(isinstance(one, (ast.Assign, ast.AnnAssign)) for one in body)

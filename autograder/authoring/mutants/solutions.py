@@ -25,7 +25,7 @@ class Solution:
         exercise: The exercise's id.
         text: The program: the class or function, and everything that it needs.
         root: The name of the class or function that is judged.
-        own: Where the student's lines begin and end in ``text``, as offsets.
+        own: The offsets in ``text`` at which the student's lines begin and end.
     """
 
     exercise: str
@@ -80,7 +80,7 @@ def _made(statement: ast.Import | ast.ImportFrom) -> set[str]:
 
 
 def _regions(text: str, cells: tuple[str, ...]) -> Iterator[tuple[int, int]]:
-    """Yield where the student's lines of these cells begin and end."""
+    """Yield the offsets at which the student's lines of these cells begin and end."""
     for cell in cells:
         before, begin, rest = cell.partition(BEGIN)
         inside, end, _ = rest.partition(END)

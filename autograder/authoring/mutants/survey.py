@@ -17,6 +17,7 @@ from autograder.authoring.answer_tables import answer_settings
 from autograder.authoring.mutants.code import Code
 from autograder.authoring.mutants.engine import Mutant, in_all_places, mutants, python_changes
 from autograder.authoring.mutants.equivalents import equivalent
+from autograder.authoring.mutants.operators.waiting import late
 from autograder.authoring.mutants.solutions import Solution, solution
 from autograder.authoring.mutants.trials import FRESH, NotOnPaper, Run, paper_task, run_all
 from autograder.authoring.reference_files import CannotRecord, checked_program, judged
@@ -25,6 +26,8 @@ from autograder.judge import evidence_files
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
+LATE = late.__name__
+"""The operator for callbacks that take long or die after some calls, of which a task says nothing."""
 CHECKS = 3
 """How often the judge checks a mutant that passes, each time with other inputs."""
 JUDGING_LIMIT = 300.0
@@ -130,7 +133,7 @@ def own_mutants(of: Solution) -> list[Mutant]:
     changes = [
         (operator, edit)
         for operator, edit in python_changes(Code(of.text, subject=of.root))
-        if any(of.is_own(piece.start) for piece in edit.pieces)
+        if operator != LATE and any(of.is_own(piece.start) for piece in edit.pieces)
     ]
     return mutants(of.text, [*changes, *in_all_places(changes)])
 
@@ -216,7 +219,8 @@ def _survey(
         answer_settings(answers_folder(of.exercise)).accepts,
     )
     tried = [
-        Tried(one, runs[one.key], equivalent(of, code, one) or _reason(accepted, one.key)) for one in made
+        Tried(one, runs[one.key], equivalent(code, one, of.root) or _reason(accepted, one.key))
+        for one in made
     ]
     passing = [one.mutant.key for one in tried if one.passes]
     stale = [form for form in accepted if not fnmatch.filter(passing, form)]

@@ -28,10 +28,10 @@ def lines(found: Survey) -> Iterator[str]:
     }
     numbers = ", ".join(f"{len(some)} {what}" for what, some in counts.items())
     yield f"{found.solution.exercise}: mutants of the solution: {numbers} ({found.seconds:.0f} s)"
-    yield from _listed(found.solution, "These have full marks in every drawing:", found.passing)
-    yield from _listed(found.solution, "These have full marks in some drawings:", found.by_chance)
+    yield from _listed(found.solution, "Mutants with full marks in every drawing:", found.passing)
+    yield from _listed(found.solution, "Mutants with full marks in some drawings:", found.by_chance)
     for group in found.alike[:GROUPS]:
-        yield "  These do the same in each recorded drawing:"
+        yield "  Mutants that do the same in each recorded drawing:"
         yield from (f"    {in_words(found.solution, one.mutant)}" for one in group[:OF_A_GROUP])
         if len(group) > OF_A_GROUP:
             yield f"    and {len(group) - OF_A_GROUP} more"
@@ -53,14 +53,14 @@ def _listed(of: Solution, title: str, listed: Sequence[Tried]) -> Iterator[str]:
 
 
 def in_words(of: Solution, mutant: Mutant) -> str:
-    """Return in one line where a solution is changed, what stands there, and what the mutant has instead."""
+    """Return in one line the changed line of a solution, the changed piece, and its replacement."""
     if mutant.start < 0:
         return f"an answer that does not look: it {mutant.kind}"
     source = of.text.splitlines()[mutant.line - 1].strip()
     name = mutant.operator.replace("_", " ")
     kind = f", {mutant.kind}" if mutant.kind else ""
     places = f", in {mutant.all_of} places of the method" if mutant.all_of > 1 else ""
-    # What keeps values between two calls is written in a way that nobody wants to read.
+    # Code that keeps values between two calls is long, and says less than the name of the operator.
     is_readable = mutant.before and len(mutant.after) <= SHOWN and "__" not in mutant.after
     change = f": {_short(mutant.before)} → {_short(mutant.after) or 'nothing'}" if is_readable else ""
     return f"“{_short(source)}”: {name}{kind}{places}{change}"

@@ -159,7 +159,7 @@ def _import_messages(reference: Reference) -> None:
 
 
 def _alone() -> None:
-    """Prepare this fork for one program, whose words nobody reads."""
+    """Prepare this fork for one program, whose output is thrown away."""
     from autograder.authoring.paper.nodes import replace_rclpy
 
     resource.setrlimit(resource.RLIMIT_CPU, (CPU_LIMIT, CPU_LIMIT))
@@ -188,7 +188,7 @@ def _played(
 
 @dataclass(frozen=True)
 class _Recorded:
-    """What the solution did on paper, or what paper does not have."""
+    """The record of the solution on paper, or the reason why there is none."""
 
     parts: list[Part]
     trouble: str = ""

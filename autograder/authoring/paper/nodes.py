@@ -66,7 +66,7 @@ class _Logger:
 
 class _Unheard:
     def publish(self, _: object) -> None:
-        """Do nothing: nobody hears of changed parameters."""
+        """Do nothing: no node listens to changed parameters."""
 
 
 class PaperNode(rclpy.node.Node):

@@ -41,7 +41,7 @@ def reasons(operator: str, before: str, kind: str = "") -> set[str]:
     """Return why the mutants that an operator makes of a piece are set aside."""
     code = Code(AGENT, subject="Agent")
     return {
-        equivalent(SOLUTION, code, one)
+        equivalent(code, one, "Agent")
         for one in own_mutants(SOLUTION)
         if (one.operator, one.before) == (operator, before) and kind in ("", one.kind)
     }
@@ -58,7 +58,6 @@ def reasons(operator: str, before: str, kind: str = "") -> set[str]:
         ("kept", "self.came_at = self.get_clock().now()", "largest", equivalents.FORWARD),
         ("remembered", "self.came_at is None", "once false", equivalents.FIRST_NONE),
         ("doubled", 'self.create_subscription(Scan, "a", self.on_scan, 10)', "", equivalents.ONCE_MORE),
-        ("late", "", "", equivalents.LATE),
     ],
 )
 def test_what_does_the_same_is_set_aside(operator: str, before: str, kind: str, reason: str) -> None:
@@ -88,9 +87,9 @@ def test_what_may_differ_is_not(operator: str, before: str, kind: str) -> None:
 def test_state_that_is_set_before_it_is_read_may_begin_again() -> None:
     code = Code(AGENT, subject="Agent")
     anew = {
-        (one.where, one.after.split()[0]): equivalent(SOLUTION, code, one)
+        (one.where, one.after.split()[0]): equivalent(code, one, "Agent")
         for one in own_mutants(SOLUTION)
-        if one.operator == "anew" and one.kind == "at each call" and one.all_of == 1
+        if one.operator == "begun_again" and one.kind == "at each call" and one.all_of == 1
     }
     assert anew["Agent.on_scan", "self.seen"] == equivalents.SET_BEFORE
     assert anew["Agent.decide", "self.turn"] == ""

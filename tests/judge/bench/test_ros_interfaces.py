@@ -104,6 +104,16 @@ def test_a_message_is_filled_by_the_types_of_its_fields(
         filled(interface(kind), given, "/it")
 
 
+def test_arrays_and_their_numbers_become_plain() -> None:
+    odometry, scan = (
+        interface("nav_msgs/msg/Odometry")(),
+        interface("sensor_msgs/msg/LaserScan")(ranges=[0.5]),
+    )
+    assert to_data(odometry)["pose"]["covariance"] == [0.0] * 36
+    assert json.dumps(to_data(scan)["ranges"]) == "[0.5]"
+    assert to_data(odometry.pose.covariance[0]) == 0.0
+
+
 def description() -> Any:
     """What the build of the course's interfaces has written."""
     for prefix in os.environ["AMENT_PREFIX_PATH"].split(os.pathsep):

@@ -37,4 +37,4 @@ PYTHON: Sequence[Callable[[Code], Iterator[Edit]]] = (
 )
 """For programs."""
 LINES: Sequence[Callable[[str], Iterator[Edit]]] = lines.OPERATORS
-"""For files that are no Python."""
+"""For files that are not Python."""

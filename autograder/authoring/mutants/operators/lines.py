@@ -1,4 +1,4 @@
-"""Lines of files that are no Python: launch files in XML and YAML, interfaces, ``package.xml``, ``CMakeLists.txt``."""
+"""Lines of files that are not Python: launch files in XML and YAML, interfaces, ``package.xml``, ``CMakeLists.txt``."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def line_dropped(text: str) -> Iterator[Edit]:
 
 
 def line_doubled(text: str) -> Iterator[Edit]:
-    """A line that is there twice."""
+    """A line that stands twice."""
     for start, end in _lines(text):
         yield Edit(start, end, text[start:end] * 2)
 

@@ -18,7 +18,7 @@ ENDPOINTS = {
     "ActionServer": (2, "action_name"),
     "ActionClient": (2, "action_name"),
 }
-"""Where the name of an endpoint stands in the call that makes it."""
+"""The place of an endpoint's name in the call that makes it."""
 FIELDS = {
     "data": "date",
     "a": "b",

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
 FACTORS = (0.1, 0.5, 0.8, 0.9, 1.1, 1.25, 1.5, 2.0, 10.0)
-"""By what a number that somebody has misread or guessed differs from the right one."""
+"""The factors between the right number and one that a student has misread or guessed."""
 UNITS = (0.001, 0.01, 100.0, 1000.0)
 """Between milliseconds, centimeters, percent and what the course uses: seconds, meters and shares of one."""
 _QOS = {"create_publisher": (2, "qos_profile"), "create_subscription": (3, "qos_profile")}

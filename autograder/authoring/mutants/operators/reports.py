@@ -22,7 +22,7 @@ def not_said(code: Code) -> Iterator[Edit]:
 
 
 def absolute(code: Code) -> Iterator[Edit]:
-    """A sum without its sign, or taken for a failure where it is 0."""
+    """A sum without its sign, or taken for a failure if it is 0."""
     if "AddTwoInts.Request" not in code.text:
         return
     sums = [said[-1] for said in _said_by_call(code) if said]

@@ -1,4 +1,4 @@
-"""State: first, last or largest for newest; kept from before; anew each time; on the class; never written back."""
+"""State: first, last or largest for newest; kept from before; begun again; on the class; never written back."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def kept(code: Code) -> Iterator[Edit]:
         yield code.replaced(assign, f"{name} = {value}", "never written back")
 
 
-def anew(code: Code) -> Iterator[Edit]:
+def begun_again(code: Code) -> Iterator[Edit]:
     """State that begins again at each call of a method; what the constructor makes as it is only later."""
     first = {
         name: assign
@@ -119,4 +119,4 @@ def _is_text(statement: ast.stmt) -> bool:
     return isinstance(statement, ast.Expr) and isinstance(statement.value, ast.Constant)
 
 
-OPERATORS = (kept, anew, on_the_class, made_once, read_once)
+OPERATORS = (kept, begun_again, on_the_class, made_once, read_once)

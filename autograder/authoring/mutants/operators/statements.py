@@ -13,16 +13,16 @@ if TYPE_CHECKING:
 
 _SIMPLE = (ast.Expr, ast.Assign, ast.AugAssign, ast.AnnAssign, ast.Raise, ast.Return, ast.Break)
 _NO_MATTER = ("destroy_node", "destroy", "shutdown", "try_shutdown", "destroy_timer", "join")
-"""Calls that nobody has to make (``docs/fairness.md``)."""
+"""Calls that a student may leave out (``docs/fairness.md``)."""
 _EFFECTS = (
     *("ActionServer", "create_subscription", "create_service", "create_timer", "init", "publish"),
     *("publish_feedback", "append", "pop"),
     *("succeed", "abort", "canceled", "call", "call_async", "send_goal", "send_goal_async", "cancel"),
     *("cancel_goal", "cancel_goal_async", "get_result", "get_result_async"),
 )
-"""Calls whose second time others can see. A second node, client or publisher that nobody uses is not seen."""
+"""Calls whose second time others can see. A second node, client or publisher that is not used is not seen."""
 _FREE_WORDS = ("flush", "args", "output")
-"""Named arguments that nobody has to give: how soon a line is written, what ``init`` reads, where output goes."""
+"""Named arguments that a student may leave out: how soon a line is written, what ``init`` reads, where output goes."""
 
 
 def dropped(code: Code) -> Iterator[Edit]:
@@ -40,7 +40,7 @@ def dropped(code: Code) -> Iterator[Edit]:
 
 
 def _call_of(statement: ast.stmt) -> str:
-    """The last name of what a statement calls; empty where it calls nothing."""
+    """Return the last name of the function that a statement calls; empty if it calls nothing."""
     value = getattr(statement, "value", None)
     return called(value.value if isinstance(value, ast.Await) else value) if value is not None else ""
 

@@ -26,7 +26,7 @@ _OTHER_QOS = {
         'durability=__import__("rclpy").qos.DurabilityPolicy.TRANSIENT_LOCAL)'
     ),
 }
-"""What the other end of the course cannot match."""
+"""Profiles that the other end of the course cannot match."""
 _POLICIES = {
     "RELIABLE": "BEST_EFFORT",
     "BEST_EFFORT": "RELIABLE",

@@ -20,7 +20,7 @@ _LIMITS = {
     "wait": (0, "timeout"),
     "join": (0, "timeout"),
 }
-"""Where the limit of a wait stands in its call."""
+"""The place of the limit in a call that waits."""
 _PACES = {
     "sleep": (0, "seconds"),
     "sleep_for": (0, "rel_time"),
@@ -28,7 +28,7 @@ _PACES = {
     "create_timer": (0, "timer_period_sec"),
     "MultiThreadedExecutor": (0, "num_threads"),
 }
-"""Where a pace stands in its call; the number of threads is as free as that."""
+"""The place of the pace in a call; the number of threads is as free as a pace."""
 _LIMIT_NAME = re.compile("patience|timeout|limit|deadline", re.IGNORECASE)
 _WAITS = ("wait_for_service", "wait_for_server", "wait", "done", "service_is_ready", "server_is_ready")
 _CALLBACKS = {
@@ -38,7 +38,7 @@ _CALLBACKS = {
     "ActionServer": (3, "execute_callback"),
     "send_goal_async": (1, "feedback_callback"),
 }
-"""Where a callback that is called again and again stands in the call that registers it."""
+"""The place of a callback, which is called again and again, in the call that registers it."""
 _LATE = (7, 12)
 """After how many calls a callback dies or goes deaf."""
 
