@@ -39,7 +39,7 @@ Reaction = dict[str, Any]
 
 def blind_answers(task: PaperTask) -> Iterator[Mutant]:
     """Yield the answers that do not look, as programs for paper; nothing if the inputs are not drawn by name."""
-    if not (task.exercise.drawing and task.parts):
+    if not (task.exercise.is_drawn and task.parts):
         return
     is_node = bool(task.reference.interface)
     react = _reactions if is_node else _returned
@@ -177,7 +177,7 @@ class BlindNode(PaperNode):
         for name, kind in ends.get("client", {}).items():
             self.create_client(interface(kind), name)
         for described in self.data["parameters"]:
-            descriptor = filled(ParameterDescriptor(), described)
+            descriptor = filled(ParameterDescriptor, described, self._name)
             ranges = [*descriptor.floating_point_range, *descriptor.integer_range]
             value = ranges[0].from_value if ranges else _DEFAULTS[descriptor.type]
             self.declare_parameter(descriptor.name, value, descriptor)
@@ -188,13 +188,13 @@ class BlindNode(PaperNode):
         self._react(name, to_data(message))
 
     def _serve(self, name: str, request: Any, response: Any) -> Any:
-        return filled(response, self._react(name, to_data(request))["answer"] or {})
+        return filled(type(response), self._react(name, to_data(request))["answer"] or {}, name)
 
     def _set(self, parameters: Sequence[Parameter]) -> SetParametersResult:
         value = to_data(parameters[0].get_parameter_value())
         answer = self._react(f"/{self._name}{_SET}", value)["answer"] or {}
         (result,) = answer.get("results") or [{"successful": True}]
-        return filled(SetParametersResult(), result)
+        return filled(SetParametersResult, result, self._name)
 
     def _react(self, name: str, fields: Any) -> Reaction:
         self._number += 1
@@ -208,7 +208,7 @@ class BlindNode(PaperNode):
     def _do(self, reaction: Reaction) -> None:
         for delay, topic, fields in reaction["messages"]:
             publisher = self._said[topic]
-            publish = partial(publisher.publish, filled(publisher.kind(), fields))
+            publish = partial(publisher.publish, filled(publisher.kind, fields, topic))
             if delay:
                 self._later(delay, publish)
             else:

@@ -20,8 +20,9 @@ from autograder.authoring.mutants.equivalents import equivalent
 from autograder.authoring.mutants.operators.waiting import late
 from autograder.authoring.mutants.solutions import Solution, solution
 from autograder.authoring.mutants.trials import FRESH, NotOnPaper, Run, paper_task, run_all
-from autograder.authoring.reference_files import CannotRecord, checked_program, judged
+from autograder.authoring.reference_files import CannotRecord, judged
 from autograder.judge import evidence_files
+from autograder.masters.reference_solutions import ReferenceSolution
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -189,7 +190,8 @@ def _checks(exercise_id: str, text: str, root: str) -> bytes:
     runs: list[Run] = []
     while len(runs) < CHECKS and all(run.passed for run in runs):
         try:
-            report, _ = judged(exercise_id, checked_program(exercise_id, text, root))
+            check = ReferenceSolution(text, root).check_cell(exercise_id)
+            report, _ = judged(exercise_id, f"{text}\n\n{check}")
         except CannotRecord:
             return b""
         verdict = report.verdict

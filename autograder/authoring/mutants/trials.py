@@ -102,7 +102,7 @@ def paper_task(
     Raises:
         NotOnPaper: The solution cannot be run on paper, or is not as recorded there.
     """
-    practice = tuple(part.name for part in stored.parts) if exercise.drawing else (SEED,)
+    practice = tuple(part.name for part in stored.parts) if exercise.is_drawn else (SEED,)
     names = tuple(f"fresh {number}" for number in range(fresh))
     _import_messages(stored)
     work = partial(_recorded, exercise, text, root, stored, (*practice, *names))
@@ -113,7 +113,7 @@ def paper_task(
     if recorded.trouble:
         raise NotOnPaper(recorded.trouble)
     parts = tuple(recorded.parts)
-    of_practice = parts[: len(practice)] if exercise.drawing else parts
+    of_practice = parts[: len(practice)] if exercise.is_drawn else parts
     bare = replace(stored, parts=(), variants=())
     now, before = (
         evidence_files.as_recorded(replace(bare, parts=some), exercise.recorded)
@@ -122,7 +122,7 @@ def paper_task(
     different = next(differences(before, now, exercise.tolerance), "")
     if different and must_be_recorded:
         raise NotOnPaper(different)
-    reference = replace(bare, parts=parts if exercise.drawing else stored.parts)
+    reference = replace(bare, parts=parts if exercise.is_drawn else stored.parts)
     task = PaperTask(exercise, root, practice, names, reference, of_practice)
     ((_, runs),) = run_all(task, [("", text)], jobs=1)
     if lost := [run.drawing for run in runs if not run.passed]:
@@ -177,12 +177,10 @@ def _played(
 
     code = compile(text, "solution", "exec", dont_inherit=True)
     for name in names:
-        paper = PaperBench(code, root, reference, Random(name))
-        bench = cast("Bench", paper)
-        if exercise.drawing:
-            exercise.drawing(bench, name)
-        else:
-            exercise.scenario(bench)
+        # The only drawing that the scenario knows is the one that it gives.
+        same = [part for part in reference.parts if part.name == name or not exercise.is_drawn]
+        paper = PaperBench(code, root, replace(reference, parts=same, drawings=(name,)), Random(name))
+        exercise.scenario(cast("Bench", paper))
         yield name, paper.parts
 
 
@@ -199,7 +197,7 @@ def _recorded(exercise: Exercise, text: str, root: str, stored: Reference, names
 
     _alone()
     played = _played(
-        exercise, text, root, replace(stored, parts=()), names if exercise.drawing else names[:1]
+        exercise, text, root, replace(stored, parts=()), names if exercise.is_drawn else names[:1]
     )
     try:
         found = _Recorded([part for _, parts in played for part in parts])

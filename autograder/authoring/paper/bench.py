@@ -196,18 +196,19 @@ class PaperBench:
         self._listens[topic] = interface(type_name), qos
         for publisher in self._publishers(topic):
             if qos is Qos.LATCHED and matches(publisher.profile, profile(qos)):
-                for message in publisher.sent[-max(1, publisher.profile.depth) :]:
-                    self._hear(publisher, message)
+                first = max(0, len(publisher.sent) - max(1, publisher.profile.depth))
+                for number, message in enumerate(publisher.sent[first:], first + 1):
+                    self._hear(publisher, message, number)
 
     def _publishers(self, topic: str) -> list[Publisher]:
         return [end for node in self._network.nodes for end in _of(node, "publishers") if end.topic == topic]
 
-    def _hear(self, publisher: Publisher, message: Any) -> None:
+    def _hear(self, publisher: Publisher, message: Any, number: int) -> None:
         kind, qos = self._listens.get(publisher.topic, (None, Qos.DEFAULT))
         if kind is not publisher.kind:
             return
         if matches(publisher.profile, profile(qos)):
-            self.record("message", publisher.topic, fields=to_data(message))
+            self.record("message", publisher.topic, fields=to_data(message), number=number)
         else:
             self.record("mismatch", publisher.topic, policy="")
 
@@ -236,7 +237,7 @@ class PaperBench:
             count += 1
             fields = to_data(request)
             self.record("request", service, fields=fields)
-            response = filled(kind.Response(), dict(answer(fields)))
+            response = filled(kind.Response, dict(answer(fields)), service)
 
             def respond() -> None:
                 self.record("response", service, fields=to_data(response))
@@ -316,7 +317,7 @@ class _Speaker:
 
     def send(self, **fields: Any) -> None:
         self._bench.record("sent", self._topic, fields=dict(fields))
-        self._network.deliver(self._topic, profile(self._qos), filled(self._type(), fields))
+        self._network.deliver(self._topic, profile(self._qos), filled(self._type, fields, self._topic))
 
 
 class _Caller:
@@ -335,7 +336,7 @@ class _Caller:
             number, self._asked = self._asked, self._asked + 1
             self._bench.record("asked", self._service, call=number, fields=dict(fields))
             for server in self._bench.services(self._service)[:1]:
-                request = filled(self._type.Request(), fields)
+                request = filled(self._type.Request, fields, self._service)
                 self._bench.ask(server, request, partial(self._take, number))
 
     def _take(self, number: int, response: Any) -> None:

@@ -78,7 +78,7 @@ class Network:
     Attributes:
         nodes: The nodes, in the order in which they were made.
         served: For each service that the bench serves, the function that takes a request and a function for its answer.
-        listener: Called with each message: the publisher and the message.
+        listener: Called with each message: the publisher, the message, and its number from this publisher.
         logged: Called with each line that a node logs: the node's name, the level and the text.
         simulated: The simulated time; None before the first step.
         wall: The computer's time.
@@ -87,7 +87,7 @@ class Network:
     now_running: Network
 
     def __init__(
-        self, listener: Callable[[Publisher, Any], None], logged: Callable[[str, int, str], None]
+        self, listener: Callable[[Publisher, Any, int], None], logged: Callable[[str, int, str], None]
     ) -> None:
         self.nodes: list[Any] = []  # of PaperNode, whose endpoints have other types than those of rclpy
         self.served: dict[str, Callable[[Any, Answer], None]] = {}
@@ -173,7 +173,7 @@ class Network:
             raise TypeError(f"expected {publisher.kind}, got {type(message)}")
         sent = wired(message)
         publisher.sent.append(sent)
-        self.listener(publisher, sent)
+        self.listener(publisher, sent, len(publisher.sent))
         self.deliver(publisher.topic, publisher.profile, sent)
 
     def deliver(self, topic: str, profile: QoSProfile, message: Any) -> None:

@@ -14,7 +14,7 @@ from tests.authoring.mutants.made_up import BRAKE, SOLUTION, by_habit, by_levels
 
 pytestmark = pytest.mark.ros
 
-ON_PAPER = [one.id for one in exercises.unbroken() if one.drawing and not one.hides_causes]
+ON_PAPER = [one.id for one in exercises.unbroken() if one.is_drawn and not one.hides_causes]
 ACTIONS = [one for one in ON_PAPER if "action_server" in exercises.get(one).roles]
 
 
