@@ -89,17 +89,3 @@ def test_running_all_again_leaves_the_same_workspace(tmp_path: Path, solved: boo
         assert run(mixed.sample(list(programs), len(programs))) == whole
     for name in programs:
         assert run([name]) == whole, name
-
-
-WAITS_FOR_A_LOG = re.compile(r"grep -q .* (\w+\.log)\b")
-
-
-def test_a_cell_that_waits_for_a_log_empties_it_before_it_starts_a_program() -> None:
-    """The shell that starts a program in the background empties its log, too, but perhaps later than ``grep`` looks."""
-    cells = [cell for master in masters(ROOT) for cell in source_notebook(master).cells]
-    scripts = [shell_script(cell.source) or "" for cell in cells]
-    waiting = {script: found.group(1) for script in scripts if (found := WAITS_FOR_A_LOG.search(script))}
-    assert sorted(waiting.values()) == ["hello.log"]
-    for script, log in waiting.items():
-        before = script.partition("timeout")[0].splitlines()
-        assert f"> {log}" in before, script
