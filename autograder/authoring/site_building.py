@@ -22,6 +22,7 @@ from sphinx.application import Sphinx
 from autograder import course, exercises
 from autograder.authoring.executed_masters import run_masters
 from autograder.masters.master_files import chapter_path, lab_name, masters
+from autograder.masters.notebook_map import learning_outcomes
 from autograder.masters.notebook_release import release_text
 from autograder.masters.source_notebooks import SET_UP_CELL, source_notebook
 from autograder.safe_files import HeldFolder
@@ -108,7 +109,6 @@ def course_of(edition: str, root: Path, folder: Path) -> Path:
 
 
 _ATTACHMENT = re2.compile(r"\(attachment:([^)]+)\.png\)")
-_OUTCOME = re2.compile(r"(?m)^\| ([^|]+) \| [^|]+ \| .*/([\w-]+)\.ipynb\) \|$")
 
 
 def _write_sources(root: Path, folder: Path, edition: str, executed: Mapping[str, NotebookNode]) -> None:
@@ -136,7 +136,7 @@ def _write_sources(root: Path, folder: Path, edition: str, executed: Mapping[str
         _append(folder / _GUIDES, _contents("All pages", beside))
     if (folder / _FAIRNESS).is_file():
         _append(folder / _FAIRNESS, _task_by_task())
-    outcomes = _outcomes(root)
+    outcomes = learning_outcomes(root)
     hunts = {one.id.partition(".")[0] for one in exercises.unbroken() if one.hides_causes}
     for master in masters(root):
         # The outputs of a solved bug hunt tell the causes, so its page is that of a class, without outputs.
@@ -224,15 +224,6 @@ def _task_by_task() -> str:
         if listed := [f"- {text}" for text in (*said, one.counts_as_a_whole) if text]:
             sections.append("\n".join([f"### {one.title}\n", *listed]))
     return "\n\n".join(["\n## Task by task", *sections, ""])
-
-
-def _outcomes(root: Path) -> dict[str, tuple[str, ...]]:
-    """Return the learning outcomes of each lab, from ``docs/learning-outcomes.md``, by the names of the labs."""
-    found: dict[str, tuple[str, ...]] = {}
-    page = root / "docs" / "learning-outcomes.md"
-    for outcome, lab in _OUTCOME.findall(page.read_text(encoding="utf-8")) if page.exists() else ():
-        found[lab] = (*found.get(lab, ()), outcome)
-    return found
 
 
 def _chapters(root: Path) -> str:

@@ -53,8 +53,8 @@ class CellError(ValueError):
         return MasterError(path, body_line + self.offset, self.problem, self.remedy)
 
 
-_LINK = re2.compile(r"\[([^\[\]]+)\]\(([\w-]+)\.ipynb(#[^)]*)?\)")
-"""Matches a Markdown link to another notebook in the folder of the chapter."""
+_LINK = re2.compile(r"\[([^\[\]]+)\]\((?:\.\./[\w-]+/)?([\w-]+)\.ipynb(#[^)]*)?\)")
+"""Matches a Markdown link to another notebook, in the folder of the chapter or in that of another chapter."""
 
 
 def masters(root: Path) -> list[Path]:
@@ -93,8 +93,8 @@ def lab_name(master: Path) -> str:
 
 
 def before_and_after(master: Path) -> tuple[Path | None, Path | None]:
-    """Return the previous and the next master in the chapter of ``master``; None if there is none."""
-    chapters = [one for one in course.chapters(master.parents[3]) if one.folder == master.parents[1]]
+    """Return the previous and the next master in the course of ``master``; None if there is none."""
+    chapters = course.chapters(master.parents[3])
     found = [lab / LAB for chapter in chapters for lab in chapter.labs if (lab / LAB).is_file()]
     if master not in found:
         return None, None

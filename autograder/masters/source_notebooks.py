@@ -38,7 +38,8 @@ from autograder.masters.code_cells import (
     read_check,
 )
 from autograder.masters.master_cells import CellRole, MasterCell, parse_master, with_copies
-from autograder.masters.master_files import CellError, MasterError, before_and_after, chapter_path, lab_name
+from autograder.masters.master_files import CellError, MasterError, before_and_after, chapter_path
+from autograder.masters.notebook_map import link_to, notebook_map
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -124,16 +125,17 @@ def named_cells(master: Path, *, points: Points = exercise_points) -> list[Named
 
 
 def _links(master: Path) -> Iterator[MasterCell]:
-    """Yield a cell with links to the previous and the next notebook of the chapter; nothing if there is neither."""
-    ways = zip(("← Previous: {}", "Next: {} →"), before_and_after(master), strict=True)
-    links = [way.format(_link(other)) for way, other in ways if other is not None]
+    """Yield a cell with links to the previous and the next notebook; nothing if there is neither.
+
+    At both ends of a chapter, a map of all notebooks comes before the links.
+    """
+    around = before_and_after(master)
+    ways = zip(("← Previous: {}", "Next: {} →"), around, strict=True)
+    links = [way.format(link_to(other, master)) for way, other in ways if other is not None]
     if links:
-        yield MasterCell(CellRole.TEXT, " · ".join(links), line=0, body_line=0)
-
-
-def _link(master: Path) -> str:
-    heading = _HEADING.search(master.read_text(encoding="utf-8"))
-    return f"[{heading[1] if heading else ''}]({lab_name(master)}.ipynb)"
+        at_an_end = any(other is None or other.parents[1] != master.parents[1] for other in around)
+        parts = [*([notebook_map(master)] if at_an_end else []), " · ".join(links)]
+        yield MasterCell(CellRole.TEXT, "\n\n".join(parts), line=0, body_line=0)
 
 
 def _name_all(master: Path, cells: list[MasterCell], points: Points) -> Iterator[NamedCell]:

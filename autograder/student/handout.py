@@ -26,7 +26,7 @@ from autograder.safe_files import write_whole
 from environment.installation import PACKAGE
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterator, Sequence
+    from collections.abc import Collection, Iterator, Mapping, Sequence
 
 
 WHOLE = ("course", "pyproject.toml", "LICENSE", "environment", "autograder", ".devcontainer", ".dockerignore")
@@ -186,7 +186,7 @@ def _files(
     for name in WHOLE:
         yield from ((path.relative_to(root).as_posix(), path) for path in _below(root / name, root))
     yield from _pages(root)
-    names = {lab.name for chapter in chapters for lab in chapter.labs}
+    names = {lab.name: chapter.folder.name for chapter in chapters for lab in chapter.labs}
     to_pack = (TICKET,) if with_solutions else (TICKET, course.SOLUTION)
     for chapter in chapters:
         for path in [chapter.folder / course.CHAPTER, *_judges_part(chapter, with_solutions=with_solutions)]:
@@ -206,9 +206,12 @@ def _pages(root: Path) -> Iterator[tuple[str, Path]]:
 
 
 def _notebook(
-    root: Path, chapter: course.Chapter, lab: Path, names: Collection[str]
+    root: Path, chapter: course.Chapter, lab: Path, folders: Mapping[str, str]
 ) -> Iterator[tuple[str, bytes]]:
-    """Yield a lab's notebook twice: for students to work in, and for `./course reset` to restore."""
+    """Yield a lab's notebook twice: for students to work in, and for `./course reset` to restore.
+
+    ``folders`` has the chapter's folder of each lab that is handed out.
+    """
     notebook = root / course.CHAPTERS / chapter.folder.name / f"{lab.name}.ipynb"
     if not notebook.is_file():
         return
@@ -217,7 +220,11 @@ def _notebook(
             f"{notebook} contains changes, which would be handed out. Reset it first: {COMMAND} reset {lab.name}"
         )
     # A link to a notebook that is not handed out would be broken, so only the text of the link stays.
-    beside = {name: f"{name}.ipynb" for name in names}
+    here = chapter.folder.name
+    beside = {
+        name: f"{name}.ipynb" if folder == here else f"../{folder}/{name}.ipynb"
+        for name, folder in folders.items()
+    }
     content = relinked(notebook.read_bytes().decode(), lambda name: beside.get(name, "")).encode()
     yield notebook.relative_to(root).as_posix(), content
     yield f"{HANDED_OUT}/{course.released(lab).relative_to(chapter.folder.parent).as_posix()}", content

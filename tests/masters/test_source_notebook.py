@@ -118,18 +118,38 @@ def test_text_between_two_hints_ends_their_run(
     assert text.rindex("</details>") < text.index("At the end.")
 
 
-def test_the_last_cell_links_to_the_neighbours(course: Path, ten_points: Points) -> None:
+def test_the_last_cell_links_to_the_neighbours_and_at_the_ends_of_a_chapter_to_all(
+    course: Path, ten_points: Points
+) -> None:
     chapter = course / "solutions/01_first"
     for lab, title in (("lab_9_0", "Before it"), ("lab_9_2", "After it")):
         (chapter / lab).mkdir()
         (chapter / lab / "lab.md").write_text(f"{MASTER_HEADER}# {title}\n")
     (chapter / "chapter.toml").write_text('labs = ["lab_9_2", "lab_9_1", "lab_9_0"]')
+    other = course / "solutions/02_second"
+    (other / "lab_9_9").mkdir(parents=True)
+    (other / "chapter.toml").write_text('title = "More"')
+    (other / "lab_9_9" / "lab.md").write_text(f"{MASTER_HEADER}# Far away\n")
+    (course / "docs").mkdir()
+    (course / "docs/learning-outcomes.md").write_text(
+        "".join(
+            f"| {can} | a task | [Lab](../chapters/x/{lab}.ipynb) |\n"
+            for can, lab in (("add", "lab_9_1"), ("double", "lab_9_1"))
+        )
+    )
     last = {
         lab: source_notebook(chapter / lab / "lab.md", points=ten_points).cells[-1].source
         for lab in ("lab_9_2", "lab_9_1", "lab_9_0")
     }
-    assert last == {
-        "lab_9_2": "Next: [Lab 9.1: Doubling](lab_9_1.ipynb) →",
-        "lab_9_1": "← Previous: [After it](lab_9_2.ipynb) · Next: [Before it](lab_9_0.ipynb) →",
-        "lab_9_0": "← Previous: [Lab 9.1: Doubling](lab_9_1.ipynb)",
-    }
+    first, middle, end = (last[lab] for lab in ("lab_9_2", "lab_9_1", "lab_9_0"))
+    assert middle == "← Previous: [After it](lab_9_2.ipynb) · Next: [Before it](lab_9_0.ipynb) →"
+    assert first.endswith("</details>\n\nNext: [Lab 9.1: Doubling](lab_9_1.ipynb) →")
+    way_out = "Next: [Far away](../02_second/lab_9_9.ipynb) →"
+    assert end.endswith(f"</details>\n\n← Previous: [Lab 9.1: Doubling](lab_9_1.ipynb) · {way_out}")
+    assert [line for line in first.splitlines() if line.startswith(("- ", "**"))][1:] == [
+        "- [After it](lab_9_2.ipynb)",
+        "- [Lab 9.1: Doubling](lab_9_1.ipynb): add; double",
+        "- [Before it](lab_9_0.ipynb)",
+        "**More**",
+        "- [Far away](../02_second/lab_9_9.ipynb)",
+    ]

@@ -232,7 +232,7 @@ def test_a_course_of_three_labs_has_no_link_that_leads_nowhere(tmp_path: Path) -
     notebooks = sorted((tmp_path / "course").rglob("*.ipynb"))
     assert [path.stem for path in notebooks] == [*labs, *labs]
     text = "".join(path.read_text() for path in notebooks)
-    assert "00_nervous_system" in (linked := set(re.findall(r"\]\(([\w]+)\.ipynb", text)))
+    assert "00_nervous_system" in (linked := set(re.findall(r"\]\((?:\.\./\w+/)?(\w+)\.ipynb", text)))
     assert linked <= set(labs)
     assert "← Previous: Lab 1.1: A workspace and your first node" in text
     listed = run(tmp_path / "course", "check")

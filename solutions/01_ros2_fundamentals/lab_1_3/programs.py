@@ -19,7 +19,7 @@ EXERCISE = Programs(
         "`%%program` copies your class from step 2 into the first file:": "add_server",
         "`%%program` copies your function from step 3:": "add_client",
         "and presses <kbd>Ctrl</kbd>+<kbd>C</kbd>: the server has to end then.": "ctrl_c",
-        "once there is none: then the client has to do what *Step 3: The client* says: it gives up in time.": "add_client ctrl_c",
+        "then the client has to do what *Step 3: The client* says: it gives up in time.": "add_client ctrl_c",
         "A program gets its points only if its node passes everything": "add_server add_client",
         "`package.xml` of `my_robot_pkg` has to name it": "",
     },
