@@ -284,7 +284,11 @@ def _introductions(cells: list[NamedCell]) -> Iterator[str]:
         sentences = [
             line for line in before.cell.source.splitlines() if line.strip() and not line.startswith("#")
         ]
-        if not _is_text(one) and not (_is_text(before) and sentences):
+        # The task above a check says what it checks, and a cell that stops what runs says so itself.
+        speaks_for_itself = one.check is not None or all(
+            line.endswith(".stop()") for line in one.cell.source.splitlines()
+        )
+        if not (_is_text(one) or speaks_for_itself or (_is_text(before) and sentences)):
             yield f"a code cell is introduced: write a sentence before the code cell at line {one.cell.line}"
 
 
