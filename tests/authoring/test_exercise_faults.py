@@ -62,6 +62,13 @@ def test_folded_text_does_not_delay_the_first_task(lab: Path) -> None:
     assert not [line for line in told() if line.startswith("lab.md")]
 
 
+def test_a_check_and_a_stop_need_no_sentence_before_them(lab: Path) -> None:
+    master = lab / "lab.md"
+    text = master.read_text().replace("The judge listens on `battery` while your node spins.\n\n", "", 1)
+    master.write_text(text.replace("## Going", "```{code-cell} ipython3\nrobot.stop()\n```\n\n## Going", 1))
+    assert not [line for line in told() if line.startswith("lab.md")]
+
+
 @pytest.mark.parametrize(
     ("file", "old", "new", "rule"),
     [
@@ -81,6 +88,12 @@ def test_folded_text_does_not_delay_the_first_task(lab: Path) -> None:
             "Publish on `battery`",
             "Look:\n\n```{code-cell} ipython3\n:tags: [demonstration]\n\nprint(Battery)\n```\n\nPublish on `battery`",
             "lab.md: a demonstration is predicted: ",
+        ),
+        (
+            "lab.md",
+            "## Going",
+            "```{code-cell} ipython3\nrobot.move()\n```\n\n## Going",
+            "lab.md: a code cell is introduced: ",
         ),
         (
             "lab.md",

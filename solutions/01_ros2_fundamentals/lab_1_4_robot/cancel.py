@@ -30,6 +30,7 @@ EXERCISE = SameAsSolution(
         "as long as `left` is more than 0 and no cancel is requested": "dock",
         "Stop the robot.": "cmd_vel",
         "Say how the goal ended: canceled, or succeeded.": "dock",
+        "Return the result as in `Dock`": "dock",
         "with `cancel_callback=self.on_cancel`, too": "dock",
     },
     counts={
