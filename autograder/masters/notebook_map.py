@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 import re2
 
 from autograder import course
-from autograder.masters.master_files import LAB, lab_name
+from autograder.course import LAB
+from autograder.masters.master_files import lab_name
 
 if TYPE_CHECKING:
     from pathlib import Path
