@@ -24,7 +24,8 @@ CHANGES = re.compile(
 MAKES = re.compile(r"^\s*(mkdir|ros2 pkg create)\b", re.MULTILINE)
 IMPORTS = (
     "import pathlib, subprocess\n"
-    "from autograder.notebook.package_files import add_definition, add_dependencies, add_entry_points\n"
+    "from autograder.notebook.package_files import add_data_files, add_definition, add_dependencies\n"
+    "from autograder.notebook.package_files import add_entry_points\n"
     "from autograder.notebook.robot_package import complete_package\n"
 )
 
