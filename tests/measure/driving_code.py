@@ -252,7 +252,7 @@ class _Plain(ast.NodeTransformer):
     def visit_ImportFrom(self, node: ast.ImportFrom) -> None:
         """Take it out, too."""
 
-    def visit_FunctionDef(self, node: ast.FunctionDef) -> ast.AST:
+    def visit_FunctionDef(self, node: ast.FunctionDef | ast.AsyncFunctionDef) -> ast.AST:
         """Keep the code of a function: its decorators and annotations contain words, or nothing that runs."""
         node.decorator_list, node.returns = [], None
         outside, self._in_a_function = self._in_a_function, True
@@ -260,7 +260,9 @@ class _Plain(ast.NodeTransformer):
         self._in_a_function = outside
         return node
 
-    visit_AsyncFunctionDef = visit_FunctionDef  # noqa: N815
+    def visit_AsyncFunctionDef(self, node: ast.AsyncFunctionDef) -> ast.AST:
+        """Do the same with a coroutine."""
+        return self.visit_FunctionDef(node)
 
     def visit_ClassDef(self, node: ast.ClassDef) -> ast.AST:
         """Keep the fields of a class: each of its methods counts for itself."""
