@@ -7,6 +7,7 @@ runs when the file is imported.
 from __future__ import annotations
 
 import ast
+import contextlib
 import re
 from collections import defaultdict
 from dataclasses import dataclass, field
@@ -243,3 +244,12 @@ class _Reader(ast.NodeVisitor):
     def visit_Constant(self, node: ast.Constant) -> None:
         if isinstance(node.value, str):
             self.piece.strings.add(node.value)
+            if "import " in node.value:
+                self._read_program(node.value)
+
+    def _read_program(self, text: str) -> None:
+        """Note what a text imports and mentions, if it is a program, such as a cell that a test runs in a kernel."""
+        with contextlib.suppress(SyntaxError):
+            program = ast.parse(text)
+            self.piece.strings |= {one.name for one in imports_in(program)}
+            self.visit(program)
