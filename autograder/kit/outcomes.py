@@ -109,6 +109,11 @@ class SentGoal:
         return self.cancelled_too_late or (self.cancel_accepted is None and self.over)
 
     @property
+    def was_over_when_canceled(self) -> bool:
+        """True if the judge asked too late to cancel the goal: the server had done all of its work."""
+        return self.was_canceled_too_late and self.over and not self.sent_after(self.cancel_answered_at)
+
+    @property
     def request_fault(self) -> str:
         """What is wrong with the answer to the cancel request, in words; empty if it was accepted."""
         if self.cancel_accepted:

@@ -93,7 +93,7 @@ def goals_seen(evidence: Evidence) -> Goals:
     )
     last = [one for one in second if len(one.due) == LAST_ORDER + 1]
     older = ended_by_a_younger(run)
-    asked_again = older or (first[LONG].was_canceled_too_late and first[LONG_ALONE].accepted)
+    asked_again = older or (first[LONG].was_over_when_canceled and first[LONG_ALONE].accepted)
     later = [one for one in (first[YOUNGER], first[LONG_ALONE]) if one.accepted]
 
     def sent(*numbers: int) -> list[ComparedGoal]:

@@ -118,7 +118,9 @@ def _send_good_goals(sender: GoalSender) -> bool:
         return _cancel(sender, LONG_ALONE, after=CANCEL_AFTER)
     # If two threads work on two goals, the cancel request is read only when one of them is done.
     sender.await_cancel(LONG)
-    if sender[LONG].was_canceled_too_late and not sender[LONG].is_quick:
+    if sender[LONG].was_canceled_too_late:
+        sender.finish(LONG)
+    if sender[LONG].was_over_when_canceled and not sender[LONG].is_quick:
         # A busy judge may ask when the goal is over. A goal alone, and asked for at its first number, has longer to go.
         return _cancel(sender, LONG_ALONE)
     if _canceled_in_time(sender):
