@@ -188,7 +188,7 @@ SMOKE = (
     # What reads the whole repository, or a page of which any command may be typed.
     *(Draw(f"tests/test_{name}.py::", 1000) for name in ("docs", "english", "imports", "size", "tiers")),
 )
-"""Tests that run whatever has changed: a minute of two cores."""
+"""Tests that run whatever has changed."""
 LONG = (
     Draw(f"{_LIVE}[", 8),
     Draw("tests/judge/test_missing_events.py::", 8),
