@@ -49,7 +49,9 @@ class FakeMachine:
         self.seen: list[tuple[str, bool, int]] = []
         """Of each execution: the student, whether it had its share of memory only, how many ran with it."""
 
-    def __call__(self, module: str, folder: str, slots: str, *_: str, scratch: Path) -> FakeMachine:
+    def __call__(
+        self, module: str, folder: str, slots: str, *_: str, scratch: Path, overlays: Sequence[Path]
+    ) -> FakeMachine:
         self._news.put(Joined(ADDRESS, ADDRESS, msgspec.json.encode(Offer("", int(slots), ""))))
         return self
 
