@@ -17,7 +17,6 @@ from typing import TYPE_CHECKING
 import psutil
 
 from autograder.boxes.run_limits import BUILD_LIMITS, Limits
-from autograder.grading.classes import class_file
 from autograder.grading.grading_errors import GradingError
 from autograder.grading.running.process_link import ProcessLink
 from autograder.grading.running.task_dispatcher import Dispatcher
@@ -82,7 +81,7 @@ def on_cluster(
     """
     if directory.overlays:
         raise GradingError(
-            f"{directory.path / class_file.NAME} names overlays, which the workers of a cluster do not have: grade "
+            f"{directory.path / 'class.toml'} names overlays, which the workers of a cluster do not have: grade "
             "without --scheduler."
         )
     boxed = not directory.is_sandbox_off
