@@ -25,7 +25,8 @@ def on_another_clock(outputs: Iterable[Output], seen: Part, expected: Part) -> A
     """
     partings = filter(None, (output.parts_at(seen, expected) for output in outputs))
     first = min(partings, key=lambda noted: noted.data["step"], default=None)
-    if first is None or not first.data.get("stood"):
+    # A node that does nothing there is slow, or has ended: it acts on no clock.
+    if first is None or not (first.data.get("stood") and first.data["values"]):
         return None
     return Advice(
         f"The robot's time stood still for {first.data['stood']:g} s, and your node acted as if time had passed.",

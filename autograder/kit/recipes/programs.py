@@ -109,10 +109,8 @@ class _OneProgram:
     def keep(self, name: str) -> bool:
         return self._bench.keep(f"{self._program.prefix}{name}")
 
-    def wait_until(
-        self, condition: Callable[[Evidence], bool], within: float, *, quiet: float | None = None
-    ) -> bool:
-        return self._bench.wait_until(lambda e: condition(self._program.view(e)), within, quiet=quiet)
+    def wait_until(self, condition: Callable[[Evidence], bool], within: float, **how: Any) -> bool:
+        return self._bench.wait_until(lambda e: condition(self._program.view(e)), within, **how)
 
     def watch_graph(self, condition: Callable[[Evidence], bool], within: float) -> bool:
         return self._bench.watch_graph(lambda e: condition(self._program.view(e)), within)

@@ -1,11 +1,12 @@
 """Exercise 1.2, a robot's lamp: a client in a callback calls once for each change, and does not wait there."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 from itertools import pairwise
 from random import Random
 
 from autograder.kit.mission.mission import Mission, Moment, Pose, World
-from autograder.kit.oracle.drawings import levels, mixed
+from autograder.kit.oracle.drawings import drawn_until, levels, mixed
 from autograder.kit.rules import value
 
 DOOR, NEAR = 4.0, 1.0
@@ -21,10 +22,21 @@ def is_near(x: float) -> bool:
     return abs(x - DOOR) < NEAR
 
 
+def tells(order: Sequence[float]) -> bool:
+    """Return True if the lamp changes just for the two places that are nearest to the limit.
+
+    With another limit a call is missing there. Next to a place of the same kind it would only be late.
+    """
+    lamp = [False, *map(is_near, order)]
+    by_distance = sorted(range(len(order)), key=lambda n: abs(abs(order[n] - DOOR) - NEAR))
+    return all(lamp[n] != lamp[n + 1] not in lamp[n + 2 : n + 3] for n in by_distance[:2])
+
+
 def places(random: Random) -> list[World | float]:
     """Return places at all levels around the nearness of the door, on both of its sides, in drawn order."""
     distances, sides = levels(NEAR), [*random.sample((1, 1, -1, -1), 4), *random.sample((1, 1, -1, -1), 4)]
-    order = mixed(random, [DOOR + side * far for side, far in zip(sides, distances, strict=True)], is_near)
+    around = [DOOR + side * far for side, far in zip(sides, distances, strict=True)]
+    order = drawn_until(lambda: mixed(random, around, is_near), tells)
     return [step for x in order for step in (World(start=Pose(x, 2.0, 0.0)), STAYS)]
 
 
