@@ -105,7 +105,7 @@ def test_a_solution_without_an_endpoint_that_the_recipe_judges_is_named(
     exercise = SimpleNamespace(id="lab_8_1.dog", roles=("subscription", "publisher"))
     monkeypatch.setattr(exercises, "get", lambda _: exercise)
     monkeypatch.setattr(reference_files, "program", lambda _: "")
-    monkeypatch.setattr(reference_files, "_judged", lambda *_, **__: (report, ""))
+    monkeypatch.setattr(reference_files, "judged", lambda *_, **__: (report, ""))
     with pytest.raises(reference_files.CannotRecord) as raised:
         reference_files.recording(exercise.id)
     said = str(raised.value)

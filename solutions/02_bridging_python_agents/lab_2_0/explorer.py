@@ -18,6 +18,11 @@ def first_turn(now: Moment) -> float:
     return next(filter(None, turns), 0.0)
 
 
+def turns_left(now: Moment) -> bool:
+    """Return True in the first world if the robot's first turn there is to the left, and not a way round."""
+    return now.leg == 0 and first_turn(now) > 0
+
+
 def is_done_on_the_left(now: Moment) -> bool:
     """Return True if the robot has turned to the left, or had far more time for it than a slow one needs."""
     return LEFT in now.reached or now.time > ENOUGH
@@ -36,7 +41,7 @@ EXERCISE = Mission(
     reaches=[
         (
             LEFT,
-            lambda now: now.leg == 0 and now.pose.x > 3 and turned(now) > 0.7 and now.velocity.turn > 0,
+            lambda now: turns_left(now) and now.pose.x > 3 and turned(now) > 0.7 and now.velocity.turn > 0,
             "left",
         ),
         (

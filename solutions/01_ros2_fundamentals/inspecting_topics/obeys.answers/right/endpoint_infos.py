@@ -13,5 +13,7 @@ while not found and time.time() < deadline:
             ends = node.get_subscriptions_info_by_topic(topic)
             found += [(end.node_name, topic) for end in ends if 'UNKNOWN' not in end.node_name]
     time.sleep(0.1)
+if not found:
+    raise TimeoutError('no robot obeys')
 robot, topic = found[0]
 print('I found', {'robot': robot, 'topic': topic})
