@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 import msgspec
 
 from autograder.verdict import State, Verdict
-from tests.judge.notebooks import NEVER_ASKED
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -18,7 +17,7 @@ if TYPE_CHECKING:
     from tests.mutation.mutants import Mutant
 
 CRASHES = frozenset(
-    {"crashed", "crashed_in_callback", "exception_in_callback", "syntax_error", "unknown", NEVER_ASKED, ""}
+    {"crashed", "crashed_in_callback", "exception_in_callback", "syntax_error", "unknown", ""}
 )
 """Diagnoses that say no more than that something went wrong."""
 
