@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import functools
 import re
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -20,37 +21,17 @@ ROOT = Path(__file__).resolve().parents[1]
 PACKAGE = ROOT / "autograder"
 PARTS = {path.stem for path in PACKAGE.iterdir() if path.suffix == ".py" or (path / "__init__.py").exists()}
 PARTS -= {"__init__"}
-ALL = frozenset(PARTS)
 
-# What a part may import of the package; what is not here may import anything but `cli`.
-MAY_IMPORT = {
-    "verdict": frozenset[str](),
-    "course": frozenset[str](),
-    "known_errors": frozenset[str](),
-    "robot": frozenset[str](),
-    "kit": frozenset({"known_errors", "packed_files", "robot", "verdict"}),
-    "exercises": frozenset({"course", "kit"}),
-    "messages": frozenset({"verdict"}),
-    "cards": frozenset({"robot", "verdict"}),
-    "boxes": frozenset({"process_trees", "safe_files"}),  # what isolates knows nothing of what runs
-    "execution": frozenset({"boxes", "messages", "verdict", "process_trees", "safe_files"}),
-    "masters": frozenset({"course", "exercises", "safe_files", "standard_output"}),
-    "mcap_files": frozenset[str](),
-    "packed_files": frozenset[str](),
-    "process_trees": frozenset[str](),
-    "safe_files": frozenset[str](),
-    "standard_output": frozenset[str](),
-    "appeals": ALL - {"grading", "boxes", "execution", "notebook"},
-    "notebook": ALL
-    - {"judge", "exercises", "kit", "masters", "boxes", "execution", "grading", "authoring", "appeals"},
-    "judge": ALL - {"notebook", "cards", "masters", "boxes", "execution", "grading", "authoring", "appeals"},
-    "__main__": frozenset({"cli", "course", "standard_output"}),
-    "command_name": frozenset[str](),
-}
 FOR_ALL = frozenset({"command_name"})
 """What every part may import: the words of messages."""
+MODULES_MAY_IMPORT = {
+    "exercises": frozenset({"course", "kit"}),
+    "own_lines": frozenset({"messages"}),
+    "__main__": frozenset({"cli", "course", "standard_output"}),
+}
+"""What a module of the package may import of it; a module that is not here, nothing. A folder's first page says it."""
 
-# The same for the parts of `notebook`: what is below knows nothing of what is above.
+# The parts of `notebook`: what is below knows nothing of what is above.
 NOTEBOOK_MAY_IMPORT = {
     "cell_output": frozenset[str](),
     "cell_runs": frozenset({"cell_output"}),
@@ -89,17 +70,71 @@ def part_of(path: Path) -> str:
     return inside.parts[0].removesuffix(".py")
 
 
-@pytest.mark.parametrize("part", sorted(PARTS))
-def test_a_part_imports_only_what_it_may(part: str) -> None:
-    allowed = MAY_IMPORT.get(part, ALL - {"cli"}) | {part} | FOR_ALL
-    wrong = [
-        f"{path.relative_to(ROOT)}:{line} imports {name}"
-        for path, line, name in imports(PACKAGE)
+@dataclass(frozen=True)
+class FirstPage:
+    """The docstring of a folder's ``__init__.py``, which a reader meets first.
+
+    Attributes:
+        parts: What its lines say, by their first word.
+        lines: The number of its lines.
+    """
+
+    parts: dict[str, str]
+    lines: int
+
+    def names(self, word: str) -> list[str]:
+        """Return the names in one of its lines."""
+        return re.findall(r"``([\w.]+)``", self.parts[word])
+
+
+def first_page(folder: Path) -> FirstPage:
+    """Read the first page of a folder."""
+    text = ast.get_docstring(ast.parse((folder / "__init__.py").read_text(encoding="utf-8"))) or ""
+    return FirstPage(
+        dict(re.findall(r"^(\w+): ((?:.+\n?(?!\w+:))+)", text.partition("\n\n")[2], re.MULTILINE)),
+        text.count("\n") + 1,
+    )
+
+
+FOLDERS = sorted(part for part in PARTS if (PACKAGE / part).is_dir())
+
+
+@pytest.mark.parametrize("part", FOLDERS)
+def test_the_first_page_of_a_folder_is_true(part: str) -> None:
+    page = first_page(PACKAGE / part)
+    assert list(page.parts) == ["Promises", "Names", "Imports", "Takes", "Gives"]
+    assert page.lines <= 20
+    assert set(page.names("Imports")) == imported_parts(part) - FOR_ALL
+    assert missing_names(" ".join(f"autograder.{part}.{name}" for name in page.names("Names"))) == []
+
+
+@pytest.mark.parametrize("part", sorted(PARTS - {*FOLDERS}))
+def test_a_module_of_the_package_imports_only_what_it_may(part: str) -> None:
+    assert imported_parts(part) - FOR_ALL == MODULES_MAY_IMPORT.get(part, frozenset())
+
+
+def imported_parts(part: str) -> set[str]:
+    """Return the other parts of the package from which one imports something."""
+    names = [
+        name.split(".")[1]
+        for path, _, name in imports(PACKAGE)
         if part_of(path) == part and name.startswith("autograder.")
-        # A name that is no part, such as autograder.__version__, is the package's own.
-        if name.split(".")[1] in PARTS and name.split(".")[1] not in allowed
     ]
-    assert not wrong, "MAY_IMPORT above says who may import whom:\n" + "\n".join(wrong)
+    # A name that is no part, such as autograder.__version__, is the package's own.
+    return {name for name in names if name in PARTS} - {part}
+
+
+NEVER = {
+    "judge": {"notebook", "cards", "masters", "boxes", "execution", "grading", "authoring", "appeals"},
+    "notebook": {"judge", "exercises", "kit", "masters", "boxes", "execution", "grading", "authoring"},
+    "appeals": {"grading", "boxes", "execution", "notebook"},
+}
+"""What a first page may not be changed to: the judge knows no grader, a kernel no secret, and an appeal no class."""
+
+
+@pytest.mark.parametrize("part", sorted(NEVER))
+def test_some_parts_never_meet(part: str) -> None:
+    assert not imported_parts(part) & NEVER[part]
 
 
 def test_one_part_knows_that_a_wheel_has_another_command_than_a_clone() -> None:
@@ -371,12 +406,14 @@ def missing_names(text: str) -> list[str]:
 
 @functools.cache
 def _defined(path: Path) -> set[str]:
-    """Return the names of the functions and classes in a module, and of its variables."""
+    """Return the names of the functions and classes in a module, of its variables, and of what a package hands on."""
     tree = ast.parse(path.read_text(encoding="utf-8"))
     names = {
         node.id for node in ast.walk(tree) if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)
     }
     kinds = (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)
+    if path.name == "__init__.py":
+        names |= {one.name.rpartition(".")[2] for one in imports_of(path)}
     return names | {node.name for node in tree.body if isinstance(node, kinds)}
 
 

@@ -1,6 +1,12 @@
 """The functions that a notebook of the course imports, such as ``start_ros``, ``spinning`` and ``check``.
 
-Nothing in this package is secret or decides a grade, because the judge is a separate process.
+Promises: nothing here is secret or decides a grade, because the judge is a separate process.
+Names: ``start_ros``, ``start_robot``, ``check``, ``watch``, ``spinning``, ``spin_in_background``, ``draw_graph``,
+    ``recording``
+Imports: ``cards``, ``course``, ``dds_discovery``, ``known_errors``, ``mcap_files``, ``messages``, ``own_lines``,
+    ``packed_files``, ``robot``, ``safe_files``, ``standard_output``, ``student``, ``verdict``, ``workspaces``.
+Takes: the student's classes and functions, in the kernel.
+Gives: running nodes, pictures, and cards below the cells.
 """
 
 from __future__ import annotations

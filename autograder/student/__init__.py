@@ -1,1 +1,9 @@
-"""What students use: JupyterLab, the course page, resetting a notebook, and the hand-out (their copy of the course)."""
+"""What students use: JupyterLab, the course page, resetting a notebook, and the hand-out (their copy of the course).
+
+Promises: what a student typed is kept; a hand-out holds no solution and no grader.
+Names: ``lab.open_lab``, ``handout.hand_out``, ``notebook_reset``, ``progress.standing``
+Imports: ``cards``, ``course``, ``dds_discovery``, ``exercises``, ``kit``, ``masters``, ``packed_files``,
+    ``process_trees``, ``safe_files``, ``standard_output``, ``verdict``.
+Takes: the student's folder, and the journal of checks beside the notebooks.
+Gives: a running JupyterLab, a page of progress, a hand-out.
+"""

@@ -1,6 +1,11 @@
 """Builds students' colcon workspaces, and runs their programs.
 
-The steps: read the sources, compute their key, build them (here or in a box), check the files that the build made, and
-run the program that the exercise's plan names. The key is that of a cache, so the same sources are built only once. No
-step needs a sourced setup script.
+Promises: the same sources are built once, and a grade depends on a build that was made in a box, from the sources
+    alone. No step needs a sourced setup script.
+Names: ``program_preparation``, ``program_plans``, ``graded_builds.build_ahead``, ``grading_service.WorkspaceService``,
+    ``jobs.PlainJobs``, ``boxed_jobs.BoxedJobs``, ``sources``
+Imports: ``boxes``, ``course``, ``exercises``, ``kit``, ``messages``, ``process_trees``, ``safe_files``,
+    ``standard_output``.
+Takes: the sources of a workspace, and an exercise's plan.
+Gives: an install folder, a running program, and a report of what failed.
 """
