@@ -96,7 +96,7 @@ class Draft(Generic[View]):
 
     Example::
 
-        heard = Hears()
+        heard = Publisher()
         battery = Draft("lab_8_1.battery", "Lab 8.1 · The battery", "Publish the charge every 0.5 s.", heard)
         battery.asks("topic", "Publishes on the right topic", heard.on_topic, points=3)
         battery.asks("charge", "Counts down from 100", heard.counts("self.charge"), points=7)
@@ -132,7 +132,7 @@ class Draft(Generic[View]):
 
         Example::
 
-            heard = Hears()
+            heard = Publisher()
             talker = Draft("lab_8_1.talker", "Lab 8.1 · The talker", "Publish a greeting every 0.5 s.", heard)
             talker.asks("rate", "Keeps the rate", heard.keeps_rate, points=3)
         """

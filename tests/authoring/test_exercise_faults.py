@@ -108,7 +108,7 @@ def test_a_check_and_a_stop_need_no_sentence_before_them(lab: Path) -> None:
             "lab.md: a task is small: ",
         ),
         ("battery.py", "import annotations\n", "import annotations\n\nimport os\n", "ruff: "),
-        ("battery.py", "heard = Hears()", "heard: int = Hears()", "mypy: "),
+        ("battery.py", "heard = Publisher()", "heard: int = Publisher()", "mypy: "),
         (
             "battery.py",
             "\nEXERCISE",
@@ -162,7 +162,7 @@ def test_a_sentence_may_go_on_in_the_next_line(lab: Path) -> None:
 
 def test_a_difference_in_format_is_one_line(lab: Path) -> None:
     (lab / "battery.py").write_text(
-        (lab / "battery.py").read_text().replace("heard = Hears", "heard =   Hears")
+        (lab / "battery.py").read_text().replace("heard = Publisher", "heard =   Publisher")
     )
     forget()
     assert [line.partition(".")[0] for line in told()] == ["ruff: a file is not formatted"]

@@ -8,7 +8,7 @@ import pytest
 
 from autograder.kit.draft import Draft
 from autograder.kit.evidence import Event, Evidence, Part, Reference
-from autograder.kit.recipes.publisher import Hears
+from autograder.kit.recipes.publisher import Publisher
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -34,7 +34,7 @@ def heard(contents: Sequence[object], first: int = 1) -> list[Event]:
 
 def exercise() -> Exercise:
     """A publisher whose text and numbers are judged."""
-    hears = Hears()
+    hears = Publisher()
     draft = Draft("lab.it", "", "", hears)
     draft.asks("text", "", hears.says_text(), points=1)
     draft.asks("counts", "", hears.counts("self.charge"), points=1)

@@ -16,11 +16,11 @@ from autograder.kit.recipes.action_client import ActionClient
 from autograder.kit.recipes.launch_file import LaunchFile
 from autograder.kit.recipes.own_scenario import OwnScenario
 from autograder.kit.recipes.program import Program
-from autograder.kit.recipes.publisher import Hears
+from autograder.kit.recipes.publisher import Publisher
 from autograder.kit.recipes.servers import Asks
 from autograder.kit.recipes.service_client import Calls
 from autograder.kit.recipes.service_type import ServiceType
-from autograder.kit.recipes.subscriber import Speaks
+from autograder.kit.recipes.subscriber import Subscriber
 
 if TYPE_CHECKING:
     from autograder.kit.draft import Recipe
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 ROOT = Path(__file__).resolve().parents[2]
 PAGE = (ROOT / "docs/exercise-reference.md").read_text(encoding="utf-8")
 WRITTEN = re.compile(r"""\b(?:_?record|_note|end|ended)\(\s*"(\w+)",""")
-HEARS = Hears()
+HEARS = Publisher()
 HEARS.says_text()
 HEARS.counts()
 RECIPES: dict[str, Recipe[Any]] = {
@@ -41,8 +41,8 @@ RECIPES: dict[str, Recipe[Any]] = {
         "action_client",
         "action_server",
     ),
-    "Hears": HEARS,
-    "Speaks": Speaks(pace=0.5, paced_by="a timer"),
+    "Publisher": HEARS,
+    "Subscriber": Subscriber(pace=0.5, paced_by="a timer"),
     "Asks": Asks(lambda _: [], lambda _: {}),
     "Calls": Calls(1, wanted=""),
     "SendsGoals": SendsGoals(lambda _: None, lambda seen: GoalsSeen(seen, [], [], [], [], [], [], [], None)),

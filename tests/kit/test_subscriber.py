@@ -9,7 +9,7 @@ import pytest
 
 from autograder.kit.bench import Pace
 from autograder.kit.evidence import Event, Evidence, Part, Reference
-from autograder.kit.recipes.subscriber import Speaks
+from autograder.kit.recipes.subscriber import Subscriber
 from autograder.kit.reported_texts import AT_PACE, PAIRS, TRIES, drawn_pairs, random_texts
 
 TEXTS = ("amber birch 1234", "cedar delta 5678", "ember fjord 9012")
@@ -27,7 +27,7 @@ def seen(*heard: tuple[str, list[str]]) -> Evidence:
 
 def told(key: str, evidence: Evidence) -> str:
     """Return all words of the diagnosis with this key; empty if it does not fit."""
-    ladder = [mistake for mistake in Speaks(pace=0.5, paced_by="a talker").ladder if mistake.key == key]
+    ladder = [mistake for mistake in Subscriber(pace=0.5, paced_by="a talker").ladder if mistake.key == key]
     found = next(filter(None, (mistake.recognize(evidence) for mistake in ladder)), None)
     return f"{found.text} {found.next_step}" if found else ""
 
@@ -74,7 +74,7 @@ class Bench:
 
 def test_between_the_texts_of_a_pair_the_listener_handles_the_first_and_no_time_passes() -> None:
     bench: Any = Bench(["one", "two", "three"], ["two"])
-    Speaks(pace=0.5, paced_by="a talker")._are_said_at_pace(bench, bench, ["one", "two", "three"])
+    Subscriber(pace=0.5, paced_by="a talker")._are_said_at_pace(bench, bench, ["one", "two", "three"])
     assert bench.done == ["one", "a pause", "two", "the listener has handled it", "three", "a pause"]
 
 
@@ -111,7 +111,7 @@ class Hung(Bench):
 def test_a_listener_that_says_nothing_in_a_whole_series_gets_no_other_one() -> None:
     texts = random_texts(Random(0))
     bench: Any = Hung(texts)
-    assert not Speaks(pace=0.5, paced_by="a talker")._all_are_said(bench, bench, texts)
+    assert not Subscriber(pace=0.5, paced_by="a talker")._all_are_said(bench, bench, texts)
     assert bench.done == texts[: 1 + AT_PACE]
 
 
@@ -168,5 +168,5 @@ def test_a_listener_that_misses_only_the_first_of_a_pair_or_a_kind_of_text_is_no
         events.append(Event(float(at), "sent", "/chatter", {"fields": {"data": text}}))
         events += [Event(at + 0.1, "output", "stdout", {"text": text})] * (text not in missing)
     evidence = Evidence([Part("listening", {"texts": texts, "pairs": ["b"]}, events)], REFERENCE)
-    ladder = Speaks(pace=0.5, paced_by="a talker").ladder
+    ladder = Subscriber(pace=0.5, paced_by="a talker").ladder
     assert next(m.key for m in ladder if m.recognize(evidence)) == key

@@ -79,7 +79,8 @@ class Graph:
     def _aliases_of(self, path: str) -> dict[str, set[str]]:
         found: dict[str, set[str]] = defaultdict(set)
         for one in self.files.sources[path].imports:
-            if not one.for_types:
+            # A package may hand on, at its first use, what it imports for types.
+            if not one.for_types or path.endswith("/__init__.py"):
                 found[one.alias].add(self._full(path, one, one.means))
         return found
 
@@ -179,7 +180,7 @@ class Graph:
             yield from self._asked(path, rest[0])
         elif rest[0] in self._aliases[path]:
             for full in self._aliases[path][rest[0]]:
-                if not full.startswith(f"{self._names.get(path)}."):
+                if full != f"{self._names.get(path)}.{rest[0]}":
                     yield from self._named(".".join([full, *rest[1:]]))
         else:
             yield path, rest[0]  # which is no longer there

@@ -41,7 +41,7 @@ _DIGITS = re2.compile(r"\d{1,18}")
 
 
 @dataclass(frozen=True)
-class Publisher:
+class PublisherSeen:
     """A publisher, as far as the judge received its messages in one run.
 
     Attributes:
@@ -151,7 +151,7 @@ class Publisher:
         )
         return self.part.endpoints("publisher") if met else {}
 
-    def at_once(self, expected: Publisher) -> bool:
+    def at_once(self, expected: PublisherSeen) -> bool:
         """Return True if the publisher published everything within a moment, or at more than four times the right rate.
 
         The rate decides if a busy machine makes a burst last longer than a moment. The program's log lines and the time
@@ -164,7 +164,7 @@ class Publisher:
                 return False
         return True
 
-    def claims(self, expected: Publisher) -> list[str]:
+    def claims(self, expected: PublisherSeen) -> list[str]:
         """Return the lines in which the program says that it published the first of the expected texts."""
         return [line for line in self.part.said() if expected.templates[0] in template(line)]
 
@@ -184,7 +184,7 @@ def _last_numbers(texts: Sequence[str]) -> list[str]:
     return [numbers[-1] for text in texts if (numbers := _NUMBER.findall(text))]
 
 
-def says_text(seen: Publisher, expected: Publisher) -> Finding:
+def says_text(seen: PublisherSeen, expected: PublisherSeen) -> Finding:
     """Decide whether every text equals the reference's, apart from the number."""
     odd = [
         text for text, form in zip(seen.texts, seen.templates, strict=True) if form not in expected.templates
@@ -196,7 +196,7 @@ def says_text(seen: Publisher, expected: Publisher) -> Finding:
     return Finding(passed, f"“{expected.texts[0]}”, “{expected.texts[1]}”, …", found)
 
 
-def counts(seen: Publisher, expected: Publisher) -> Finding:
+def counts(seen: PublisherSeen, expected: PublisherSeen) -> Finding:
     """Decide whether the numbers in the messages are those of the reference, from the first message on.
 
     Raises:
@@ -219,7 +219,7 @@ def counts(seen: Publisher, expected: Publisher) -> Finding:
     return Finding(passed, _row(expected.counters[:5]), found)
 
 
-def _goes_on_slowly(seen: Publisher, expected: Publisher) -> bool:
+def _goes_on_slowly(seen: PublisherSeen, expected: PublisherSeen) -> bool:
     """Return True if the publisher is slower than the reference solution and published until the run's end."""
     if seen.part.ending is not None or len(seen.pauses) < SURE:
         return False
@@ -227,7 +227,7 @@ def _goes_on_slowly(seen: Publisher, expected: Publisher) -> bool:
     return min(seen.pauses) >= SLOWLY * max(expected.pauses) and silent <= SLOWLY * max(seen.pauses)
 
 
-def field_typo(seen: Publisher, _: Publisher) -> Advice | None:
+def field_typo(seen: PublisherSeen, _: PublisherSeen) -> Advice | None:
     """Return advice if all texts are empty."""
     if not seen.texts or any(seen.texts):
         return None
@@ -252,7 +252,7 @@ class Counting:
 
     variable: str
 
-    def wrong_text(self, seen: Publisher, expected: Publisher) -> Advice | None:
+    def wrong_text(self, seen: PublisherSeen, expected: PublisherSeen) -> Advice | None:
         """Return advice if the text of a message differs from the reference's."""
         texts = seen.texts[seen.greetings :]
         odd = next((said for said in texts if template(said) not in expected.templates), None)
@@ -271,7 +271,7 @@ class Counting:
             "nodes read this string.".replace("#", "N"),
         )
 
-    def stuck(self, seen: Publisher, expected: Publisher) -> Advice | None:
+    def stuck(self, seen: PublisherSeen, expected: PublisherSeen) -> Advice | None:
         """Return advice if every message has the same number."""
         if len(seen.counters) < 3 or len(set(seen.counters)) > 1:
             return None
@@ -288,7 +288,7 @@ class Counting:
             "another variable.",
         )
 
-    def start(self, seen: Publisher, expected: Publisher) -> Advice | None:
+    def start(self, seen: PublisherSeen, expected: PublisherSeen) -> Advice | None:
         """Return advice if the step is right, but the first number is wrong, or other messages come before it."""
         steady = len(seen.counters) > 1 and not _slip(seen.counters, expected.step)
         unheard, right = _uncounted(seen, expected), _starts_right(seen, expected)
@@ -311,7 +311,7 @@ class Counting:
             "after you have published the message.",
         )
 
-    def step(self, seen: Publisher, expected: Publisher) -> Advice | None:
+    def step(self, seen: PublisherSeen, expected: PublisherSeen) -> Advice | None:
         """Return advice if the numbers do not change by the right step."""
         numbers = seen.counters
         place = _slip(numbers, expected.step)
@@ -325,18 +325,18 @@ class Counting:
             "of the method, without a loop, and with only one timer.",
         )
 
-    def _statement(self, expected: Publisher) -> str:
+    def _statement(self, expected: PublisherSeen) -> str:
         return f"{self.variable} {'+' if expected.step > 0 else '-'}= {abs(expected.step)}"
 
     @staticmethod
-    def _changes(expected: Publisher, counter: str = "") -> str:
+    def _changes(expected: PublisherSeen, counter: str = "") -> str:
         by = abs(expected.step)
         if expected.step > 0:
             return f"add {by} to {counter}" if counter else f"add {by}"
         return f"take {by} from {counter}" if counter else f"take {by} away"
 
 
-def _first_number(seen: Publisher, expected: Publisher) -> int | None:
+def _first_number(seen: PublisherSeen, expected: PublisherSeen) -> int | None:
     """Return the number in the publisher's first message, even if the judge could not receive it; None if unknown.
 
     A loop may publish before any subscriber can receive the message, so the first received number may be a later one.
@@ -347,11 +347,11 @@ def _first_number(seen: Publisher, expected: Publisher) -> int | None:
     return first[0] - expected.step * (seen.number_of_first - 1) if first else None
 
 
-def _starts_right(seen: Publisher, expected: Publisher) -> bool:
+def _starts_right(seen: PublisherSeen, expected: PublisherSeen) -> bool:
     return _first_number(seen, expected) == expected.counters[0]
 
 
-def _uncounted(seen: Publisher, expected: Publisher) -> int:
+def _uncounted(seen: PublisherSeen, expected: PublisherSeen) -> int:
     """Return how many of the messages that the judge missed at the start cannot have been part of the count."""
     if _first_number(seen, expected) is None or (place := expected.place(seen.counters[0])) < 0:
         return 0

@@ -15,7 +15,7 @@ from autograder.kit.mistakes.role_mistakes import ladder
 from autograder.kit.mistakes.silence import GO_ON, NO_MESSAGE, NO_MORE, PUBLISH
 from autograder.kit.model import Advice, Finding, Mistake, mistake
 from autograder.kit.recipes import published_texts
-from autograder.kit.recipes.published_texts import Counting, Publisher
+from autograder.kit.recipes.published_texts import Counting, PublisherSeen
 from autograder.kit.rules import ROW, Rate, burst_at_the_start, confirmed, rate_of, simulated_times
 
 if TYPE_CHECKING:
@@ -51,8 +51,8 @@ passed within a moment, so this shows whether the program ends.
 """
 
 
-class Hears:
-    """The recipe for a publisher. Its criteria and mistakes get objects of the type :class:`Publisher`.
+class Publisher:
+    """The recipe for a publisher. Its criteria and mistakes get objects of the type :class:`PublisherSeen`.
 
     Args:
         messages: The number of messages to wait for at first, in simulated time.
@@ -61,7 +61,7 @@ class Hears:
 
     Example::
 
-        heard = Hears()
+        heard = Publisher()
         talker = Draft("lab_8_1.talker", "Lab 8.1 · The talker", "Publish a counted greeting every 0.5 s.", heard)
         talker.asks("topic", "Publishes on the right topic", heard.on_topic, points=2)
         talker.asks("text", "Says the right string", heard.says_text(), points=3)
@@ -74,8 +74,8 @@ class Hears:
     def __init__(self, messages: int = 8, long_run: int = 20) -> None:
         self._messages = messages
         self._long_run = long_run
-        self._text: Judge[Publisher] | None = None  # while it fails, a wrong rate is not diagnosed
-        self._course: Judge[Publisher] | None = None  # while it fails, the judge waits for more messages
+        self._text: Judge[PublisherSeen] | None = None  # while it fails, a wrong rate is not diagnosed
+        self._course: Judge[PublisherSeen] | None = None  # while it fails, the judge waits for more messages
         self._variable = "self.count"
 
     # --- the bench -------------------------------------------------------------------------------------------
@@ -138,13 +138,13 @@ class Hears:
         stumbled = (rate is not None and not rate.even) or not self._holds(self._course, before)
         return self._long_run if stumbled else ROW
 
-    def _holds(self, judge: Judge[Publisher] | None, evidence: Evidence) -> bool:
+    def _holds(self, judge: Judge[PublisherSeen] | None, evidence: Evidence) -> bool:
         return judge is None or judge(self.seen(evidence), self.expected(evidence)).passed
 
     # --- views -----------------------------------------------------------------------------------------------
 
-    def seen(self, evidence: Evidence) -> Publisher:
-        """Return the subject as a :class:`Publisher`, from which criteria and mistakes decide."""
+    def seen(self, evidence: Evidence) -> PublisherSeen:
+        """Return the subject as a :class:`PublisherSeen`, from which criteria and mistakes decide."""
         topic, _ = evidence.reference.only("publisher")
         if evidence.real_time:
             enough = self._enough(evidence.before)
@@ -153,14 +153,14 @@ class Hears:
         heard = evidence.main.of("message", topic)
         # The task asks for a publisher that never ends. So if the program ended by itself, no number of messages is
         # enough: set the required number higher than the number that came.
-        return Publisher(
+        return PublisherSeen(
             topic, evidence.main, max(enough, len(heard) + 1) if evidence.main.ending else enough
         )
 
-    def expected(self, evidence: Evidence) -> Publisher:
-        """Return the recorded reference solution as a :class:`Publisher`."""
+    def expected(self, evidence: Evidence) -> PublisherSeen:
+        """Return the recorded reference solution as a :class:`PublisherSeen`."""
         topic, _ = evidence.reference.only("publisher")
-        return Publisher(topic, evidence.reference.part("talking"))
+        return PublisherSeen(topic, evidence.reference.part("talking"))
 
     # --- criteria --------------------------------------------------------------------------------------------
 
@@ -181,7 +181,7 @@ class Hears:
         self._course, self._variable = published_texts.counts, variable
         return self._criterion(published_texts.counts)
 
-    def _criterion(self, judge: Judge[Publisher]) -> Callable[[Evidence], Finding]:
+    def _criterion(self, judge: Judge[PublisherSeen]) -> Callable[[Evidence], Finding]:
         return lambda evidence: judge(self.seen(evidence), self.expected(evidence))
 
     def on_topic(self, evidence: Evidence) -> Finding:
@@ -293,7 +293,11 @@ class Hears:
         )
 
     def _mistake(
-        self, key: str, told: Callable[[Publisher, Publisher], Advice | None], *, certain: bool = False
+        self,
+        key: str,
+        told: Callable[[PublisherSeen, PublisherSeen], Advice | None],
+        *,
+        certain: bool = False,
     ) -> Mistake:
         return Mistake(key, lambda evidence: told(self.seen(evidence), self.expected(evidence)), certain)
 

@@ -56,7 +56,7 @@ follows simulated time, these are simulated seconds.
 """
 
 
-class Speaks:
+class Subscriber:
     """The recipe for a subscriber that must report each text that it receives, with any words around it.
 
     Args:
@@ -65,7 +65,7 @@ class Speaks:
 
     Example::
 
-        recipe = Speaks(pace=0.5, paced_by="the lab's talker")
+        recipe = Subscriber(pace=0.5, paced_by="the lab's talker")
         listener = Draft("lab_8_1.listener", "Lab 8.1 · The listener", "Log every text that arrives.", recipe)
         listener.asks("topic", "Subscribes to the right topic and type", subscribes, points=3)
         listener.asks("says", "Logs every text that arrives", says_every_text, points=5)

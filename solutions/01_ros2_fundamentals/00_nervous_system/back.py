@@ -3,8 +3,8 @@
 from itertools import groupby
 from math import cos
 
+from autograder.kit import Mission, Moment
 from autograder.kit.mission.driving import movement
-from autograder.kit.mission.mission import Mission, Moment
 from autograder.kit.mission.moment import number_of
 
 COUNT = (

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from autograder.kit.mission.mission import Mission
+from autograder.kit import Mission
 
 EXERCISE = Mission(
     "00_nervous_system.first_move",

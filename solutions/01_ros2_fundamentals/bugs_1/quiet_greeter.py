@@ -1,5 +1,5 @@
 """The quiet greeter, which students repair. Its words are in quiet_greeter.ticket.toml."""
 
-from autograder.kit.hunts.ticket import repair
+from autograder.kit import repair
 
 EXERCISE = repair(__file__)

@@ -1,5 +1,5 @@
 """The stubborn robot, which students repair. Its words are in stubborn_robot.ticket.toml."""
 
-from autograder.kit.hunts.ticket import repair
+from autograder.kit import repair
 
 EXERCISE = repair(__file__)

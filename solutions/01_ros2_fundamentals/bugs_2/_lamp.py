@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 
 from exercise_1_2 import lamp
 
-from autograder.kit.model import Criterion, Finding
+from autograder.kit import Criterion, Finding
 
 if TYPE_CHECKING:
-    from autograder.kit.evidence import Evidence
+    from autograder.kit import Evidence
 
 
 def logs(evidence: Evidence) -> Finding:

@@ -2,7 +2,7 @@
 
 from lab_1_4_robot import dock
 
-from autograder.kit.oracle.same_as_solution import Goal, SameAsSolution, To
+from autograder.kit import Goal, SameAsSolution, To
 
 FAR = To("/scan", {"ranges": [3.0] * 36})
 # Sent at the same moment, and when the robot has driven for 3.5 s.

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from lab_1_4_robot import dock
 
-from autograder.kit.oracle.same_as_solution import Goal, SameAsSolution
+from autograder.kit import Goal, SameAsSolution
 
 if TYPE_CHECKING:
     from autograder.kit.oracle.goal_sender import GoalSender

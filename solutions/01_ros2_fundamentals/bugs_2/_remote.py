@@ -2,7 +2,7 @@
 
 from itertools import pairwise
 
-from autograder.kit.mission.mission import Mission, Moment, Pose, To, World
+from autograder.kit import Mission, Moment, Pose, To, World
 
 GAPS, SILENCE = (0.4, 0.3, 0.4, 0.4, 0.2) * 2, 3.5
 """Seconds between two commands, as a radio brings them, and seconds without a command.

@@ -8,15 +8,15 @@ from typing import TYPE_CHECKING
 
 from exercise_1_1 import remap
 
+from autograder.kit import Criterion, Finding, Mistake, mistake, unless
 from autograder.kit.mistakes import package_mistakes
 from autograder.kit.mistakes.package_mistakes import package_name, package_of
-from autograder.kit.model import Criterion, Finding, Mistake, mistake, unless
 from autograder.kit.runners import LaunchesFromPackage, report_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from autograder.kit.evidence import Evidence
+    from autograder.kit import Evidence
 
 PACKAGE, FILE = "my_robot_pkg", "remap.launch"
 FOLDER = f"share/{PACKAGE}/launch"

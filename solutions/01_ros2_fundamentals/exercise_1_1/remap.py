@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from autograder.kit.draft import Draft
+from autograder.kit import Draft, Finding, LaunchFile
 from autograder.kit.in_words import counted
-from autograder.kit.model import Finding
-from autograder.kit.recipes.launch_file import Launched, LaunchFile
 from autograder.kit.runners import Launches
 
 if TYPE_CHECKING:
-    from autograder.kit.evidence import Evidence
+    from autograder.kit import Evidence
+    from autograder.kit.recipes.launch_file import Launched
 
 OLD_NAME = "chatter"
 """The topic's name in the code of the programs."""

@@ -5,8 +5,7 @@ from dataclasses import replace
 from itertools import pairwise
 from random import Random
 
-from autograder.kit.mission.mission import Mission, Moment, Pose, World
-from autograder.kit.oracle.drawings import drawn_until, levels, mixed
+from autograder.kit import Mission, Moment, Pose, World, drawn_until, levels, mixed
 from autograder.kit.rules import value
 
 DOOR, NEAR = 4.0, 1.0

@@ -6,10 +6,7 @@ reported sum show whether they were really used.
 
 from __future__ import annotations
 
-from autograder.kit import giving_up, service_calls
-from autograder.kit.draft import Draft
-from autograder.kit.model import Finding
-from autograder.kit.recipes.service_client import Calls
+from autograder.kit import Calls, Draft, Finding, giving_up, service_calls
 from autograder.kit.service_calls import ClientSeen, requests
 
 recipe = Calls(2, wanted="first a + b, then that answer + c")

@@ -6,7 +6,7 @@ import sys
 from functools import partial
 from typing import TYPE_CHECKING
 
-from autograder.kit.draft import Draft
+from autograder.kit import Advice, Draft, Mistake, mistake, unless
 from autograder.kit.goal_reports import (
     MANY_REQUESTS,
     NOT_AWAITED,
@@ -20,7 +20,6 @@ from autograder.kit.mistakes import goal_mistakes
 from autograder.kit.mistakes.common_mistakes import AWAITS_IN_VAIN, only_if_ended, went_deaf
 from autograder.kit.mistakes.crashes import meant
 from autograder.kit.mistakes.hangs import HANGS
-from autograder.kit.model import Advice, Mistake, mistake, unless
 from autograder.kit.oracle.cancel_requests import (
     CANCEL_REFUSED,
     HONORED,
@@ -34,7 +33,7 @@ from autograder.kit.oracle.canceled_goals import CancelsGoal
 if TYPE_CHECKING:
     from collections.abc import Container
 
-    from autograder.kit.evidence import Evidence
+    from autograder.kit import Evidence
 
 FIRST, LAST = 3, 5
 """The request must come after this many feedback messages, at the earliest and at the latest."""

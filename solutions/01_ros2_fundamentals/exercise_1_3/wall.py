@@ -1,6 +1,7 @@
 """Exercise 1.3, a wall on the way: a client cancels its walk when the laser sees a wall, once."""
 
-from autograder.kit.mission.mission import ROOM, Mission, Pose, Wall, Walls, World
+from autograder.kit import Mission, Pose, Wall, World
+from autograder.kit.mission.mission import ROOM, Walls
 
 
 def blocked(x: float) -> World:

@@ -3,9 +3,7 @@
 from random import Random
 from typing import Any
 
-from autograder.kit.oracle.drawings import shuffled
-from autograder.kit.quests.quest import Quest
-from autograder.kit.quests.robot import Robot
+from autograder.kit import Quest, Robot, shuffled
 
 TYPES = ("small_robot_interfaces/action/WalkTo", "my_robot_interfaces/action/Fibonacci")
 NAMES = (

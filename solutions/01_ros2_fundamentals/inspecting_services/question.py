@@ -9,16 +9,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from autograder.kit import giving_up
-from autograder.kit.draft import Draft
-from autograder.kit.quests.quest import Quest
-from autograder.kit.quests.robot import Robot
+from autograder.kit import Draft, Quest, Robot, giving_up
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
     from random import Random
 
-    from autograder.kit.quests.quest import Searches
+    from autograder.kit import Searches
 
 ADDER = "my_robot_interfaces/srv/AddTwoInts"
 """The type that the notebook shows. Other services have it, but the task never asks for it."""

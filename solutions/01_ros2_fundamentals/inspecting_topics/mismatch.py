@@ -8,8 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from autograder.kit.quests.quest import Quest
-from autograder.kit.quests.robot import Robot
+from autograder.kit import Quest, Robot
 
 if TYPE_CHECKING:
     from random import Random

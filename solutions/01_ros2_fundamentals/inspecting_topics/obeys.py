@@ -3,9 +3,7 @@
 from random import Random
 from typing import Any
 
-from autograder.kit.oracle.drawings import drawn_until, shuffled
-from autograder.kit.quests.quest import Quest
-from autograder.kit.quests.robot import Robot
+from autograder.kit import Quest, Robot, drawn_until, shuffled
 
 TWIST, ANOTHER, BEGINS_ALIKE = (f"geometry_msgs/msg/{name}" for name in ("Twist", "Accel", "TwistStamped"))
 NAMES = (

@@ -1,6 +1,6 @@
 """Lab 1.1, a node from nothing: a robot that drives in a circle."""
 
-from autograder.kit.mission.mission import Mission
+from autograder.kit import Mission
 
 EXERCISE = Mission(
     "lab_1_1.dance",

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from autograder.kit.draft import Draft
-from autograder.kit.recipes.program import Program
+from autograder.kit import Draft, Program
 
 recipe = Program("my_robot_pkg", "simple_node", "saying hello")
 hello = Draft(

@@ -1,13 +1,13 @@
 """Lab 1.2, the listener: says what it hears, and nothing else."""
 
-from autograder.kit.draft import Draft
-from autograder.kit.recipes.subscriber import Speaks, says_every_text, says_nothing_else, subscribes
+from autograder.kit import Draft, Subscriber
+from autograder.kit.recipes.subscriber import says_every_text, says_nothing_else, subscribes
 
 listener = Draft(
     "lab_1_2.listener",
     "Lab 1.2 · The listener",
     "Say every string that arrives on the topic.",
-    Speaks(pace=0.5, paced_by="the lab's talker"),
+    Subscriber(pace=0.5, paced_by="the lab's talker"),
 )
 listener.asks("topic", "Subscribes to the right topic and type", subscribes, points=3)
 listener.asks("says", "Says every string it hears", says_every_text, points=5)

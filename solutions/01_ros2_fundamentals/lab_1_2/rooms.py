@@ -3,8 +3,7 @@
 from functools import partial
 from random import Random
 
-from autograder.kit.oracle.drawings import drawn_until, levels, mixed
-from autograder.kit.oracle.same_as_solution import SameAsSolution, To
+from autograder.kit import SameAsSolution, To, drawn_until, levels, mixed
 
 DOOR, END = 4.0, 6.0
 """Where the door is, and where the right room ends: x in meters."""

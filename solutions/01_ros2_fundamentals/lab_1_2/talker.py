@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from autograder.kit.draft import Draft
-from autograder.kit.recipes.publisher import Hears
+from autograder.kit import Draft, Publisher
 
-heard = Hears()
+heard = Publisher()
 talker = Draft(
     "lab_1_2.talker",
     "Lab 1.2 · The talker",

@@ -2,8 +2,7 @@
 
 from random import Random
 
-from autograder.kit.oracle.drawings import levels, mixed, scans
-from autograder.kit.oracle.same_as_solution import SameAsSolution, To
+from autograder.kit import SameAsSolution, To, levels, mixed, scans
 
 NEAR = 0.8
 """The distance in meters up to which the robot stands still."""

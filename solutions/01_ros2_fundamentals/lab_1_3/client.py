@@ -5,9 +5,7 @@ The judge serves, and its answers are not what the client could have added up by
 
 from __future__ import annotations
 
-from autograder.kit import giving_up, service_calls
-from autograder.kit.draft import Draft
-from autograder.kit.recipes.service_client import Calls
+from autograder.kit import Calls, Draft, giving_up, service_calls
 
 recipe = Calls(1, wanted="one call with the two numbers, in each run")
 client = Draft(

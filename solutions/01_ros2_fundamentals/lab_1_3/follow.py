@@ -2,8 +2,7 @@
 
 from random import Random
 
-from autograder.kit.oracle.drawings import dealt, levels, mixed, scans, shuffled
-from autograder.kit.oracle.same_as_solution import SameAsSolution, To
+from autograder.kit import SameAsSolution, To, dealt, levels, mixed, scans, shuffled
 
 NEAR = 0.8
 """The distance in meters up to which a robot that follows stands still."""

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from autograder.kit.draft import Draft
-from autograder.kit.recipes.service_type import ServiceType
+from autograder.kit import Draft, ServiceType
 
 recipe = ServiceType("AddTwoInts.srv", "my_robot_interfaces")
 interface = Draft(

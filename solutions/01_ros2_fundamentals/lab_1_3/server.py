@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from autograder.kit.draft import Draft
-from autograder.kit.recipes.servers import Asks, ServerSeen
+from autograder.kit import Asks, Draft
 
 if TYPE_CHECKING:
     from random import Random
 
-    from autograder.kit.recipes.servers import Fields
+    from autograder.kit.recipes.servers import Fields, ServerSeen
 
 LOW, TOP = -(2**63), 2**63 - 1
 """The ends of an int64."""

@@ -28,7 +28,7 @@ from autograder.kit.outcomes import SUCCEEDED, all_goals, goal
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from autograder.kit.evidence import Evidence
+    from autograder.kit import Evidence
     from autograder.kit.outcomes import SentGoal
 
 SMALL = 20

@@ -12,8 +12,8 @@ from autograder.kit.recipes.own_scenario import meet
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from autograder.kit import Part
     from autograder.kit.bench import Bench
-    from autograder.kit.evidence import Part
 
 GOALS, BAD_ORDERS, CANCELED_ALONE = "goals", "bad orders", "a goal alone is canceled"
 """The runs. The third one is made only if two goals at once end the server before it is asked to cancel one."""

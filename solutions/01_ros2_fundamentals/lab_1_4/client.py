@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from autograder.kit import giving_up, goal_reports
-from autograder.kit.draft import Draft
+from autograder.kit import Draft, giving_up, goal_reports
 from autograder.kit.recipes.one_goal import sends_goals
 
 client = Draft(

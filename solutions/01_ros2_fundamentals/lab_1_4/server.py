@@ -26,12 +26,12 @@ from lab_1_4._goals import (
     scenario,
 )
 
-from autograder.kit.draft import Draft
+from autograder.kit import Draft
 from autograder.kit.oracle.action_server import SendsGoals
 from autograder.kit.outcomes import SUCCEEDED, status_text
 
 if TYPE_CHECKING:
-    from autograder.kit.model import Finding
+    from autograder.kit import Finding
 
 server = Draft(
     "lab_1_4.server",

@@ -2,8 +2,8 @@
 
 from random import Random
 
-from autograder.kit.oracle.drawings import drawn_until, scan, shuffled
-from autograder.kit.oracle.same_as_solution import Goal, SameAsSolution, To
+from autograder.kit import Goal, SameAsSolution, To, drawn_until, shuffled
+from autograder.kit.oracle.drawings import scan
 
 
 def steps(random: Random) -> list[To | Goal]:

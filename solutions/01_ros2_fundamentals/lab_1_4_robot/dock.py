@@ -3,8 +3,8 @@
 from itertools import pairwise
 from random import Random
 
-from autograder.kit.oracle.drawings import drawn_until, scan, shuffled
-from autograder.kit.oracle.same_as_solution import Goal, SameAsSolution, To
+from autograder.kit import Goal, SameAsSolution, To, drawn_until, shuffled
+from autograder.kit.oracle.drawings import scan
 
 FREE, BLOCKED = ((0.5, 0.75), (0.25, 0.5), (0.25,)), (0.25, 0.5, 0.75)
 """The ways to a dock in meters, of which one each is free, and to those behind a wall. Each 0.25 m take real time."""

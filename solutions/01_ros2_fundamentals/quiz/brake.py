@@ -1,7 +1,6 @@
 """The chapter in short: a brake that hears a best-effort sensor, and says for each distance whether to brake."""
 
-from autograder.kit.oracle.drawings import levels, mixed
-from autograder.kit.oracle.same_as_solution import SameAsSolution, To
+from autograder.kit import SameAsSolution, To, levels, mixed
 
 NEAR = 0.5
 """The distance in meters below which the brake is on. At the distance itself, which every float holds, it is off."""

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from autograder.kit import Mission, Moment, Pose, World
 from autograder.kit.in_words import counted
-from autograder.kit.mission.mission import Mission, Moment, Pose, World
 
 AWAY = 3.14
 """The heading away from the door, so that a robot that drives straight ahead does not get there before its walk."""

@@ -2,8 +2,7 @@
 
 from random import Random
 
-from autograder.kit.oracle.drawings import dealt, drawn_until, levels, mixed
-from autograder.kit.oracle.returns import Returns
+from autograder.kit import Returns, dealt, drawn_until, levels, mixed
 
 NEAR, FREE = 0.6, 1.0
 """A turn begins below the first distance in meters, and ends above the second. No wall is exactly there."""

@@ -1,6 +1,6 @@
 """Lab 2.0, both brains together: a robot that turns away in front of walls."""
 
-from autograder.kit.mission.mission import Mission, Moment, Pose, World
+from autograder.kit import Mission, Moment, Pose, World
 
 LEFT, RIGHT = (f"Turns to the {side} where there is more room" for side in ("left", "right"))
 ENOUGH = 45.0

@@ -2,10 +2,7 @@
 
 from random import Random
 
-from autograder.kit.counterparts import Qos
-from autograder.kit.draft import Draft
-from autograder.kit.quests.quest import Quest, Searches
-from autograder.kit.quests.robot import Robot
+from autograder.kit import Draft, Qos, Quest, Robot, Searches
 
 NAMES, KIND = ("arm", "base", "camera", "display", "gripper", "map", "planner"), "sensor_msgs/msg/LaserScan"
 CASES = (

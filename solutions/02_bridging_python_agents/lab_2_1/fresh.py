@@ -2,8 +2,7 @@
 
 from random import Random
 
-from autograder.kit.oracle.drawings import drawn_until, levels, mixed, scans
-from autograder.kit.oracle.same_as_solution import SameAsSolution, To
+from autograder.kit import SameAsSolution, To, drawn_until, levels, mixed, scans
 
 NEAR = 0.8
 """The distance in meters up to which the robot stands still."""

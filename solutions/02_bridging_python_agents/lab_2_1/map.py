@@ -2,8 +2,7 @@
 
 from random import Random
 
-from autograder.kit.oracle.drawings import shuffled
-from autograder.kit.oracle.same_as_solution import SameAsSolution, To
+from autograder.kit import SameAsSolution, To, shuffled
 
 WIDTH, HEIGHT, WALLS = 6, 4, 6
 INSIDE = (0.2, 0.8, 0.4, 0.7, 0.3, 0.9)

@@ -2,8 +2,8 @@
 
 from random import Random
 
-from autograder.kit.oracle.drawings import LADDER, shuffled
-from autograder.kit.oracle.same_as_solution import SameAsSolution, Sets, To
+from autograder.kit import SameAsSolution, Sets, To, shuffled
+from autograder.kit.oracle.drawings import LADDER
 
 DEFAULTS, HIGHEST = {"max_forward": 0.5, "max_turn": 1.0}, {"max_forward": 1.0, "max_turn": 2.0}
 BELOW, ABOVE = [factor for factor in LADDER if factor < 1], [factor for factor in LADDER if factor > 1]

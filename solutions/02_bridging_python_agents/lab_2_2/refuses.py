@@ -2,8 +2,7 @@
 
 from random import Random
 
-from autograder.kit.oracle.drawings import shuffled
-from autograder.kit.oracle.same_as_solution import SameAsSolution, Sets, To
+from autograder.kit import SameAsSolution, Sets, To, shuffled
 
 LOWER, HIGHER = 0.65, 1.37
 """New limits, as multiples of those that hold: both are within the ranges, also after one another."""

@@ -2,8 +2,7 @@
 
 from random import Random
 
-from autograder.kit.oracle.drawings import drawn_until, shuffled
-from autograder.kit.oracle.same_as_solution import SameAsSolution, To
+from autograder.kit import SameAsSolution, To, drawn_until, shuffled
 
 
 def command(random: Random) -> To:

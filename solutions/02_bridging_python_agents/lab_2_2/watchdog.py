@@ -2,8 +2,7 @@
 
 from random import Random
 
-from autograder.kit.oracle.drawings import shuffled
-from autograder.kit.oracle.same_as_solution import SameAsSolution, To
+from autograder.kit import SameAsSolution, To, shuffled
 
 PAUSE = 0.3
 """Seconds of the subject's time after each command."""

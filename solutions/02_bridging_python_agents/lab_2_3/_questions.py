@@ -3,8 +3,7 @@
 from math import inf
 from random import Random
 
-from autograder.kit.oracle.drawings import shuffled
-from autograder.kit.oracle.same_as_solution import To
+from autograder.kit import To, shuffled
 
 PAUSE = 0.5
 """Seconds of the subject's time after each input."""

@@ -2,7 +2,7 @@
 
 from lab_2_3._questions import PAUSE, place, questions
 
-from autograder.kit.oracle.same_as_solution import SameAsSolution
+from autograder.kit import SameAsSolution
 
 EXERCISE = SameAsSolution(
     "lab_2_3.awaits",

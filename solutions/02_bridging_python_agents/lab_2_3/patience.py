@@ -4,8 +4,7 @@ from random import Random
 
 from lab_2_3._questions import NEVER, OFFSETS, PAUSE, place
 
-from autograder.kit.oracle.drawings import shuffled
-from autograder.kit.oracle.same_as_solution import SameAsSolution, To
+from autograder.kit import SameAsSolution, To, shuffled
 
 OPEN, GIVEN_UP = 1.45, 0.35
 """Seconds of the subject's time: a question is 1.95 s old after the first of them, and 2.3 s old after both.

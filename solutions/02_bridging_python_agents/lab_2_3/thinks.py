@@ -4,8 +4,7 @@ from random import Random
 
 from lab_2_3._questions import PAUSE, row
 
-from autograder.kit.oracle.drawings import shuffled
-from autograder.kit.oracle.same_as_solution import SameAsSolution, To
+from autograder.kit import SameAsSolution, To, shuffled
 
 
 def decision(random: Random) -> dict[str, object]:

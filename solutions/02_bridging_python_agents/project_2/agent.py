@@ -4,8 +4,7 @@ from math import cos, pi, remainder, sin, tau
 from random import Random
 from typing import Any
 
-from autograder.kit.oracle.drawings import levels, shuffled
-from autograder.kit.oracle.returns import Returns
+from autograder.kit import Returns, levels, shuffled
 
 THERE = 0.3
 """The distance in meters below which the robot is at the lamp, and at home."""

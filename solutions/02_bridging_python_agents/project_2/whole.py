@@ -3,7 +3,7 @@
 from math import inf, pi
 from random import Random
 
-from autograder.kit.mission.mission import Mission, Moment, Pose, To, World
+from autograder.kit import Mission, Moment, Pose, To, World
 from autograder.kit.runners import LaunchesFromPackage
 
 WAITS, OUT = "Sends commands while it waits for the answer", "Sets out when the answer is there"

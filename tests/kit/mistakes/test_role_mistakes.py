@@ -15,10 +15,10 @@ from autograder.kit.oracle.same_as_solution import SameAsSolution
 from autograder.kit.recipes.action_client import ActionClient
 from autograder.kit.recipes.own_scenario import OwnScenario
 from autograder.kit.recipes.program import Program
-from autograder.kit.recipes.publisher import Hears
+from autograder.kit.recipes.publisher import Publisher
 from autograder.kit.recipes.servers import Asks
 from autograder.kit.recipes.service_client import Calls
-from autograder.kit.recipes.subscriber import Speaks
+from autograder.kit.recipes.subscriber import Subscriber
 from autograder.kit.runners import (
     LaunchesFromPackage,
     RunsProgram,
@@ -34,12 +34,12 @@ if TYPE_CHECKING:
 
 RECIPES: dict[str, tuple[Recipe[Any], str]] = {
     "publisher": (
-        Hears(),
+        Publisher(),
         # What only the rate and the end of an endless series of messages show.
         "published_before_discovery wrong_rate stopped_publishing",
     ),
     "subscription": (
-        Speaks(pace=0.5, paced_by="a timer"),
+        Subscriber(pace=0.5, paced_by="a timer"),
         # What only texts that have to be repeated show.
         "not_logged wrong_text invented_text callback_too_slow everything_twice",
     ),

@@ -2,7 +2,7 @@
 
 from random import Random
 
-from autograder.kit.oracle.same_as_solution import SameAsSolution, To
+from autograder.kit import SameAsSolution, To
 
 COURSE = "number " * 7 + "nan number nan nan number number"
 

@@ -1,6 +1,6 @@
 """Plain Python: what a thermostat decides for one temperature after the other."""
 
-from autograder.kit.oracle.returns import Returns
+from autograder.kit import Returns
 
 EXERCISE = Returns(
     "function.thermostat",

@@ -1,6 +1,6 @@
 """A hub: two topics in, one out, and a service that changes what is published."""
 
-from autograder.kit.oracle.same_as_solution import SameAsSolution, To
+from autograder.kit import SameAsSolution, To
 
 COURSE = "tare left left right right left tare left right tare right left"
 

@@ -1,6 +1,6 @@
 """A latched topic: late subscribers receive a message that was published before they came."""
 
-from autograder.kit.oracle.same_as_solution import SameAsSolution
+from autograder.kit import SameAsSolution
 
 EXERCISE = SameAsSolution(
     "latched.map_server",

@@ -1,6 +1,6 @@
 """A mode: a service answers by the state that it keeps, and each change is told once, also to a late listener."""
 
-from autograder.kit.oracle.same_as_solution import SameAsSolution, To
+from autograder.kit import SameAsSolution, To
 
 ON_AND_OFF = (False, True, True, False, False, True, True, False, False, True, False)
 """What is asked for. Half of it is so already."""

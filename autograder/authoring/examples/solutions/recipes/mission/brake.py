@@ -1,6 +1,6 @@
 """A mission: a robot drives ahead, and stops in front of a wall that its laser sees."""
 
-from autograder.kit.mission.mission import Mission, Moment, Pose, World
+from autograder.kit import Mission, Moment, Pose, World
 
 
 def stopped(now: Moment) -> float:

@@ -2,7 +2,7 @@
 
 from random import Random
 
-from autograder.kit.oracle.same_as_solution import SameAsSolution, To
+from autograder.kit import SameAsSolution, To
 
 FRONT = {"near": (0.1, 0.45), "between": (0.55, 0.75), "far": (0.9, 3.0)}
 COURSE = (

@@ -1,6 +1,6 @@
 """A parameter: a talker's text, which the judge changes while the talker runs."""
 
-from autograder.kit.oracle.same_as_solution import SameAsSolution, Sets
+from autograder.kit import SameAsSolution, Sets
 
 EXERCISE = SameAsSolution(
     "parameter.greeter",

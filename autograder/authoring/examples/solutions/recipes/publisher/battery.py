@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from autograder.kit.draft import Draft
-from autograder.kit.recipes.publisher import Hears
+from autograder.kit import Draft, Publisher
 
-heard = Hears()
+heard = Publisher()
 battery = Draft(
     "publisher.battery",
     "A publisher · The battery",

@@ -1,6 +1,6 @@
 """A relay: what is heard on one topic is published on another, in another unit."""
 
-from autograder.kit.oracle.same_as_solution import SameAsSolution, To
+from autograder.kit import SameAsSolution, To
 
 EXERCISE = SameAsSolution(
     "relay.converter",

@@ -1,6 +1,6 @@
 """The exercise that judges the repaired display: it does the same as the solution."""
 
-from autograder.kit.oracle.same_as_solution import SameAsSolution, To
+from autograder.kit import SameAsSolution, To
 
 EXERCISE = SameAsSolution(
     "repair._display",

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from autograder.kit import service_calls
-from autograder.kit.draft import Draft
-from autograder.kit.recipes.service_client import Calls
+from autograder.kit import Calls, Draft, service_calls
 
 recipe = Calls(1, wanted="one call with the two distances, in each run")
 odometer = Draft(

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from autograder.kit.draft import Draft
-from autograder.kit.model import Finding
-from autograder.kit.recipes.servers import CALLS_AT_ONCE, Asks, ServerSeen
+from autograder.kit import Asks, Draft, Finding
+from autograder.kit.recipes.servers import CALLS_AT_ONCE, ServerSeen
 
 SINGLE = 3
 """Calls one by one; after them come several at once, and one more."""

@@ -6,15 +6,14 @@ from typing import TYPE_CHECKING
 
 import re2
 
+from autograder.kit import Draft, Finding, OwnScenario
 from autograder.kit.bench import Pace
-from autograder.kit.draft import Draft
-from autograder.kit.model import Finding
-from autograder.kit.recipes.own_scenario import Met, OwnScenario, once_met
+from autograder.kit.recipes.own_scenario import Met, once_met
 
 if TYPE_CHECKING:
     from random import Random
 
-    from autograder.kit.evidence import Part
+    from autograder.kit import Part
 
 LIMIT = 20
 """The lowest charge without a warning, in percent."""

@@ -1,6 +1,6 @@
 """A switch: a publisher that a service std_srvs/srv/SetBool switches on and off."""
 
-from autograder.kit.oracle.same_as_solution import SameAsSolution, To
+from autograder.kit import SameAsSolution, To
 
 EXERCISE = SameAsSolution(
     "switch.lamp",

@@ -1,6 +1,6 @@
 """A watch: time alone decides what is due, and the node says each change once."""
 
-from autograder.kit.oracle.same_as_solution import SameAsSolution, To
+from autograder.kit import SameAsSolution, To
 
 BEAT = To("/heartbeat", {})
 LOST = (BEAT, 0.7)
