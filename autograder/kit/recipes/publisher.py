@@ -392,3 +392,7 @@ def _lost(evidence: Evidence, topic: str) -> int:
     """Return the number of messages that the publisher sent before the first one that the judge received."""
     first = evidence.main.first("message", topic)
     return int(first.data.get("number", 1)) - 1 if first is not None else 0
+
+
+Hears = Publisher
+"""The name of :class:`Publisher` up to version 0.1: after what the judge does."""

@@ -411,3 +411,7 @@ def _invented_text(evidence: Evidence) -> Advice | None:
         f"Your node said “{made_up[0]}”, but no node sent that string.",
         "Log only in the subscription's callback: the field data of the message that it was given, unchanged.",
     )
+
+
+Speaks = Subscriber
+"""The name of :class:`Subscriber` up to version 0.1: after what the judge does."""
