@@ -44,7 +44,7 @@ def root(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def environ(root: Path) -> Mapping[str, str]:
-    """What the set-up of that course would have made: its interface is built, and found as a sourced workspace is."""
+    """The author's terminal: the interface is built, and the workspace sourced."""
     python, prefix = Path(sys.executable), root / "prefix"
     packages = interface_packages(root)
     assert [package.name for package in packages] == ["power_interfaces"]
@@ -99,6 +99,7 @@ def test_a_class_is_graded_in_boxes(autograder: Callable[..., Run], root: Path, 
     made = autograder("new-class", folder, "--assignment", "lab_2_1")
     assert made.returncode == 0, made.stdout + made.stderr
     released = nbformat.read(folder / "release/lab_2_1/lab_2_1.ipynb", as_version=4)
+    (folder / "class.toml").write_text(f'overlays = ["{root / "prefix"}"]\n')
     submit(folder, "unsolved", released)
     solution = (
         (root / "solutions/02_power/lab_2_1/lab.md").read_text().split("[solution]\n")[1].split("```")[0]

@@ -8,10 +8,12 @@ from __future__ import annotations
 
 import contextlib
 import html
+import os
 import re  # noqa: TID251  (not what a student handed in)
 import time
 from dataclasses import dataclass
 from enum import StrEnum
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from nbconvert import HTMLExporter
@@ -32,7 +34,6 @@ from autograder.safe_files import HeldFolder
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
-    from pathlib import Path
 
     from nbformat import NotebookNode
     from rich.console import Console
@@ -135,6 +136,7 @@ def execute_all(
             jobs,
             on_start=lambda task: progress.started(task.label),
             boxed=False,
+            overlays=_sourced(),
         )
         with contextlib.closing(running):
             for done in running:
@@ -145,6 +147,11 @@ def execute_all(
                 note = f" ({done.execution.seconds:.1f} s)"
                 progress.finished(done.task.label, failed=bool(found), note=note)
     return [results[id(item.task)] for item in planned]
+
+
+def _sourced() -> list[Path]:
+    """Return the workspaces of this terminal, which the course's own notebooks may use as their author does."""
+    return [Path(one) for one in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if one]
 
 
 def _weight(cell: Cell) -> float:
