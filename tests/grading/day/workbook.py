@@ -25,8 +25,13 @@ def rows_of(path: Path, sheet: int) -> list[dict[str, str | float]]:
             for one in ElementTree.fromstring(book.read("xl/sharedStrings.xml")).iter(f"{_S}si")
         ]
         tree = ElementTree.fromstring(book.read(f"xl/worksheets/sheet{sheet}.xml"))
-    table = [[_value(cell, texts) for cell in row.iter(f"{_S}c")] for row in tree.iter(f"{_S}row")]
-    return [dict(zip(map(str, table[0]), row, strict=True)) for row in table[1:]]
+    # A cell without a value may be left out, so each says its column, as C7 does.
+    names, *rows = (
+        {cell.attrib["r"].rstrip("0123456789"): _value(cell, texts) for cell in row.iter(f"{_S}c")}
+        for row in tree.iter(f"{_S}row")
+    )
+    assert all(row.keys() <= names.keys() for row in rows)
+    return [{str(name): row.get(column, "") for column, name in names.items()} for row in rows]
 
 
 def _value(cell: ElementTree.Element, texts: list[str]) -> str | float:
