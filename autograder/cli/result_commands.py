@@ -25,28 +25,45 @@ if TYPE_CHECKING:
     from autograder.verdict import Verdict
 
 
+def _columns(_context: click.Context, _option: click.Parameter, values: tuple[str, ...]) -> dict[str, str]:
+    """Return the names of columns, which were written as ``ASSIGNMENT=COLUMN``."""
+    named = {name.strip(): called.strip() for name, _, called in (one.partition("=") for one in values)}
+    if not all(named.values()):
+        fail('--column needs an assignment and the name of its column: --column "ASSIGNMENT=COLUMN"')
+    return named
+
+
+into_option = click.option(
+    "--into",
+    type=click.Path(path_type=Path),
+    help="Fill in this list, which was exported from the LMS.",
+)
+columns_option = click.option(
+    "--column",
+    "columns",
+    multiple=True,
+    callback=_columns,
+    metavar="ASSIGNMENT=COLUMN",
+    help="The column for an assignment in the list, if its name does not show it; may be given several times.",
+)
+over_option = click.option(
+    "--over", is_flag=True, help="Replace points that a person typed into the LMS. By default, they stay."
+)
+
+
 @click.command()
 @class_folder
 @click.option(
     "--to",
     type=click.Choice(["canvas", "moodle", "blackboard", "brightspace", "sakai", "ilias", "csv", "xlsx"]),
-    required=True,
-    help="The LMS that will import the files.",
+    default=None,
+    help="The LMS that will import the files. With --into, it is the one from which the list comes.",
 )
 @only_assignments
 @only_sections
-@click.option(
-    "--into",
-    type=click.Path(path_type=Path),
-    help="Fill in this list, which was exported from the LMS given by --to.",
-)
-@click.option(
-    "--column",
-    "columns",
-    multiple=True,
-    metavar="ASSIGNMENT=COLUMN",
-    help="The column for an assignment in the list given by --into; may be given several times.",
-)
+@into_option
+@columns_option
+@over_option
 @click.option(
     "--absent",
     type=click.Choice(["blank", "zero"]),
@@ -58,45 +75,44 @@ if TYPE_CHECKING:
     type=click.Path(path_type=Path),
     help="The folder to write the files to. The default is FOLDER/export.",
 )
+@click.option("--dry-run", is_flag=True, help="Write nothing, and show what would change in the list.")
 @as_json_option
 def export(
     folder: Path,
-    to: str,
+    to: str | None,
     assignments: tuple[str, ...],
     sections: tuple[str, ...],
     into: Path | None,
-    columns: tuple[str, ...],
+    columns: dict[str, str],
+    over: bool,
     absent: str,
     output: Path | None,
+    dry_run: bool,
     as_json: bool,
 ) -> None:
-    """Write the points and the feedback (as a zip) in the format that an LMS imports."""
+    """Write the points and the feedback (as a zip) in the format that an LMS imports.
+
+    Exit code 2: the instructor has to decide something, and the printed lines say what to type.
+    """
+    from autograder.grading.reporting.export_files import ExportChoices
     from autograder.grading.reporting.export_files import export as write_files
 
-    pairs = (one.partition("=") for one in columns)
-    named = {name.strip(): called.strip() for name, _, called in pairs}
-    if not all(named.values()):
-        fail('--column needs an assignment and the name of its column: --column "ASSIGNMENT=COLUMN"')
+    if not to and not into:
+        fail("say for which system: --to canvas, or have a list of the system filled in: --into LIST")
+    choices = ExportChoices(
+        assignments, into, output, absent == "zero", columns, sections, over=over, dry_run=dry_run
+    )
     with grading_errors():
-        done = write_files(
-            folder,
-            to,
-            assignments=assignments,
-            into=into,
-            folder=output,
-            absent_zero=absent == "zero",
-            columns=named,
-            sections=sections,
-        )
+        done = write_files(folder, to or "", choices)
     if as_json:
         files = [{"path": str(file), "purpose": purpose} for file, purpose in done.files]
-        print_json({"files": files, "notices": done.notices})
-        return
-    for file, purpose in done.files:
-        print_line(str(file))
-        print_line(f"    {purpose}")
-    for notice in done.notices:
-        print_line(f"note: {notice}")
+        print_json(
+            {"files": files, "notices": done.notices, "changes": done.changes, "questions": done.questions}
+        )
+    else:
+        for line in done.lines():
+            print_line(line)
+    sys.exit(done.exit_code)
 
 
 @click.command()

@@ -110,6 +110,7 @@ def grade(
         asked = AskedFor(assignments, [*students, *in_sections], again, feedback, dry_run)
         store = stack.enter_context(ClassStore(directory))
         batch = Batch(directory, store, console, roster, asked, backend, here, stack)
+        batch.note(roster.left_out(sections))
         handed_on: Any = ()
         for step in FLOW:
             handed_on = step(batch, handed_on)

@@ -109,6 +109,10 @@ class Batch:
 
         return Writer(self._directory, self._store)
 
+    def note(self, sentences: Iterable[str]) -> None:
+        """Add sentences for the instructor to the report of the run."""
+        self._notices += sentences
+
     def find(self, _: Iterable[Work]) -> list[Work]:
         """Return the chosen submissions of the class, and note what has to be said about others.
 

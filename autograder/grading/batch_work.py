@@ -150,7 +150,7 @@ def _unplaced(directory: ClassDirectory, asked: AskedFor) -> Iterator[RefusedFil
     table = Table(directory)
     for one in table.waiting():
         if asked.has(one.student, one.assignment) or not (one.student and one.assignment):
-            yield RefusedFile(Path(one.label), f"not placed: {one.sentence}")
+            yield RefusedFile(Path(one.label), one.sentence, waits=True)
     if table.is_edited:
         path = directory.path
         yield RefusedFile(

@@ -63,10 +63,12 @@ class RefusedFile:
     Attributes:
         path: The file or folder.
         reason: The reason, and what the instructor has to do.
+        waits: True if it is a collected file that waits for the instructor.
     """
 
     path: Path
     reason: str
+    waits: bool = False
 
 
 class ClassDirectory:

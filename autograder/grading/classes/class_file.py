@@ -20,6 +20,7 @@ class ClassFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     leave_out: tuple[str, ...] = ()
     points: dict[str, float] = {}
     weights: dict[str, float] = {}
+    out_of: dict[str, float] = {}
     drop_lowest: Annotated[int, msgspec.Meta(ge=0)] = 0
     overlays: tuple[str, ...] = ()
 
@@ -41,7 +42,7 @@ def read_class_file(folder: Path) -> ClassFile:
     except (OSError, ValueError) as error:
         raise GradingError(
             f'{path} cannot be used: {error}. It may contain leave_out = ["EXERCISE"], drop_lowest = 1, '
-            'overlays = ["/FOLDER"], and tables named points and weights.'
+            'overlays = ["/FOLDER"], and tables named points, weights and out_of.'
         ) from error
 
 

@@ -254,6 +254,7 @@ class Line:
             system uses these names.
         is_named: True if the file has the name of the notebook.
         is_sure: True if a number of the system identifies the student, not just a name that students may choose.
+        via: The system from which the file came that a person corrected; ``number``, ``name`` and ``file`` are its.
         came_in: The downloads that contained the file.
         rank: If a file came several times, the line with the lowest rank is preferred. The rank is lower if the command
             named the system, and higher if the command named the assignment.
@@ -283,6 +284,7 @@ class Line:
     unreadable: str = ""
     first: datetime | None = None
     time_from: str = ""
+    via: str = ""
 
     @property
     def student(self) -> str:

@@ -91,7 +91,11 @@ def _of_notebook(place: Place, files: list[Line], submitted: Submitted) -> Itera
     if best:
         # If a person corrected the file in ``submitted``, the student's own time of handing in still applies.
         times = [one.when for one in files if one.when and present]
-        yield _timed(replace(best, when=best.when or max(times, default=None)), files, submitted)
+        best = replace(best, when=best.when or max(times, default=None))
+        if known := [one for one in files if one.number and present]:
+            there = max(known, key=lambda one: (one.when.timestamp() if one.when else 0, one.order))
+            best = replace(best, via=there.lms, number=there.number, name=there.name, file=there.file)
+        yield _timed(best, files, submitted)
     why = "the file was in submitted before: write yes under use to put it there again"
     if chosen:
         put_there = "was put into the folder submitted by hand, and is graded"
@@ -106,7 +110,7 @@ def _timed(best: Line, files: Sequence[Line], submitted: Submitted) -> Line:
     """Return the file to grade with the first time at which the same bytes came, unless a person wrote another one."""
     first = min((one.first for one in files if one.first and one.content == best.content), default=None)
     if not best.when or not first or first >= best.when or best.time_from == "handed_in":
-        return replace(best, state=LineState.PLACED, reason="")
+        return replace(best, state=LineState.PLACED)
     again = in_zone(best.when, submitted.directory.time_zone)
     reason = f"the same bytes were handed in again on {again}: the first time counts"
     return replace(best, when=first, state=LineState.PLACED, reason=reason)
@@ -183,8 +187,13 @@ def _best(place: Place, files: Sequence[Line], submitted: Submitted) -> tuple[Li
         )
         return None, [_waiting(one, reason) for one in files]
     others: list[Line] = []
+    with_work = [one for one in files if work[one.content]]
+    if with_work and not work[first.content]:
+        last = _top(with_work, lambda one: one.when.timestamp() if one.when else 0)[0]
+        words = f"nothing is written in it, and {last.label} has answers: to have it graded, write yes under use there"
+        first = replace(first, reason=words)
     at = f", handed in {in_zone(first.when, submitted.directory.time_zone)}" if first.when else ""
-    for one in (one for one in files if one is not first):
+    for one in (one for one in files if one.key != first.key):
         is_older = work[one.content] < work[first.content] or (
             one.lms == first.lms and 0 < one.order < first.order
         )

@@ -125,7 +125,11 @@ class ListTimes:
 
 
 def _told(taken: dict[str, set[str]], doubtful: dict[str, set[str]]) -> str:
-    each = [f"{counted(len(numbers), 'time')} taken, for {name}" for name, numbers in sorted(taken.items())]
+    each = [
+        f"{counted(len(numbers), 'time')} taken, for {name}"
+        for name, numbers in sorted(taken.items())
+        if name
+    ]
     text = f"{WAS_READ}: {', '.join(each) or 'no time taken'}"
     if not doubtful:
         return text

@@ -82,12 +82,17 @@ def parse_list(name: str, data: bytes) -> list[ListEntry] | None:
 _NUMBER = re2.compile(r"(\d+)(?:\.\w+)?$")
 
 
+def number_in(value: str) -> str:
+    """Return the number at the end of an identifier, such as ``Participant 12345``; empty if there is none."""
+    found = _NUMBER.search(value)
+    return found[1] if found else ""
+
+
 def _entries(form: ListForm, records: list[dict[str, str]]) -> Iterator[ListEntry]:
     for record in records:
         number = record.get(form.number, "")
         if form.lms in ("moodle", "canvas", "gradescope"):
-            found = _NUMBER.search(number)
-            number = found[1] if found else ""
+            number = number_in(number)
         names = [Identity(form.lms, login=login) for name in form.logins if (login := record.get(name, ""))]
         if called := " ".join(filter(None, (record.get(name, "") for name in form.names))):
             names.append(Identity(form.lms, name=called))
@@ -106,12 +111,12 @@ def _of_gradescope(data: bytes) -> list[ListEntry] | None:
         return None
     entries = []
     for folder, about in found.items():
-        number = _NUMBER.search(_word(folder))
-        if number is not None and isinstance(about, dict):
+        number = number_in(_word(folder))
+        if number and isinstance(about, dict):
             members = tuple(_member(one) for one in about.get(":submitters") or () if isinstance(one, dict))
             when = read_time(_word(about.get(":created_at")))
             when = when.replace(tzinfo=UTC) if when and when.tzinfo is None else when
-            entries.append(ListEntry("gradescope", number[1], members, when))
+            entries.append(ListEntry("gradescope", number, members, when))
     return entries
 
 

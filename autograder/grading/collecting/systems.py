@@ -43,6 +43,7 @@ class ListForm:
         names: The columns that together are the name, which users choose themselves.
         time: The column with the time at which the work was handed in.
         points: The column for the points, or :data:`EACH`; empty if the list has no place for points.
+        out_of: The column with the maximum points, in a list with one column for points.
         is_numbered: True if the number is the same for all assignments.
     """
 
@@ -53,6 +54,7 @@ class ListForm:
     names: tuple[str, ...] = ()
     time: str = ""
     points: str = ""
+    out_of: str = ""
     is_numbered: bool = False
 
     @property

@@ -180,6 +180,7 @@ def read_table(directory: ClassDirectory, sections: Sequence[str] = ()) -> Class
     notices = [
         *roster.notices(directory.assignments(), entries, shown.students),
         *shown.late_notices(systems),
+        *roster.left_out(sections),
     ]
     return replace(shown, notices=tuple(notices))
 

@@ -222,7 +222,8 @@ def show(report: GradeReport, console: Console | None = None) -> None:
     for words in _legend(report.rows):
         plain_line(console, words)
     for refused in report.refused:
-        plain_line(console, f"refused      {refused.path}: {refused.reason}", "yellow")
+        word = "waits" if refused.waits else "refused"
+        plain_line(console, f"{word:<12} {refused.path}: {refused.reason}", "yellow")
     for where, reason in _unreadable(report):
         plain_line(console, f"unreadable   {where}: {reason}", "yellow")
     for name, due in report.due.items():

@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 import unicodedata
+from collections import Counter
 from collections.abc import Mapping  # noqa: TC003  (msgspec reads the annotations)
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+import re2
+
 from autograder.grading.grading_errors import GradingError
+from autograder.kit.in_words import counted
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
@@ -36,8 +40,8 @@ class Student:
         lms: The student's ids and user names in learning management systems, by the names in :data:`LMS`; and the
             content of other columns, which ``collect --names`` may use.
         excused: The assignments from which the student is excused.
-        section: The section, that is, the group of students that one teaching assistant grades; empty if there is
-            none.
+        section: The section, that is, the group of students that one teaching assistant grades; or several sections,
+            as Canvas joins them; empty if there is none.
     """
 
     id: str
@@ -54,10 +58,19 @@ class Student:
         return f"{self.first_name} {self.last_name}".strip()
 
     @property
+    def sections(self) -> set[str]:
+        """The sections: the whole text, and the parts that Canvas or Moodle joined, as in ``Mon, Tue, and Lab``."""
+        parts = _JOINED.split(self.section)
+        return {self.section, *map(str.strip, parts)} - {""}
+
+    @property
     def numbers(self) -> set[tuple[str, str]]:
         """Pairs of an LMS and the number or name by which this LMS alone knows the student."""
         # A group may share an account on GitHub.
         return {(name, folded(self.lms[name])) for name in LMS if name in self.lms and name != "github"}
+
+
+_JOINED = re2.compile(r",? and |, ")
 
 
 @dataclass(frozen=True)
@@ -174,14 +187,28 @@ class Roster:
         Raises:
             GradingError: A section has no students.
         """
-        known = {one.section for one in self.students.values()} - {""}
+        known = {section for one in self.students.values() for section in one.sections}
         for section in sections:
             if section not in known:
                 raise GradingError(
                     f"No student is in a section named {section}. The sections in {NAME} are: "
                     f"{', '.join(sorted(known)) or 'nothing'}."
                 )
-        return [one.id for one in self.students.values() if one.section and one.section in set(sections)]
+        return [one.id for one in self.students.values() if one.sections & set(sections)]
+
+    def left_out(self, sections: Sequence[str]) -> list[str]:
+        """Return a sentence about the students who are in none of some sections; no sentence if there are no such."""
+        others = [one for one in self.students.values() if not one.sections & set(sections)]
+        counts = Counter(section for one in others for section in one.sections if not _JOINED.search(section))
+        if not sections or not others:
+            return []
+        of_section = [f"{count} of {section}" for section, count in sorted(counts.items())]
+        without = [one.id for one in others if not one.section]
+        named = (
+            f"without a section: {', '.join(without[:_MOST_NAMED])}{' …' if without[_MOST_NAMED:] else ''}"
+        )
+        parts = "; ".join([*of_section, *([named] if without else [])])
+        return [f"--section leaves out {counted(len(others), 'student')} ({parts})"]
 
     def find(self, identity: Identity) -> tuple[Student, ...]:
         """Return the students to whom an identity may belong: one if that is certain, otherwise several or none.

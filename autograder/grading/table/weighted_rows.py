@@ -119,14 +119,14 @@ def read_what_counts(directory: ClassDirectory, cells: Mapping[str, Sequence[Gra
     exercises = {cell.exercise for of_assignment in cells.values() for cell in of_assignment}
     for name, known in (
         *((name, exercises) for name in (*said.leave_out, *said.points)),
-        *((name, cells.keys()) for name in said.weights),
+        *((name, cells.keys()) for name in (*said.weights, *said.out_of)),
     ):
         if name not in known:
             raise GradingError(
                 f"{path} contains {name}, which does not exist in this class. Possible names are: "
                 f"{', '.join(sorted(known))}."
             )
-    for name, points in (*said.points.items(), *said.weights.items()):
+    for name, points in (*said.points.items(), *said.weights.items(), *said.out_of.items()):
         if not 0 <= points < 1e6:
             raise GradingError(
                 f"{path} sets {name} to {points:g}. Write a number from 0 to less than 1000000."

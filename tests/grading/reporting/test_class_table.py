@@ -46,8 +46,8 @@ def table() -> ClassTable:
 @pytest.mark.parametrize(
     "use",
     [
-        lambda table: gradebook("sakai", table, NO_RECORDS, ASSIGNMENTS),
-        lambda table: gradebook("moodle", table, NO_RECORDS, ASSIGNMENTS),
+        lambda table: gradebook("sakai", table, NO_RECORDS, ASSIGNMENTS, {}),
+        lambda table: gradebook("moodle", table, NO_RECORDS, ASSIGNMENTS, {}),
         lambda table: export_files.class_csv(table, ASSIGNMENTS),
         lambda table: [table.max_score(one) for _ in CLASS for one in ("", *ASSIGNMENTS)],
         lambda table: [table.assignments and table.students for _ in CLASS],

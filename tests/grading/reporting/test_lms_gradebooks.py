@@ -14,7 +14,7 @@ from test_collect import work
 from tiny_class import TALKER
 
 from autograder.grading.collecting.collect import collect
-from autograder.grading.reporting.export_files import export
+from autograder.grading.reporting.export_files import ExportChoices, export
 from tests.cases import cases
 
 if TYPE_CHECKING:
@@ -88,7 +88,7 @@ def test_a_list_of_the_system_is_filled_in(graded: TinyClass, tmp_path: Path, lm
     collected(graded, tmp_path, "sakai")
     given, wanted = LISTS[lms]
     (tmp_path / "list.csv").write_text(given, encoding="utf-8")
-    export(graded.path, lms, into=tmp_path / "list.csv")
+    export(graded.path, lms, ExportChoices(into=tmp_path / "list.csv"))
     assert (graded.path / "export" / "list.csv").read_text("utf-8").partition("\n")[2] == wanted
 
 
@@ -97,5 +97,5 @@ def test_moodles_worksheet_in_french_is_filled_in(graded: TinyClass, tmp_path: P
     (tmp_path / "notes.csv").write_text(
         "Identifiant,Nom complet,Adresse de courriel,Note\nParticipant31,Ada Lovelace,,\n", encoding="utf-8"
     )
-    export(graded.path, "moodle", into=tmp_path / "notes.csv")
+    export(graded.path, "moodle", ExportChoices(into=tmp_path / "notes.csv"))
     assert (graded.path / "export" / "notes.csv").read_text("utf-8").endswith("Ada Lovelace,,11.5\n")

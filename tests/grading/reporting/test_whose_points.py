@@ -13,7 +13,7 @@ from downloads import ROSTER
 from own_assignment import EngineWithAsserts, hand_in, write_assignment
 
 from autograder.grading.grading_errors import GradingError
-from autograder.grading.reporting.export_files import export
+from autograder.grading.reporting.export_files import ExportChoices, export
 from autograder.grading.reporting.report_page import write_report
 from autograder.grading.running import execution_backends
 from autograder.verdict import not_checked
@@ -36,7 +36,7 @@ def test_zero_for_the_absent_is_for_nobody_else(klass: TinyClass, monkeypatch: p
     )
     klass.submit("eve", "1/0", "1/0")
     klass.grade()
-    export(klass.path, "csv", absent_zero=True)
+    export(klass.path, "csv", ExportChoices(absent_zero=True))
     shown = {name: (line["lab_1_2"], line["total"]) for name, line in students(klass).items()}
     assert shown == {
         "ada": ("0", "0"),
@@ -57,7 +57,7 @@ def test_who_is_excused_from_what_there_is_not_is_named(klass: TinyClass) -> Non
         "The class has: lab_1_2"
     )
     assert said.format("ada, eve") in export(klass.path, "csv").notices
-    assert said.format("ada") in export(klass.path, "csv", sections=["A"]).notices
+    assert said.format("ada") in export(klass.path, "csv", ExportChoices(sections=["A"])).notices
     assert said.format("ada, eve") in klass.grade().notices
     assert said.format("ada, eve") in write_report(klass.path).read_text()
     assert "lab_12" not in write_report(klass.path, names=False).read_text()
@@ -81,9 +81,9 @@ def test_an_assignment_whose_source_is_damaged_is_named_and_not_left_out_in_sile
     assert "own is left out of all students' points" in without_names
     assert str(klass.path) not in without_names
     with pytest.raises(GradingError, match=r"own\.ipynb is not a notebook"):
-        export(klass.path, "csv", assignments=["own"])
+        export(klass.path, "csv", ExportChoices(assignments=["own"]))
     with pytest.raises(GradingError, match="No student has handed in lab_9"):
-        export(klass.path, "csv", assignments=["lab_9"])
+        export(klass.path, "csv", ExportChoices(assignments=["lab_9"]))
     (klass.path / "source" / "lab_1_2" / "lab_1_2.ipynb").write_text("{")
     with pytest.raises(GradingError, match="is not a notebook"):
         export(klass.path, "csv")
@@ -97,7 +97,7 @@ def test_what_could_not_be_checked_is_blank_until_it_could(klass: TinyClass) -> 
     klass.grade()
     for grade in (lambda: None, lambda: klass.grade(students=["ben"], again=True)):
         grade()
-        export(klass.path, "csv", absent_zero=True)
+        export(klass.path, "csv", ExportChoices(absent_zero=True))
         assert (students(klass)["eve"]["lab_1_2"], students(klass)["eve"]["total"]) == ("", "")
     text = (klass.path / "grades.csv").read_text("utf-8-sig")
     of_eve = [row for row in csv.DictReader(io.StringIO(text)) if row["student"] == "eve"]
