@@ -119,8 +119,14 @@ def _pairs(_context: click.Context, _option: click.Parameter, values: tuple[str,
     help="A student's old and new id, if no number in the list shows that both are one student; may be given several "
     "times.",
 )
+@click.option(
+    "--same-names",
+    "by_name",
+    is_flag=True,
+    help="Students with the same name are the same students, for example in a list of another LMS.",
+)
 @click.option("--yes", is_flag=True, help="Make the changes. Without this option, they are only shown.")
-def students(folder: Path, new_list: Path | None, said: dict[str, str], yes: bool) -> None:
+def students(folder: Path, new_list: Path | None, said: dict[str, str], by_name: bool, yes: bool) -> None:
     """Show what a new list of students changes in the class FOLDER: who is renamed, dropped or added.
 
     LIST replaces students.csv in FOLDER; without it, students.csv itself is the new list. A student with a new id keeps
@@ -129,7 +135,7 @@ def students(folder: Path, new_list: Path | None, said: dict[str, str], yes: boo
     from autograder.grading.new_classes.changing_students import change_students
 
     with grading_errors():
-        for line in change_students(folder, new_list, said, is_final=yes):
+        for line in change_students(folder, new_list, said, is_final=yes, by_name=by_name):
             print_line(line)
 
 

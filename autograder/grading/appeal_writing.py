@@ -20,7 +20,7 @@ from autograder.judge import evidence_files
 from autograder.judge.evidence_files import NoEvidence, unpack
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterator, Sequence
     from pathlib import Path
 
     from autograder.grading.class_records import Attempt, RunCell
@@ -61,7 +61,7 @@ def _content(
     again = course_command("grade", directory.path, "--student", student)
     stored, entered = store.evidence(student, exercise_id), store.entered()
     if stored is None:
-        raise GradingError(_why_nothing(directory, entered, student, exercise_id, again))
+        raise GradingError(_why_nothing(directory, store.attempts(student), student, exercise_id, again))
     record = entered.get((student, stored.assignment))
     # An appeal is about the grade that the student sees, so the evidence must come from the run that gave this grade.
     if record is None or record.tasks.get(stored.notebook) != stored.task:
@@ -102,14 +102,13 @@ def _before(cells: list[RunCell], exercise_id: str) -> Iterator[AppealedCell]:
 
 def _why_nothing(
     directory: ClassDirectory,
-    entered: Mapping[tuple[str, str], Attempt],
+    attempts: Sequence[Attempt],
     student: str,
     exercise_id: str,
     again: str,
 ) -> str:
-    for assignment in directory.assignments():
-        record = entered.get((student, assignment))
-        for row in record.rows if record else ():
+    for attempt in reversed(attempts):
+        for row in attempt.rows:
             if row.exercise == exercise_id:
                 return (
                     f"No evidence of {exercise_id} by {student} is stored. The state in the table is: {row.state}"

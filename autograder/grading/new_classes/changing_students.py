@@ -36,16 +36,20 @@ if TYPE_CHECKING:
     from autograder.grading.table.roster import Student
     from autograder.grading.table.student_list import KnownStudents, ListChanges
 
+_MOST_UNCLEAR = 5
 _FOLDERS = ("submitted", "autograded", "feedback")
 
 
-def change_students(path: Path, new: Path | None, said: Mapping[str, str], *, is_final: bool) -> list[str]:
+def change_students(
+    path: Path, new: Path | None, said: Mapping[str, str], *, is_final: bool, by_name: bool = False
+) -> list[str]:
     """Compare a list of students with a class, and make the class use it.
 
     Args:
         path: The class directory.
         new: The new list, which replaces ``students.csv``; None if ``students.csv`` itself is the new list.
         said: The new ids of students, by their old ones, if the lists do not show that both are one student.
+        by_name: True if students with the same name are the same students, as far as only one has the name.
         is_final: True to make the changes; False to only return what would change.
 
     Returns:
@@ -73,11 +77,14 @@ def change_students(path: Path, new: Path | None, said: Mapping[str, str], *, is
         check_known(list(said), sorted({**known.former, **known.listed}), "student of the class")
         check_known(list(said.values()), list(listed), "student of the list")
         changes = compare(known, listed, said)
+        if by_name:
+            changes = compare(known, listed, {**changes.unclear_alone, **said})
         entries = read_entries(directory.gradebook_url)
         _check_doubles(directory, changes, entries)
         lines += _lines(known, listed, changes, entries)
         if not is_final:
             options = [word for pair in said.items() for word in ("--rename", "=".join(pair))]
+            options += ["--same-names"] if by_name else []
             words = ["students", path, *([new] if new else []), *options, "--yes"]
             return [*lines, f"Nothing was changed. To use this list, type {course_command(*words)}"]
         if new:
@@ -105,7 +112,16 @@ def _lines(
     for old, new in changes.renamed.items():
         of_other = "" if new in listed else ", because another student has the id now; not in the list"
         yield f"rename    {old} → {new}  {before[old].name}{points(old)}{of_other}"
+    same = changes.unclear_alone
+    if len(same) > _MOST_UNCLEAR:
+        some = ", ".join(f"{old} → {new}" for old, new in list(same.items())[:3])
+        yield (
+            f"unclear   {len(same)} students have the same names as before, other ids, and no number that tells them "
+            f"apart: {some} …: add --same-names if they are the same students"
+        )
     for old, new in changes.unclear:
+        if len(same) > _MOST_UNCLEAR and old in same:
+            continue
         yield (
             f"unclear   {old}, {new}  have the same name, {before[old].name}, and no number that tells them apart: add "
             f"--rename {old}={new} if they are one student; otherwise {old} is dropped and {new} is added"
@@ -117,6 +133,11 @@ def _lines(
         yield f"drop      {old}  {before[old].name}{points(old)}{kept}"
     for new in changes.added:
         yield f"add       {new}  {listed[new].name}{points(new)}"
+    for one, old, new in changes.renumbered:
+        yield (
+            f"number    {one}  {listed[one].name}: {old} → {new}{points(one)}: taken for the same student. If this is "
+            "another person, give that person another id in the list"
+        )
     for one, old, new in changes.moved:
         yield f"section   {one}  {listed[one].name}: {old} → {new or 'none'}"
     yield f"{counted(len(listed), 'student')} in the list"

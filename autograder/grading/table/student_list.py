@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import contextlib
 import glob
-from collections import defaultdict
+from collections import Counter, defaultdict
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
@@ -53,6 +53,8 @@ class ListChanges:
         dropped: The ids that are no longer listed.
         added: The new ids.
         moved: The ids of students whose section has changed, each with the old and the new section.
+        renumbered: The ids of students who have the same name, or the same address, but another number in an LMS, each
+            with the old and the new number.
     """
 
     renamed: Mapping[str, str] = field(default_factory=dict)
@@ -60,6 +62,13 @@ class ListChanges:
     dropped: tuple[str, ...] = ()
     added: tuple[str, ...] = ()
     moved: tuple[tuple[str, str, str], ...] = ()
+    renumbered: tuple[tuple[str, str, str], ...] = ()
+
+    @property
+    def unclear_alone(self) -> dict[str, str]:
+        """The pairs of :attr:`unclear` whose two ids are in no other pair: the new ids by the old ones."""
+        often = Counter(id_ for pair in self.unclear for id_ in pair)
+        return {old: new for old, new in self.unclear if often[old] == often[new] == 1}
 
 
 def compare(known: KnownStudents, new: Mapping[str, Student], said: Mapping[str, str]) -> ListChanges:
@@ -116,6 +125,13 @@ def compare(known: KnownStudents, new: Mapping[str, Student], said: Mapping[str,
             (one, known.listed[now[one]].section, student.section)
             for one, student in new.items()
             if one in now and known.listed[now[one]].section not in ("", student.section)
+        ),
+        tuple(
+            (one, f"{lms} {number}", dict(new[one].numbers)[lms])
+            for one in new
+            if one in now
+            for lms, number in sorted(known.listed[now[one]].numbers)
+            if dict(new[one].numbers).get(lms, number) != number
         ),
     )
 

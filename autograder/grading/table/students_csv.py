@@ -70,6 +70,15 @@ def read_students_csv(path: Path) -> StudentsFile:
         columns = [_FORMS.other_names.get(name, name) for name in columns]
         known = ("id",) if "id" not in columns else [name for name in columns if name]
     _check_columns(path, header, columns, known)
+    for number, row in enumerate(rows, 2):
+        again = [
+            cell.strip().lower() == name.strip().lower() for cell, name in zip(row, header, strict=False)
+        ]
+        if row and row[0].strip() and sum(again) * 2 > len(header):
+            raise GradingError(
+                f"{path}, line {number}: the names of the columns stand there again. A list of students is one table: "
+                "remove this line and, if another table begins there, that table."
+            )
     lines = [
         dict(
             itertools.zip_longest(
@@ -147,8 +156,10 @@ def _as_ours(line: Mapping[str, str], form: Mapping[str, tuple[str, ...]]) -> di
     if full.lower().startswith(_NOBODY):
         return {}
     if full:
-        last, comma, first = full.partition(",")
+        last, comma, first = full.rpartition(",")  # a last name may have a comma, as in "Jones, Jr., Jo"
         first, last = (first, last) if comma else full.rpartition(" ")[::2]
         values |= {"first_name": first.strip(), "last_name": last.strip()}
+    if not values.get("email") and "@" in values["id"]:
+        values["email"] = values["id"]
     own = {name: line[name] for name in (*LMS, "section", "excused") if line.get(name)}
     return {**values, **own}

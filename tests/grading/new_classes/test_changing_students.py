@@ -16,7 +16,7 @@ from downloads import write_zip
 from instructor import by_person
 from nbgrader.api import Gradebook
 from test_collect import work
-from tiny_class import TALKER, FakeEngine, TinyClass
+from tiny_class import LISTENER, TALKER, FakeEngine, TinyClass
 
 from autograder.cli import cli
 from autograder.grading.class_store import ClassStore
@@ -211,7 +211,11 @@ def test_an_id_that_is_given_to_another_person_takes_no_points_along(term: TinyC
 
 def test_a_number_that_was_corrected_makes_nobody_another_person(term: TinyClass) -> None:
     listed(term, ADA, BEN.replace("102", "122"), EVE)
-    assert students(term)[1].startswith("3 students in the list")
+    said = students(term)[1]
+    assert said.startswith(
+        "number    ben  Ben Bär: canvas 102 → 122 (lab_1_2 15): taken for the same student."
+    )
+    assert "3 students in the list" in said
     assert exported(term)[0]["122"] == "15"
 
 
@@ -219,6 +223,28 @@ def test_an_id_in_other_letters_is_the_same_student(term: TinyClass) -> None:
     listed(term, ADA, BEN.replace("ben,", "BEN,").replace("102", ""), EVE)
     assert "rename    ben → BEN" in students(term, "--yes")[1]
     assert ids(term) == everywhere("ada", "BEN", "eve")
+
+
+def test_the_list_of_another_system_is_one_question(tiny: TinyClass) -> None:
+    people = [
+        ("Ada", "Lovelace"),
+        ("Ben", "Bär"),
+        ("Eve", "Neill"),
+        ("Kai", "Ek"),
+        ("Mia", "Moss"),
+        ("Noé", "Cruz"),
+    ]
+    before = [f"{first.lower()},{first},{last}" for first, last in people]
+    (tiny.path / "students.csv").write_text("\n".join(["id,first_name,last_name", *before]))
+    tiny.submit("ada", 7, 7)
+    tiny.grade()
+    after = [f"{place}7,{first},{last}" for place, (first, last) in enumerate(people, 1)]
+    (tiny.path / "students.csv").write_text("\n".join(["id,first_name,last_name", *after]))
+    said = students(tiny)[1]
+    assert said.count("unclear") == 1
+    assert "6 students have the same names as before" in said
+    assert "rename    ada → 17" in students(tiny, "--same-names", "--yes")[1]
+    assert tiny.scores("17") == {TALKER: 7, LISTENER: 7}
 
 
 def test_two_of_one_name_and_no_number_are_for_a_person_to_tell_apart(term: TinyClass) -> None:

@@ -49,6 +49,8 @@ def test_a_header_in_other_letters_is_known(tmp_path: Path, header: str) -> None
         ("", r"no column named id, but nothing"),
         ("id,canvas\na,501\nb,\nc,501\n", r"line 4: 501 under canvas also stands in line 2"),
         ("id,moodle\na,Ada\nb,ada\n", r"line 3: ada under moodle also stands in line 2"),
+        ("id,first_name\nid,first_name\na,A\n", r"line 2: the names of the columns stand there again"),
+        ("id,first_name\na,A\n\nid,first_name\nt,T\n", r"line 4: the names of the columns stand there again"),
         ("id\nal01\nAL01\n", r"line 3: the id AL01 also stands in line 2"),
     ],
 )
@@ -82,3 +84,32 @@ def test_lists_of_systems_are_read_as_they_are(tmp_path: Path) -> None:
         ("ada", "Ada Lovelace", {"canvas": "501"}, "Mon")
     ]
     assert file.unknown == ()
+
+
+@pytest.mark.parametrize(
+    ("text", "student"),
+    [
+        (
+            'Student,ID,SIS Login ID,Section\n"Jones, Jr., Jo",501,jo@uni.example,Mon and Lab\n',
+            ("jo@uni.example", "Jo", "Jones, Jr.", "jo@uni.example", {"Mon and Lab", "Mon", "Lab"}),
+        ),
+        (
+            "Vorname;Nachname;ID-Nummer;E-Mail-Adresse;Gruppen\nAda;Lovelace;0042;ada@uni.example;Mo, Team 1\n",
+            ("0042", "Ada", "Lovelace", "ada@uni.example", {"Mo, Team 1", "Mo", "Team 1"}),
+        ),
+        (
+            'First name,Last name,Email address,Groups\nAda,Lovelace,ada@uni.example,"Mo, Tu, and We"\n',
+            ("ada@uni.example", "Ada", "Lovelace", "ada@uni.example", {"Mo, Tu, and We", "Mo", "Tu", "We"}),
+        ),
+        (
+            "Prénom,Nom de famille,Adresse de courriel\nAda,Lovelace,ada@uni.example\n",
+            ("ada@uni.example", "Ada", "Lovelace", "ada@uni.example", set()),
+        ),
+    ],
+)
+def test_names_addresses_and_sections_of_a_system_are_read(
+    tmp_path: Path, text: str, student: tuple[str, str, str, str, set[str]]
+) -> None:
+    (tmp_path / "list.csv").write_text(text, encoding="utf-8")
+    (one,) = read_students_csv(tmp_path / "list.csv").students
+    assert (one.id, one.first_name, one.last_name, one.email, one.sections) == student
