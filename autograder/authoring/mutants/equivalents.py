@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import ast
-import itertools
 import struct
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from autograder.authoring.mutants.code import Code, called
 
@@ -20,7 +18,6 @@ EXCHANGED = "min and max take their arguments in any order"
 EDGE = "no drawing is exactly at a number that 32 bits do not hold, or at the very end of a time"
 DECLARED = "the order of declarations is free"
 ONE_OBJECT = "the judge makes one node for each drawing"
-IMPLIED = "the branch before, or after, says the same already"
 FORWARD = "time does not go back, so the newest is the latest"
 FIRST_NONE = "what has been set once is never None again"
 SET_BEFORE = "it is set before it is read"
@@ -63,8 +60,6 @@ def equivalent(code: Code, mutant: Mutant, root: str = "") -> str:
         return FIRST_NONE
     if operator == "begun_again" and mutant.kind == "at each call":
         return SET_BEFORE if _sets_first(code, mutant) else ""
-    if operator in ("operand_left_out", "elif_as_if", "connective", "condition"):
-        return IMPLIED if _same_branches(code, mutant) else ""
     return ""
 
 
@@ -140,191 +135,3 @@ def _in_order(node: ast.AST) -> Iterator[ast.AST]:
 def _is_at_the_top(code: Code, node: ast.AST, function: ast.AST) -> bool:
     statement = code.ancestor(node, lambda one: isinstance(one, ast.stmt))
     return statement is not None and code.parents.get(statement) is function
-
-
-@dataclass(frozen=True)
-class _Values:
-    """Makes what conditions look at take all values that can make a difference.
-
-    Attributes:
-        atoms: What is looked at, as it is written: a name, an attribute or a call.
-        values: The values that each takes.
-    """
-
-    atoms: tuple[str, ...]
-    values: tuple[tuple[Any, ...], ...]
-
-    def all(self) -> Iterator[dict[str, Any]]:
-        """Yield all combinations, by what is looked at."""
-        for combination in itertools.product(*self.values):
-            yield dict(zip(self.atoms, combination, strict=True))
-
-
-_MOST = 20_000
-"""The greatest number of combinations that are tried."""
-
-
-def _same_branches(code: Code, mutant: Mutant) -> bool:
-    """Return True if an ``if`` chooses the same branches in the mutant whatever its conditions look at.
-
-    An attribute that the first branch sets may have any value when the second condition is looked at.
-    """
-    end = mutant.start + len(mutant.before)
-    chain = _around(code, mutant.start, end, ast.If)
-    while chain is not None and isinstance(code.parents.get(chain), ast.If):
-        above = code.parents[chain]
-        if not (isinstance(above, ast.If) and above.orelse == [chain]):
-            break
-        chain = above
-    if not isinstance(chain, ast.If):
-        return False
-    tests, bodies = _branches(chain)
-    is_in_a_test = any(first <= mutant.start and end <= last for first, last in map(code.span, tests))
-    if not is_in_a_test and mutant.operator != "elif_as_if":
-        return False
-    changed = _mutated(code, mutant, chain)
-    if changed is None:
-        return False
-    others, independent = changed
-    if len(others) != len(tests):
-        return False
-    values = _values([*tests, *others])
-    if values is None:
-        return False
-    for seen in values.all():
-        if _chosen(tests, bodies, seen, values, independent=False) != _chosen(
-            others, bodies, seen, values, independent=independent
-        ):
-            return False
-    return True
-
-
-def _branches(chain: ast.If) -> tuple[list[ast.expr], list[list[ast.stmt]]]:
-    tests, bodies = [chain.test], [chain.body]
-    while len(chain.orelse) == 1 and isinstance(chain.orelse[0], ast.If):
-        chain = chain.orelse[0]
-        tests.append(chain.test)
-        bodies.append(chain.body)
-    return tests, bodies
-
-
-def _mutated(code: Code, mutant: Mutant, chain: ast.If) -> tuple[list[ast.expr], bool] | None:
-    """Return the conditions in the mutant, and whether the second is looked at in any case."""
-    tree = ast.parse(mutant.text)
-    found = [one for one in ast.walk(tree) if isinstance(one, ast.If) and one.lineno == chain.lineno]
-    if not found:
-        return None
-    tests, _ = _branches(found[0])
-    if mutant.operator != "elif_as_if":
-        return tests, False
-    line = code.line(mutant.start)
-    second = [one for one in ast.walk(tree) if isinstance(one, ast.If) and one.lineno == line]
-    if not second:
-        return None
-    more, _ = _branches(second[0])
-    return ([*tests, *more], True) if len(tests) == 1 else None
-
-
-def _chosen(
-    tests: Sequence[ast.expr],
-    bodies: Sequence[Sequence[ast.stmt]],
-    seen: dict[str, Any],
-    values: _Values,
-    *,
-    independent: bool,
-) -> tuple[int, ...]:
-    """Return which branches are taken."""
-    holds = [bool(_value(test, seen)) for test in tests]
-    first = next((number for number, held in enumerate(holds) if held), -1)
-    if not (independent and holds[0]):
-        return (first,)
-    set_there = {ast.unparse(node) for one in bodies[0] for node in ast.walk(one) if _is_set(node)}
-    for other in values.all():
-        later = {atom: other[atom] if atom in set_there else seen[atom] for atom in seen}
-        if any(_value(test, later) for test in tests[1:]):
-            return (first, 1)
-    return (first,)
-
-
-def _is_set(node: ast.AST) -> bool:
-    return isinstance(node, (ast.Attribute, ast.Name)) and isinstance(node.ctx, ast.Store)
-
-
-def _values(tests: Sequence[ast.expr]) -> _Values | None:
-    """Return the values to try; None if a condition looks at something that has no such values."""
-    found: dict[str, set[Any]] = {}
-    for test in tests:
-        for node in _atoms(test):
-            found.setdefault(ast.unparse(node), {True, False})
-        for compare in ast.walk(test):
-            if isinstance(compare, ast.Compare):
-                sides = [compare.left, *compare.comparators]
-                constants = [side.value for side in sides if isinstance(side, ast.Constant)]
-                for side in sides:
-                    if not isinstance(side, ast.Constant):
-                        found[ast.unparse(side)] = (
-                            found.get(ast.unparse(side), set()) - {True, False}
-                        ) | _near(constants)
-    values = tuple(tuple(one) for one in found.values())
-    count = 1
-    for one in values:
-        count *= len(one)
-    return (
-        _Values(tuple(found), values)
-        if values and count * count <= _MOST * _MOST and count <= _MOST
-        else None
-    )
-
-
-def _near(constants: Sequence[Any]) -> set[Any]:
-    values: set[Any] = set()
-    for constant in constants:
-        if isinstance(constant, (int, float)) and not isinstance(constant, bool):
-            values |= {constant - 1e-3, float(constant), constant + 1e-3}
-        else:
-            values |= {constant, f"not {constant}"}
-    return values or {1.0, 2.0, 3.0}
-
-
-def _atoms(test: ast.expr) -> Iterator[ast.expr]:
-    if isinstance(test, ast.BoolOp):
-        for value in test.values:
-            yield from _atoms(value)
-    elif isinstance(test, ast.UnaryOp) and isinstance(test.op, ast.Not):
-        yield from _atoms(test.operand)
-    elif isinstance(test, ast.Compare):
-        yield from (side for side in (test.left, *test.comparators) if not isinstance(side, ast.Constant))
-    elif not isinstance(test, ast.Constant):
-        yield test
-
-
-def _value(test: ast.expr, seen: dict[str, Any]) -> Any:
-    """Evaluate a condition, given what it looks at."""
-    if isinstance(test, ast.BoolOp):
-        values = (_value(value, seen) for value in test.values)
-        return all(values) if isinstance(test.op, ast.And) else any(values)
-    if isinstance(test, ast.UnaryOp) and isinstance(test.op, ast.Not):
-        return not _value(test.operand, seen)
-    if isinstance(test, ast.Compare):
-        sides = [
-            side.value if isinstance(side, ast.Constant) else seen[ast.unparse(side)]
-            for side in (test.left, *test.comparators)
-        ]
-        pairs = zip(test.ops, itertools.pairwise(sides), strict=True)
-        return all(_compared(operator, *pair) for operator, pair in pairs)
-    return test.value if isinstance(test, ast.Constant) else seen[ast.unparse(test)]
-
-
-def _compared(operator: ast.cmpop, one: Any, other: Any) -> bool:
-    if isinstance(operator, (ast.Eq, ast.Is)):
-        return bool(one == other)
-    if isinstance(operator, (ast.NotEq, ast.IsNot)):
-        return bool(one != other)
-    try:
-        return bool(
-            {ast.Lt: one < other, ast.LtE: one <= other, ast.Gt: one > other, ast.GtE: one >= other}[
-                type(operator)
-            ]
-        )
-    except (TypeError, KeyError):
-        return False
