@@ -79,22 +79,23 @@ def simulated_times(messages: Sequence[Event]) -> list[float]:
 
 
 def rate_of(
-    messages: Sequence[Event], wanted: float, row: int = ROW, *, may_vary: bool = False
+    messages: Sequence[Event], wanted: float, row: int = ROW, *, inputs: Sequence[float] | None = None
 ) -> Rate | None:
     """Return the rate of a publisher's messages; None if there are too few messages.
 
     Args:
         messages: The messages that the judge received.
         wanted: The reference's interval, in seconds.
-        may_vary: True if the publisher may be silent for some time, or publish one message more at an input. In
-            simulated time, the usual interval counts then.
+        inputs: In simulated time, the times at which something was given to a publisher that may publish once more
+            then, or fall silent until then: the intervals around them do not count. None if all intervals count.
         row: Used only in real time, where messages may be late: the number of successive messages in a group. The
             result is the rate of the first group with the right rate; if no group has the right rate, the rate of the
             last group.
     """
     if times := simulated_times(messages):
-        measured = _usual_rate if may_vary else _exact_rate
-        return measured(times, wanted) if len(times) > 1 else None
+        if inputs is not None:
+            return _rate_between(inputs, times, wanted)
+        return _exact_rate(times, wanted) if len(times) > 1 else None
     sent = sent_times(messages)
     rows = [sent[i : i + row] for i in range(max(1, len(sent) - row + 1))] if len(sent) > 1 else []
     rates = [_rate_in_real_time(times, wanted) for times in rows]
@@ -152,12 +153,17 @@ def _exact_rate(times: Sequence[float], wanted: float) -> Rate:
     return Rate(period, gaps, even, even and abs(period - wanted) <= SIMULATED_TOLERANCE * wanted)
 
 
-def _usual_rate(times: Sequence[float], wanted: float) -> Rate:
-    gaps = [later - earlier for earlier, later in pairwise(times)]
+def _rate_between(inputs: Sequence[float], times: Sequence[float], wanted: float) -> Rate | None:
+    gaps = [
+        later - earlier
+        for earlier, later in pairwise(times)
+        if not any(earlier - SIMULATED_JITTER <= moment <= later for moment in inputs)
+    ]
+    if not gaps:
+        return None
     middle = median_low(gaps)
     # The judge moves its clock in steps, so a period between two of them is only right on average.
-    on_average = mean(gap for gap in gaps if abs(gap - middle) <= SIMULATED_JITTER)
-    period = min(middle, on_average, key=lambda one: abs(one - wanted))
+    period = mean(gap for gap in gaps if abs(gap - middle) <= SIMULATED_JITTER)
     return Rate(period, gaps, True, abs(period - wanted) <= SIMULATED_TOLERANCE * wanted)
 
 

@@ -132,7 +132,8 @@ class Output:
         return "" if finding.passed or self._rate(seen) is None else finding.seen
 
     def _rate(self, seen: Part) -> Rate | None:
-        return rate_of(seen.of("message", self.name), self.period, may_vary=True)
+        given = [event.sim for event in seen.of("sent") + seen.of("asked") if event.sim is not None]
+        return rate_of(seen.of("message", self.name), self.period, inputs=given)
 
     def _parting(self, mine: Sequence[Any], theirs: Sequence[Any]) -> int:
         """Return the index of the first row that differs; the number of compared rows if none does."""
