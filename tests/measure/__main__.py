@@ -10,6 +10,7 @@ PROGRAMS = {
     "bank": "judge the bank, and name what is not as expected",
     "evidence": "keep what is seen of each answer of the bank, for the tests that judge it again",
     "mutants": "count the mutants of right answers that are rejected",
+    "fresh_drawings": "judge right answers in many drawings that nobody has seen",
     "soak": "judge the bank in random order under load, and name what changes",
     "steady_class": "grade a class thirty times, and name what changes",
     "rates": "all of that, published in docs/accuracy.md",
