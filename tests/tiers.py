@@ -44,6 +44,8 @@ NIGHTLY = (
     "tests/benchmarks/test_short_run.py",
     "tests/measure/test_compare.py::test_two_commits_are_judged_each_by_its_own_judge",
     "tests/mutation/test_mutation.py::test_a_sample_of_mutants_is_caught",
+    # Each takes up to 40 s of two processors, as `record` does, which an author runs.
+    "tests/authoring/mutants/test_survey.py::test_each_exercise_of_the_course_is_ready",
     "tests/benchmarks/test_ros2_command.py::test_no_command_misses_anything_beside_open_notebooks",
     # Commands of nbgrader itself, each of which takes seconds to start; what they end in is tested within the process.
     "tests/grading/classes/test_class_lock.py::test_the_command_of_nbgrader_does_nothing_while_a_batch_runs",

@@ -173,10 +173,8 @@ def try_exercise(
     # With a part of the answers, what the bank lacks cannot be told.
     for line in to_do_in_text(exercise_id) if only else still_to_do(exercise_id, wanted):
         tell(f"to do: {line}")
-    if not only:
-        # A first version may have drawings that tell little: `record` and `--mutants` say by their exit code.
-        try_mutants(exercise_id, tell=tell)
-    return not surprises and not gifts
+    is_ready = bool(only) or try_mutants(exercise_id, tell=tell)
+    return is_ready and not surprises and not gifts
 
 
 def try_mutants(

@@ -42,6 +42,11 @@ def lines(found: Survey) -> Iterator[str]:
             yield f"  {in_words(found.solution, one.mutant)} earns {one.points:.1f} points"
     for key in found.stale:
         yield f"  settings.toml accepts {key}, which is not made or does not pass: take the row out"
+    if found.passing:
+        yield (
+            "  Not ready: draw inputs that tell what passes in every drawing, or accept it, with a reason, in the row "
+            "[accepts] of settings.toml beside the exercise's answers"
+        )
 
 
 def _listed(of: Solution, title: str, listed: Sequence[Tried]) -> Iterator[str]:
