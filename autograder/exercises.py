@@ -28,6 +28,8 @@ if TYPE_CHECKING:
 
 REFERENCE = ".reference.json"
 """The suffix of the file next to an exercise that contains the exercise's reference output."""
+MUTANTS = ".mutants.json"
+"""The suffix of the packed file next to it: what the mutants of the solution do."""
 
 
 class UnknownExercise(LookupError):
@@ -96,6 +98,15 @@ def reference_path(exercise_id: str) -> Path:
         UnknownExercise: The exercise does not exist.
     """
     return path(exercise_id).with_suffix(REFERENCE)
+
+
+def mutants_path(exercise_id: str) -> Path:
+    """Return the path of the file with what the mutants of an exercise's solution do.
+
+    Raises:
+        UnknownExercise: The exercise does not exist.
+    """
+    return path(exercise_id).with_suffix(MUTANTS)
 
 
 def grade_id(exercise_id: str) -> str:

@@ -12,6 +12,7 @@ from autograder.authoring import reference_files
 from autograder.authoring.answer_bank import Answer, Turn, answers, answers_folder, judge_all, warm_up
 from autograder.authoring.answer_tables import BadTable, CannotEdit
 from autograder.authoring.exercise_faults import still_to_do, to_do_in_text
+from autograder.authoring.mutants import recorded_mutants
 from autograder.authoring.mutants.survey import survey, survey_by_judge
 from autograder.authoring.mutants.survey_lines import lines
 from autograder.authoring.mutants.trials import NotOnPaper
@@ -178,7 +179,12 @@ def try_exercise(
 
 
 def try_mutants(
-    exercise_id: str, *, by_judge: int = 0, must_be_recorded: bool = True, tell: Callable[[str], object]
+    exercise_id: str,
+    *,
+    by_judge: int = 0,
+    must_be_recorded: bool = True,
+    keeps: bool = False,
+    tell: Callable[[str], object],
 ) -> bool:
     """Run the mutants of an exercise's solution, and print which of them its drawings do not tell.
 
@@ -186,6 +192,7 @@ def try_mutants(
         exercise_id: The exercise's id.
         by_judge: If the mutants cannot be run on paper: how many of them the judge checks at the same time; 0 for none.
         must_be_recorded: False if the drawings may differ from the recorded ones.
+        keeps: True to write beside the reference output what they do, for the cards of students who do the same.
         tell: Called with each line for the author.
 
     Returns:
@@ -203,6 +210,8 @@ def try_mutants(
         except NotOnPaper as no_mutants:
             tell(f"{exercise_id}: no mutants: {no_mutants}")
             return True
+    if keeps and found.practice:
+        recorded_mutants.write(found)
     for line in lines(found):
         tell(line)
     return found.is_ready

@@ -57,7 +57,8 @@ def execute(notebooks: tuple[str, ...], jobs: int | None, reports: Path | None) 
 def record(exercises: tuple[str, ...], only_check: bool) -> None:
     """Record what the reference solutions do on the wire. The grader compares answers with the recordings.
 
-    Then the mutants of each solution are tried on paper: the drawings have to tell them.
+    Then the mutants of each solution are tried on paper: the drawings have to tell them, and the cards of students name
+    what the mutants do.
     """
     from autograder.authoring import exercise_trial, reference_files
     from autograder.exercises import all_ids
@@ -69,7 +70,7 @@ def record(exercises: tuple[str, ...], only_check: bool) -> None:
         fail(str(error))
     if only_check:
         sys.exit(NO if changed else 0)
-    tried = [exercise_trial.try_mutants(one, tell=click.echo) for one in exercises or all_ids()]
+    tried = [exercise_trial.try_mutants(one, keeps=True, tell=click.echo) for one in exercises or all_ids()]
     sys.exit(0 if all(tried) else NO)
 
 

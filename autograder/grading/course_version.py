@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from autograder import course
-from autograder.exercises import REFERENCE
+from autograder.exercises import MUTANTS, REFERENCE
 from autograder.kit.hunts.ticket import TICKET
 
 if TYPE_CHECKING:
@@ -20,8 +20,10 @@ _MADE_BY_COLCON = frozenset({"build", "install", "log"})
 """The folders that colcon makes next to a workspace's ``src``. They are not hashed, because they are made from the
 files in ``src``, which are hashed.
 """
-_OF_CHAPTERS = (f"*/{course.CHAPTER}", "*/*/*.py", f"*/*/*{REFERENCE}", f"*/*/*{TICKET}")
-"""Patterns for the chapters' files that the hash covers: ``chapter.toml``, exercises, reference outputs and tickets."""
+_OF_CHAPTERS = (f"*/{course.CHAPTER}", "*/*/*.py", *(f"*/*/*{kind}" for kind in (REFERENCE, MUTANTS, TICKET)))
+"""Patterns for the chapters' files that the hash covers: ``chapter.toml``, exercises, reference outputs, what mutants
+do, and tickets.
+"""
 _OF_GRADER = tuple(f"autograder/{part}/" for part in ("authoring", "cards", "cli", "grading"))
 _EXECUTES_TASKS = tuple(f"autograder/grading/{part}/" for part in ("cluster", "running"))
 JUDGE = "the judge"

@@ -219,8 +219,9 @@ def environment(*, boxed: bool) -> dict[str, str]:
 
 
 def readable() -> list[Path]:
-    """Return the files outside the package that a judge reads: the reference outputs."""
-    files = [exercises.reference_path(exercise_id) for exercise_id in exercises.all_ids()]
+    """Return the files outside the package that a judge reads: the reference outputs, and what mutants do."""
+    paths = (exercises.reference_path, exercises.mutants_path)
+    files = [path(exercise_id) for exercise_id in exercises.all_ids() for path in paths]
     return [file for file in files if file.is_file()]
 
 

@@ -22,9 +22,11 @@ from typing import TYPE_CHECKING, Any
 
 import msgspec
 
+from autograder import packed_files
 from autograder.command_name import COMMAND
-from autograder.exercises import reference_path
+from autograder.exercises import mutants_path, reference_path
 from autograder.kit.evidence import Event, Evidence, Part, Reference, Variant
+from autograder.kit.oracle.naming.deltas import Mutants
 from autograder.verdict import Verdict  # noqa: TC001  (msgspec reads the annotations)
 
 if TYPE_CHECKING:
@@ -66,7 +68,20 @@ def load_reference(exercise_id: str, drawing: str = "") -> Reference:
         raise NoReference(
             f"{file} is not a reference output ({error}): run `{COMMAND} record {exercise_id}`"
         ) from error
+    stored = replace(stored, mutants=_mutants(exercise_id, stored.parts))
     return replace(stored, parts=parse_reference(json.loads(drawing)).parts) if drawing else stored
+
+
+def _mutants(exercise_id: str, solution: Sequence[Part]) -> Mutants | None:
+    """Return what the mutants of a solution do; None if that was not recorded, or with another reference output."""
+    file = mutants_path(exercise_id)
+    if not file.exists():
+        return None
+    try:
+        found = msgspec.json.decode(packed_files.read(file), type=Mutants)
+    except (OSError, EOFError, msgspec.MsgspecError) as error:
+        raise NoReference(f"{file} is damaged ({error}): run `{COMMAND} record {exercise_id}`") from error
+    return replace(found, solution=solution) if found.reference == reference_digest(exercise_id) else None
 
 
 def reference_digest(exercise_id: str) -> str:

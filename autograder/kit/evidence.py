@@ -6,11 +6,14 @@ import functools
 import itertools
 from collections.abc import Iterator, Mapping, Sequence  # noqa: TC003  (what reads kept evidence needs the types)
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import re2
 
 from autograder.command_name import COMMAND
+
+if TYPE_CHECKING:
+    from autograder.kit.oracle.naming.deltas import Mutants
 
 
 @dataclass(frozen=True)
@@ -381,6 +384,7 @@ class Reference:
         variants: The records of wrong answers that a card can name.
         qos: For each role, the QoS of the reference solution's endpoints by name, if it is not the default one.
         drawings: The names of the drawings to record; empty for the practice drawings of the exercise.
+        mutants: What the mutants of the solution do in the practice drawings; None if that was not recorded.
     """
 
     exercise: str
@@ -389,6 +393,7 @@ class Reference:
     variants: Sequence[Variant] = ()
     qos: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
     drawings: Sequence[str] = ()
+    mutants: Mutants | None = None
 
     def part(self, name: str) -> Part:
         """Return the part with this name.

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 from autograder import course
 from autograder.command_name import COMMAND
 from autograder.course import HANDED_OUT
-from autograder.exercises import REFERENCE
+from autograder.exercises import MUTANTS, REFERENCE
 from autograder.kit.hunts.ticket import TICKET
 from autograder.masters.chapter_building import holds_work
 from autograder.masters.master_files import relinked
@@ -234,6 +234,7 @@ def _judges_part(chapter: course.Chapter, *, with_solutions: bool) -> Iterator[P
     for lab in chapter.labs:
         yield from sorted(lab.glob("*.py"))
         yield from sorted(lab.glob(f"*{REFERENCE}"))
+        yield from sorted(lab.glob(f"*{MUTANTS}"))
         yield from (tickets := sorted(lab.glob(f"*{TICKET}")))
         # The card of a ticket shows our repair beside the student's.
         if with_solutions or tickets:

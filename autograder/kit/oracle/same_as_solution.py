@@ -10,20 +10,18 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
-from itertools import product, zip_longest
+from itertools import zip_longest
 from random import Random
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from autograder.kit.bench import Pace
 from autograder.kit.counterparts import Qos
-from autograder.kit.draft import OWN, POINTS, Draft
-from autograder.kit.mistakes import unfinished
+from autograder.kit.draft import POINTS, Draft
 from autograder.kit.mistakes.common_mistakes import KEEP_THE_PERIOD, NOT_LATCHED, is_not_latched
-from autograder.kit.mistakes.crashes import CRASHES, OTHER_CRASHES
-from autograder.kit.mistakes.hangs import ENDLESS_LOOP
-from autograder.kit.model import Advice, Finding, Mistake
+from autograder.kit.model import Finding
 from autograder.kit.oracle.goal_sender import GoalSender
+from autograder.kit.oracle.naming.drawn import Drawn
 from autograder.kit.oracle.outputs import NUMBER, Kind, Output
 from autograder.kit.oracle.parameter_answers import (
     DESCRIBE,
@@ -33,15 +31,15 @@ from autograder.kit.oracle.parameter_answers import (
     parameter_value,
     received,
 )
-from autograder.kit.oracle.standing_clock import KEY, noted_before, on_another_clock
+from autograder.kit.oracle.standing_clock import noted_before
 from autograder.kit.oracle.steps import Goal, Sets, Step, To, Turn, answer_delays
-from autograder.kit.recipes.own_scenario import ENDPOINTS, QUIET, Met, OwnScenario, meet
+from autograder.kit.recipes.own_scenario import QUIET, Met, meet
 
 if TYPE_CHECKING:
     from collections.abc import Container
 
     from autograder.kit.bench import Bench
-    from autograder.kit.evidence import Evidence, Part, Reference
+    from autograder.kit.evidence import Part, Reference
     from autograder.kit.model import Exercise
 
 __all__ = ["Goal", "SameAsSolution", "Sets", "To"]
@@ -57,84 +55,6 @@ MANY = 100
 TOLERANCE = 1e-3
 """The tolerance for numbers, absolute or relative to the larger one."""
 NOTHING: Mapping[str, Any] = MappingProxyType({})
-
-
-class _Drawn(OwnScenario):
-    """A subject that was given one drawing of the inputs; it is compared with the solution in the same drawing.
-
-    Args:
-        outputs: What is compared.
-        is_timed: True if time alone decides some of it, on any clock. A right node with a clock of its own may then do
-            the same as a wrong one while the judge moves its clock, so no wrong answer is proven before the look in
-            real time.
-    """
-
-    def __init__(
-        self,
-        scenario: Callable[[Bench], None],
-        outputs: Sequence[Output],
-        roles: Sequence[str],
-        *,
-        is_timed: bool,
-    ) -> None:
-        super().__init__(scenario, *roles)
-        self._outputs, self._is_timed = outputs, is_timed
-
-    def expected(self, evidence: Evidence) -> Part:
-        """Return the record of the solution in the drawing that the subject was given.
-
-        Raises:
-            KeyError: The reference does not have this drawing.
-        """
-        reference = evidence.reference
-        if not reference.parts:  # the solution is being recorded
-            return evidence.main
-        if (
-            not evidence.parts
-        ):  # the subject was given no drawing and did nothing, which is wrong in each of them
-            return reference.parts[0]
-        return reference.part(evidence.main.name)
-
-    @property
-    def ladder(self) -> tuple[Mistake, ...]:
-        """The common mistakes, and first of all an exercise's own: that it does the same as a recorded wrong answer."""
-        proven = Mistake(
-            "variant", lambda evidence: self._same_as_a_variant(evidence, simulated=True), certain=True
-        )
-        clock = Mistake(
-            KEY,
-            lambda evidence: on_another_clock(self._outputs, evidence.main, self.expected(evidence)),
-            certain=True,
-        )
-        likely = Mistake("variant", self._same_as_a_variant)
-        if not self.roles:  # plain Python, which has no node
-            return (*CRASHES, ENDLESS_LOOP, *OTHER_CRASHES, OWN, proven, likely)
-        ladder = super().ladder
-        at = ladder.index(unfinished.NEVER_CONSTRUCTED)
-        return (*ladder[:at], proven, clock, likely, *ladder[at:])
-
-    def _same_as_a_variant(self, evidence: Evidence, *, simulated: bool = False) -> Advice | None:
-        mine, due = evidence.main, self.expected(evidence)
-        noted = mine.of("noted")
-        # A right node that is slow in real time is cut short in simulated time, perhaps at the step of a wrong one.
-        is_cut = len(noted) < len(due.of("noted"))
-        if not noted or (simulated and (is_cut or self._is_timed or any(e.sim is None for e in noted))):
-            return None
-        if self._agree(mine, due):
-            return None
-        # In real time a node may say the same once more or less, so what it did in simulated time counts, too.
-        runs = [mine, *([evidence.before.main] if evidence.before else [])]
-        for run, variant in product(runs, evidence.reference.variants):
-            part = next((part for part in variant.parts if part.name == run.name), None)
-            if part and self._agree(run, part) and self._agree(part, run):
-                return Advice(variant.text, variant.next_step, key=variant.key)
-        return None
-
-    def _agree(self, seen: Part, expected: Part) -> bool:
-        made, due = ([e.data["made"] for e in part.of("noted", ENDPOINTS)] for part in (seen, expected))
-        # The rate of a recorded answer is not known, because a recording keeps no messages.
-        compared = [output for output in self._outputs if output.kind is not Kind.RATE]
-        return made == due and all(output.compared(seen, expected).passed for output in compared)
 
 
 class SameAsSolution:
@@ -231,7 +151,7 @@ class SameAsSolution:
         # A clock that stands still tells which clock a node asks. Then no other clock makes it right.
         stands = any(isinstance(step, To) and step.stands for step in steps)
         is_timed = not stands and any(isinstance(step, (int, float)) for step in steps)
-        drawn = _Drawn(self._scenario, self._outputs, roles, is_timed=is_timed)
+        drawn = Drawn(self._scenario, self._outputs, roles, is_timed=is_timed)
         self._draft = Draft(exercise_id, title, task, drawn, points=points)
         if late_after:
             self._draft.knows("not_latched", is_not_latched, *NOT_LATCHED, certain=True)
@@ -247,7 +167,7 @@ class SameAsSolution:
             says = (
                 f"On {output.name} your messages come {{}}; the task asks for one every {output.period:g} s."
             )
-            self._draft.knows("wrong_rate", output.another_rate, says, KEEP_THE_PERIOD)
+            self._draft.knows("wrong_rate", output.another_rate, says, KEEP_THE_PERIOD, late=True)
         for output in self._outputs:
             self._draft.criterion(output.key, output.title)(partial(_by_one_server, output))
 

@@ -1,0 +1,86 @@
+"""Keeps what the mutants of a solution do in the practice drawings, in a file beside the reference output."""
+
+from __future__ import annotations
+
+import json
+from collections import defaultdict
+from typing import TYPE_CHECKING, Any
+
+import msgspec
+
+from autograder import course, exercises
+from autograder.authoring.mutants.code import Code
+from autograder.authoring.mutants.meanings import Places
+from autograder.judge import evidence_files
+from autograder.kit.oracle.naming.deltas import Meaning, MutantClass, Mutants, alike
+from autograder.masters.code_cells import BEGIN, END
+from autograder.packed_files import packed
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from autograder.authoring.mutants.survey import Survey
+    from autograder.authoring.mutants.trials import Run
+    from autograder.kit.evidence import Part
+
+Did = dict[str, dict[str, dict[int, Any]]]
+"""The values of each output that are not the solution's, by drawing, output and step."""
+
+
+def write(found: Survey) -> None:
+    """Write the file of an exercise."""
+    file, data = exercises.mutants_path(found.solution.exercise), packed(msgspec.json.encode(recorded(found)))
+    if not file.exists() or file.read_bytes() != data:
+        file.write_bytes(data)
+
+
+def recorded(found: Survey) -> Mutants:
+    """Return what the mutants of a survey do in the practice drawings."""
+    of, exercise = found.solution, exercises.get(found.solution.exercise)
+    parts = evidence_files.load_reference(of.exercise).parts
+    places = Places(Code(of.text, subject=of.root), exercise.text, _visible(of.exercise))
+    groups: dict[str, list[Meaning]] = defaultdict(list)
+    for one in found.tried:
+        if one.mutant.start >= 0 and (did := _differences(parts, one.runs, exercise.tolerance)):
+            groups[json.dumps(did, sort_keys=True)].append(places.meaning(one.mutant))
+    meanings = list(dict.fromkeys(one for group in groups.values() for one in group))
+    classes = [
+        MutantClass(sorted({meanings.index(one) for one in group}), _parsed(did))
+        for did, group in groups.items()
+    ]
+    return Mutants(evidence_files.reference_digest(of.exercise), meanings, classes)
+
+
+def _differences(parts: Sequence[Part], runs: Sequence[Run], tolerance: float) -> Did:
+    """Return what a mutant does differently; nothing if it crashes in a drawing, or has not all steps in one."""
+    found: Did = {}
+    if len(runs) < len(parts):
+        return {}
+    for part, run in zip(parts, runs, strict=False):
+        noted = json.loads(run.outputs)[0] if run.outputs else []
+        mine = {(name, step): values for name, step, values in noted}
+        theirs = {
+            (event.name, event.data.get("step", -1)): event.data.get("values") for event in part.of("noted")
+        }
+        if mine.keys() != theirs.keys():
+            return {}
+        for name, step in mine:
+            if not alike(mine[name, step], theirs[name, step], tolerance):
+                found.setdefault(part.name, {}).setdefault(name, {})[step] = mine[name, step]
+    return found
+
+
+def _parsed(did: str) -> Mapping[str, Any]:
+    return {
+        drawing: {
+            name: {int(step): values for step, values in rows.items()} for name, rows in outputs.items()
+        }
+        for drawing, outputs in json.loads(did).items()
+    }
+
+
+def _visible(exercise_id: str) -> str:
+    """Return everything of a lab that students read: its texts, and its code without the student's lines."""
+    text = exercises.path(exercise_id).with_name(course.LAB).read_text(encoding="utf-8")
+    before, *regions = text.split(BEGIN)
+    return before + "".join(region.partition(END)[2] for region in regions)

@@ -1,0 +1,1 @@
+"""Names what a subject does wrong that is compared with a solution: by mutants of the solution, or by the effect."""

@@ -1,0 +1,180 @@
+"""The recipe of a subject that is compared with the solution, and how it is named what such a subject does wrong."""
+
+from __future__ import annotations
+
+from itertools import product
+from typing import TYPE_CHECKING
+
+from autograder.kit.draft import OWN, OWN_LATE
+from autograder.kit.mistakes import unfinished
+from autograder.kit.mistakes.crashes import CRASHES, OTHER_CRASHES
+from autograder.kit.mistakes.hangs import ENDLESS_LOOP
+from autograder.kit.mistakes.role_mistakes import ladder
+from autograder.kit.model import Advice, Mistake
+from autograder.kit.oracle.naming import mutant_words
+from autograder.kit.oracle.naming.deltas import differences, meanings_of, rows
+from autograder.kit.oracle.naming.effects import effect
+from autograder.kit.oracle.outputs import Kind
+from autograder.kit.oracle.standing_clock import KEY, on_another_clock
+from autograder.kit.recipes.own_scenario import ENDPOINTS, OwnScenario
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Sequence
+
+    from autograder.kit.bench import Bench
+    from autograder.kit.evidence import Evidence, Part
+    from autograder.kit.oracle.outputs import Output
+
+MUTANT, EFFECT = "mutant", "effect"
+"""The entries of the ladder for what a mutant of the solution does, and for what is wrong with an output as a whole."""
+
+
+class Drawn(OwnScenario):
+    """A subject that was given one drawing of the inputs; it is compared with the solution in the same drawing.
+
+    Args:
+        outputs: What is compared.
+        is_timed: True if time alone decides some of it, on any clock. A right node with a clock of its own may then do
+            the same as a wrong one while the judge moves its clock, so no wrong answer is proven before the look in
+            real time.
+    """
+
+    def __init__(
+        self,
+        scenario: Callable[[Bench], None],
+        outputs: Sequence[Output],
+        roles: Sequence[str],
+        *,
+        is_timed: bool,
+    ) -> None:
+        super().__init__(scenario, *roles)
+        self._outputs, self._is_timed = outputs, is_timed
+
+    def expected(self, evidence: Evidence) -> Part:
+        """Return the record of the solution in the drawing that the subject was given.
+
+        Raises:
+            KeyError: The reference does not have this drawing.
+        """
+        reference = evidence.reference
+        if not reference.parts:  # the solution is being recorded
+            return evidence.main
+        if (
+            not evidence.parts
+        ):  # the subject was given no drawing and did nothing, which is wrong in each of them
+            return reference.parts[0]
+        return reference.part(evidence.main.name)
+
+    @property
+    def ladder(self) -> tuple[Mistake, ...]:
+        """The common mistakes, and among them what an exercise's recordings know.
+
+        First comes that the subject does the same as a recorded wrong answer, for which a person has written the words.
+        Only after an exercise's own mistakes and whatever happened to the program comes what a mutant does.
+        """
+        clock = Mistake(
+            KEY,
+            lambda evidence: on_another_clock(self._outputs, evidence.main, self.expected(evidence)),
+            certain=True,
+        )
+        variant, likely_variant = self._as_recorded("variant", self._same_as_a_variant)
+        mutants = self._as_recorded(MUTANT, self._same_as_mutants)
+        whole = Mistake(EFFECT, self._effect)
+        if not self.roles:  # plain Python, which has no node
+            return (
+                *CRASHES,
+                ENDLESS_LOOP,
+                *OTHER_CRASHES,
+                OWN,
+                variant,
+                likely_variant,
+                *mutants,
+                OWN_LATE,
+                whole,
+            )
+        usual = ladder(self.roles, late=(*mutants, OWN_LATE, whole))
+        at = usual.index(unfinished.NEVER_CONSTRUCTED)
+        return (*usual[:at], variant, clock, likely_variant, *usual[at:])
+
+    def _as_recorded(
+        self, key: str, recognize: Callable[[Evidence], Advice | None]
+    ) -> tuple[Mistake, Mistake]:
+        """Return a mistake twice: certain if simulated time proves it, and as what is likely."""
+
+        def proven(evidence: Evidence) -> Advice | None:
+            return recognize(evidence) if self._is_proven(evidence) else None
+
+        return Mistake(key, proven, certain=True), Mistake(key, recognize)
+
+    def _is_proven(self, evidence: Evidence) -> bool:
+        noted, due = evidence.main.of("noted"), self.expected(evidence).of("noted")
+        # A right node that is slow in real time is cut short in simulated time, perhaps at the step of a wrong one.
+        is_cut = len(noted) < len(due)
+        return not (is_cut or self._is_timed or any(event.sim is None for event in noted))
+
+    def _runs(self, evidence: Evidence) -> list[Part]:
+        """Return the runs that may show what the subject does; none if it did nothing, or what is right."""
+        mine = evidence.main
+        if not mine.of("noted") or self._agree(mine, self.expected(evidence)):
+            return []
+        # In real time a node may say the same once more or less, so what it did in simulated time counts, too.
+        return [mine, *([evidence.before.main] if evidence.before else [])]
+
+    def _same_as_a_variant(self, evidence: Evidence) -> Advice | None:
+        for run, variant in product(self._runs(evidence), evidence.reference.variants):
+            part = next((part for part in variant.parts if part.name == run.name), None)
+            if part and self._agree(run, part) and self._agree(part, run):
+                return Advice(variant.text, variant.next_step, key=variant.key)
+        return None
+
+    def _agree(self, seen: Part, expected: Part) -> bool:
+        made, due = ([e.data["made"] for e in part.of("noted", ENDPOINTS)] for part in (seen, expected))
+        # The rate of a recorded answer is not known, because a recording keeps no messages.
+        compared = [output for output in self._outputs if output.kind is not Kind.RATE]
+        return made == due and all(output.compared(seen, expected).passed for output in compared)
+
+    def _same_as_mutants(self, evidence: Evidence) -> Advice | None:
+        mutants = evidence.reference.mutants
+        if mutants is None:
+            return None
+        for run, due in self._with_practice(evidence):
+            apart = differences(self._outputs, run, due)
+            # Why a node says nothing at all, other mistakes say.
+            if not apart.is_whole or run.traceback or self._is_silent(run, due):
+                continue
+            found = meanings_of(mutants, apart, self._outputs[0].tolerance)
+            # One level of a ladder may be all that tells another number.
+            if (apart.tells or mutant_words.is_one_limit(found)) and (
+                told := mutant_words.advice(found, mutants)
+            ):
+                return told
+        return None
+
+    def _is_silent(self, run: Part, due: Part) -> bool:
+        """Return True if there is nothing at all of an output of the solution."""
+        return any(
+            not any(rows(output, run).values()) and any(rows(output, due).values())
+            for output in self._outputs
+            if output.kind is not Kind.RATE
+        )
+
+    def _with_practice(self, evidence: Evidence) -> Iterator[tuple[Part, Part]]:
+        """Yield each run in a practice drawing, with the solution's in the same one."""
+        mutants = evidence.reference.mutants
+        practice = {part.name: part for part in mutants.solution} if mutants else {}
+        for run in self._runs(evidence):
+            if run.name in practice:
+                yield run, practice[run.name]
+
+    def _effect(self, evidence: Evidence) -> Advice | None:
+        due = self.expected(evidence)
+        for run in self._runs(evidence):
+            if (
+                run.name == due.name
+                and differences(self._outputs, run, due).is_whole
+                and not self._is_silent(run, due)
+            ):
+                told = (effect(one, rows(one, run), rows(one, due)) for one in self._outputs)
+                if text := next(filter(None, told), ""):
+                    return Advice(text, mutant_words.WITHOUT)
+        return None

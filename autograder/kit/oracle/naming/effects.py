@@ -1,0 +1,172 @@
+"""Says in one sentence how an output differs from the solution's as a whole, whatever the cause in the code is."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from autograder.kit.oracle.naming.deltas import alike
+from autograder.kit.oracle.outputs import NUMBER, Kind
+from autograder.kit.rules import in_words, same
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+
+    from autograder.kit.oracle.outputs import Output
+
+FEW = 6
+"""The greatest number of values of a field that are told apart as words are."""
+Pairs = list[tuple[Any, Any]]
+"""The values of one field in the order of the steps: the subject's, and the solution's."""
+
+
+def effect(output: Output, mine: Mapping[int, Any], theirs: Mapping[int, Any]) -> str:
+    """Return in a sentence how all steps of an output differ; empty if no single sentence is true of them.
+
+    Args:
+        output: The output.
+        mine: The subject's values by step.
+        theirs: The solution's values by step.
+    """
+    if output.kind not in (Kind.STEPS, Kind.RETURNED):
+        return ""
+    steps = [step for step in theirs if step in mine]
+    apart = [step for step in steps if not alike(mine[step], theirs[step], output.tolerance)]
+    if len(apart) < 2:
+        return ""
+    name = "" if output.kind is Kind.RETURNED else f" on {output.name}"
+    if told := _twice(name, [mine[step] for step in apart], [theirs[step] for step in apart], output):
+        return told
+    if any(len(mine[step]) != len(theirs[step]) for step in steps):
+        return ""
+    for column, path in enumerate(output.paths):
+        if path == NUMBER:
+            continue
+        pairs: Pairs = [
+            (one[column], other[column])
+            for step in steps
+            for one, other in zip(mine[step], theirs[step], strict=True)
+            if isinstance(one, (list, tuple)) and len(one) == len(other) == len(output.paths)
+        ]
+        what = "What your code says" if path == "data" and not name else f"Your {path}{name}"
+        what = f"What your node says{name}" if path == "data" and name else what
+        if told := _values(what, pairs, output.tolerance):
+            return told
+    return ""
+
+
+def _twice(name: str, mine: Sequence[Any], theirs: Sequence[Any], output: Output) -> str:
+    """Return that each message comes twice, if that is all that differs."""
+    doubled = ([value for value in other for _ in range(2)] for other in theirs)
+    if all(
+        other and alike(one, two, output.tolerance)
+        for one, two, other in zip(mine, doubled, theirs, strict=True)
+    ):
+        return f"Your node says everything{name} twice."
+    return ""
+
+
+def _values(what: str, pairs: Pairs, tolerance: float) -> str:
+    apart = [(one, other) for one, other in pairs if not same(one, other, tolerance)]
+    if len(apart) < 2:
+        return ""
+    for told in (_constant, _never, _exchanged, _scaled, _late, _stuck):
+        if text := told(what, pairs, apart, tolerance):
+            return text
+    return ""
+
+
+def _constant(what: str, pairs: Pairs, _: Pairs, tolerance: float) -> str:
+    first = pairs[0][0]
+    is_constant = all(same(one, first, tolerance) for one, _ in pairs)
+    return f"{what} is always {_word(first)}." if is_constant and len(pairs) > 2 else ""
+
+
+def _never(what: str, pairs: Pairs, apart: Pairs, tolerance: float) -> str:
+    """A value that is due, and never comes; or one that comes, and is never due."""
+    due = _few(other for _, other in pairs)
+    wrong = _few(other for _, other in apart)
+    came = _few(one for one, _ in apart)
+    if due is None or wrong is None or len(wrong) != 1:
+        return ""
+    if any(same(one, wrong[0], tolerance) for one, _ in pairs):
+        return ""
+    instead = f", but {_word(came[0])}" if came is not None and len(came) == 1 else ""
+    return f"{what} is never {_word(wrong[0])}{instead}."
+
+
+def _exchanged(what: str, pairs: Pairs, _: Pairs, __: float) -> str:
+    due = _few(other for _, other in pairs)
+    if due is None or len(due) < 2:
+        return ""
+    stands: dict[str, str] = {}
+    for one, other in pairs:
+        if stands.setdefault(repr(_plain(other)), repr(_plain(one))) != repr(_plain(one)):
+            return ""
+    swapped = [a for a, b in stands.items() if a != b and stands.get(b) == a]
+    moved = [a for a, b in stands.items() if a != b]
+    if len(swapped) == len(moved) == 2:
+        first, second = (next(value for value in due if repr(_plain(value)) == one) for one in swapped)
+        return f"{what} is {_word(first)} where {_word(second)} is due, and the other way round."
+    return ""
+
+
+def _scaled(what: str, pairs: Pairs, apart: Pairs, tolerance: float) -> str:
+    numbers = [(one, other) for one, other in pairs if _is_number(one) and _is_number(other)]
+    if len(numbers) < len(pairs) or len({other for _, other in apart}) < 2:
+        return ""
+    if all(same(one, abs(other), tolerance) for one, other in apart):
+        return f"{what} has lost its sign."
+    if all(same(one, -other, tolerance) for one, other in apart):
+        return f"{what} has the wrong sign."
+    nonzero = [(one, other) for one, other in numbers if other]
+    factor = nonzero[0][0] / nonzero[0][1] if nonzero else 0.0
+    if (
+        factor
+        and len({other for _, other in nonzero}) > 2
+        and all(same(one, other * factor, tolerance) for one, other in numbers)
+    ):
+        return f"{what} is {factor:.4g} times what is due."
+    return ""
+
+
+def _late(what: str, pairs: Pairs, _: Pairs, tolerance: float) -> str:
+    later = zip(pairs[1:], pairs, strict=False)
+    if len(pairs) > 3 and all(same(one, before, tolerance) for (one, _), (_, before) in later):
+        return f"{what} comes one step late: it is what was due before."
+    return ""
+
+
+def _stuck(what: str, pairs: Pairs, _: Pairs, tolerance: float) -> str:
+    start = next(n for n, (one, other) in enumerate(pairs) if not same(one, other, tolerance))
+    rest = pairs[start:]
+    is_stuck = all(same(one, rest[0][0], tolerance) for one, _ in rest)
+    if (
+        start
+        and len(rest) > 2
+        and is_stuck
+        and any(not same(other, rest[0][1], tolerance) for _, other in rest)
+    ):
+        return f"{what} is right at first, and then always {_word(rest[0][0])}."
+    return ""
+
+
+def _few(values: Iterator[Any]) -> list[Any] | None:
+    """Return the different values in their order; None if there are too many of them."""
+    found = {repr(_plain(value)): value for value in values}
+    return list(found.values()) if len(found) <= FEW else None
+
+
+def _plain(value: Any) -> Any:
+    return round(float(value), 3) if _is_number(value) else value
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, (int, float)) and not isinstance(value, bool)
+
+
+def _word(value: Any) -> str:
+    return (
+        f"“{value}”"
+        if isinstance(value, str)
+        else in_words([round(value, 4) if isinstance(value, float) else value])
+    )

@@ -1,0 +1,130 @@
+"""The sentences for what a mutant does: one table, from the operator to the words on a card.
+
+They say the effect (*it is as if*), since several mistakes may have it, and never a line of the solution.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import msgspec
+
+from autograder.kit.model import Advice
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from autograder.kit.oracle.naming.deltas import Meaning, Mutants
+
+
+@dataclass(frozen=True)
+class Words:
+    """The words for one kind of mistake.
+
+    Attributes:
+        operator: The name of the operator.
+        kind: The beginning of what the operator says it did; empty for whatever it did.
+        key: The key of the diagnosis.
+        text: What the code does. ``{at}`` is the place, as in *where the task says …*; ``{name}`` is a word or a name
+            that the notebook shows.
+    """
+
+    operator: str
+    key: str
+    text: str
+    kind: str = ""
+
+
+_NUMBERS = ("number", "unit", "number_of_another_place")
+_LIMIT = "comparison"
+TABLE: Sequence[Words] = msgspec.toml.decode(
+    Path(__file__).with_suffix(".toml").read_bytes(), type=dict[str, list[Words]]
+)["words"]
+"""The words for each operator and the beginning of its kind. Of mutants at one place, the first row is named."""
+NEXT = {
+    "other_number": "Compare the numbers in your code with the task, and their units.",
+    "condition_ignored": "Compare each condition of your code with the task, with the values that the card shows.",
+    "other_way_round": "Look at the comparison there, and at what each of the two branches does.",
+    "kept_for_ever": "Look at each attribute: when is it set, and when is it set back?",
+    "forgets": "Store it in self, in `__init__` for the first time, and change it only when it changes.",
+}
+"""What the student should do now, by the key of the diagnosis."""
+USUAL = "Read that sentence of the task again, and compare your code with it step by step."
+WITHOUT = (
+    "Read the task again, and compare your code with it step by step, with the values that the card shows."
+)
+
+
+def is_one_limit(found: Sequence[Meaning]) -> bool:
+    """Return True if all that mutants differ in is the number at one place, or whether just this number counts."""
+    kinds = {(one.operator in _NUMBERS, one.spot) for one in found if one.operator in (*_NUMBERS, _LIMIT)}
+    return len(kinds) == 1 and all(one.operator in (*_NUMBERS, _LIMIT) for one in found)
+
+
+def advice(found: Sequence[Meaning], mutants: Mutants) -> Advice | None:
+    """Return the words for mutants that do the same as a subject; None if they have no single meaning."""
+    numbers = [one for one in found if one.operator in _NUMBERS]
+    others = [(one, words) for one in found if (words := _words(one))]
+    places = {(one.quote or one.place) for one in found}
+    if len(places) > 1 and len({_of_a_place(one) for one in found}) > 1:
+        return None
+    if others:
+        one, words = min(others, key=lambda pair: TABLE.index(pair[1]))
+        return _advice(words.key, words.text.format(at=_at(one), name=one.name), one)
+    if numbers:
+        return _of_a_number(numbers, mutants)
+    return None
+
+
+def _of_a_place(one: Meaning) -> tuple[str, str, str]:
+    """Return what makes two mutants at different places one meaning: the same words, without a place."""
+    words = _words(one)
+    return (words.text, one.name, one.quote) if words else (one.operator, str(one.place), one.quote)
+
+
+def _words(one: Meaning) -> Words | None:
+    rows = (row for row in TABLE if row.operator == one.operator and one.kind.startswith(row.kind))
+    words = max(rows, key=lambda row: len(row.kind), default=None)
+    return None if words is None or ("{name}" in words.text and not one.name) else words
+
+
+def _at(one: Meaning) -> str:
+    if one.quote:
+        return f" where the task says “{one.quote}”"
+    return f" in `{one.name}`" if one.name.isidentifier() and one.operator != "other_word" else ""
+
+
+def _advice(key: str, text: str, one: Meaning) -> Advice:
+    return Advice(text, NEXT.get(key, USUAL if one.quote else WITHOUT), key=key)
+
+
+def _of_a_number(found: Sequence[Meaning], mutants: Mutants) -> Advice | None:
+    one = found[0]
+    if not one.quote and one.right is None:
+        return None
+    where = f"in “{one.quote}”" if one.quote else f"in the place of {one.right:g}"
+    return _advice(
+        "other_number", f"It is as if another number stood {where}{_interval(found, mutants)}.", one
+    )
+
+
+def _interval(found: Sequence[Meaning], mutants: Mutants) -> str:
+    """Return in words between which numbers the student's lies: those beside it that do something else."""
+    values = sorted(one.value for one in found if one.value is not None)
+    if not values:
+        return ""
+    same_place = {
+        one.value: one for one in mutants.meanings if one.spot == found[0].spot and one.value is not None
+    }
+    others = {*same_place, *([found[0].right] if found[0].right is not None else [])} - set(values)
+    below = max((value for value in others if value < values[0]), default=None)
+    above = min((value for value in others if value > values[-1]), default=None)
+    if below is None and above is None:
+        return ""
+    if below is None:
+        return f" (yours: below {above:g})"
+    if above is None:
+        return f" (yours: above {below:g})"
+    return f" (yours: between {below:g} and {above:g})"
