@@ -240,6 +240,12 @@ def collect(
     is_flag=True,
     help="Change no grade: run submissions that are new or changed, and show whose points would change.",
 )
+@click.option(
+    "--lower",
+    type=click.Choice(["yes", "no"]),
+    default=None,
+    help="Take over points that fell although the same files were handed in, or keep the earlier points.",
+)
 def grade(
     folder: Path,
     assignments: tuple[str, ...],
@@ -251,6 +257,7 @@ def grade(
     unsafe_no_sandbox: bool,
     scheduler: str | None,
     dry_run: bool,
+    lower: str | None,
 ) -> None:
     """Grade the submissions in the class directory FOLDER."""
     from autograder.grading import batch
@@ -275,6 +282,7 @@ def grade(
                 jobs=jobs,
                 scheduler=scheduler,
                 dry_run=dry_run,
+                lower=lower or "",
             )
     except KeyboardInterrupt:
         click.echo(

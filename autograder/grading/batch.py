@@ -67,6 +67,7 @@ def grade(
     judge: str = "",
     scheduler: str | None = None,
     dry_run: bool = False,
+    lower: str = "",
 ) -> GradeReport:
     """Grade the submissions of a class.
 
@@ -84,6 +85,8 @@ def grade(
             executes them.
         dry_run: True to leave the gradebook unchanged, and report the students whose points would change. But the
             results are stored, so that the next run only has to enter them.
+        lower: ``yes`` to take over points that fell although the same files were handed in, ``no`` to keep the earlier
+            points, and empty to ask.
 
     Returns:
         The report. If a submission could not be graded, the report contains it with zero points and the reason.
@@ -107,7 +110,7 @@ def grade(
         execution_backends.remove_leftovers(directory)
         roster = read_roster(directory)
         in_sections = roster.of_sections(sections) if sections else ()
-        asked = AskedFor(assignments, [*students, *in_sections], again, feedback, dry_run)
+        asked = AskedFor(assignments, [*students, *in_sections], again, feedback, dry_run, lower)
         store = stack.enter_context(ClassStore(directory))
         batch = Batch(directory, store, console, roster, asked, backend, here, stack)
         batch.note(roster.left_out(sections))

@@ -22,6 +22,7 @@ from autograder.grading.classes import gradebook_reading
 from autograder.grading.classes.gradebook_reading import SubmissionEntry
 from autograder.grading.collecting.submitted_folder import misplaced_files, rename_decomposed_folders
 from autograder.grading.course_version import course_version
+from autograder.grading.fallen_points import FallenPoints, fallen, fits
 from autograder.grading.grading_errors import MasterUnusable, is_disk_full
 from autograder.grading.reporting.grade_report import GradeReport
 from autograder.grading.running import execution_backends
@@ -41,7 +42,9 @@ if TYPE_CHECKING:
     from nbformat import NotebookNode
     from rich.console import Console
 
+    from autograder.execution.executed_cells import Execution
     from autograder.grading.batch_work import AskedFor
+    from autograder.grading.class_records import Attempt
     from autograder.grading.class_store import ClassStore
     from autograder.grading.classes.class_directory import ClassDirectory
     from autograder.grading.grading_task import Task
@@ -102,6 +105,8 @@ class Batch:
         self._reused = 0
         self._written = 0
         self._moved: list[Difference] = []
+        self._fallen = FallenPoints(directory.state)
+        self._earlier: dict[tuple[str, str], Attempt] = {}
 
     @functools.cached_property
     def _writer(self) -> Writer:
@@ -152,12 +157,33 @@ class Batch:
                 f"students.csv does not list these students, so this work is not graded: {names}. To grade it anyway, "
                 f"add --student {unlisted[0].submission.student}"
             )
-        if self._asked.again:
-            self._store.forget_results(work.submission for work in works)
-            return works
-        for work in works:
-            self._settle(work)
+        for work in works if not self._asked.again else ():
+            if not (self._asked.lower == "yes" and self._fallen.has(*work.key)):
+                self._settle(work)
+        self._earlier = self._last_attempts(works)
+        if self._asked.lower == "no":
+            self._fallen.forget(self._asked.has)
         return works
+
+    def _last_attempts(self, works: Iterable[Work]) -> dict[tuple[str, str], Attempt]:
+        """Return the newest attempt of each submission that has to be graded, if there is one."""
+        return {
+            work.key: attempt
+            for work in works
+            if not work.written
+            for attempt in self._store.attempts(work.submission.student)
+            if attempt.assignment == work.submission.assignment
+        }
+
+    def _note_if_worse(self, work: Work, rows: Iterable[Row]) -> None:
+        """Note that a newer hand-in has fewer points than the one before."""
+        last, now = self._earlier.get(work.key), sum(row.score for row in rows)
+        before = sum(row.score for row in last.rows) if last else 0.0
+        if last and last.made_from.handed_in != work.made_from.handed_in and now < before:
+            self._notices.append(
+                f"{'/'.join(work.key)}: the newer files have {now:g} points, those before had {before:g}. If they were "
+                "collected, yes under use in collected.csv has the earlier file graded"
+            )
 
     def find_workers(self, works: list[Work]) -> list[Work]:
         """Find out who executes tasks, if something has to be graded.
@@ -247,7 +273,7 @@ class Batch:
             work, task = works[done.task.student, done.task.assignment], done.task
             self._run_again[self._why_again(work)] += 1
             self._timings.count(task.cells, done.execution)
-            execution = self._store.keep(task, done.execution)
+            execution = self._accepted(work, task, done.execution)
             if execution.trouble:
                 self._problems.append(f"{task.label} could not be checked: {execution.trouble}")
             work.results[task.notebook] = task, execution
@@ -329,6 +355,7 @@ class Batch:
             executed=self._run_again.total(),
             run_again={why: count for why, count in self._run_again.items() if why},
             moved=tuple(self._moved),
+            fallen=tuple(one for one in self._fallen.results if self._asked.has(one.student, one.assignment)),
             reused=self._reused,
             written=self._written,
             seconds=time.monotonic() - self._began,
@@ -354,8 +381,24 @@ class Batch:
         nothing = "--again was given" if self._asked.again else "its result was not kept"
         return work.made_from.changes_since(earlier) or nothing
 
+    def _accepted(self, work: Work, task: Task, execution: Execution) -> Execution:
+        """Store the result of a notebook, and return it; or the earlier one, if the points of the same files fell."""
+        last = self._earlier.get(work.key)
+        earlier = last if last and last.made_from.handed_in == work.made_from.handed_in else None
+        found = fallen(task, execution, earlier, self._why_again(work)) if self._asked.lower != "yes" else []
+        if found and self._asked.dry_run:
+            return replace(execution, evidence={})
+        before = earlier.tasks.get(task.notebook, "") if earlier else ""
+        kept = self._store.results(*work.key).get(before) if found else None
+        if kept is None or not fits(task, kept):
+            return self._store.keep(task, execution)
+        self._fallen.add(found)
+        self._store.adopt(task, before)
+        return kept
+
     def _take_stored_results(self, work: Work) -> None:
-        stored = self._store.results(*work.key)
+        is_new = self._asked.again or (self._asked.lower == "yes" and self._fallen.has(*work.key))
+        stored = {} if is_new else self._store.results(*work.key)
         for task, rebuilt in self._tasks_of(work) if stored else ():
             if (key := task.key()) in stored:
                 self._reused += 1
@@ -388,7 +431,10 @@ class Batch:
             self._problems.append(str(error))
             work.rows = tuple(without_grade(row) for row in rows)
         else:
+            self._note_if_worse(work, rows)
             self._moved += moved_points(work, rows, self._entered.get(work.key))
+            if self._asked.lower == "yes":
+                self._fallen.forget(lambda *key: key == work.key)
             work.rows = rows
             work.written = True
             self._written += 1

@@ -45,6 +45,8 @@ class AskedFor:
         again: True to execute every notebook again.
         feedback: True to make feedback pages.
         dry_run: True to leave the gradebook unchanged.
+        lower: ``yes`` to take over points that fell although the same files were handed in, ``no`` to keep the earlier
+            points, and empty to ask.
     """
 
     assignments: Sequence[str]
@@ -52,6 +54,7 @@ class AskedFor:
     again: bool = False
     feedback: bool = True
     dry_run: bool = False
+    lower: str = ""
 
     def has(self, student: str, assignment: str) -> bool:
         """Return True if the submission of a student for an assignment is chosen."""

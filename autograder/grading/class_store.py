@@ -117,6 +117,14 @@ class ClassStore:
                 )
         return result
 
+    def adopt(self, task: Task, earlier: str) -> None:
+        """Record that the stored result and evidence of an earlier task, given by its hash, are those of this task."""
+        names = (task.key(), task.student, task.assignment, task.notebook, earlier)
+        where = "(student, assignment, notebook, task) = (?, ?, ?, ?)"
+        with self._step() as book:
+            for table in ("result", "evidence"):
+                book.execute(f"UPDATE OR REPLACE {table} SET task = ? WHERE {where}", names)
+
     def results(self, student: str, assignment: str) -> dict[str, Execution]:
         """Return the stored results of a submission by the hash of the task, in the order of the notebooks.
 
@@ -129,12 +137,6 @@ class ClassStore:
         )
         found = {task: _decoded(execution, Execution) for task, execution in rows}
         return {task: execution for task, execution in found.items() if execution is not None}
-
-    def forget_results(self, submissions: Iterable[Submission]) -> None:
-        """Delete the results, but not the evidence, of submissions, so that the submissions are executed again."""
-        with self._step() as book:
-            names = ((one.student, one.assignment) for one in submissions)
-            book.executemany("DELETE FROM result WHERE (student, assignment) = (?, ?)", names)
 
     def evidence(self, student: str, exercise: str) -> KeptEvidence | None:
         """Return the evidence for a check's points in the gradebook, or the newest evidence; None if there is none."""

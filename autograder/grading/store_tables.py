@@ -16,21 +16,6 @@ FORM = 5
 """The version of the tables, as the file's ``user_version``."""
 TABLES = Path(__file__).with_name("class_tables.sql").read_text(encoding="utf-8")
 _STEPS = {
-    2: (
-        "DROP TRIGGER IF EXISTS not_changed",
-        "CREATE TRIGGER not_changed BEFORE UPDATE OF number, at, assignment, work, course, report ON attempt"
-        " BEGIN SELECT RAISE(ABORT, 'attempts stay'); END",
-    ),
-    3: (
-        "DROP TRIGGER IF EXISTS not_changed",
-        "ALTER TABLE attempt RENAME COLUMN work TO made_from",
-        "UPDATE attempt SET made_from = json_object('handed_in', made_from)",
-        "CREATE TRIGGER not_changed BEFORE UPDATE OF number, at, assignment, made_from, course, report ON attempt"
-        " BEGIN SELECT RAISE(ABORT, 'attempts stay'); END",
-        "ALTER TABLE entered RENAME COLUMN fingerprint TO made_from",
-        "UPDATE entered SET made_from = json_object('handed_in', made_from)",
-        "ALTER TABLE entered DROP COLUMN course",
-    ),
     4: (
         "ALTER TABLE attempt ADD COLUMN tasks BLOB NOT NULL DEFAULT '{}'",
         "ALTER TABLE attempt ADD COLUMN scores BLOB NOT NULL DEFAULT '{}'",
@@ -48,13 +33,13 @@ _STEPS = {
         " ON attempt BEGIN SELECT RAISE(ABORT, 'attempts stay'); END",
     ),
 }
-"""For each earlier version, the statements that make the next version's tables from its tables."""
+"""For the earlier version, the statements that make the next version's tables from its tables."""
 
 
 def bring_up_to_date(book: sqlite3.Connection, path: Path, *, may_make: bool) -> bool:
     """Make the tables if the file has none, or bring those of an earlier version to the present one.
 
-    The steps are one transaction. Before it, the file is copied to ``class.db.version-2`` or the like, so that the
+    The steps are one transaction. Before it, the file is copied to ``class.db.version-4`` or the like, so that the
     earlier course can be used again.
 
     Args:

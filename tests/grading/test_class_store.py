@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 from click.testing import CliRunner
-from tiny_class import TALKER, FakeEngine, TinyClass, make_version_3, make_version_4
+from tiny_class import TALKER, FakeEngine, TinyClass, make_version_4
 
 from autograder.boxes.run_limits import Ended, Limits
 from autograder.cli import cli
@@ -163,8 +163,6 @@ def test_evidence_comes_and_goes_with_its_result_and_is_no_part_of_it(store: Cla
     assert [(cell.text, cell.checks) for cell in kept.run_cells()] == [("1", ""), ("", "lab.one")]
     assert store.results("ada", "lab") == {TASK.key(): DONE}
     assert store.evidence("ada", "lab.two") is None
-    store.forget_results([submission()])
-    assert (store.results("ada", "lab"), store.evidence("ada", "lab.one")) == ({}, kept)
     store.keep(TASK, DONE)
     assert store.evidence("ada", "lab.one") is None
 
@@ -292,13 +290,12 @@ def test_no_name_touches_the_rows_of_another(store: ClassStore) -> None:
         store.enter(submission(student, assignment), entered(number, student, assignment))
     gone = submission("ada", "lab")
     store.forget_entered([gone])
-    store.forget_results([gone])
     store.note_shown(submission("Ada", "lab"), "pages")
     assert store.entered().keys() == set(pairs) - {("ada", "lab")}
     assert [key for key, one in store.entered().items() if one.shown] == [("Ada", "lab")]
     for number, (student, assignment) in enumerate(pairs):
         task = tasks[student, assignment]
-        assert list(store.results(student, assignment)) == ([] if number == 0 else [task.key()])
+        assert list(store.results(student, assignment)) == [task.key()]
         seen = store.evidence(student, f"{assignment}.one")
         assert seen is not None
         assert (seen.task, seen.checks) == (task.key(), {f"{assignment}.one": f"{number}".encode()})
@@ -383,8 +380,8 @@ def test_a_file_of_a_newer_course_is_sound(store: ClassStore, tmp_path: Path) ->
 # -- files of an earlier course
 
 
-def make_earlier(store: ClassStore, form: int = 2) -> list[str]:
-    """Give the file the tables of an earlier version, with content, and return that content."""
+def make_earlier(store: ClassStore) -> list[str]:
+    """Give the file the tables of the earlier version, with content, and return that content."""
     store.keep(TASK, DONE)
     store.enter(submission(), entered())
     store.note_shown(submission(), "pages")
@@ -394,17 +391,7 @@ def make_earlier(store: ClassStore, form: int = 2) -> list[str]:
     store.keep_run("v1", ROWS)
     store.close()
     make_version_4(file_of(store))
-    if form < 4:
-        make_version_3(file_of(store))
-    with contextlib.closing(sqlite3.connect(file_of(store))) as book, book:
-        if form == 2:
-            book.execute("DROP TRIGGER not_changed")
-            book.execute(
-                "CREATE TRIGGER not_changed BEFORE UPDATE ON attempt"
-                " BEGIN SELECT RAISE(ABORT, 'attempts stay'); END"
-            )
-        book.execute(f"PRAGMA user_version = {form}")
-        return list(book.iterdump())
+    return dump_of(file_of(store))
 
 
 def dump_of(path: Path) -> list[str]:
@@ -412,14 +399,13 @@ def dump_of(path: Path) -> list[str]:
         return list(book.iterdump())
 
 
-@pytest.mark.parametrize("form", [2, 3, 4])
-def test_a_file_of_an_earlier_course_is_used_on_and_a_copy_stays(store: ClassStore, form: int) -> None:
-    before = make_earlier(store, form)
+def test_a_file_of_an_earlier_course_is_used_on_and_a_copy_stays(store: ClassStore) -> None:
+    before = make_earlier(store)
     assert store.entered() == {("ada", "lab"): replace(entered(), shown="pages")}
     assert (attempts_of(store), len(store.runs())) == (attempts(0, 1), 1)
     with contextlib.closing(sqlite3.connect(file_of(store))) as book:
         assert book.execute("PRAGMA user_version").fetchone() == (store_tables.FORM,)
-    copy = file_of(store).with_name(f"class.db.version-{form}")
+    copy = file_of(store).with_name("class.db.version-4")
     assert dump_of(copy) == before
     store.rename({"ada": "eve"})
     assert (store.attempts("ada"), len(store.attempts("eve"))) == ([], 2)
@@ -428,16 +414,15 @@ def test_a_file_of_an_earlier_course_is_used_on_and_a_copy_stays(store: ClassSto
             change(store, f"UPDATE attempt SET {column} = 'forged'")
     assert dump_of(copy) == before
     store.close()
-    make_earlier(store, form)  # the instructor put back a file of the earlier course
+    make_earlier(store)  # the instructor put back a file of the earlier course
     assert ("ada", "lab") in store.entered()
 
 
-@pytest.mark.parametrize("form", [2, 3, 4])
 @pytest.mark.parametrize("name", ["_copy", "keep_whole", "_form_of"])
 def test_a_file_whose_conversion_was_killed_is_whole(
-    store: ClassStore, monkeypatch: pytest.MonkeyPatch, name: str, form: int
+    store: ClassStore, monkeypatch: pytest.MonkeyPatch, name: str
 ) -> None:
-    before = make_earlier(store, form)
+    before = make_earlier(store)
 
     def die(*_: object) -> None:
         os.kill(os.getpid(), signal.SIGKILL)
@@ -459,7 +444,7 @@ def test_a_file_whose_conversion_was_killed_is_whole(
     monkeypatch.undo()
     assert dump_of(file_of(store)) == before
     assert store.entered() == {("ada", "lab"): replace(entered(), shown="pages")}
-    assert dump_of(file_of(store).with_name(f"class.db.version-{form}")) == before
+    assert dump_of(file_of(store).with_name("class.db.version-4")) == before
 
 
 # -- killed

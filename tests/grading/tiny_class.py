@@ -133,32 +133,6 @@ def make_version_4(store: Path) -> None:
         )
 
 
-def make_version_3(store: Path) -> None:
-    """Give a class's store of version 4 the tables of the course before a result's key had parts."""
-    with contextlib.closing(sqlite3.connect(store)) as book, book:
-        book.executescript(
-            """
-            DROP TRIGGER not_changed;
-            ALTER TABLE attempt RENAME COLUMN made_from TO work;
-            UPDATE attempt SET work = json_extract(work, '$.handed_in');
-            CREATE TRIGGER not_changed BEFORE UPDATE OF number, at, assignment, work, course, report ON attempt
-                BEGIN SELECT RAISE(ABORT, 'attempts stay'); END;
-            ALTER TABLE entered RENAME COLUMN made_from TO fingerprint;
-            UPDATE entered SET fingerprint = json_extract(fingerprint, '$.handed_in');
-            CREATE TABLE earlier (
-                student TEXT, assignment TEXT, fingerprint TEXT NOT NULL, tasks BLOB NOT NULL, scores BLOB NOT NULL,
-                report BLOB NOT NULL, course TEXT NOT NULL, shown TEXT NOT NULL,
-                PRIMARY KEY (student, assignment)
-            );
-            INSERT INTO earlier
-                SELECT student, assignment, fingerprint, tasks, scores, report, 'v1', shown FROM entered;
-            DROP TABLE entered;
-            ALTER TABLE earlier RENAME TO entered;
-            PRAGMA user_version = 3;
-            """
-        )
-
-
 def make_tiny_class(folder: Path) -> Path:
     """A class without submissions in a folder of that one."""
     write_master(folder / "course", "lab_1_2", MASTER)

@@ -21,7 +21,9 @@ from autograder.grading.collecting.collect import collect
 from autograder.grading.collecting.collected_csv import Table
 from autograder.grading.collecting.collected_files import INBOX_FOLDER, CollectedRecords, Inbox
 from autograder.grading.collecting.submitted_folder import Submitted
+from autograder.grading.fallen_points import FallenPoints
 from autograder.grading.grading_errors import GradingError, check_known, course_command
+from autograder.grading.reporting.export_memory import ExportMemory
 from autograder.grading.table.roster import NAME
 from autograder.grading.table.student_list import RENAMING, accept_list, compare, enter_roster, read_known
 from autograder.grading.table.students_csv import read_students_csv
@@ -196,6 +198,8 @@ def _rename(directory: ClassDirectory, renaming: _Renaming) -> None:
 def _make_pass(directory: ClassDirectory, ids: Mapping[str, str]) -> None:
     CollectedRecords(directory.state).rename(ids)
     Table(directory).rename(ids)
+    ExportMemory(directory.state).rename(ids)
+    FallenPoints(directory.state).rename(ids)
     for old, new in ids.items():
         for name in _FOLDERS:
             _move(directory.path / name / old, directory.path / name / new)

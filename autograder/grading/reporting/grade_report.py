@@ -13,6 +13,8 @@ from rich.table import Table
 from rich.text import Text
 
 from autograder import standard_output
+from autograder.grading.fallen_points import questions
+from autograder.grading.grading_errors import course_command
 from autograder.grading.grading_task import UNREADABLE
 from autograder.grading.running.batch_progress import Timings, plain_line
 from autograder.grading.table.rows import (
@@ -41,6 +43,7 @@ if TYPE_CHECKING:
     from rich.console import Console
 
     from autograder.grading.classes.class_directory import RefusedFile
+    from autograder.grading.fallen_points import FallenResult
     from autograder.grading.reporting.class_table import ClassTable, Difference
 
 
@@ -61,6 +64,7 @@ class GradeReport:
         would_change: After a dry run, the points that would change; None if points were entered.
         executed: The number of notebooks that were executed.
         run_again: The number of notebooks that were executed again, by the reason.
+        fallen: The points that fell although the same files were handed in, and wait for the instructor's yes.
         moved: The points of unchanged submissions that differ from those of the run before.
         reused: The number of notebooks whose result was already known.
         written: The number of submissions that this run entered into the gradebook.
@@ -79,6 +83,7 @@ class GradeReport:
     would_change: tuple[Difference, ...] | None = None
     executed: int = 0
     run_again: Mapping[str, int] = field(default_factory=dict)
+    fallen: tuple[FallenResult, ...] = ()
     moved: tuple[Difference, ...] = ()
     reused: int = 0
     written: int = 0
@@ -100,9 +105,9 @@ class GradeReport:
 
     @property
     def exit_code(self) -> int:
-        """The command's exit code: 0 if everything was graded; 2 if a check or a file could not be graded."""
+        """The command's exit code: 0 if everything was graded; 2 if something was not, or waits for the instructor."""
         unchecked = any(row.state == State.NOT_CHECKED for row in self.rows)
-        return 2 if self.refused or self.problems or unchecked else 0
+        return 2 if self.refused or self.problems or unchecked or self.fallen else 0
 
 
 def report_json(report: GradeReport) -> bytes:
@@ -123,6 +128,7 @@ def report_json(report: GradeReport) -> bytes:
             "notices": [name_as_text(text) for text in report.notices],
             "would_change": report.would_change,
             "run_again": report.run_again,
+            "fallen": report.fallen,
             "moved": report.moved,
             "totals": {
                 "executed": report.executed,
@@ -205,6 +211,10 @@ def show(report: GradeReport, console: Console | None = None) -> None:
         console: The console to print on; by default standard output.
     """
     console = console or standard_output.console()
+    for question in questions(report.fallen, course_command("grade", report.path)):
+        plain_line(console, f"fell         {question}", "yellow")
+    for change in report.moved:
+        plain_line(console, f"moved        {change.line()}")
     if not report.rows:
         submitted = _near(report.path / "submitted")
         plain_line(console, f"Nothing was submitted: put notebooks into {submitted}/<student>/<assignment>/.")
@@ -234,8 +244,6 @@ def show(report: GradeReport, console: Console | None = None) -> None:
         plain_line(console, f"note         {notice}")
     for why, count in report.run_again.items():
         plain_line(console, f"run again    {counted(count, 'notebook')}: {why}")
-    for change in report.moved:
-        plain_line(console, f"moved        {change.line()}")
     for problem in report.problems:
         plain_line(console, f"problem      {problem}", "red")
     if report.note:

@@ -40,6 +40,7 @@ NO_EXERCISE = (LATE, DROPPED)
 NOTHING_JUDGED = (NOT_SUBMITTED, NOT_GRADED, EXCUSED, State.NOT_CHECKED)
 """The states in which the judge gave no points. The query ``differences`` in ``class_queries.sql`` has them, too."""
 _Key = TypeVar("_Key", bound=Hashable)
+_Of = TypeVar("_Of")
 
 
 @dataclass(frozen=True)
@@ -129,9 +130,9 @@ def rows_of(task: Task, execution: Execution) -> list[Row]:
     return found
 
 
-def grouped(rows: Iterable[Row], key: Callable[[Row], _Key]) -> dict[_Key, list[Row]]:
-    """Return rows by a key, such as the student, in the order of the rows."""
-    found: dict[_Key, list[Row]] = {}
+def grouped(rows: Iterable[_Of], key: Callable[[_Of], _Key]) -> dict[_Key, list[_Of]]:
+    """Return rows, or other results, by a key such as the student, in the order of the rows."""
+    found: dict[_Key, list[_Of]] = {}
     for row in rows:
         found.setdefault(key(row), []).append(row)
     return found

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import io
 import json
 from dataclasses import replace
@@ -11,7 +10,7 @@ from typing import TYPE_CHECKING
 import nbformat
 import pytest
 from rich.console import Console
-from tiny_class import COURSE, LISTENER, TALKER, FakeEngine, TinyClass, make_version_3, make_version_4
+from tiny_class import COURSE, LISTENER, TALKER, FakeEngine, TinyClass
 
 from autograder.grading import course_version, result_writer
 from autograder.grading.class_store import ClassStore
@@ -25,6 +24,7 @@ if TYPE_CHECKING:
 
     from autograder.execution.executed_cells import Execution
     from autograder.grading.grading_task import Task
+    from autograder.grading.reporting.grade_report import GradeReport
 
 JUDGE, CARDS, EXERCISE, OF_ANOTHER_LAB = COURSE
 
@@ -93,6 +93,7 @@ def test_a_change_of_the_course(
 def test_points_that_move_without_a_new_submission_are_listed(
     tiny: TinyClass, fake_engine: FakeEngine, course: Callable[..., None], monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    fake_engine.evidence = {"lab_1_2.talker": b"seen"}
     tiny.submit("ada", 4, 7)
     tiny.submit("ben", 4, 7)
     assert tiny.grade().moved == ()
@@ -106,15 +107,50 @@ def test_points_that_move_without_a_new_submission_are_listed(
         return replace(execution, verdicts=lower)
 
     monkeypatch.setattr(fake_engine, "execute", stricter)
-    report = tiny.grade()
-    console = Console(file=io.StringIO(), width=200)
-    show(report, console)
-    said = [line for line in console.file.getvalue().splitlines() if line.startswith("moved")]  # type: ignore[attr-defined]
-    assert said == [
+    tiny.grade(dry_run=True)
+    for _ in range(2):  # the question stays until it is answered
+        report = tiny.grade()
+        first, second = first_words(report, "fell")
+        assert "lab_1_2.talker, on the same files (the exercise changed): ada 4 → 3." in first
+        assert "lab_1_2.listener" in second
+        assert (report.moved, report.exit_code) == ((), 2)
+        assert tiny.scores("ada") == {TALKER: 4, LISTENER: 7}
+    assert write_appeal_of("ada", tiny)
+    assert tiny.grade(lower="no").fallen == ()
+    assert tiny.grade(again=True, students=["ada"]).executed == 1
+    report = tiny.grade(lower="yes")
+    assert first_words(report, "moved") == [
         "moved        ada  lab_1_2.talker  4 → 3",
         "moved        ada  lab_1_2.listener  7 → 6",
     ]
     assert len(json.loads(report_json(report))["moved"]) == 2
+    assert tiny.grade().fallen == ()
+    assert tiny.scores("ada") == {TALKER: 3, LISTENER: 6}
+
+
+def first_words(report: GradeReport, word: str) -> list[str]:
+    """The lines of a report that begin with this word; they stand above everything else."""
+    console = Console(file=io.StringIO(), width=500)
+    show(report, console)
+    lines = console.file.getvalue().splitlines()  # type: ignore[attr-defined]
+    found = [line for line in lines if line.startswith(word)]
+    assert lines[: len(found)] == found
+    return found
+
+
+def write_appeal_of(student: str, klass: TinyClass) -> bool:
+    """True if the evidence of the points that count is there."""
+    with store_of(klass) as store:
+        kept, entered = store.evidence(student, "lab_1_2.talker"), store.entered()
+    return bool(kept and entered[student, "lab_1_2"].tasks["lab_1_2"] == kept.task)
+
+
+def test_a_newer_submission_that_is_worse_has_a_line(tiny: TinyClass, fake_engine: FakeEngine) -> None:
+    tiny.submit("ada", 4, 7)
+    tiny.grade()
+    tiny.submit("ada", 4, 2)
+    assert any("ada/lab_1_2: the newer files have 6 points" in one for one in tiny.grade().notices)
+    assert tiny.scores("ada") == {TALKER: 4, LISTENER: 2}
 
 
 def test_a_corrected_sentence_on_a_card_makes_pages_again_and_executes_nothing(
@@ -153,22 +189,3 @@ def test_a_change_of_the_class(tiny: TinyClass, fake_engine: FakeEngine) -> None
     assert tiny.grade(students=["ada"]).run_again == {"the settings of the class changed": 1}
     assert tiny.grade(students=["ada"], again=True).run_again == {"--again was given": 1}
     assert tiny.scores("ada") == {TALKER: 10, LISTENER: 7}
-
-
-def test_a_class_of_the_course_before_keys_had_parts_goes_on(
-    tiny: TinyClass, fake_engine: FakeEngine
-) -> None:
-    tiny.submit("ada", 4, 7)
-    tiny.grade()
-    with store_of(tiny) as store:
-        (attempt,) = store.attempts("ada")
-    make_version_4(tiny.path / ".autograder" / "class.db")
-    make_version_3(tiny.path / ".autograder" / "class.db")
-    report = tiny.grade()
-    assert (report.run_again, report.written) == ({}, 1)
-    assert tiny.scores("ada") == {TALKER: 4, LISTENER: 7}
-    assert (tiny.path / ".autograder" / "class.db.version-3").exists()
-    with contextlib.closing(store_of(tiny)) as store:
-        key = attempt.made_from.__class__(attempt.made_from.handed_in)
-        assert store.attempts("ada")[0] == replace(attempt, made_from=key)
-    assert (tiny.grade().executed, tiny.grade().written) == (0, 0)
