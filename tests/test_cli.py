@@ -14,9 +14,10 @@ import pytest
 
 from autograder.authoring.answer_bank import answers_folder
 from autograder.boxes.sandbox import why_impossible
-from autograder.cli import GROUPS
+from autograder.cli import GROUPS, student_commands
 from autograder.cli.student_commands import show
 from autograder.kit.reported_texts import AT_PACE
+from autograder.student.lab import NOTEBOOKS_VARIABLE
 from autograder.verdict import not_checked
 from environment.python_child import SAFE_PATH, TYPED_PYTHONPATH, installed_program
 from tests.measure.bank import answer_named
@@ -140,6 +141,28 @@ def test_a_right_answer_ends_with_0_and_a_wrong_one_with_1(tmp_path: Path) -> No
     wrong = _run("check", "lab_1_2.talker", "--", sys.executable, wrong_talker("topic_name.py", tmp_path))
     assert (right.returncode, wrong.returncode) == (0, 1)
     assert "/chater" in wrong.stdout
+
+
+@pytest.mark.parametrize(
+    ("typed_in", "words", "counts"),
+    [
+        ("mine", ("python3", "talker.py"), True),
+        ("mine", ("ros2", "run", "my_robot_pkg", "talker"), True),
+        ("elsewhere", (sys.executable, "../mine/talker.py"), True),
+        ("elsewhere", ("python3", "solution.py"), False),
+        ("mine", ("python3", "../elsewhere/solution.py"), False),
+        ("elsewhere", ("ros2", "run", "my_robot_pkg", "talker"), False),
+    ],
+)
+def test_only_a_program_of_the_students_folder_earns_progress(
+    typed_in: str, words: tuple[str, ...], counts: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name in ("mine/talker.py", "elsewhere/solution.py"):
+        (tmp_path / name).parent.mkdir()
+        (tmp_path / name).touch()
+    monkeypatch.setenv(NOTEBOOKS_VARIABLE, str(tmp_path / "mine"))
+    monkeypatch.chdir(tmp_path / typed_in)
+    assert student_commands._is_students(words) is counts
 
 
 @pytest.mark.ros

@@ -87,13 +87,25 @@ def check(
             verdict, _ = check_and_keep(exercise, command, seed=seed, box=box)
     except CommandNotFound as error:
         fail(str(error))
-    # With --box, the program is another person's, so its result does not count as the user's progress.
-    if not boxed:
+    # A program of another person, or a solution that the course brings, does not count as the user's progress.
+    if not boxed and _is_students(command):
         from autograder.student import check_journal
 
         check_journal.note_check(verdict)
     show(verdict, as_json=as_json)
     sys.exit({"passed": 0, "failed": NO}.get(verdict.state, CANNOT))
+
+
+def _is_students(command: Sequence[str]) -> bool:
+    """Return True if the command names a file in the folder of the student's notebooks, or none and is typed there."""
+    from autograder import course
+
+    try:
+        notebooks, _ = _notebooks_and_journal(course.root(), None)
+    except course.NoCourse:
+        return False
+    files = [Path(word).resolve() for word in command if Path(word).is_file()]
+    return any(place.is_relative_to(notebooks.resolve()) for place in files or [Path.cwd()])
 
 
 @contextmanager
