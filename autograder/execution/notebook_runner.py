@@ -25,6 +25,7 @@ from autograder.execution.verdicts_without_judge import (
     LIMITS,
     grader_trouble,
     verdict_by_tests,
+    with_endless_cell,
     without_verdict,
 )
 from autograder.verdict import State, Verdict
@@ -134,7 +135,10 @@ class _Run:
         """Return the execution, with a verdict for every check cell."""
         runs = [self._cell_run(index) for index in range(len(self._cells))]
         for index, cell in enumerate(self._cells):
-            if cell.check is None or index in self._verdicts:
+            if cell.check is None:
+                continue
+            if (judged := self._verdicts.get(index)) is not None:
+                self._verdicts[index] = with_endless_cell(judged, self._endless_cell(index))
                 continue
             by_tests = verdict_by_tests(cell.check, runs[index]) if cell.check.asserts else None
             self._verdicts[index] = by_tests or without_verdict(
@@ -145,6 +149,16 @@ class _Run:
                 self._hung_before.get(index),
             )
         return Execution(tuple(runs), self._verdicts, self._trouble, seconds, start_seconds)
+
+    def _endless_cell(self, check: int) -> str:
+        """Return the title of a student's cell, since the previous check, that was stopped; empty if there is none."""
+        endless = ""
+        for cell, ended in zip(self._cells[:check], self._ended, strict=False):
+            if cell.check is not None:
+                endless = ""
+            elif cell.own and ended is Ended.TIMED_OUT:
+                endless = _title(cell)
+        return endless
 
     def _what_led_to(self, check: int, runs: list[CellRun]) -> list[tuple[str, CellRun]]:
         """Return the code cells that may have kept a check from beginning, each with its title.

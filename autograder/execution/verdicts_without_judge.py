@@ -7,6 +7,7 @@ standard error costs nothing, because ROS and many libraries log there when noth
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import re2
@@ -89,6 +90,12 @@ _CAUSES = {
     "cell too slow": (
         "cell_timed_out",
         "The cell that begins with “{title}” was stopped at its time limit, so no check could begin.",
+        "Look for a loop that never ends. To keep a node running, spin it in the background.",
+    ),
+    "cell endless": (
+        "cell_timed_out",
+        "The cell that begins with “{title}” never ended and was stopped at its time limit. The judge saw only what "
+        "that cell had defined by then.",
         "Look for a loop that never ends. To keep a node running, spin it in the background.",
     ),
     "cell never ended": (
@@ -174,10 +181,26 @@ def without_verdict(
             return _limit_exceeded(check, limit_exceeded, None)
 
 
-def _because(check: CellCheck, cause: str, **words: Any) -> Verdict:
-    """Return the verdict for one of ``_CAUSES``. The words, such as a cell's title, are put into its text."""
+def with_endless_cell(verdict: Verdict, title: str) -> Verdict:
+    """Return the judge's verdict; if it failed after an endless cell of the student's, with a diagnosis of that cell.
+
+    Args:
+        verdict: The judge's verdict, whose points and criteria stay.
+        title: The title of the cell that was stopped at its time limit; empty if none was.
+    """
+    if not title or verdict.state is not State.FAILED:
+        return verdict
+    return replace(verdict, diagnosis=_diagnosis("cell endless", title=title))
+
+
+def _diagnosis(cause: str, **words: Any) -> Diagnosis:
+    """Return the diagnosis for one of ``_CAUSES``. The words, such as a cell's title, are put into its text."""
     key, reason, next_step = _CAUSES[cause]
-    return zero_points(check, key, reason.format(**words), next_step)
+    return Diagnosis(key, reason.format(**words), next_step)
+
+
+def _because(check: CellCheck, cause: str, **words: Any) -> Verdict:
+    return failed(check.exercise, check.title, check.points, _diagnosis(cause, **words), "")
 
 
 def _place(title: str | None) -> str:

@@ -20,7 +20,7 @@ from autograder.execution.notebook_processes import BoxedProcesses, NotebookSett
 from autograder.execution.notebook_runner import Unfinished, run_notebook
 from autograder.grading.rebuilding.submitted_notebook import MAX_CELL_CHARACTERS
 from autograder.safe_files import scratch_folder
-from autograder.verdict import State, Verdict
+from autograder.verdict import Diagnosis, State, Verdict, failed
 
 if TYPE_CHECKING:
     from autograder.execution.jupyter_kernel import Channels
@@ -114,6 +114,14 @@ def test_an_endless_loop_is_stopped_and_the_rest_still_runs(run: Run) -> None:
     execution = run(["while True:\n    pass", "print('alive')", check("talker")], cell_seconds=2.0)
     assert [cell.ended for cell in execution.cells[:2]] == [Ended.TIMED_OUT, Ended.DONE]
     assert key(execution) == "cell_timed_out"
+
+
+@pytest.mark.parametrize("own", [True, False])
+def test_a_judge_that_met_the_rest_of_an_endless_cell_says_so(run: Run, own: bool) -> None:
+    seen = failed("lab.one", "One", 10.0, Diagnosis("never_published", "No message came.", "Write a timer."))
+    execution = run([Cell("while True:\n    pass", own=own), check(), check()], seen, cell_seconds=2.0)
+    assert key(execution, 0) == ("cell_timed_out" if own else "never_published")
+    assert key(execution, 1) == "never_published", "the loop is before another check"
 
 
 def test_a_loop_that_will_not_be_interrupted_costs_the_kernel(run: Run) -> None:
