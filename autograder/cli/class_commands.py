@@ -331,7 +331,7 @@ def worker(scheduler: str | None, jobs: int | None, name: str | None, unsafe_no_
 @click.command()
 @click.argument("folder", type=click.Path(path_type=Path), default=Path("demo-class"))
 def demo(folder: Path) -> None:
-    """Make a sample class, grade it and show the result."""
+    """Make a sample class of twenty students, grade it and write the page about it."""
     from autograder.grading.new_classes import sample_class
 
     with grading_errors():

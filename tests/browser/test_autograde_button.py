@@ -28,6 +28,7 @@ from autograder.grading.rebuilding import nbformat_nodes
 if TYPE_CHECKING:
     from playwright.sync_api import Page
 
+FIXTURES = Path(__file__).parents[1] / "submissions" / "fixture_class.toml"
 LAB, OWN = "exercise_1_2", "own"
 
 
@@ -39,7 +40,7 @@ def test_formgraders_button_has_the_judge_decide(page: Page, tmp_path: Path) -> 
     made = TinyClass(tmp_path / "class")
     new_class(made.path, course.root(), assignments=[LAB])
     write_assignment(made, OWN)
-    samples = {one.student: one for one in sample_notebooks() if one.assignment == LAB}
+    samples = {one.student: one for one in sample_notebooks(FIXTURES) if one.assignment == LAB}
     for student, sample in samples.items():
         folder = made.path / "submitted" / student / LAB
         folder.mkdir(parents=True)

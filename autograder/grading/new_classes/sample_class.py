@@ -1,10 +1,10 @@
-"""Makes the sample class of ``demo``, with right, wrong and broken submissions, as a data file describes them."""
+"""Makes the sample class of ``demo``, twenty students and three weeks of labs, as a data file describes them."""
 
 from __future__ import annotations
 
 import hashlib
+import itertools
 import shutil
-import tomllib
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -13,6 +13,7 @@ import msgspec
 
 from autograder import course, standard_output
 from autograder.boxes import sandbox
+from autograder.command_name import COMMAND
 from autograder.execution.executed_cells import CellType
 from autograder.grading.batch import grade
 from autograder.grading.classes.class_directory import CONFIG_NAME, STATE_NAME, SUFFIX, switch_sandbox_off
@@ -21,6 +22,8 @@ from autograder.grading.new_classes.new_class import CONFIG, new_class
 from autograder.grading.rebuilding import nbformat_nodes
 from autograder.grading.rebuilding.notebook_rebuilding import grade_id
 from autograder.grading.reporting.grade_report import show
+from autograder.grading.reporting.report_page import write_report
+from autograder.grading.table.roster import NAME as STUDENTS
 from autograder.masters.master_files import lab_name, masters
 
 if TYPE_CHECKING:
@@ -31,7 +34,9 @@ if TYPE_CHECKING:
 
 DATA = Path(__file__).with_suffix(".toml")
 CELL_SECONDS = 8.0
-"""The time limit of a cell in seconds. It is short, because one sample student wrote an endless loop."""
+"""The time limit of a cell in seconds. It is short, so that a student with an endless loop keeps no visitor waiting."""
+SHOWN = ("ben", "lab_1_2")
+"""The student and the assignment of the feedback page that ``demo`` names: a page with a card about a mistake."""
 NOTEBOOK_SECONDS = 120.0
 BANK = Path("tests", "submissions", "notebooks")
 """The path, in the course, of a folder with right and wrong sample answers."""
@@ -40,20 +45,30 @@ _STAMP = "sample"
 
 @dataclass(frozen=True)
 class SampleNotebook:
-    """The description of one student's notebook, with the fields that the data file ``sample_class.toml`` explains."""
+    """The description of one student's notebook, with the fields that the data file explains."""
 
     student: str
     assignment: str
-    about: str
-    expected: dict[str, tuple[float, str]]
+    about: str = "Everything is right."
+    expected: dict[str, tuple[float, str]] = field(default_factory=dict)
     bank: tuple[str, ...] = ()
+    change: dict[str, tuple[str, str]] = field(default_factory=dict)
     answers: dict[str, str] = field(default_factory=dict)
     delete: tuple[str, ...] = ()
     duplicate: tuple[str, ...] = ()
     retype: dict[str, CellType] = field(default_factory=dict)
     insert: dict[str, str] = field(default_factory=dict)
     unsolved: bool = False
+    missing: bool = False
     file: str = ""
+
+
+class _SampleData(msgspec.Struct):
+    """The content of a data file: its notebooks, and the students who hand in each assignment."""
+
+    notebook: tuple[SampleNotebook, ...]
+    students: dict[str, str] = {}
+    assignments: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -64,15 +79,25 @@ class _Answer:
     extra: tuple[str, ...]
 
 
-def sample_notebooks() -> tuple[SampleNotebook, ...]:
-    """Return the descriptions of the sample class's notebooks."""
-    data = tomllib.loads(DATA.read_text(encoding="utf-8"))
-    return msgspec.convert(data["notebook"], tuple[SampleNotebook, ...])
+def _data(file: Path) -> _SampleData:
+    return msgspec.toml.decode(file.read_bytes(), type=_SampleData)
+
+
+def sample_notebooks(file: Path) -> tuple[SampleNotebook, ...]:
+    """Return the descriptions of all notebooks that the students of a data file hand in."""
+    data = _data(file)
+    described = {(one.student, one.assignment): one for one in data.notebook}
+    for student, assignment in itertools.product(data.students, data.assignments):
+        described.setdefault((student, assignment), SampleNotebook(student, assignment))
+    return tuple(one for one in described.values() if not one.missing)
 
 
 def _submit_sample(path: Path) -> None:
-    """Write every sample notebook into ``submitted`` of the class at ``path``."""
-    for notebook in sample_notebooks():
+    """Write every sample notebook into ``submitted`` of the class at ``path``, and its list of students."""
+    if students := _data(DATA).students:
+        lines = [f"{student},{name}\n" for student, name in students.items()]
+        (path / STUDENTS).write_text("".join(["id,name\n", *lines]), encoding="utf-8")
+    for notebook in sample_notebooks(DATA):
         folder = path / "submitted" / notebook.student / notebook.assignment
         folder.mkdir(parents=True, exist_ok=True)
         text = notebook.file or nbformat_nodes.text(made_notebook(path, notebook))
@@ -80,7 +105,7 @@ def _submit_sample(path: Path) -> None:
 
 
 def demo(path: Path, *, console: Console | None = None) -> GradeReport:
-    """Make the sample class, grade it, and print the results.
+    """Make the sample class, grade it, write its report page, and print which pages to open.
 
     If an earlier call made the class from the same version of the course, the class is only graded again, which takes
     seconds. If this machine cannot run sandboxes, the class is graded without them, which is safe because the course's
@@ -98,7 +123,17 @@ def demo(path: Path, *, console: Console | None = None) -> GradeReport:
         switch_sandbox_off(path)
     _make(path, console)
     report = grade(path)
-    show(report, console)
+    if report.exit_code or report.note:
+        show(report, console)
+    student, assignment = SHOWN
+    page = report.feedback / student / assignment / f"{assignment}.html"
+    for line in (
+        f"{report.executed} notebooks graded in {report.seconds:.0f} s, {report.reused} unchanged.",
+        f"Open this page about the class:   {write_report(path)}",
+        f"Open Ben's page, as he gets it:   {page.absolute()}",
+        f"Type this next, for your class:   {COMMAND} new-class ~/my-class",
+    ):
+        console.print(line, highlight=False, soft_wrap=True)
     return report
 
 
@@ -117,7 +152,7 @@ def _make(path: Path, console: Console) -> None:
     new_class(
         path,
         course.root(),
-        assignments=sorted({notebook.assignment for notebook in sample_notebooks()}),
+        assignments=sorted({notebook.assignment for notebook in sample_notebooks(DATA)}),
         cell_seconds=CELL_SECONDS,
         notebook_seconds=NOTEBOOK_SECONDS,
     )
@@ -128,7 +163,7 @@ def _make(path: Path, console: Console) -> None:
 def _version(root: Path) -> str:
     """Return a hash of all files from which the sample class is made."""
     digest = hashlib.sha256(DATA.read_bytes() + CONFIG.encode())
-    notebooks = sample_notebooks()
+    notebooks = sample_notebooks(DATA)
     names = {notebook.assignment for notebook in notebooks}
     used = [path for path in masters(root) if lab_name(path) in names]
     answers = [
@@ -154,6 +189,7 @@ def made_notebook(path: Path, wanted: SampleNotebook) -> NotebookNode:
         right = {grade_id(cell): _without_markers(cell.source) for cell in source.cells}
     answers = {name: answer for file in wanted.bank for name, answer in _bank_answers(file).items()}
     answers |= {name: _Answer(text.strip(), ()) for name, text in wanted.answers.items()}
+    answers |= {name: _Answer(right[name].replace(*pair), ()) for name, pair in wanted.change.items()}
     notebook.cells = [
         changed for cell in notebook.cells for changed in _changed(cell, wanted, right, answers)
     ]
