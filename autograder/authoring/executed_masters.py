@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import os
+import queue
 import subprocess
+import time
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -98,8 +100,38 @@ def _run(notebook: NotebookNode, root: Path) -> NotebookNode:
     return notebook
 
 
+STILL = 1.5
+"""Seconds without a new frame after which a live picture counts as still."""
+LONGEST_MOVE = 20.0
+"""The maximum time in seconds to wait for a live picture: as long as the robot needs through both rooms."""
+
+
 class _UntilTheEnd(NotebookClient):
-    """A client that shows what became of a live picture while later cells ran."""
+    """A client that shows what became of a live picture: it waits until the robot stands, and while later cells run."""
+
+    async def async_execute_cell(
+        self,
+        cell: NotebookNode,
+        cell_index: int,
+        execution_count: int | None = None,
+        store_history: bool = True,
+    ) -> NotebookNode:
+        """Execute a cell. If it shows a live picture, wait until no new frame arrives."""
+        done = await super().async_execute_cell(cell, cell_index, execution_count, store_history)
+        if any(cell_index in cells for cells in self._display_id_map.values()):
+            await self._until_still(cell, cell_index)
+        return done
+
+    async def _until_still(self, cell: NotebookNode, cell_index: int) -> None:
+        assert self.kc is not None
+        give_up_at = time.monotonic() + LONGEST_MOVE
+        while time.monotonic() < give_up_at:
+            try:
+                msg = await ensure_async(self.kc.iopub_channel.get_msg(timeout=STILL))
+            except queue.Empty:
+                return
+            if msg["msg_type"] == "update_display_data":
+                self.process_message(msg, cell, cell_index)
 
     async def _async_poll_output_msg(self, parent_msg_id: str, cell: NotebookNode, cell_index: int) -> None:
         """Process a cell's messages, and new frames of live pictures in earlier cells, which nbclient would ignore."""

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import os
 import shutil
+from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -70,10 +71,9 @@ def build_site(root: Path, folder: Path, edition: str, *, outputs: bool, tell: C
         sources.mkdir()
         _write_sources(root, sources, edition, executed)
         shutil.copyfile(Path(__file__).with_name(_STYLE_SHEET), sources / _STATIC / _STYLE_SHEET)
-        title = next(iter(course.chapters(root))).title
-        address = course.repository(root)
-        files = f"{address}/blob/{course.BRANCH}" if address else ""
-        settings = _SPHINX_SETTINGS | {"project": title, "html_title": title, "course_files": files}
+        settings = _SPHINX_SETTINGS | _settings_of(
+            root, (sources / f"{_START}.md").read_text(encoding="utf-8")
+        )
         with (held.path / "warnings").open("w+", encoding="utf-8") as warnings:
             app = Sphinx(
                 sources, None, pages, held.path / "trees", "html", settings, status=None, warning=warnings
@@ -95,6 +95,27 @@ def build_site(root: Path, folder: Path, edition: str, *, outputs: bool, tell: C
     for problem in problems:
         tell(problem)
     return len(problems)
+
+
+def _settings_of(root: Path, start: str) -> dict[str, Any]:
+    """Return the settings for one book: its title is the heading of its first page; pyproject.toml has the others.
+
+    Args:
+        root: The top folder of the course.
+        start: The text of the page with which the website begins.
+    """
+    title, file = start.partition("\n")[0].removeprefix("# "), root / "pyproject.toml"
+    project = msgspec.toml.decode(file.read_bytes()).get("project", {}) if file.is_file() else {}
+    authors = ", ".join(one["name"] for one in project.get("authors", ()) if "name" in one)
+    address = course.repository(root)
+    settings = {"project": title, "html_title": title, "author": authors}
+    settings["course_files"] = f"{address}/blob/{course.BRANCH}" if address else ""
+    theme = _SPHINX_SETTINGS["html_theme_options"]
+    if license_ := project.get("license", ""):
+        theme = theme | {"extra_footer": f"License: {escape(str(license_))}"}
+    if address:
+        theme = theme | {"repository_url": address, "use_repository_button": True}
+    return settings | {"html_theme_options": theme}
 
 
 def course_of(edition: str, root: Path, folder: Path) -> Path:
@@ -123,7 +144,7 @@ def _write_sources(root: Path, folder: Path, edition: str, executed: Mapping[str
     (folder / _STATIC).mkdir()
     if (root / "docs").is_dir():
         shutil.copytree(root / "docs", folder / "docs", ignore=shutil.ignore_patterns("*.py", "*.json"))
-    start, beside = folder / f"{_START}.md", ["*", "*/*"]
+    start, beside = folder / f"{_START}.md", list[str]()
     start.write_text(f"# {course.chapters(root)[0].title}\n", encoding="utf-8")
     for page in sorted(root.glob("*.md")):
         if page.name != start.name:
@@ -133,7 +154,7 @@ def _write_sources(root: Path, folder: Path, edition: str, executed: Mapping[str
         shutil.copyfile(page, folder / page.name)
     _append(start, _chapters(root))
     if (folder / _GUIDES).is_file():
-        _append(folder / _GUIDES, _contents("All pages", beside))
+        _append(folder / _GUIDES, _contents("All pages", _pages_in_order(folder / _GUIDES, beside)))
     if (folder / _FAIRNESS).is_file():
         _append(folder / _FAIRNESS, _task_by_task())
     outcomes = learning_outcomes(root)
@@ -236,13 +257,29 @@ def _chapters(root: Path) -> str:
     return "".join(trees + guides)
 
 
+_LINK_TO_PAGE = re2.compile(r"\]\((?:\./)?([\w./-]+)\.md\)")
+
+
+def _pages_in_order(guides: Path, beside: Sequence[str]) -> list[str]:
+    """Return all pages except the list of guides: first those to which it links, in its order, then the others.
+
+    Args:
+        guides: The list of guides, which is ordered for readers.
+        beside: Pages outside of its folder.
+    """
+    places = sorted(guides.parent.rglob("*.md"))
+    pages = [*(place.relative_to(guides.parent).with_suffix("").as_posix() for place in places), *beside]
+    linked = [page for page in _LINK_TO_PAGE.findall(guides.read_text(encoding="utf-8")) if page in pages]
+    return [page for page in dict.fromkeys([*linked, *pages]) if page != guides.stem]
+
+
 def _append(page: Path, text: str) -> None:
     with page.open("a", encoding="utf-8") as file:
         file.write(text)
 
 
 def _contents(title: str, pages: Sequence[str]) -> str:
-    return f'\n\n```{{toctree}}\n:glob:\n:maxdepth: 1\n:caption: "{title}"\n\n' + "\n".join(pages) + "\n```\n"
+    return f'\n\n```{{toctree}}\n:maxdepth: 1\n:caption: "{title}"\n\n' + "\n".join(pages) + "\n```\n"
 
 
 _ICON = re2.compile(r'(?:"?([\w-]+)"?):\[\d+,\d+,\[([^\]]*)\],"[0-9a-f]*",(?:"[^"]*"|\[[^\]]*\])\],?')
