@@ -94,7 +94,7 @@ def markdown(costs: Costs) -> str:
     on = costs.machine
     lines = [
         f"Measured on {costs.when} on {on.cores} cores ({on.system}, CPython {on.python}), at a load average of "
-        f"{costs.load:.1f}, as the mean over {costs.notebooks} notebooks of the whole chapter:",
+        f"{costs.load:.1f}, as the mean over {costs.notebooks} notebooks of chapter 1:",
         "",
         "| one notebook costs | |",
         "| --- | --- |",

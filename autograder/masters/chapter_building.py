@@ -1,8 +1,4 @@
-"""Builds chapter notebooks, solution files and the README's badges, or reports which of them are out of date.
-
-In README.md, the parts that contain the address of the course's public repository are filled in: badges, `git clone`.
-If the repository is not public yet, a sentence replaces the badges, and `git clone` is followed by a placeholder.
-"""
+"""Builds chapter notebooks, solution files and the README's address, or reports which of them are out of date."""
 
 from __future__ import annotations
 
@@ -10,17 +6,17 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import nbformat
-import re2
 from nbgrader.utils import compute_checksum
 
-from autograder import course, standard_output
+from autograder import standard_output
 from autograder.command_name import COMMAND
 from autograder.course import SOLUTION
 from autograder.masters.code_cells import exercise_points
 from autograder.masters.master_files import MasterError, chapter_notebooks, chapter_path, masters
 from autograder.masters.notebook_release import release_text
+from autograder.masters.readme_address import README, readme
 from autograder.masters.reference_solutions import solution_files
-from autograder.masters.source_notebooks import Points, named_cells, notebook_of, service_links
+from autograder.masters.source_notebooks import Points, named_cells, notebook_of
 from autograder.safe_files import write_whole
 
 if TYPE_CHECKING:
@@ -75,7 +71,7 @@ def build(root: Path, *, check: bool = False, points: Points = exercise_points) 
     texts = {chapter_path(root, master): release_text(notebook_of(named)) for master, named in cells.items()}
     for master, named in cells.items():
         texts |= solution_files(master, named)
-    front = _readme(root, chapter_path(root, next(iter(cells))))
+    front = readme(root, chapter_path(root, next(iter(cells))))
     if front is not None:
         texts[root / README] = front
     found: dict[str, list[Path]] = {"written": [], "unchanged": [], "stale": [], "edited": []}
@@ -150,46 +146,3 @@ def _edited(cell: Any) -> bool:
     if "checksum" in tracked:
         return bool(tracked["checksum"] != compute_checksum(cell))
     return bool(cell.source.strip())
-
-
-README = "README.md"
-_TO_FILL_IN = "ADDRESS_OF_THIS_REPOSITORY"
-"""The placeholder in README.md for the address of a repository that is not public yet."""
-WITHOUT_ADDRESS = (
-    "This course has no public address yet. If you have its folder, leave the line with `git clone` out, and type the "
-    "others in that folder.\n"
-)
-"""The sentence that README.md contains instead of badges while the repository is not public."""
-_TESTS_WORKFLOW = ".github/workflows/ci.yml"
-_BADGE_PICTURES = {
-    "Colab": "https://colab.research.google.com/assets/colab-badge.svg",
-    "Codespaces": "https://github.com/codespaces/badge.svg",
-    "Binder": "https://mybinder.org/badge_logo.svg",
-}
-"""For each service, the address of the picture on its badge."""
-_BADGES_BLOCK = re2.compile(r"(?s)(<!-- badges -->\n).*?(<!-- end of badges -->)")
-_CLONE_LINE = re2.compile(r"(git clone )\S+( )")
-
-
-def _readme(root: Path, notebook: Path) -> str | None:
-    """Return README.md with the address of the repository and badges filled in; None if it has no marks for the badges.
-
-    The badges are for the repository's tests, and for services that open a notebook.
-
-    Args:
-        root: The folder of the course.
-        notebook: The notebook that the badges open.
-    """
-    file = root / README
-    text = file.read_text(encoding="utf-8") if file.is_file() else ""
-    if not _BADGES_BLOCK.search(text):
-        return None
-    address = course.repository(root)
-    shown = WITHOUT_ADDRESS
-    if address:
-        tests = f"{address}/actions/workflows/{_TESTS_WORKFLOW.rpartition('/')[2]}"
-        shown = f"[![Tests]({tests}/badge.svg)]({tests})\n"
-        for name, link in service_links(address, notebook.relative_to(root).as_posix()).items():
-            shown += f"[![Open in {name}]({_BADGE_PICTURES[name]})]({link})\n"
-    text = _BADGES_BLOCK.sub(lambda found: f"{found[1]}{shown}{found[2]}", text)
-    return str(_CLONE_LINE.sub(lambda found: f"{found[1]}{address or _TO_FILL_IN}{found[2]}", text))

@@ -1,4 +1,4 @@
-"""The badges of a README, which lead to its public repository, and what it says without one."""
+"""What a README shows of its public repository, and that it shows nothing of it without one."""
 
 from __future__ import annotations
 
@@ -10,25 +10,26 @@ from typing import TYPE_CHECKING
 from urllib.parse import parse_qs, urlsplit
 
 from autograder.course import repository
-from autograder.masters.chapter_building import README, WITHOUT_ADDRESS, build
+from autograder.masters.chapter_building import build
+from autograder.masters.readme_address import README
 
 if TYPE_CHECKING:
     from autograder.masters.source_notebooks import Points
 
 ROOT = Path(__file__).parents[2]
-TEXT = f"""\
+TEXT = """\
 # A course
 
-<!-- badges -->
-{WITHOUT_ADDRESS}<!-- end of badges -->
+[Look at Lab 9.1](chapters/01_first/lab_9_1.ipynb), or go on.
 
-$ git clone ADDRESS_OF_THIS_REPOSITORY course && cd course
+<!-- address -->
+<!-- end of address -->
 """
 NOTEBOOK = "chapters/01_first/lab_9_1.ipynb"
 BADGE = re.compile(r"^\[!\[[^\]]+\]\((\S+)\)\]\((\S+)\)$", re.MULTILINE)
 
 
-def test_with_an_address_a_build_writes_the_badges_and_without_one_what_to_type(
+def test_with_an_address_a_build_writes_what_can_be_typed_and_without_one_nothing(
     course: Path, ten_points: Points
 ) -> None:
     readme, settings = course / README, course / "pyproject.toml"
@@ -38,8 +39,8 @@ def test_with_an_address_a_build_writes_the_badges_and_without_one_what_to_type(
     assert readme in build(course, check=True, points=ten_points).stale
     assert readme in build(course, points=ten_points).written
     written = readme.read_text()
-    assert WITHOUT_ADDRESS not in written
-    assert "$ git clone https://github.com/ada/ros-2.x course && cd course" in written
+    assert "\n$ git clone https://github.com/ada/ros-2.x && cd ros-2.x\n" in written
+    assert "[Look at Lab 9.1](https://ada.github.io/ros-2.x/chapters/01_first/lab_9_1.html)" in written
     pictures, links = zip(*BADGE.findall(written), strict=True)
     assert pictures[0] == "https://github.com/ada/ros-2.x/actions/workflows/ci.yml/badge.svg"
     tests, colab, codespaces, binder = map(urlsplit, links)

@@ -1,0 +1,123 @@
+"""Every number of the README stands in the file that it comes from, and no page tells of another version."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[1]
+README = " ".join((ROOT / "README.md").read_text(encoding="utf-8").split())
+ACCURACY = " ".join((ROOT / "docs" / "accuracy.md").read_text(encoding="utf-8").split())
+PERFORMANCE = " ".join((ROOT / "docs" / "performance.md").read_text(encoding="utf-8").split())
+IN_WORDS = {
+    2: "two",
+    3: "three",
+    4: "four",
+    5: "five",
+    6: "six",
+    7: "seven",
+    8: "eight",
+    9: "nine",
+    10: "ten",
+}
+IN_NUMBERS = {word: number for number, word in IN_WORDS.items()}
+
+
+def number(text: str) -> int:
+    """A number as it stands in prose."""
+    return IN_NUMBERS.get(text) or int(text)
+
+
+def found(pattern: str, page: str) -> re.Match[str]:
+    """The place of a page that holds a number."""
+    match = re.search(pattern, page)
+    assert match, f"no page says {pattern!r} any more: name the new source of README's number here"
+    return match
+
+
+def rates() -> str:
+    """What the bank came to, from the file that ``tests.measure rates`` writes."""
+    how, bank = json.loads((ROOT / "docs" / "accuracy.json").read_text(encoding="utf-8"))["bank"]
+    accepted, rejected = (
+        f"{bank[part]} of {bank[whole]}" for part, whole in (("accepted", "right"), ("rejected", "wrong"))
+    )
+    return (
+        f"On {how['when']} the judge accepted [{accepted} right answers](docs/accuracy.md) of our own and rejected "
+        f"{rejected} wrong ones."
+    )
+
+
+def blind() -> str:
+    """What the blind answers came to; those that were wrong after all are no right answers."""
+    right = found(r"Of the (\d+) right ones (\w+) lost points: (\w+) were wrong after all", ACCURACY)
+    wrong = found(r"None of the (\d+) wrong ones passed", ACCURACY)
+    written, lost, mistaken = map(number, right.groups())
+    return (
+        f"Of {written - mistaken} right answers written blind, from the tasks alone, {IN_WORDS[lost - mistaken]} lost "
+        f"points (their causes are fixed since); none of {wrong[1]} wrong ones passed."
+    )
+
+
+def mutants_of_chapter_2() -> str:
+    """The newest and weakest figure."""
+    share = found(r"\d+ of \d+ were rejected, (\d+ of \d+) \(", ACCURACY)
+    return f"It rejected {share[1]} small errors made in answers of chapter 2."
+
+
+def times_of_cards() -> str:
+    """How long a student with a wrong answer waits."""
+    wrong = found(
+        r"card of (\d+) wrong answers came after ([\d.]+) s \(median\), after more than 15 s for (\d+)",
+        PERFORMANCE,
+    )
+    one_in = IN_WORDS[round(int(wrong[1]) / int(wrong[3]))]
+    return (
+        f"Half of the wrong answers get their card within {wrong[2]} s, one in {one_in} after more than 15 s."
+    )
+
+
+def one_lab() -> str:
+    """How long one lab of 120 students takes, at the speed of the class that the benchmark graded."""
+    results = json.loads((ROOT / "benchmarks" / "results.json").read_text(encoding="utf-8"))
+    seconds = found(r"\(([\d.]+) s a notebook, feedback included", json.dumps(results))[1]
+    minutes = IN_WORDS[int(120 * float(seconds) / 60) + 1]
+    when = found(r"Measured on (\S+) in \d+ minutes, full form", PERFORMANCE)[1]
+    return (
+        f"One lab of 120 students takes [under {minutes} minutes](docs/performance.md#figures) on two cores "
+        f"({seconds} s a notebook, {when})."
+    )
+
+
+@pytest.mark.parametrize("sentence", [rates, blind, mutants_of_chapter_2, times_of_cards, one_lab])
+def test_the_readme_says_what_its_source_says(sentence: object) -> None:
+    assert callable(sentence)
+    assert sentence() in README
+
+
+def test_the_performance_page_begins_with_the_figure_that_it_holds() -> None:
+    seconds = found(r"\(([\d.]+) s a notebook, feedback included", PERFORMANCE)[1]
+    assert f"{seconds} seconds for each notebook" in PERFORMANCE
+    assert f"120 × {seconds} s = {120 * float(seconds) / 60:.1f} minutes" in PERFORMANCE
+
+
+@pytest.mark.parametrize("words", ["something failed", "thirteen notebooks", "what the chapter teaches"])
+def test_no_page_says(words: str) -> None:
+    pages = [ROOT / "README.md", *ROOT.glob("docs/**/*.md")]
+    assert not [str(page.relative_to(ROOT)) for page in pages if words in page.read_text(encoding="utf-8")]
+
+
+def words_of(text: str) -> int:
+    """How many words a reader sees: no picture, no address of a link."""
+    for hidden in (r"(?s)<!--.*?-->", r"!\[[^\]]*\]\([^)]*\)", r"(?<=\])\([^)]*\)"):
+        text = re.sub(hidden, "", text)
+    return sum(any(map(str.isalnum, word)) for word in text.split())
+
+
+def test_the_readme_and_its_first_screen_are_short() -> None:
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    first, _, _ = text.partition("\n## ")
+    assert words_of(first.partition("<!-- address -->")[0]) <= 60
+    assert words_of(text) <= 900
