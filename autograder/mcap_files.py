@@ -28,7 +28,7 @@ class MessageFile:
 
     def __init__(self, stream: IO[bytes]) -> None:
         self._writer = Writer(stream)
-        self._writer.start(profile="ros2", library="ros2-course-autograder")
+        self._writer.start(profile="ros2", library="ros2-on-the-wire")
         self._counts: Counter[int] = Counter()
 
     def channel(self, topic: str, type_name: str, definition: str) -> int:

@@ -8,7 +8,7 @@ from __future__ import annotations
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-PACKAGE = "ros2-course-autograder"
+PACKAGE = "ros2-on-the-wire"
 """The name of the wheel."""
 IS_CLONE = (ROOT / "course").is_file()
 """True in a clone and in a hand-out; False if the wheel is installed."""

@@ -113,7 +113,7 @@ def test_an_exercise_is_made_tried_checked_and_a_class_of_two_is_graded(installe
         said = run(autograder, *words, cwd=mine, code=2)
         assert said.count("\n") == 1
         assert "ROS 2 was not found: source the setup script of ROS 2 Jazzy, or type: pip install" in said
-        assert "'ros2-course-autograder[ros]'" in said
+        assert "'ros2-on-the-wire[ros]'" in said
     add(installed, wheel, "ros")
     assert "6 answers, none not as expected" in run(autograder, "try-exercise", "lab_1_1.battery", cwd=mine)
     program = mine / "solutions/01_first/lab_1_1/battery.answers/right/usual.py"
@@ -121,7 +121,7 @@ def test_an_exercise_is_made_tried_checked_and_a_class_of_two_is_graded(installe
     judged = run(autograder, "check", "lab_1_1.battery", "--json", "--", "python3", program, cwd=inside)
     assert printed_json(judged)["score"] == 10
     assert "./course" not in run(autograder, "doctor", cwd=mine)
-    assert "pip install 'ros2-course-autograder[notebooks]'" in run(autograder, "build", cwd=mine, code=2)
+    assert "pip install 'ros2-on-the-wire[notebooks]'" in run(autograder, "build", cwd=mine, code=2)
 
     add(installed, wheel, "class")
     run(autograder, "build", cwd=mine)
@@ -138,14 +138,14 @@ def test_an_exercise_is_made_tried_checked_and_a_class_of_two_is_graded(installe
     run(autograder, "hand-out", handed_out, cwd=inside)
     assert "BEGIN SOLUTION" not in "".join(path.read_text() for path in handed_out.rglob("*.*"))
     readme = (handed_out / "README.md").read_text()
-    assert 'pip install "ros2-course-autograder[ros,notebooks]"' in readme
+    assert 'pip install "ros2-on-the-wire[ros,notebooks]"' in readme
     assert "./course" not in readme
     assert not [target for target in LINK.findall(readme) if not (handed_out / target).exists()]
     assert "0 of 10 points" in run(autograder, "progress", cwd=handed_out)
     judged = run(autograder, "check", "lab_1_1.battery", "--json", "--", "python3", program, cwd=handed_out)
     assert printed_json(judged)["score"] == 10
 
-    assert "pip install 'ros2-course-autograder[site]'" in run(autograder, "site", cwd=mine, code=2)
+    assert "pip install 'ros2-on-the-wire[site]'" in run(autograder, "site", cwd=mine, code=2)
     add(installed, wheel, "site")
     run(autograder, "site", cwd=inside)
     page = (mine / "site" / "chapters" / "01_first" / "lab_1_1.html").read_text()

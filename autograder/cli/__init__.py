@@ -64,7 +64,7 @@ class _Groups(click.Group):
 
 
 @click.group(cls=_Groups, context_settings={"help_option_names": ["-h", "--help"]})
-@click.version_option(package_name="ros2-course-autograder", prog_name="autograder")
+@click.version_option(package_name="ros2-on-the-wire", prog_name="autograder")
 @click.pass_context
 def cli(context: click.Context) -> None:
     """Check ROS 2 exercises on the wire, build the notebooks, grade a class."""

@@ -104,7 +104,7 @@ def test_no_ros_wheel_is_outside_its_lock() -> None:
 def test_everything_that_pip_installed_here_is_locked() -> None:
     known = {name for lock in LOCKS for name in locked(lock)}
     # What venv itself brings, and the project.
-    known |= {"pip", "ros2-course-autograder"}
+    known |= {"pip", "ros2-on-the-wire"}
     by_pip = [
         found for found in distributions(path=[sysconfig.get_path("purelib")]) if found.read_text("INSTALLER")
     ]

@@ -38,7 +38,7 @@ IN_USE = 900.0
 ASK_EVERY = 0.1
 """Seconds between two attempts to lock an entry that another process has locked."""
 _MARKER = "complete"
-_NAME = "ros2-course-autograder"
+_NAME = "ros2-on-the-wire"
 
 
 class GivenUp(RuntimeError):
