@@ -21,12 +21,12 @@ from autograder.grading.collecting.collect import collect
 from autograder.grading.collecting.collected_csv import Table
 from autograder.grading.collecting.collected_files import INBOX_FOLDER, CollectedRecords, Inbox
 from autograder.grading.collecting.submitted_folder import Submitted
-from autograder.grading.fallen_points import FallenPoints
 from autograder.grading.grading_errors import GradingError, check_known, course_command
 from autograder.grading.reporting.export_memory import ExportMemory
 from autograder.grading.table.roster import NAME
 from autograder.grading.table.student_list import RENAMING, accept_list, compare, enter_roster, read_known
 from autograder.grading.table.students_csv import read_students_csv
+from autograder.grading.tasks.fallen_points import FallenPoints
 from autograder.kit.in_words import counted
 from autograder.safe_files import remove_tree, write_whole
 

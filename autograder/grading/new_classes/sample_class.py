@@ -35,8 +35,6 @@ if TYPE_CHECKING:
 DATA = Path(__file__).with_suffix(".toml")
 CELL_SECONDS = 8.0
 """The time limit of a cell in seconds. It is short, so that a student with an endless loop keeps no visitor waiting."""
-SHOWN = ("ben", "lab_1_2")
-"""The student and the assignment of the feedback page that ``demo`` names: a page with a card about a mistake."""
 NOTEBOOK_SECONDS = 120.0
 BANK = Path("tests", "submissions", "notebooks")
 """The path, in the course, of a folder with right and wrong sample answers."""
@@ -64,11 +62,19 @@ class SampleNotebook:
 
 
 class _SampleData(msgspec.Struct):
-    """The content of a data file: its notebooks, and the students who hand in each assignment."""
+    """The content of a data file.
+
+    Attributes:
+        notebook: The notebooks.
+        students: The students who hand in each assignment, with their names.
+        assignments: The assignments.
+        page: The student and the assignment of the feedback page that ``demo`` names: one about a mistake.
+    """
 
     notebook: tuple[SampleNotebook, ...]
     students: dict[str, str] = {}
     assignments: tuple[str, ...] = ()
+    page: tuple[str, str] = ("", "")
 
 
 @dataclass(frozen=True)
@@ -79,13 +85,14 @@ class _Answer:
     extra: tuple[str, ...]
 
 
-def _data(file: Path) -> _SampleData:
+def sample_data(file: Path) -> _SampleData:
+    """Read a data file."""
     return msgspec.toml.decode(file.read_bytes(), type=_SampleData)
 
 
 def sample_notebooks(file: Path) -> tuple[SampleNotebook, ...]:
     """Return the descriptions of all notebooks that the students of a data file hand in."""
-    data = _data(file)
+    data = sample_data(file)
     described = {(one.student, one.assignment): one for one in data.notebook}
     for student, assignment in itertools.product(data.students, data.assignments):
         described.setdefault((student, assignment), SampleNotebook(student, assignment))
@@ -94,7 +101,7 @@ def sample_notebooks(file: Path) -> tuple[SampleNotebook, ...]:
 
 def _submit_sample(path: Path) -> None:
     """Write every sample notebook into ``submitted`` of the class at ``path``, and its list of students."""
-    if students := _data(DATA).students:
+    if students := sample_data(DATA).students:
         lines = [f"{student},{name}\n" for student, name in students.items()]
         (path / STUDENTS).write_text("".join(["id,name\n", *lines]), encoding="utf-8")
     for notebook in sample_notebooks(DATA):
@@ -125,7 +132,7 @@ def demo(path: Path, *, console: Console | None = None) -> GradeReport:
     report = grade(path)
     if report.exit_code or report.note:
         show(report, console)
-    student, assignment = SHOWN
+    student, assignment = sample_data(DATA).page
     page = report.feedback / student / assignment / f"{assignment}.html"
     for line in (
         f"{report.executed} notebooks graded in {report.seconds:.0f} s, {report.reused} unchanged.",

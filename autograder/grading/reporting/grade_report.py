@@ -13,7 +13,6 @@ from rich.table import Table
 from rich.text import Text
 
 from autograder import standard_output
-from autograder.grading.fallen_points import questions
 from autograder.grading.grading_errors import course_command
 from autograder.grading.grading_task import UNREADABLE
 from autograder.grading.running.batch_progress import Timings, plain_line
@@ -30,6 +29,7 @@ from autograder.grading.table.rows import (
     remarks_on,
     total,
 )
+from autograder.grading.tasks.fallen_points import questions
 from autograder.kit.in_words import counted
 from autograder.safe_files import name_as_text
 from autograder.standard_output import printable
@@ -43,8 +43,8 @@ if TYPE_CHECKING:
     from rich.console import Console
 
     from autograder.grading.classes.class_directory import RefusedFile
-    from autograder.grading.fallen_points import FallenResult
     from autograder.grading.reporting.class_table import ClassTable, Difference
+    from autograder.grading.tasks.fallen_points import FallenResult
 
 
 _FORM = 2
