@@ -29,6 +29,8 @@ class OpenNotebook:
         found = self.panel.locator(
             ".jp-CodeCell", has=self.page.locator(".cm-line", has_text=re.compile(begin))
         )
+        if not found.first.is_visible():  # JupyterLab hides a cell far above the view until somebody scrolls
+            self.panel.locator(".jp-WindowedPanel-outer").first.evaluate("one => one.scrollTo(0, 0)")
         found.first.scroll_into_view_if_needed()
         return found.first
 

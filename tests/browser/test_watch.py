@@ -89,6 +89,9 @@ def test_a_task_is_done_with_the_buttons_alone(page: Page, lab: str) -> None:
     look(page, "buttons-passed")
     checked.locator(".agc-acts").get_by_role("button", name="Watch").click()
     expect(page.locator(".Toastify")).to_contain_text("TalkerNode is no longer checked automatically.")
+    # The kernel, and what was chosen in it, outlives this page.
+    checked.locator(".agc-acts").get_by_role("button", name="Watch").click()
+    expect(page.locator(".Toastify")).to_contain_text("TalkerNode is checked again whenever its cell is run.")
     checked.locator(".agc-acts").get_by_role("button", name="Next task").click()
     expect(page.locator(".jp-Cell.jp-mod-active")).to_contain_text("class ListenerNode")
 
