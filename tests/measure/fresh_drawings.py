@@ -55,20 +55,19 @@ def run_program(text: str) -> None:
         def add_node(self, _: Any) -> None:
             pass
 
-        @staticmethod
-        def spin(*_: Any) -> None:
+        def spin(self, *_: Any) -> None:
             raise _Spins
 
         def shutdown(self, *_: Any) -> None:
             pass
 
-    there: dict[str, Any] = {"init": Executor, "create_node": PaperNode, "spin": Executor.spin}
+    there: dict[str, Any] = {"init": Executor, "create_node": PaperNode, "spin": partial(Executor.spin, None)}
     there |= dict.fromkeys(("shutdown", "try_shutdown"), Executor)
     for name, value in there.items():
         setattr(rclpy, name, value)
     for name in ("SingleThreadedExecutor", "MultiThreadedExecutor"):
         setattr(rclpy.executors, name, Executor)
-    setattr(PaperNode, "destroy_node", lambda _: None)  # noqa: B010  (a class of another module)
+    setattr(PaperNode, "destroy_node", lambda _: None)  # noqa: B010  (for this process alone)
     try:
         exec(compile(text, "answer", "exec"), {"__name__": "__main__"})
     except _Spins:

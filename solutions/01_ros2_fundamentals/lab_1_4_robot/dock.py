@@ -63,5 +63,7 @@ EXERCISE = SameAsSolution(
         "At the end publish a `Twist()`, which stops the robot, and say that the goal has succeeded.": "dock cmd_vel",
         "`arrived` is true only if the robot got there": "dock",
     },
-    counts={"": "How long your node sleeps between two commands is free."},
+    counts={
+        "": "How long your node sleeps between two commands is free. Each way is a whole number of pieces."
+    },
 )

@@ -5,9 +5,9 @@ from random import Random
 from autograder.kit import Returns, dealt, drawn_until, levels, mixed
 
 NEAR, FREE = 0.6, 1.0
-"""A turn begins below the first distance in meters, and ends above the second. No wall is exactly there."""
+"""A turn begins below the first distance in meters, and ends above the second, which every float holds."""
 BEGIN, DRIVE_ON = [*levels(NEAR)[:4], 0.5], [*levels(NEAR)[4:], 0.9]
-TURN_ON, END = [*levels(FREE)[:4], 0.5], levels(FREE)[4:]
+TURN_ON, END = [*levels(FREE)[:4], 0.5, FREE], levels(FREE)[4:]
 """The walls ahead at which a turn begins, an agent drives on, a turn goes on, and a turn ends."""
 SIDES = ((2.0, 1.4), (0.9, 0.5), (1.4, 2.0), (0.5, 0.9), (1.0, 1.0))
 """The room on the left and on the right, at the beginning of each turn."""
@@ -19,10 +19,10 @@ def observations(random: Random) -> list[list[float]]:
     The first wall says nothing to a new agent, and tells one that still turns.
     """
     cycles = zip(
-        dealt(random, DRIVE_ON, 5),
+        dealt(random, [*DRIVE_ON, *random.sample(DRIVE_ON, random.randint(2, 4))], 5),
         random.sample(BEGIN, 5),
         mixed(random, SIDES, lambda sides: sides[0] > sides[1]),
-        [*dealt(random, TURN_ON, 4), []],
+        [*dealt(random, [*TURN_ON, *random.sample(TURN_ON, 2)], 4), []],
         [*([end] for end in random.sample(END, 4)), []],
         strict=True,
     )

@@ -18,11 +18,12 @@ they meet it at four moments, a quarter of its period apart. One of these shows 
 def steps(random: Random) -> list[To | float]:
     """Return scans with the wall ahead at all levels; every other one grows old before the next one comes.
 
+    Two of these are far away at least, and one is near.
     The robot's time stands still after the second scan, before any grows old: a node on another clock is noticed there.
     """
     walls = drawn_until(
         lambda: mixed(random, levels(NEAR), lambda wall: wall > NEAR),
-        lambda walls: len({wall > NEAR for wall in walls[::2]}) == 2,
+        lambda walls: 1 < sum(wall > NEAR for wall in walls[::2]) < 4,
     )
     far = random.choice([wall for wall in walls if wall > NEAR])
     early, still, *told = scans(random, NEAR, [max(walls), far, *walls])

@@ -16,7 +16,10 @@ def fast(random: Random) -> To:
 
 
 def steps(random: Random) -> list[To | Sets]:
-    """Return changes to higher and to lower limits, before the button is pressed, meanwhile, and after that."""
+    """Return changes to higher and to lower limits, before the button is pressed, meanwhile, and after that.
+
+    How many commands come in between is drawn, so that a node that counts its inputs is wrong.
+    """
     pressed, released = (To("/stop", {"data": data}) for data in (True, False))
     limits = {"max_forward": 0.5, "max_turn": 1.0}
     told: list[To | Sets] = []
@@ -30,7 +33,7 @@ def steps(random: Random) -> list[To | Sets]:
         ]
         told += [
             *shuffled(random, changes),
-            fast(random),
+            *(fast(random) for _ in range(random.randint(1, 3))),
             pressed,
             *shuffled(random, during),
             released,
