@@ -2,12 +2,25 @@
 
 from __future__ import annotations
 
+import contextlib
 import sys
 from pathlib import Path
-from zoneinfo import ZoneInfo
+from typing import TYPE_CHECKING
 
 import click
 
+from autograder.cli.class_options import (
+    class_command,
+    class_folder,
+    from_option,
+    into_columns,
+    known_zone,
+    names_option,
+    one_assignment,
+    only_assignments,
+    only_sections,
+    over_option,
+)
 from autograder.cli.command_results import (
     INTERRUPTED,
     as_json_option,
@@ -19,24 +32,9 @@ from autograder.cli.command_results import (
 )
 from autograder.command_name import COMMAND
 
-class_folder = click.argument("folder", type=click.Path(path_type=Path))
-only_assignments = click.option(
-    "--assignment", "assignments", multiple=True, help="Use only this assignment; may be given several times."
-)
-only_sections = click.option(
-    "--section",
-    "sections",
-    multiple=True,
-    help="Use only students with this value in the column section of students.csv.",
-)
-
-
-def _known_zone(_context: click.Context, _option: click.Parameter, name: str) -> ZoneInfo | None:
-    """Return the time zone with this name; None if the option was not given."""
-    try:
-        return ZoneInfo(name) if name else None
-    except (ValueError, OSError, LookupError):
-        fail(f"The time zone {name!r} does not exist. A name looks like Europe/Berlin.")
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from zoneinfo import ZoneInfo
 
 
 @click.command("hand-out")
@@ -71,7 +69,7 @@ def hand_out(place: Path, assignments: tuple[str, ...], as_zip: bool, with_solut
 @click.option(
     "--timezone",
     default="",
-    callback=_known_zone,
+    callback=known_zone,
     metavar="Europe/Berlin",
     help="The time zone of due dates. The default is this machine's.",
 )
@@ -107,7 +105,7 @@ def _pairs(_context: click.Context, _option: click.Parameter, values: tuple[str,
     return pairs
 
 
-@click.command()
+@class_command()
 @class_folder
 @click.argument("new_list", required=False, metavar="[LIST]", type=click.Path(path_type=Path))
 @click.option(
@@ -139,35 +137,19 @@ def students(folder: Path, new_list: Path | None, said: dict[str, str], by_name:
             print_line(line)
 
 
-@click.command()
+@class_command()
 @class_folder
 @click.argument("files", nargs=-1, type=click.Path(path_type=Path))
-@click.option(
-    "--assignment",
-    default="",
-    help="The assignment to which all files belong. The default is the one that cells and file names show.",
-)
+@one_assignment
 @click.option(
     "--timezone",
     default="",
-    callback=_known_zone,
+    callback=known_zone,
     metavar="Europe/Berlin",
     help="The time zone of times in file names and in lists of an LMS. The default is the time zone of the class.",
 )
-@click.option(
-    "--from",
-    "form",
-    type=click.Choice(["moodle", "canvas", "blackboard", "brightspace", "gradescope", "sakai", "ilias"]),
-    default=None,
-    help="The system from which the files come, if file names do not show it. Needed for ILIAS.",
-)
-@click.option(
-    "--names",
-    default="",
-    metavar="'{id}-{last}_{assignment}'",
-    help="The pattern of file names, with id, email, login, number, name, first, last, assignment, time, file, any, or "
-    "a column of students.csv.",
-)
+@from_option
+@names_option
 @click.option(
     "--handed-in",
     default="",
@@ -211,7 +193,20 @@ def collect(
     sys.exit(report.exit_code)
 
 
-@click.command()
+@contextlib.contextmanager
+def _finished_grades_are_stored() -> Iterator[None]:
+    """If Ctrl-C is pressed in the block, end the command with a sentence about what is stored."""
+    try:
+        yield
+    except KeyboardInterrupt:
+        click.echo(
+            "autograder: stopped. Finished grades are stored; type the same command to grade the rest.",
+            err=True,
+        )
+        sys.exit(INTERRUPTED)
+
+
+@class_command()
 @class_folder
 @only_assignments
 @click.option(
@@ -271,25 +266,18 @@ def grade(
         need_ros()
     if unsafe_no_sandbox:
         switch_sandbox_off(folder)
-    try:
-        with grading_errors():
-            report = batch.grade(
-                folder,
-                assignments=assignments,
-                students=students,
-                sections=sections,
-                again=again,
-                jobs=jobs,
-                scheduler=scheduler,
-                dry_run=dry_run,
-                lower=lower or "",
-            )
-    except KeyboardInterrupt:
-        click.echo(
-            "autograder: stopped. Finished grades are stored; type the same command to grade the rest.",
-            err=True,
+    with grading_errors(), _finished_grades_are_stored():
+        report = batch.grade(
+            folder,
+            assignments=assignments,
+            students=students,
+            sections=sections,
+            again=again,
+            jobs=jobs,
+            scheduler=scheduler,
+            dry_run=dry_run,
+            lower=lower or "",
         )
-        sys.exit(INTERRUPTED)
     if as_json:
         from autograder.grading.reporting.grade_report import report_json
 
@@ -298,6 +286,53 @@ def grade(
         from autograder.grading.reporting.grade_report import show
 
         show(report)
+    sys.exit(report.exit_code)
+
+
+@click.command()
+@click.argument("files", nargs=-1, required=True, metavar="DOWNLOAD [LIST]", type=click.Path(path_type=Path))
+@click.option(
+    "--class",
+    "folder",
+    default=Path(),
+    type=click.Path(path_type=Path),
+    help="The folder of the class. The default is the current folder.",
+)
+@one_assignment
+@from_option
+@names_option
+@into_columns
+@over_option
+@click.option("--dry-run", is_flag=True, help="Change nothing, and show what would be done. Checks are run.")
+def week(
+    files: tuple[Path, ...],
+    folder: Path,
+    assignment: str,
+    form: str | None,
+    names: str,
+    columns: dict[str, str],
+    over: bool,
+    dry_run: bool,
+) -> None:
+    """Collect DOWNLOAD, grade it, and fill the points into LIST, in the folder of a class.
+
+    DOWNLOAD is a zip or folder with submissions, as an LMS gives it. LIST is a list of the same LMS: Moodle's grading
+    worksheet, or the exported gradebook, which is the list of students if the class has none. The filled list is in the
+    folder export of the class. What waits for you comes last.
+
+    Exit code 2: something waits.
+    """
+    from autograder.grading import week as weekly
+
+    need_ros()
+    choices = weekly.WeekChoices(
+        {"assignment": assignment, "form": form or "", "names": names}, columns=columns, over=over
+    )
+    with grading_errors(), _finished_grades_are_stored():
+        report = (weekly.rehearsed if dry_run else weekly.week)(folder.absolute(), files, choices)
+        weekly.show_week(report)
+        if dry_run:
+            print_line("Nothing was changed. Without --dry-run, the same is done.")
     sys.exit(report.exit_code)
 
 
@@ -345,6 +380,7 @@ CLASS_COMMANDS = (
     new_class,
     renew_class,
     students,
+    week,
     collect,
     grade,
     worker,

@@ -12,7 +12,14 @@ from typing import TYPE_CHECKING
 
 import click
 
-from autograder.cli.class_commands import class_folder, only_assignments, only_sections
+from autograder.cli.class_options import (
+    class_command,
+    class_folder,
+    into_columns,
+    only_assignments,
+    only_sections,
+    over_option,
+)
 from autograder.cli.command_results import as_json_option, fail, grading_errors, print_json, print_line
 from autograder.command_name import COMMAND
 from autograder.kit.in_words import counted
@@ -25,33 +32,14 @@ if TYPE_CHECKING:
     from autograder.verdict import Verdict
 
 
-def _columns(_context: click.Context, _option: click.Parameter, values: tuple[str, ...]) -> dict[str, str]:
-    """Return the names of columns, which were written as ``ASSIGNMENT=COLUMN``."""
-    named = {name.strip(): called.strip() for name, _, called in (one.partition("=") for one in values)}
-    if not all(named.values()):
-        fail('--column needs an assignment and the name of its column: --column "ASSIGNMENT=COLUMN"')
-    return named
-
-
 into_option = click.option(
     "--into",
     type=click.Path(path_type=Path),
     help="Fill in this list, which was exported from the LMS.",
 )
-columns_option = click.option(
-    "--column",
-    "columns",
-    multiple=True,
-    callback=_columns,
-    metavar="ASSIGNMENT=COLUMN",
-    help="The column for an assignment in the list, if its name does not show it; may be given several times.",
-)
-over_option = click.option(
-    "--over", is_flag=True, help="Replace points that a person typed into the LMS. By default, they stay."
-)
 
 
-@click.command()
+@class_command()
 @class_folder
 @click.option(
     "--to",
@@ -62,7 +50,7 @@ over_option = click.option(
 @only_assignments
 @only_sections
 @into_option
-@columns_option
+@into_columns
 @over_option
 @click.option(
     "--absent",
@@ -115,7 +103,7 @@ def export(
     sys.exit(done.exit_code)
 
 
-@click.command()
+@class_command()
 @class_folder
 @only_sections
 @click.option(
@@ -148,7 +136,7 @@ def report(
             print_line(str(page))
 
 
-@click.command()
+@class_command()
 @class_folder
 @click.argument("assignment", required=False, default="")
 @click.option(
@@ -179,7 +167,7 @@ def similar(folder: Path, assignment: str, output: Path | None, as_json: bool) -
     sys.exit(found.exit_code)
 
 
-@click.command()
+@class_command()
 @class_folder
 @click.argument("before", required=False, default="")
 @click.argument("after", required=False, default="")
@@ -203,7 +191,7 @@ def compare(folder: Path, before: str, after: str, as_json: bool) -> None:
         print_line(difference.line())
 
 
-@click.command()
+@class_command()
 @class_folder
 @click.argument("student")
 @as_json_option
@@ -223,7 +211,7 @@ def attempts(folder: Path, student: str, as_json: bool) -> None:
         print_line(attempt.line())
 
 
-@click.command()
+@class_command()
 @class_folder
 @click.argument("student")
 @click.argument("exercise")

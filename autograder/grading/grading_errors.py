@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import errno
 import shlex
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from autograder.command_name import COMMAND
@@ -13,7 +14,6 @@ from environment.installation import IS_CLONE, ROOT, installing
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
-    from pathlib import Path
 
 
 def course_command(*words: object, inside: Path | None = None) -> str:
@@ -24,7 +24,9 @@ def course_command(*words: object, inside: Path | None = None) -> str:
         inside: The folder in which the command must run, as nbgrader's commands require; None for any folder.
     """
     program = ROOT / COMMAND if inside and IS_CLONE else COMMAND
-    command = shlex.join(map(str, (program, *words)))
+    # In the folder of the class, the class need not be named.
+    here = [word for word in words if not (isinstance(word, Path) and word.absolute() == Path.cwd())]
+    command = shlex.join(map(str, (program, *here)))
     return f"{shlex.join(['cd', str(inside)])} && {command}" if inside else command
 
 

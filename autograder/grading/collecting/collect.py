@@ -92,6 +92,8 @@ class CollectReport:
         missing: The students who have handed in nothing, by assignment.
         waiting: The number of lines in the table that wait for a person.
         notes: Sentences for the instructor, for example about unclear cells and empty downloads.
+        assignments: The assignments for which this command's files are.
+        systems: The systems from which this command's files are.
     """
 
     path: Path
@@ -100,6 +102,8 @@ class CollectReport:
     missing: dict[str, tuple[str, ...]] = field(default_factory=dict)
     waiting: int = 0
     notes: tuple[str, ...] = ()
+    assignments: tuple[str, ...] = ()
+    systems: tuple[str, ...] = ()
 
     def having(self, state: LineState) -> tuple[Line, ...]:
         """Return the lines with this state."""
@@ -114,19 +118,20 @@ class CollectReport:
 def show(report: CollectReport) -> None:
     """Print which files were placed and which were not, with the reasons."""
     console = standard_output.console()
-    for text in _lines(report):
+    for text in report_lines(report):
         style = "yellow" if text.startswith(LineState.NOT_PLACED) else ""
         plain_line(console, text, style)
 
 
-def _lines(report: CollectReport) -> Iterator[str]:
+def report_lines(report: CollectReport, *, with_waiting: bool = True) -> Iterator[str]:
+    """Yield the lines to print, with or without those about files that wait, and about what to type."""
     for one in report.having(LineState.PLACED):
         when = f", handed in {one.when:%Y-%m-%d %H:%M} {one.when.tzinfo}" if one.when else ""
         late = ", late according to the LMS" if one.late else ""
         again = f", {one.reason}" if one.reason else ""
         yield f"placed       {one.student}/{one.assignment}: {one.label}{when}{late}{again}"
     settled = (LineState.UNCHANGED, LineState.EARLIER, LineState.BESIDE, LineState.LEFT_OUT)
-    for state in (*settled, LineState.NOT_PLACED):
+    for state in (*settled, LineState.NOT_PLACED) if with_waiting else settled:
         for one in (one for one in report.having(state) if one.reason):
             owner = f"{one.student}: " if one.student else ""
             is_beside = owner and state == LineState.BESIDE
@@ -146,6 +151,8 @@ def _lines(report: CollectReport) -> Iterator[str]:
         yield f"note         {note}"
     counts = {state: len(report.having(state)) for state in LineState}
     yield ", ".join(f"{count} {state}" for state, count in counts.items())
+    if not with_waiting:
+        return
     if counts[LineState.NOT_PLACED]:
         yield (
             f"note         {counted(report.waiting, 'line')} of {report.path / 'collected.csv'} to decide: write the "
@@ -285,6 +292,7 @@ class _Collecting:
             name: tuple(sorted({one.student for one in new if not one.when and one.assignment == name}))
             for name in sorted({one.assignment for one in new if not one.when})
         }
+        delivered = [one for one in lines if one.key in keys and one.students and one.assignment]
         notes = [*self._notes, *self._directory.named_cells.notes]
         notes += self._roster.notices(self._directory.assignments(), {}, self._roster.students)
         if not self._roster.students:
@@ -298,6 +306,8 @@ class _Collecting:
             missing,
             sum(one.state == LineState.NOT_PLACED for one in lines),
             tuple(notes),
+            tuple(sorted({one.assignment for one in delivered})),
+            tuple(sorted({one.lms for one in delivered} - {""})),
         )
 
 

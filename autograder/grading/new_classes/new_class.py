@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import copy
 import os
+import shlex
 import shutil
 from dataclasses import dataclass
 from datetime import UTC, datetime
@@ -37,6 +38,7 @@ from autograder.grading.rebuilding import nbformat_nodes
 from autograder.grading.result_writer import quiet
 from autograder.masters.master_files import MasterError, lab_name, masters, relinked
 from autograder.masters.source_notebooks import source_notebook
+from environment.installation import IS_CLONE, ROOT
 
 if TYPE_CHECKING:
     from collections.abc import Container, Iterator, Sequence
@@ -69,9 +71,11 @@ class NewClass:
             f"{self.path} is a class with these assignments: {', '.join(self.assignments)}.",
             f"The time zone of due dates in formgrader is {self.timezone}: see {CONFIG_NAME}.",
             f"Hand out       {COMMAND} hand-out FOLDER makes the folder for students",
-            f"Collect        {course_command('collect', self.path)} DOWNLOAD (the files as you got them from your LMS)",
-            f"or put notebooks in {self.path / 'submitted'}/<student>/<assignment>/<assignment>.ipynb",
-            f"Then           {course_command('grade', self.path)}",
+            f"Each week      cd {shlex.quote(str(self.path))}, then {COMMAND} week DOWNLOAD LIST",
+            "               DOWNLOAD is what students handed in, as you got it from your LMS. LIST is the list of the",
+            "               LMS into which points go; the first time, it is the list of students, too",
+            f"or put notebooks in {self.path / 'submitted'}/<student>/<assignment>/<assignment>.ipynb, and type",
+            f"               {course_command('grade', self.path)}",
         )
 
 
@@ -181,6 +185,10 @@ def _fill(path: Path, sources: Sources, config: str) -> None:
     create_secret(path / STATE_NAME / "secret")
     # Students' work, points and the secret must not be committed to a repository.
     (path / ".gitignore").write_text("*\n", encoding="utf-8")
+    if IS_CLONE:  # so that `./course week` can be typed in the folder of the class
+        launcher = path / "course"
+        launcher.write_text(f'#!/bin/sh\nexec {shlex.quote(str(ROOT / "course"))} "$@"\n', encoding="utf-8")
+        launcher.chmod(0o755)
     for name, (_, notebook) in sources.items():
         (path / "source" / name).mkdir(parents=True)
         _write_source(ClassDirectory(path), name, notebook, sources)

@@ -191,16 +191,17 @@ class _Export:
         purpose = f"{lms.capitalize()}: your exported list, now with the points of {names}"
         into = source.path
         before = (f"{into.stem}.before{into.suffix}", done.original, "the list as it was")
-        files = self._write([before, (into.name, done.filled, purpose)])
+        notices = list(done.notices)
+        pages = _pages(self.directory, self.table, lms, list(done.columns), notices)
+        files = self._write([before, (into.name, done.filled, purpose), *pages])
         for name, points in done.written.items():
             self.memory.note(lms, name, done.columns[name].name if source.form.points == EACH else "", points)
         self._remember()
-        notices = list(done.notices)
         if any(one.is_kept for one in done.changes):
             kept = counted(sum(one.is_kept for one in done.changes), "cell")
             notices.append(
-                f"{kept} of the list has a value that was typed into the LMS, and stays: to replace these values, add "
-                "--over (an excused student stays excused)"
+                f"{kept} of the list with a value that was typed into the LMS: it stays. To replace these, add --over "
+                "(an excused student stays excused)"
             )
         filled = [
             _filled(
@@ -214,8 +215,7 @@ class _Export:
         """Write files for a system, or for a spreadsheet."""
         notices: list[str] = []
         names = {one.assignment: one.remembered for one in self._called(to, self.wanted) if one.remembered}
-        records = CollectedRecords(self.directory.state)
-        files = self._write(_files(self.directory, self.table, to, self.wanted, notices, names, records))
+        files = self._write(_files(self.directory, self.table, to, self.wanted, notices, names))
         if to in LAYOUTS and LAYOUTS[to].purpose:
             for name in self.wanted:
                 cells = {one: cell_text(self.table, to, one, name) for one in self.table.students}
@@ -315,7 +315,6 @@ def _files(
     assignments: Sequence[str],
     notices: list[str],
     names: Mapping[str, str],
-    records: CollectedRecords,
 ) -> Iterator[_Part]:
     layout = LAYOUTS.get(to, GradebookLayout())
     if to == "csv":
@@ -327,10 +326,18 @@ def _files(
             "one sheet that lists the students, and one that lists their results in the exercises",
         )
     elif layout.purpose:
-        text = gradebook(to, table, records, assignments, names)
+        text = gradebook(to, table, CollectedRecords(directory.state), assignments, names)
         yield f"{to}.csv", text.encode(), layout.purpose
     else:
         notices.append(f"{to.upper()} cannot import points from a file, so only feedback pages are written")
+    if to in LAYOUTS:
+        yield from _pages(directory, table, to, assignments, notices)
+
+
+def _pages(
+    directory: ClassDirectory, table: ClassTable, to: str, assignments: Sequence[str], notices: list[str]
+) -> Iterator[_Part]:
+    layout, records = LAYOUTS[to], CollectedRecords(directory.state)
     for assignment in assignments if layout.pages else ():
         data, unknown = _feedback_zip(directory, table, records, assignment, to)
         if data:

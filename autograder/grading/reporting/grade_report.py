@@ -203,12 +203,13 @@ _ANY_WIDTH = 10_000
 _STYLES = {State.PASSED: "green", State.FAILED: "red", State.NOT_CHECKED: "yellow", WAITS: "yellow"}
 
 
-def show(report: GradeReport, console: Console | None = None) -> None:
+def show(report: GradeReport, console: Console | None = None, *, with_waiting: bool = True) -> None:
     """Print the table of results, lines about refused files and problems, and the paths of written files.
 
     Args:
         report: The result of the run.
         console: The console to print on; by default standard output.
+        with_waiting: True to print the files that wait for the instructor, too.
     """
     console = console or standard_output.console()
     for question in questions(report.fallen, course_command("grade", report.path)):
@@ -231,7 +232,7 @@ def show(report: GradeReport, console: Console | None = None) -> None:
             plain_line(console, f"would change {change.line()}")
     for words in _legend(report.rows):
         plain_line(console, words)
-    for refused in report.refused:
+    for refused in (one for one in report.refused if with_waiting or not one.waits):
         word = "waits" if refused.waits else "refused"
         plain_line(console, f"{word:<12} {refused.path}: {refused.reason}", "yellow")
     for where, reason in _unreadable(report):

@@ -1,0 +1,237 @@
+"""The command ``week``: collects a download, grades it, and exports the points.
+
+The headers of the files say what they are: a list into which points go, a list of students, a list with times, or else
+a download. What the instructor has to decide comes last, each with the line to type.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import shutil
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
+
+from autograder import standard_output
+from autograder.grading.batch import grade
+from autograder.grading.class_store import NAME as STORE
+from autograder.grading.classes.class_directory import STATE_NAME, ClassDirectory
+from autograder.grading.classes.gradebook_reading import gradebook_file
+from autograder.grading.collecting.collect import collect, report_lines
+from autograder.grading.collecting.collected_csv import NAME as TABLE
+from autograder.grading.collecting.collected_files import LineState
+from autograder.grading.collecting.systems import EACH
+from autograder.grading.grading_errors import GradingError, course_command
+from autograder.grading.new_classes.changing_students import change_students
+from autograder.grading.reporting.export_files import ExportChoices, export
+from autograder.grading.reporting.grade_report import show
+from autograder.grading.reporting.gradebook_layouts import LAYOUTS
+from autograder.grading.reporting.lms_list_filling import read_lms_list
+from autograder.grading.running.batch_progress import plain_line
+from autograder.grading.table.roster import NAME as ROSTER
+from autograder.grading.table.students_csv import read_students_csv
+from autograder.safe_files import HeldFolder
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+    from pathlib import Path
+
+    from autograder.grading.collecting.collect import CollectReport
+    from autograder.grading.reporting.export_files import Exported
+    from autograder.grading.reporting.grade_report import GradeReport
+
+
+@dataclass(frozen=True)
+class WeekChoices:
+    """The choices of the instructor, which are those of ``collect``, ``grade`` and ``export``.
+
+    Attributes:
+        collecting: The options of ``collect``, by name.
+        grading: The options of ``grade``, by name.
+        columns: The columns of assignments in the list, if their names do not show it.
+        over: True to replace what people typed into the LMS.
+    """
+
+    collecting: Mapping[str, object] = field(default_factory=dict)
+    grading: Mapping[str, object] = field(default_factory=dict)
+    columns: Mapping[str, str] = field(default_factory=dict)
+    over: bool = False
+
+
+@dataclass(frozen=True)
+class WeekReport:
+    """The result of a week.
+
+    Attributes:
+        collected: The result of collecting.
+        graded: The result of grading.
+        exported: The result of the export; None if the files do not show to which system the points go.
+        students: Lines about the list of students.
+        questions: What the instructor has to decide about the students.
+    """
+
+    collected: CollectReport
+    graded: GradeReport
+    exported: Exported | None
+    students: tuple[str, ...] = ()
+    questions: tuple[str, ...] = ()
+
+    @property
+    def exit_code(self) -> int:
+        """2 if something waits for the instructor, or could not be done; otherwise 0."""
+        parts = [
+            self.collected.exit_code,
+            self.graded.exit_code,
+            self.exported.exit_code if self.exported else 0,
+        ]
+        return 2 if self.questions or any(parts) else 0
+
+
+@dataclass(frozen=True)
+class _Files:
+    """The files of a week, by what they are.
+
+    Attributes:
+        into: The list into which points go; None if there is none.
+        students: The list of students; None if there is none.
+        downloads: The files to collect.
+    """
+
+    into: Path | None
+    students: Path | None
+    downloads: tuple[Path, ...]
+
+
+def _sorted_out(files: Sequence[Path]) -> _Files:
+    """Tell what each file is, by the names of its columns.
+
+    Raises:
+        GradingError: A file does not exist, or two lists take points.
+    """
+    into: list[Path] = []
+    students: list[Path] = []
+    downloads: list[Path] = []
+    for file in files:
+        if not file.exists():
+            raise GradingError(f"There is no {file}.")
+        if file.suffix.lower() != ".csv":
+            downloads.append(file)
+            continue
+        has_students, form = False, None
+        with contextlib.suppress(GradingError):
+            has_students = bool(read_students_csv(file).students)
+        with contextlib.suppress(GradingError):
+            form = read_lms_list(file).form
+        into += [file] if form else []
+        students += [file] if has_students else []
+        if not has_students and not (form and form.points == EACH):
+            downloads.append(file)
+    if len(into) > 1 or len(students) > 1:
+        names = ", ".join(map(str, into if len(into) > 1 else students))
+        raise GradingError(f"{names}: name one list for the points, and one list of students.")
+    return _Files(into[0] if into else None, students[0] if students else None, tuple(downloads))
+
+
+def week(path: Path, files: Sequence[Path], choices: WeekChoices = WeekChoices()) -> WeekReport:
+    """Collect a download, grade it, and export the points.
+
+    Args:
+        path: The class directory.
+        files: The download, and lists of an LMS.
+        choices: The choices of the instructor.
+
+    Raises:
+        GradingError: One of the steps cannot be done. What the steps before it did is done.
+    """
+    sorted_out = _sorted_out(files)
+    lines, questions = _take_students(path, sorted_out.students)
+    collected = collect(path, sorted_out.downloads, **choices.collecting)  # type: ignore[arg-type]
+    graded = grade(path, **choices.grading)  # type: ignore[arg-type]
+    exported = _exported(path, sorted_out.into, collected, choices)
+    return WeekReport(collected, graded, exported, tuple(lines), tuple(questions))
+
+
+def rehearsed(path: Path, files: Sequence[Path], choices: WeekChoices = WeekChoices()) -> WeekReport:
+    """Return what :func:`week` would do, which a copy of the class shows. The class keeps only the results of checks.
+
+    Raises:
+        GradingError: The gradebook is on a database server, so that it cannot be copied; or as of :func:`week`.
+    """
+    directory = ClassDirectory(path)
+    file = gradebook_file(directory.gradebook_url)
+    if file is None or not file.resolve().is_relative_to(directory.path.resolve()):
+        raise GradingError(
+            f"The gradebook is not in {directory.path}, so no copy of the class can be made: use --dry-run with "
+            "grade and with export."
+        )
+    with directory.lock(), HeldFolder("autograder-week-") as held:
+        copy = held.path / directory.path.name
+        shutil.copytree(directory.path, copy, symlinks=True)
+        (copy / STATE_NAME / "lock").unlink(missing_ok=True)
+        store, ours = copy / STATE_NAME / STORE, directory.state / STORE
+        sorted_out = _sorted_out(files)
+        lines, questions = _take_students(copy, sorted_out.students)
+        collected = collect(copy, sorted_out.downloads, **choices.collecting)  # type: ignore[arg-type]
+        if (
+            ours.exists()
+        ):  # the results of checks are kept in the class, so that the week itself need not wait again
+            store.unlink()
+            store.symlink_to(ours)
+            grade(copy, **{**choices.grading, "dry_run": True})  # type: ignore[arg-type]
+            store.unlink()
+            shutil.copy(ours, store)
+        graded = grade(copy, **choices.grading)  # type: ignore[arg-type]
+        exported = _exported(copy, sorted_out.into, collected, choices, dry_run=True)
+        report = WeekReport(collected, graded, exported, tuple(lines), tuple(questions))
+        there = replace(graded, path=directory.path, gradebook=None)
+        return replace(report, collected=replace(collected, path=directory.path), graded=there)
+
+
+def _take_students(path: Path, new: Path | None) -> tuple[list[str], list[str]]:
+    """Use a list of students if the class has none; otherwise, return a question about what it would change."""
+    if new is None:
+        return [], []
+    if not (path / ROSTER).exists():
+        return change_students(path, new, {}, is_final=True)[:-1], []
+    lines = change_students(path, new, {}, is_final=False)
+    words = [line.split()[0] for line in lines[:-2]]
+    if not words:
+        return [], []
+    counts = ", ".join(f"{word} {words.count(word)}" for word in dict.fromkeys(words))
+    to_do = course_command("students", path, new)
+    return [], [f"{new.name} changes the students of the class ({counts}): type {to_do}"]
+
+
+def _exported(
+    path: Path, into: Path | None, collected: CollectReport, choices: WeekChoices, *, dry_run: bool = False
+) -> Exported | None:
+    """Export into the list, or for the only system from which the download came; None if neither is known."""
+    systems = [name for name in collected.systems if name in LAYOUTS]
+    if into is None and len(systems) != 1:
+        return None
+    options = ExportChoices(
+        collected.assignments, into, columns=choices.columns, over=choices.over, dry_run=dry_run
+    )
+    return export(path, "" if into else systems[0], options)
+
+
+def show_week(report: WeekReport) -> None:
+    """Print the result of a week. What waits for the instructor comes last."""
+    console = standard_output.console()
+    show(report.graded, console, with_waiting=False)
+    for text in _lines(report):
+        plain_line(console, text, "yellow" if text.startswith("waits") else "")
+
+
+def _lines(report: WeekReport) -> Iterator[str]:
+    yield from report.students
+    yield from report_lines(report.collected, with_waiting=False)
+    if report.exported:
+        yield from replace(report.exported, questions=()).lines()
+    else:
+        yield "note         no points were exported: name the list of your LMS as well, or use export --to SYSTEM"
+    table = report.collected.path / TABLE
+    for one in report.collected.having(LineState.NOT_PLACED):
+        to_do = course_command("collect", report.collected.path)
+        yield f"waits        {one.label}: {one.reason} (edit {table}, then type {to_do})"
+    for question in (*(report.exported.questions if report.exported else ()), *report.questions):
+        yield f"waits        {question}"

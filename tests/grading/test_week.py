@@ -1,0 +1,109 @@
+"""A week in one command: what was handed in, the points, and the LMS's list; what waits comes last."""
+
+from __future__ import annotations
+
+import contextlib
+import csv
+import io
+import shutil
+import zipfile
+from typing import TYPE_CHECKING, Any
+
+import pytest
+from downloads import write_zip
+
+from autograder.grading import week as weekly
+from autograder.grading.grading_errors import GradingError
+from autograder.grading.week import rehearsed, show_week, week
+from tests.cases import cases
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from tiny_class import FakeEngine, TinyClass
+
+WEEKS = cases(__file__, "week")
+
+
+@pytest.fixture
+def folder(tiny: TinyClass, fake_engine: FakeEngine) -> TinyClass:
+    return tiny
+
+
+def downloaded(klass: TinyClass, place: Path, case: dict[str, Any]) -> list[Path]:
+    """The files of a week; the talker's and the listener's points are what a student hands in."""
+    files = {}
+    for name, points in case["files"].items():
+        files[name] = klass.submit("x", *points).read_text()
+        shutil.rmtree(klass.path / "submitted" / "x")
+    for name, text in case["lists"].items():
+        (place / name).write_text(text, encoding="utf-8")
+    return [write_zip(place / "download.zip", files), *(place / name for name in case["lists"])]
+
+
+def cells(klass: TinyClass, case: dict[str, Any]) -> dict[str, str]:
+    """What is in the filled list, by the cell that names the student."""
+    who, points = case["columns"]
+    text = (klass.path / "export" / case["into"]).read_text("utf-8-sig")
+    return {row[who]: row[points] for row in csv.DictReader(io.StringIO(text)) if row[who]}
+
+
+@pytest.mark.parametrize("system", WEEKS)
+def test_each_number_of_a_week_arrives(
+    folder: TinyClass, tmp_path: Path, capsys: pytest.CaptureFixture[str], system: str
+) -> None:
+    case = WEEKS[system]
+    files = downloaded(folder, tmp_path, case)
+    before = {path: path.read_bytes() for path in folder.path.rglob("*") if path.is_file()}
+    plan = rehearsed(folder.path, files)
+    after = {path: path.read_bytes() for path in folder.path.rglob("*") if path.is_file()}
+    assert {path for path in before if before[path] != after[path]} <= {
+        folder.path / ".autograder" / "class.db"
+    }
+    assert not (folder.path / "export").exists()
+    report = week(folder.path, files)
+    assert report.exported is not None
+    assert plan.exported is not None
+    assert plan.exported.changes == report.exported.changes
+    assert report.graded.executed == 0, "the dry run has executed them"
+    assert cells(folder, case) == case["cells"]
+    show_week(report)
+    lines = capsys.readouterr().out.splitlines()
+    waiting = [place for place, line in enumerate(lines) if line.startswith("waits")]
+    assert len(waiting) == len(case["waits"])
+    assert waiting == list(range(len(lines) - len(waiting), len(lines))), "what waits comes last"
+    for words, line in zip(case["waits"], lines[len(lines) - len(waiting) :], strict=True):
+        assert words in line
+    assert report.exit_code == (2 if waiting else 0)
+    if "pages" in case:
+        with zipfile.ZipFile(folder.path / "export" / case["pages"]) as pages:
+            assert len(pages.namelist()) == case["count"]
+    again = week(folder.path, files)
+    assert (again.graded.executed, again.graded.written) == (0, 0)
+    assert cells(folder, case) == case["cells"]
+
+
+@pytest.mark.parametrize("step", ["grade", "_exported"])
+def test_a_week_that_was_ended_goes_on(
+    folder: TinyClass, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, step: str
+) -> None:
+    files = downloaded(folder, tmp_path, WEEKS["canvas"])
+    with monkeypatch.context() as patch:
+        patch.setattr(weekly, step, lambda *_, **__: (_ for _ in ()).throw(KeyboardInterrupt))
+        with contextlib.suppress(KeyboardInterrupt):
+            week(folder.path, files)
+    assert not (folder.path / "export").exists()
+    week(folder.path, files)
+    assert cells(folder, WEEKS["canvas"]) == WEEKS["canvas"]["cells"]
+
+
+def test_a_changed_list_of_students_and_two_lists_are_questions(folder: TinyClass, tmp_path: Path) -> None:
+    files = downloaded(folder, tmp_path, WEEKS["canvas"])
+    week(folder.path, files)
+    text = files[1].read_text("utf-8")
+    files[1].write_text(f'{text}"Moss, Mia",105,,mia,Mon,,\n', encoding="utf-8")
+    (question,) = week(folder.path, files).questions
+    assert "changes the students of the class (add 1): type" in question
+    other = shutil.copy(files[1], tmp_path / "other.csv")
+    with pytest.raises(GradingError, match="name one list for the points"):
+        week(folder.path, [*files, other])
