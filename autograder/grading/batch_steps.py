@@ -18,7 +18,8 @@ from autograder.grading.batch_work import (
     would_change,
 )
 from autograder.grading.class_checks import changed_master_warnings, limits_of
-from autograder.grading.classes import gradebook_reading
+from autograder.grading.classes import gradebook_reading, gradebook_writing
+from autograder.grading.classes.class_dates import read_class_dates
 from autograder.grading.classes.gradebook_reading import SubmissionEntry
 from autograder.grading.collecting.submitted_folder import misplaced_files, rename_decomposed_folders
 from autograder.grading.course_version import course_version
@@ -95,6 +96,7 @@ class Batch:
         # Read before any step, so that a class without a usable source is refused while it is unchanged.
         self._released = released = read_released(directory, store, self._keys)
         self._cells = released.cells
+        self._dates = read_class_dates(directory, roster)
         self._what_counts = read_what_counts(directory, released.cells)
         if not released.cells and released.unusable:
             raise MasterUnusable(next(iter(released.unusable.values())))
@@ -112,7 +114,7 @@ class Batch:
     def _writer(self) -> Writer:
         from autograder.grading.result_writer import Writer
 
-        return Writer(self._directory, self._store)
+        return Writer(self._directory, self._store, self._dates)
 
     def note(self, sentences: Iterable[str]) -> None:
         """Add sentences for the instructor to the report of the run."""
@@ -133,6 +135,7 @@ class Batch:
         # A dry run changes neither the gradebook nor the folder ``submitted``.
         if not self._asked.dry_run:
             enter_roster(self._directory)
+            gradebook_writing.enter_dates(self._directory.gradebook_url, self._dates)
             self._notices += rename_decomposed_folders(self._directory)
         beside, notices = misplaced_files(self._directory)
         self._notices += notices
@@ -339,7 +342,7 @@ class Batch:
         self._notices += self._roster.notices(self._directory.assignments(), entries, self._roster.students)
         changes: list[Difference] = []
         if self._asked.dry_run:
-            changes = would_change(self._directory, self._works, entries, self._cells)
+            changes = would_change(self._directory, self._works, entries, self._cells, self._dates)
         else:
             write_csv(self._directory.path / "grades.csv", rows)
             self._store.keep_run(course_version(), rows)

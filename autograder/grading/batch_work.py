@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from datetime import datetime
 
     from autograder.grading.class_records import Attempt
+    from autograder.grading.classes.class_dates import ClassDates
     from autograder.grading.classes.class_directory import ClassDirectory
     from autograder.grading.classes.gradebook_reading import Entries
     from autograder.grading.grading_task import GradedCell
@@ -167,12 +168,14 @@ def would_change(
     works: Iterable[Work],
     entries: Entries,
     cells: Mapping[str, Sequence[GradedCell]],
+    dates: ClassDates,
 ) -> list[Difference]:
     """Return the changes of points that a run would make, by new verdicts or a late penalty.
 
     Args:
         works: The submissions, with the results of the dry run.
         cells: The cells with points, by assignment.
+        dates: The due dates and extensions of ``class.toml``.
     """
     changes = []
     due = read_due_dates(directory.gradebook_url)
@@ -192,7 +195,8 @@ def would_change(
                 changes.append(
                     Difference(*work.key, row.exercise, before, row.score, "", row.diagnosis, note)
                 )
-        then = _foreseen(work, entry, by_exercise, due.get(work.submission.assignment))
+        at = dates.of(*work.key, entry.due or due.get(work.submission.assignment))
+        then = _foreseen(work, entry, by_exercise, at)
         if then.is_late or entry.penalty:
             from autograder.grading.table.late_policy import (
                 penalties,
@@ -236,7 +240,7 @@ def _foreseen(
     at = entry.handed_in
     with contextlib.suppress(ValueError):  # a run rejects the submission if its time is invalid
         at = handed_in_at(work.submission.folder, believed=at) or at
-    return replace(entry, handed_in=at, due=entry.due or due, cells=cells)
+    return replace(entry, handed_in=at, due=due, cells=cells)
 
 
 def due_dates(directory: ClassDirectory, assignments: Collection[str]) -> dict[str, datetime]:

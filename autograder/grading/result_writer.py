@@ -25,6 +25,7 @@ from autograder.cards.html_rendering import card_bundle
 from autograder.execution.executed_cells import Cell, CellCheck, CellRun, CellType, Execution
 from autograder.grading.class_records import Attempt
 from autograder.grading.classes import gradebook_writing
+from autograder.grading.classes.class_dates import ClassDates
 from autograder.grading.classes.class_directory import SUFFIX
 from autograder.grading.classes.gradebook_reading import read_entry
 from autograder.grading.classes.gradebook_writing import NotebookEntry
@@ -65,9 +66,11 @@ class Writer:
     Args:
         directory: The class, which this process has locked.
         store: The class's store, which records what was entered.
+        dates: The due dates and extensions of ``class.toml``.
     """
 
-    def __init__(self, directory: ClassDirectory, store: ClassStore) -> None:
+    def __init__(self, directory: ClassDirectory, store: ClassStore, dates: ClassDates | None = None) -> None:
+        self._dates = dates or ClassDates()
         self._directory = directory
         self._store = store
         self._pages = feedback_pages.FeedbackPages(directory)
@@ -123,6 +126,7 @@ class Writer:
         has_due_date = gradebook_writing.enter(
             url, submission.assignment, submission.student, entries, handed_in_at(submission.folder)
         )
+        gradebook_writing.enter_dates(url, self._dates, submission.student)
         if has_due_date:
             self.assign_penalties(submission)
 

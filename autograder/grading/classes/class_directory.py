@@ -11,11 +11,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 from zoneinfo import ZoneInfo
 
+import msgspec
 from traitlets.config.loader import PyFileConfigLoader
 
 from autograder import course
 from autograder.command_name import COMMAND
-from autograder.grading.classes.class_file import read_overlays
+from autograder.grading.classes.class_file import NAME as CLASS_FILE
+from autograder.grading.classes.class_file import read_class_file, read_overlays
 from autograder.grading.classes.class_lock import held
 from autograder.grading.classes.class_secret import create_secret, read_secret
 from autograder.grading.grading_errors import GradingError, NotAClass, clear_disk_errors
@@ -127,7 +129,28 @@ class ClassDirectory:
                 f'{self.path / CONFIG_NAME}: c.CourseDirectory.course_id = "ros2"'
             )
         config.CourseDirectory.root = str(self.path)
+        self._take_late_rule(config)
         return config
+
+    def _take_late_rule(self, config: Config) -> None:
+        """Give nbgrader the late rule of ``class.toml``.
+
+        Raises:
+            GradingError: The configuration has a late rule, too.
+        """
+        rule = read_class_file(self.path).late
+        if rule is None:
+            return
+        for section in ("LatePolicy", "LateSubmissionPlugin", "AssignLatePenalties"):
+            if options := config.get(section):
+                option, value = next(iter(options.items()))
+                raise GradingError(
+                    f"Both {self.path / CONFIG_NAME} and {CLASS_FILE} have a late rule. Remove c.{section}.{option} = "
+                    f"{value!r} from {CONFIG_NAME}; what is to stay of it belongs under [late] in {CLASS_FILE}: "
+                    "percent_per_day, grace_minutes and cut_off_days."
+                )
+        config.AssignLatePenalties.plugin_class = "autograder.grading.table.late_policy.LatePolicy"
+        config.LatePolicy.update(msgspec.structs.asdict(rule))
 
     @functools.cached_property
     def overlays(self) -> tuple[Path, ...]:

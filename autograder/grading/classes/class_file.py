@@ -2,16 +2,25 @@
 
 from __future__ import annotations
 
+import math
 import os
 import tomllib
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import msgspec
 
 from autograder.grading.grading_errors import GradingError
 
 NAME = "class.toml"
+
+
+class LateRule(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """What being late costs; ``docs/instructor/points.md`` describes the attributes."""
+
+    percent_per_day: Annotated[float, msgspec.Meta(ge=0, le=100)] = 10.0
+    grace_minutes: Annotated[float, msgspec.Meta(ge=0)] = 0.0
+    cut_off_days: Annotated[float, msgspec.Meta(ge=0)] = math.inf
 
 
 class ClassFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -23,6 +32,9 @@ class ClassFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     out_of: dict[str, float] = {}
     drop_lowest: Annotated[int, msgspec.Meta(ge=0)] = 0
     overlays: tuple[str, ...] = ()
+    due: dict[str, Any] = {}
+    extension: dict[str, dict[str, Any]] = {}
+    late: LateRule | None = None
 
 
 def read_class_file(folder: Path) -> ClassFile:
@@ -42,7 +54,7 @@ def read_class_file(folder: Path) -> ClassFile:
     except (OSError, ValueError) as error:
         raise GradingError(
             f'{path} cannot be used: {error}. It may contain leave_out = ["EXERCISE"], drop_lowest = 1, '
-            'overlays = ["/FOLDER"], and tables named points, weights and out_of.'
+            'overlays = ["/FOLDER"], and tables named points, weights, out_of, due, late and extension.ASSIGNMENT.'
         ) from error
 
 

@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 
     from sqlalchemy import Connection
 
+    from autograder.grading.classes.class_dates import ClassDates
+
 
 Scores = Mapping[str, float | None]
 """The points of cells by grade_id; None if a person has to give the points."""
@@ -160,6 +162,36 @@ def _enter_cells(
         "INSERT INTO comment (id, notebook_id, cell_id, auto_comment) VALUES (:id, :n, :cell, :comment)"
         " ON CONFLICT (cell_id, notebook_id) DO UPDATE SET auto_comment = excluded.auto_comment",
     )
+
+
+def enter_dates(url: str, dates: ClassDates, student: str = "") -> None:
+    """Enter the due dates of assignments and the extensions of submissions, as ``class.toml`` has them.
+
+    Args:
+        url: The address by which SQLAlchemy opens the gradebook.
+        dates: The dates; other assignments keep those of the gradebook.
+        student: Enter only the extensions of this student; of all students if empty.
+    """
+    if not dates.due:
+        return
+    with opened(url) as book:
+        if not has_tables(book):
+            return
+        of_assignment = sql("UPDATE assignment SET duedate = :due WHERE name = :name").bindparams(
+            sqlalchemy.bindparam("due", type_=sqlalchemy.DateTime())
+        )
+        of_submission = sql("UPDATE submitted_assignment SET extension = :more WHERE id = :id").bindparams(
+            sqlalchemy.bindparam("more", type_=sqlalchemy.Interval())
+        )
+        submissions = sql(
+            "SELECT s.id, s.student_id FROM submitted_assignment s JOIN assignment a ON a.id = s.assignment_id"
+            " WHERE a.name = :name AND (:student = '' OR s.student_id = :student)"
+        )
+        for name, due in dates.due.items():
+            book.execute(of_assignment, {"due": due, "name": name})
+            for id_, whose in book.execute(submissions, {"name": name, "student": student}).all():
+                at = dates.of(whose, name, None)
+                book.execute(of_submission, {"more": at - due if at and due else None, "id": id_})
 
 
 def enter_penalties(url: str, assignment: str, student: str, penalties: Mapping[str, float | None]) -> None:

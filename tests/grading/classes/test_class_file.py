@@ -12,6 +12,7 @@ from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.classes.class_file import read_class_file, read_overlays
 from autograder.grading.grading_errors import GradingError
 from autograder.grading.running.execution_backends import on_cluster
+from tests.cases import cases
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -87,3 +88,19 @@ def test_without_the_file_nothing_is_said(tmp_path: Path) -> None:
     (tmp_path / "class.toml").write_text('overlays = "/opt"')
     with pytest.raises(GradingError, match=r'cannot be used.*overlays = \["/FOLDER"\]'):
         read_class_file(tmp_path)
+
+
+FAULTS = cases(__file__, "fault")
+
+
+@pytest.mark.parametrize("name", FAULTS)
+def test_each_fault_of_the_file_has_a_sentence(tiny: TinyClass, name: str) -> None:
+    fault = FAULTS[name]
+    (tiny.path / "students.csv").write_text("id,section\nada,Mon\n")
+    (tiny.path / "class.toml").write_text(fault["file"])
+    tiny.configure(*fault.get("configuration", ()))
+    tiny.submit("ada")
+    with pytest.raises(GradingError) as caught:
+        tiny.grade()
+    for words in fault["says"]:
+        assert words in str(caught.value)

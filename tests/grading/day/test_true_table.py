@@ -233,6 +233,47 @@ def test_a_policy_of_percent_a_day_with_grace_and_cut_off_is_data(
     assert "Being late" not in page(tiny, "ada")
 
 
+def test_the_dates_and_the_rule_of_a_class_are_in_one_file(tiny: TinyClass, fake_engine: FakeEngine) -> None:
+    """Jo has an extension of a day, and Kim's section one of two days; Kim is in both of her sections."""
+    (tiny.path / "students.csv").write_text(
+        "id,section\nada,\njo,Mon\nkim,Mon and Lab\nmia,Lab\nzoe,\n", encoding="utf-8"
+    )
+    hours = {"ada": 0.2, "jo": 30, "kim": 30, "mia": 80, "zoe": 30}
+    for student, late in hours.items():
+        stamp = tiny.submit(student, 10, 10).with_name("timestamp.txt")
+        stamp.write_text(f"{DUE + timedelta(hours=late):%Y-%m-%d %H:%M:%S.%f} UTC")
+    tiny.grade()
+    file = tiny.path / "class.toml"
+    file.write_text(
+        f"""
+[due]
+lab_1_2 = "{DUE:%Y-%m-%d %H:%M}"
+
+[late]
+percent_per_day = 10
+grace_minutes = 15
+cut_off_days = 3
+
+[extension.lab_1_2]
+jo = {DUE + timedelta(days=1):%Y-%m-%dT%H:%M:%S}
+Mon = "{DUE + timedelta(hours=20):%Y-%m-%d %H:%M}"
+Lab = "{DUE + timedelta(days=2):%Y-%m-%d %H:%M}"
+"""
+    )
+    expected = {"ada": 20, "jo": 18, "kim": 20, "mia": 16, "zoe": 16}
+    foreseen = {one.student: one.after for one in tiny.grade(dry_run=True).would_change or ()}
+    assert foreseen == {"jo": -2, "mia": -4, "zoe": -4}
+    for _ in range(2):
+        assert tiny.grade().executed == 0
+        assert {student: total(tiny, student) for student in hours} == expected
+        assert {student: nbgraders_total(tiny, student) for student in hours} == expected
+    tiny.submit("ada", 9, 9)
+    tiny.grade()
+    file.write_text(file.read_text().replace(f'"{DUE:%Y-%m-%d %H:%M}"', '"none"').partition("[extension")[0])
+    tiny.grade()
+    assert total(tiny, "zoe") == nbgraders_total(tiny, "zoe") == 20
+
+
 def test_points_by_hand_for_late_work_are_taken_off_too(tiny: TinyClass, fake_engine: FakeEngine) -> None:
     penalty(tiny)
     due(tiny, DUE)
