@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import statistics
+from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 from urllib.parse import quote
 
+from autograder import exercises
 from autograder.cards.html_rendering import page_templates
 from autograder.cards.readable_text import one_line
 from autograder.grading.class_store import ClassStore
-from autograder.grading.classes.class_directory import ClassDirectory
+from autograder.grading.classes.class_directory import SUFFIX, ClassDirectory
 from autograder.grading.collecting.collected_csv import Table
 from autograder.grading.grading_errors import GradingError, clear_disk_errors, write_output
+from autograder.grading.rebuilding import nbformat_nodes
 from autograder.grading.reporting import class_statistics as figures
 from autograder.grading.reporting.class_table import ClassTable, read_table
 from autograder.grading.returning.page_exporter import POLICY
@@ -20,7 +23,7 @@ from autograder.grading.table.rows import DROPPED, EXCUSED, NO_EXERCISE, columns
 from autograder.standard_output import printable
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
     from pathlib import Path
 
     from autograder.grading.table.rows import Row
@@ -89,6 +92,8 @@ def _page(
         there=there,
         absent=[student for student in table.students if student not in there],
         exercises=columns(table.rows),
+        titles=_titles(columns(table.rows)),
+        labs={name: _lab_title(directory, name) for name in table.assignments},
         rows={
             student: {
                 (row.assignment, row.exercise): row
@@ -128,6 +133,31 @@ def _people(directory: ClassDirectory, table: ClassTable, *, names: bool, folder
         # Students choose their names in an LMS, so a name may be very long or have several lines.
         people[student] = _Person(one_line(f"{name} ({student})" if name else student, _LONGEST_NAME), links)
     return people
+
+
+def _titles(headings: Mapping[tuple[str, str], str]) -> dict[str, str]:
+    """Return the title of each exercise by the heading of its column; the lab follows if two have the same title."""
+    titles = {}
+    for (_, exercise), heading in headings.items():
+        try:
+            titles[heading] = exercises.get(exercise).title
+        except LookupError:  # a cell of the instructor's own, or an exercise that the course no longer has
+            titles[heading] = heading
+    often = Counter(titles.values())
+    return {
+        heading: title if often[title] == 1 else f"{title} ({heading.partition('.')[0]})"
+        for heading, title in titles.items()
+    }
+
+
+def _lab_title(directory: ClassDirectory, name: str) -> str:
+    """Return the title of an assignment: the heading of its notebook, or its name if that cannot be read."""
+    notebook = directory.path / "source" / name / f"{name}{SUFFIX}"
+    try:
+        first = nbformat_nodes.read(notebook.read_text(encoding="utf-8")).cells[0].source.partition("\n")[0]
+    except (OSError, ValueError, LookupError, AttributeError):
+        return name
+    return str(first.removeprefix("# ")) if first.startswith("# ") else name
 
 
 def _dropped(table: ClassTable) -> dict[str, list[str]]:

@@ -130,8 +130,8 @@ def test_who_improved_after_a_grading_is_shown(graded: TinyClass) -> None:
     table = page.find("h2", string="Who improved").find_next("table")  # type: ignore[union-attr]
     lines = [[cell.get_text(strip=True) for cell in line.find_all("td")] for line in table.find_all("tr")[1:]]  # type: ignore[union-attr]
     assert lines == [
-        ["Eve O'Neill (eve)", "lab_1_2", "2 times", "3", "17 of 20", "+14"],
-        ["José Núñez (jose)", "lab_1_2", "2 times", "10", "4 of 20", "-6"],
+        ["Eve O'Neill (eve)", "Tiny", "2 times", "3", "17 of 20", "+14"],
+        ["José Núñez (jose)", "Tiny", "2 times", "10", "4 of 20", "-6"],
     ]
 
 
