@@ -91,7 +91,14 @@ def one_lab() -> str:
     )
 
 
-@pytest.mark.parametrize("sentence", [rates, blind, mutants_of_chapter_2, times_of_cards, one_lab])
+def repairs() -> str:
+    """How many things the set-up changes in the wheels."""
+    page = (ROOT / "docs" / "environment.md").read_text(encoding="utf-8")
+    number_of = found(r"changes (\w+) things in the wheels", page)[1]
+    return f"[{number_of} repairs](docs/environment.md"
+
+
+@pytest.mark.parametrize("sentence", [repairs, rates, blind, mutants_of_chapter_2, times_of_cards, one_lab])
 def test_the_readme_says_what_its_source_says(sentence: object) -> None:
     assert callable(sentence)
     assert sentence() in README
