@@ -71,9 +71,7 @@ def build_site(root: Path, folder: Path, edition: str, *, outputs: bool, tell: C
         sources.mkdir()
         _write_sources(root, sources, edition, executed)
         shutil.copyfile(Path(__file__).with_name(_STYLE_SHEET), sources / _STATIC / _STYLE_SHEET)
-        settings = _SPHINX_SETTINGS | _settings_of(
-            root, (sources / f"{_START}.md").read_text(encoding="utf-8")
-        )
+        settings = _SPHINX_SETTINGS | _settings_of(root)
         with (held.path / "warnings").open("w+", encoding="utf-8") as warnings:
             app = Sphinx(
                 sources, None, pages, held.path / "trees", "html", settings, status=None, warning=warnings
@@ -97,14 +95,16 @@ def build_site(root: Path, folder: Path, edition: str, *, outputs: bool, tell: C
     return len(problems)
 
 
-def _settings_of(root: Path, start: str) -> dict[str, Any]:
-    """Return the settings for one book: its title is the heading of its first page; pyproject.toml has the others.
+def _title(root: Path) -> str:
+    """Return the name of a course: the heading of its README, or the title of its first chapter."""
+    readme = root / f"{_START}.md"
+    first = readme.read_text(encoding="utf-8").partition("\n")[0] if readme.is_file() else ""
+    return first.removeprefix("# ") if first.startswith("# ") else course.chapters(root)[0].title
 
-    Args:
-        root: The top folder of the course.
-        start: The text of the page with which the website begins.
-    """
-    title, file = start.partition("\n")[0].removeprefix("# "), root / "pyproject.toml"
+
+def _settings_of(root: Path) -> dict[str, Any]:
+    """Return the settings for the book of one course: title, author, license and address."""
+    title, file = _title(root), root / "pyproject.toml"
     project = msgspec.toml.decode(file.read_bytes()).get("project", {}) if file.is_file() else {}
     authors = ", ".join(one["name"] for one in project.get("authors", ()) if "name" in one)
     address = course.repository(root)
@@ -145,7 +145,7 @@ def _write_sources(root: Path, folder: Path, edition: str, executed: Mapping[str
     if (root / "docs").is_dir():
         shutil.copytree(root / "docs", folder / "docs", ignore=shutil.ignore_patterns("*.py", "*.json"))
     start, beside = folder / f"{_START}.md", list[str]()
-    start.write_text(f"# {course.chapters(root)[0].title}\n", encoding="utf-8")
+    start.write_text(f"# {_title(root)}\n", encoding="utf-8")
     for page in sorted(root.glob("*.md")):
         if page.name != start.name:
             beside.append(f"../{page.stem}")
@@ -257,7 +257,7 @@ def _chapters(root: Path) -> str:
     return "".join(trees + guides)
 
 
-_LINK_TO_PAGE = re2.compile(r"\]\((?:\./)?([\w./-]+)\.md\)")
+_LINK_TO_PAGE = re2.compile(r"\]\((?:\./)?([\w./-]+)\.md(?:#[^)]*)?\)")
 
 
 def _pages_in_order(guides: Path, beside: Sequence[str]) -> list[str]:

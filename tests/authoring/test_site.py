@@ -15,6 +15,7 @@ import pytest
 from nbformat.v4 import new_code_cell, new_notebook, new_output
 
 from autograder import course, exercises
+from autograder.authoring import site_building
 from autograder.authoring.executed_masters import _run, show_as_a_students
 from autograder.authoring.site_building import (
     CLASS_EDITION,
@@ -64,6 +65,33 @@ def test_every_lab_has_a_page_and_every_page_is_small_and_loads_nothing(book: tu
     } <= names
     assert not [page.name for page in pages if page.stat().st_size > MAX_PAGE_BYTES]
     assert not [page.name for page in pages if ELSEWHERE.search(page.read_text(encoding="utf-8"))]
+
+
+def test_title_and_footer_are_the_books(book: tuple[str, Path]) -> None:
+    page = (book[1] / "chapters/01_ros2_fundamentals/lab_1_2.html").read_text(encoding="utf-8")
+    (title,) = re.findall(r"<title>\s*(.*?)\s*</title>", page, re.DOTALL)
+    assert html.unescape(title).endswith("— ROS 2 on the Wire")
+    assert "By The maintainers of this course" in " ".join(page.split())
+    assert "License: MIT AND CC-BY-4.0" in page
+
+
+def test_guides_stand_in_the_order_of_readers(tmp_path: Path) -> None:
+    for name in ("README", "a", "b", "deep/c", "d"):
+        page = tmp_path / f"{name}.md"
+        page.parent.mkdir(exist_ok=True)
+        page.write_text("", encoding="utf-8")
+    guides = tmp_path / "README.md"
+    guides.write_text(
+        "[D](d.md), [C](deep/c.md#part), [gone](gone.md), [beside](../BESIDE.md)", encoding="utf-8"
+    )
+    assert site_building._pages_in_order(guides, ["../BESIDE", "../MORE"]) == [
+        "d",
+        "deep/c",
+        "../BESIDE",
+        "a",
+        "b",
+        "../MORE",
+    ]
 
 
 def test_a_page_with_all_that_it_loads_is_small_for_a_phone(book: tuple[str, Path]) -> None:
@@ -171,12 +199,29 @@ MEANWHILE = """\
 thread = threading.Thread(target=cell.run, args=(move,))
 thread.start()
 thread.join()"""
+LATER = """\
+def slowly():
+    for x in range(1, 6):
+        time.sleep(0.4)
+        handle.update(picture(x))
+
+import time
+threading.Thread(target=cell.run, args=(slowly,)).start()"""
 
 
 @pytest.mark.slow
 def test_a_picture_that_moves_while_a_later_cell_runs_is_shown_as_it_was_at_the_end() -> None:
     """So the robot does: one cell shows it, and the next ones drive it."""
     done = _run(new_notebook(cells=[new_code_cell(SHOW), new_code_cell(MEANWHILE)]), ROOT)
+    (shown,) = done.cells[0].outputs
+    drawn = base64.b64decode(shown.data["text/html"].partition("base64,")[2].partition('"')[0])
+    assert b'cx="5"' in drawn
+
+
+@pytest.mark.slow
+def test_a_picture_that_goes_on_moving_is_shown_at_rest() -> None:
+    """So the robot does whose driver works in the background: the next cell begins before the robot has arrived."""
+    done = _run(new_notebook(cells=[new_code_cell(f"{SHOW}\n{LATER}")]), ROOT)
     (shown,) = done.cells[0].outputs
     drawn = base64.b64decode(shown.data["text/html"].partition("base64,")[2].partition('"')[0])
     assert b'cx="5"' in drawn
