@@ -104,6 +104,6 @@ def test_a_changed_list_of_students_and_two_lists_are_questions(folder: TinyClas
     files[1].write_text(f'{text}"Moss, Mia",105,,mia,Mon,,\n', encoding="utf-8")
     (question,) = week(folder.path, files).questions
     assert "changes the students of the class (add 1): type" in question
-    other = shutil.copy(files[1], tmp_path / "other.csv")
+    other = Path(shutil.copy(files[1], tmp_path / "other.csv"))
     with pytest.raises(GradingError, match="name one list for the points"):
         week(folder.path, [*files, other])

@@ -55,13 +55,14 @@ def run_program(text: str) -> None:
         def add_node(self, _: Any) -> None:
             pass
 
-        def spin(self, *_: Any) -> None:
+        @staticmethod
+        def spin(*_: Any) -> None:
             raise _Spins
 
         def shutdown(self, *_: Any) -> None:
             pass
 
-    there: dict[str, Any] = {"init": Executor, "create_node": PaperNode, "spin": partial(Executor.spin, None)}
+    there: dict[str, Any] = {"init": Executor, "create_node": PaperNode, "spin": Executor.spin}
     there |= dict.fromkeys(("shutdown", "try_shutdown"), Executor)
     for name, value in there.items():
         setattr(rclpy, name, value)
