@@ -7,6 +7,7 @@ import csv
 import io
 import shutil
 import zipfile
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -18,8 +19,6 @@ from autograder.grading.week import rehearsed, show_week, week
 from tests.cases import cases
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from tiny_class import FakeEngine, TinyClass
 
 WEEKS = cases(__file__, "week")
