@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import textwrap
+from collections import Counter
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -18,6 +19,7 @@ from autograder.authoring.mutants.survey_lines import lines
 from autograder.authoring.mutants.trials import NotOnPaper
 from autograder.cards.text_rendering import card_text
 from autograder.command_name import COMMAND
+from autograder.kit.model import UNKNOWN
 from autograder.safe_files import HeldFolder
 from autograder.verdict import to_json
 
@@ -40,6 +42,8 @@ SLOW = 10.0
 LONG = 3.0
 """Seconds from which on a wait between two events is long enough to be named."""
 _SLOW_STEP = "the slowest step: "
+NAMED, LOCATED, NEITHER = "named", "located", "neither"
+"""How the card of a wrong answer tells the mistake: by its cause or effect, by the moment of the run, or not at all."""
 
 
 class NothingToTry(LookupError):
@@ -163,12 +167,16 @@ def try_exercise(
     wanted = [
         _Tried(**{**vars(answer), "looks_twice": twice[answer.name]}, folder=transcript) for answer in wanted
     ]
-    surprises = _judged(wanted, jobs=jobs, repeat=repeat, tell=tell)
+    told: Counter[str] = Counter()
+    surprises = _judged(wanted, jobs=jobs, repeat=repeat, tell=tell, told=told)
     for surprise in surprises:
         tell(f"\n{surprise.name}: {surprise.objection}\n{textwrap.indent(surprise.card, '    ')}")
     times = f", each judged {repeat} times" if repeat > 1 else ""
     count = f"{len(wanted)} answer{'s' * (len(wanted) != 1)}{times}"
     tell(f"\n{count}, {len(surprises) or 'none'} not as expected")
+    if told:
+        how = ", ".join(f"{told[word]} {word}" for word in (NAMED, LOCATED, NEITHER))
+        tell(f"cards of wrong answers: {how}")
     for line in gifts:
         tell(f"the unsolved notebook {line}")
     # With a part of the answers, what the bank lacks cannot be told.
@@ -242,8 +250,23 @@ def _chosen(exercise_id: str, only: Sequence[str] = ()) -> list[Answer]:
     return wanted
 
 
+def how_told(verdict: Verdict) -> str:
+    """Return whether a card names the mistake, or only says where in the run it shows; empty for a pass."""
+    if verdict.diagnosis is None:
+        return ""
+    if verdict.diagnosis.key != UNKNOWN:
+        return NAMED
+    # The words about a moment of the run do not begin with the title of a criterion.
+    return NEITHER if verdict.diagnosis.text.startswith("“") else LOCATED
+
+
 def _judged(
-    wanted: Sequence[Answer], *, jobs: int = JOBS, repeat: int = 1, tell: Callable[[str], object]
+    wanted: Sequence[Answer],
+    *,
+    jobs: int = JOBS,
+    repeat: int = 1,
+    tell: Callable[[str], object],
+    told: Counter[str],
 ) -> list[_Surprise]:
     """Judge answers, and print each result.
 
@@ -252,6 +275,7 @@ def _judged(
         jobs: The number of answers to judge at the same time.
         repeat: The number of times to judge each answer, with different random inputs.
         tell: Called with a line for each result.
+        told: Counts how the cards of wrong answers tell the mistake.
 
     Returns:
         The answers with an unexpected verdict, in the given order. Each is returned once, with its first unexpected
@@ -267,6 +291,9 @@ def _judged(
         answer, objection = turn.subject, turn.subject.objection(verdict)
         sign, points = ("✗" if objection else "✓"), f"{verdict.score:g} of {verdict.max_score:g}"
         key = verdict.diagnosis.key if verdict.diagnosis else ""
+        if how := how_told(verdict):
+            told[how] += 1
+            key = f"{key}: {how}"
         tell(f"{done:>3}/{len(turns)} {sign} {answer.short_name:<40} {points:>8}  {key}".rstrip())
         for remark in verdict.remarks:
             if remark.startswith(_SLOW_STEP):

@@ -37,7 +37,8 @@ from autograder.kit.hunts.repairs import without_causes
 from autograder.kit.in_words import of_its_kind, shortened, visible
 from autograder.kit.mission.track import ways
 from autograder.kit.mistakes.package_mistakes import changed_since_build
-from autograder.kit.model import Advice, Criterion, Exercise, Finding, Mistake
+from autograder.kit.mistakes.uncalled import uncalled
+from autograder.kit.model import UNKNOWN, Advice, Criterion, Exercise, Finding, Mistake
 from autograder.kit.runners import runner_trouble
 from autograder.verdict import CriterionResult, Diagnosis, State, Verdict, failed
 
@@ -49,8 +50,6 @@ if TYPE_CHECKING:
     from autograder.messages.judge_messages import OwnLine
 
 
-UNKNOWN = "unknown"
-"""The key of the diagnosis if the mistake is unknown."""
 MAX_DETAIL = 6_000
 """The maximum length of a traceback on a card, in characters."""
 UNREADABLE = {
@@ -197,17 +196,19 @@ def _check(
             if not seen.confirms:
                 evidence = replace(seen.evidence, before=evidence)
                 verdict = judge(exercise, evidence, seed)
-        if practice and practice.variants and not (verdict.passed or is_certain(exercise, evidence)):
+        if (
+            practice
+            and practice.knows_wrong_answers
+            and not (verdict.passed or is_certain(exercise, evidence))
+        ):
             with contextlib.suppress(JudgeFailed):  # the verdict stands without it
                 known = look(exercise, subject, practice, Pace.FAST, seed=seed, domain_id=domain_id)
                 earlier = evidence.before.parts if evidence.before else ()
                 before = Evidence([*known.evidence.parts, *earlier], reference)
                 evidence = replace(evidence, before=before)
                 verdict = judge(exercise, evidence, seed)
-        if not verdict.passed and (causes := _causes(exercise, evidence, verdict)):
-            lines = subject.own_lines()
-            raising = [line for line in lines if f'/{line.place}"' in verdict.detail]
-            evidence = _with_own_lines(evidence, causes, raising or lines)
+        if not verdict.passed and (lines := subject.own_lines()):
+            evidence = _with_own_lines(exercise, evidence, lines, seed)
             verdict = judge(exercise, evidence, seed)
         if not verdict.passed:
             certain = is_certain(exercise, evidence)
@@ -236,14 +237,20 @@ def _causes(exercise: Exercise, evidence: Evidence, verdict: Verdict) -> Sequenc
     return [[name] for name in next(lost).uses]
 
 
-def _with_own_lines(
-    evidence: Evidence, causes: Sequence[Sequence[str]], lines: Sequence[OwnLine]
-) -> Evidence:
+def _with_own_lines(exercise: Exercise, evidence: Evidence, lines: Sequence[OwnLine], seed: str) -> Evidence:
     """Return the evidence with those lines of the student's code that the card quotes. They decide no point."""
-    if not lines or not evidence.parts:
+    if not evidence.parts:
         return evidence
+    mutants = evidence.reference.mutants
+    evidence = _with_events(evidence, uncalled(lines, mutants.methods if mutants else ()))
+    verdict = judge(exercise, evidence, seed)
+    raising = [line for line in lines if f'/{line.place}"' in verdict.detail]
+    return _with_events(evidence, claimed(_causes(exercise, evidence, verdict), raising or lines))
+
+
+def _with_events(evidence: Evidence, events: Sequence[Event]) -> Evidence:
     first, *others = evidence.parts
-    return replace(evidence, parts=[replace(first, events=[*first.events, *claimed(causes, lines)]), *others])
+    return replace(evidence, parts=[replace(first, events=[*first.events, *events]), *others])
 
 
 def _too_busy(verdict: Verdict | None) -> TooBusy:
@@ -398,8 +405,10 @@ def diagnose(
     seen = f"“{failed.title}” is not met: {failed.seen}. Asked: {failed.expected}." if failed else ""
     point = parting_point(evidence)
     lines = own_lines_in_words(evidence)
-    words = f"{point.text if point else seen} {lines}".rstrip()
-    next_step = "Find the line of your code that does this, and change it."
+    law = [words for words, names in exercise.text.items() if failed and failed.name in names.split()]
+    says = f"The task says: “{law[0].rstrip('.')}”." if len(law) == 1 else ""
+    words = " ".join(filter(None, (point.text if point else seen, says, lines)))
+    next_step = "Compare this moment of the run with the task, and go through your code up to there."
     if lines.startswith("No line"):
         next_step = "Write the line that is missing, as the task asks for it."
     text = of_its_kind(shortened(visible(words)), evidence.in_a_notebook)

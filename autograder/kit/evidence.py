@@ -395,6 +395,11 @@ class Reference:
     drawings: Sequence[str] = ()
     mutants: Mutants | None = None
 
+    @property
+    def knows_wrong_answers(self) -> bool:
+        """True if a wrong answer may be known in the practice drawings."""
+        return bool(self.variants) or self.mutants is not None
+
     def part(self, name: str) -> Part:
         """Return the part with this name.
 

@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     from autograder.kit.runners import Runner
 
 
+UNKNOWN = "unknown"
+"""The key of the diagnosis if the mistake is unknown."""
 ENOUGH: Mapping[str, int] = {"right": 5, "wrong": 8}
 """The numbers of right and wrong answers that the bank needs. With fewer answers, an exercise works, but its author
 cannot know whether its verdicts are fair.

@@ -1,4 +1,4 @@
-"""What is kept of each solution's mutants: it fits the reference output, and gives no line of the solution away."""
+"""What is kept of the mutants of each solution fits the reference output, and gives no line of the solution away."""
 
 from __future__ import annotations
 

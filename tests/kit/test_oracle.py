@@ -148,8 +148,8 @@ def test_an_exercise_without_drawn_inputs_has_no_drawings() -> None:
 def test_a_card_shows_the_first_step_that_differs() -> None:
     assert failed(run(ALWAYS_AHEAD)) == {
         "cmd_vel": (
-            "linear.x = 0, angular.z = 0.5 after step 2 (speed = 2.5)",
-            "linear.x = 0.2, angular.z = 0 after step 2 (speed = 2.5)",
+            "linear.x = 0, angular.z = 0.5 after speed = 2.5",
+            "linear.x = 0.2, angular.z = 0 after speed = 2.5",
         )
     }
     assert failed(run([[], *RIGHT[1:]]))["cmd_vel"][1] == "nothing at the start"
@@ -240,8 +240,8 @@ def test_a_rate_is_kept_if_the_usual_interval_is_right(moments: Sequence[float])
     [
         (((3, []), (False, True)), "double without a range"),
         (((0, []), (False, True)), "not declared at the start"),
-        (((3, [[0.0, 2.0]]), (True, False)), "taken after step 2 (speed = 2.5)"),
-        (((3, [[0.0, 2.0]]), (False, False)), "refused without a reason after step 2 (speed = 2.5)"),
+        (((3, [[0.0, 2.0]]), (True, False)), "taken after speed = 2.5"),
+        (((3, [[0.0, 2.0]]), (False, False)), "refused without a reason after speed = 2.5"),
     ],
 )
 def test_a_parameter_is_described_and_refused_as_the_solutions(speed: Sequence[Any], seen: str) -> None:

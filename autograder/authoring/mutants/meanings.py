@@ -72,7 +72,11 @@ class Places:
             word = mutant.before.strip("'\"")
             return word if set(_WORD.findall(word)) <= self._words else ""
         method = mutant.where.rpartition(".")[2]
-        return method if method in self._words and not method.startswith("__") else ""
+        return method if self.shows(method) else ""
+
+    def shows(self, method: str) -> bool:
+        """Return True if the notebook shows the name of a method."""
+        return method in self._words and not method.startswith("__")
 
     def _quote(self, mutant: Mutant, statement: ast.stmt | None, right: float | None) -> str:
         """Return the only sentence of the task that is about a place; empty if none is, or if several may be."""

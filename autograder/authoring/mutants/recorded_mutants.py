@@ -38,7 +38,8 @@ def recorded(found: Survey) -> Mutants:
     """Return what the mutants of a survey do in the practice drawings."""
     of, exercise = found.solution, exercises.get(found.solution.exercise)
     parts = evidence_files.load_reference(of.exercise).parts
-    places = Places(Code(of.text, subject=of.root), exercise.text, _visible(of.exercise))
+    code = Code(of.text, subject=of.root)
+    places = Places(code, exercise.text, _visible(of.exercise))
     groups: dict[str, list[Meaning]] = defaultdict(list)
     for one in found.tried:
         if one.mutant.start >= 0 and (did := _differences(parts, one.runs, exercise.tolerance)):
@@ -48,7 +49,8 @@ def recorded(found: Survey) -> Mutants:
         MutantClass(sorted({meanings.index(one) for one in group}), _parsed(did))
         for did, group in groups.items()
     ]
-    return Mutants(evidence_files.reference_digest(of.exercise), meanings, classes)
+    methods = [name for name in dict.fromkeys(one.name for one in code.functions()) if places.shows(name)]
+    return Mutants(evidence_files.reference_digest(of.exercise), meanings, classes, methods)
 
 
 def _differences(parts: Sequence[Part], runs: Sequence[Run], tolerance: float) -> Did:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 from typing import TYPE_CHECKING, Any
 
 from autograder.kit.in_words import counted
 from autograder.kit.model import Finding
 from autograder.kit.oracle.parameter_answers import parameter_in_words
+from autograder.kit.oracle.step_words import quoted, when
 from autograder.kit.oracle.steps import pick
 from autograder.kit.rules import has_rate, in_words, rate_of, same
 
@@ -107,13 +108,46 @@ class Output:
             return Finding(differs == both and missing <= 1 + len(theirs) // ONE_MISSING_IN, due, came)
         if theirs and differs == len(theirs):
             return Finding(True, right := f"the same as the solution in all {len(theirs)} steps", right)
-        due, came = (
-            f"{self._in_words(rows[differs][0], others[differs][0] if differs < both else ())} {rows[differs][1]}"
-            if differs < len(rows)
-            else "nothing more"
-            for rows, others in ((theirs, mine), (mine, theirs))
-        )
-        return Finding(False, due, came if differs < len(mine) else "nothing came from then on")
+        if differs >= both:
+            due = (
+                f"{self._in_words(theirs[differs][0])} {theirs[differs][1]}"
+                if differs < len(theirs)
+                else "nothing more"
+            )
+            came = (
+                f"{self._in_words(mine[differs][0])} {mine[differs][1]}"
+                if differs < len(mine)
+                else "nothing came from then on"
+            )
+            return Finding(False, due, came)
+        (one, when), (other, _) = mine[differs], theirs[differs]
+        came, due = self._in_words(one, other), self._in_words(other, one)
+        if came == due:  # they differ in what the words leave out
+            came, due = str(one), str(other)
+        # In the subject's run are the inputs, which the recording of the solution does not keep.
+        return Finding(False, f"{due} {when}", f"{came} {when}")
+
+    def parting_words(self, seen: Part, expected: Part) -> tuple[str, str, str] | None:
+        """Return when the outputs first differ, and the fields that do: the subject's, and those of the solution.
+
+        None if a row of one of both is missing, or if the outputs have no steps.
+        """
+        mine, theirs = self._rows(seen), self._rows(expected)
+        differs = self._parting(mine, theirs)
+        if self.kind not in (Kind.STEPS, Kind.RETURNED) or differs >= min(len(mine), len(theirs)):
+            return None
+        (one, when), (other, _) = mine[differs], theirs[differs]
+        fields = [
+            n
+            for n in range(len(self.paths))
+            if len(one) != len(other)
+            or not all(same(a[n], b[n], self.tolerance) for a, b in zip(one, other, strict=True))
+        ]
+        paths = tuple(self.paths[n] for n in fields)
+        alone = replace(self, paths=paths)
+        of, due = ([[values[n] for n in fields] for values in listed] for listed in (one, other))
+        came, asked = alone._in_words(of, due), alone._in_words(due, of)
+        return (when, came, asked) if came != asked else (when, str(one), str(other))
 
     def parts_at(self, seen: Part, expected: Part) -> Event | None:
         """Return what was noted in the first step in which the subject's outputs are others; None if there is none."""
@@ -125,6 +159,16 @@ class Output:
     def is_undeclared(self, seen: Part, _: Part) -> bool:
         """Return True if the subject has no parameter of this name."""
         return any(event.data["values"] == [[0, []]] for event in seen.of("noted", self.name))
+
+    def only_news(self, seen: Part, expected: Part) -> bool:
+        """Return True if messages come after inputs alone, although a rate is asked for."""
+        came = [event.moment for event in seen.of("message", self.name)]
+        given = [event.moment for event in seen.of("sent")]
+        if self.compared(seen, expected).passed or not 1 < len(came) <= len(given) + 1:
+            return False
+        last = [max((at for at in given if at <= moment), default=None) for moment in came]
+        # One message may come by itself, at the start or when something has become old.
+        return len(set(last)) >= len(came) - 1
 
     def another_rate(self, seen: Part, expected: Part) -> str:
         """Return the subject's rate in words if it is wrong; empty if it is right, or there are too few messages."""
@@ -146,22 +190,24 @@ class Output:
         noted = part.of("noted", self.name)
         if self.kind is Kind.LIST:
             return [(values, "") for event in noted for values in event.data["values"]]
-        return [(event.data["values"], _when(event)) for event in noted]
+        if self.kind is Kind.RETURNED:
+            return [(event.data["values"], f"for {event.data['given']}") for event in noted]
+        return [(event.data["values"], when(event, noted[:n], part)) for n, event in enumerate(noted)]
 
     def _in_words(self, listed: Sequence[Sequence[Any]], others: Sequence[Sequence[Any]] = ()) -> str:
         if self.kind is Kind.PARAMETER:
             return "; ".join(map(parameter_in_words, listed)) or "nothing"
-        named = ["" if self.paths == ("data",) else f"{path} = " for path in self.paths]
         told = [
-            ", ".join(n + in_words([_shown(*pair)]) for n, *pair in zip(named, values, other, strict=True))
+            ", ".join(map(self._field_in_words, self.paths, values, other))
             for values, other in zip(listed, [*others, *listed[len(others) :]], strict=False)
         ]
         return "; ".join(told) or "nothing"
 
-
-def _when(noted: Event) -> str:
-    step, given = noted.data["step"], noted.data["given"]
-    return f"after step {step} ({given})" if step else "at the start"
+    def _field_in_words(self, path: str, value: Any, other: Any) -> str:
+        if path.endswith("?"):
+            return f"{path[:-1]} {'given' if value else 'empty'}"
+        shown = quoted(_shown(value, other)) if self.paths == ("data",) else in_words([_shown(value, other)])
+        return shown if self.paths == ("data",) else f"{path} = {shown}"
 
 
 LONG = 8

@@ -151,7 +151,7 @@ class SameAsSolution:
         # A clock that stands still tells which clock a node asks. Then no other clock makes it right.
         stands = any(isinstance(step, To) and step.stands for step in steps)
         is_timed = not stands and any(isinstance(step, (int, float)) for step in steps)
-        drawn = Drawn(self._scenario, self._outputs, roles, is_timed=is_timed)
+        drawn = self._drawn = Drawn(self._scenario, self._outputs, roles, is_timed=is_timed)
         self._draft = Draft(exercise_id, title, task, drawn, points=points)
         if late_after:
             self._draft.knows("not_latched", is_not_latched, *NOT_LATCHED, certain=True)
@@ -164,15 +164,24 @@ class SameAsSolution:
                 certain=True,
             )
         for output in self._of(Kind.RATE):
+            self._draft.knows(
+                "only_if_new",
+                output.only_news,
+                f"On {output.name} a message comes only when something is new; the task asks for one every "
+                f"{output.period:g} s, also if nothing has changed.",
+                "Publish at each call of the timer's callback, whatever was published before.",
+                late=True,
+            )
             says = (
                 f"On {output.name} your messages come {{}}; the task asks for one every {output.period:g} s."
             )
             self._draft.knows("wrong_rate", output.another_rate, says, KEEP_THE_PERIOD, late=True)
         for output in self._outputs:
-            self._draft.criterion(output.key, output.title)(partial(_by_one_server, output))
+            self._draft.criterion(output.key, output.title.replace("?", ""))(partial(_by_one_server, output))
 
     def exercise(self, **more: Any) -> Exercise:
         """Return the finished exercise. For ``more`` see :meth:`autograder.kit.draft.Draft.exercise`."""
+        self._drawn.law = more.get("text", {})
         return self._draft.exercise(
             recorded=("noted",), tolerance=self._tolerance, is_drawn=self._is_drawn, **more
         )

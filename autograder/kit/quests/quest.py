@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, replace
 from random import Random
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import re2
@@ -76,8 +77,7 @@ _TEXTS = {
     ),
     "wrong_node": (
         "Your answer names {}, which the graph has, but which is not what you were asked for.",
-        "Ask each node for what it publishes or what it subscribes to, as the task needs it, and compare the whole "
-        "type. Leave out /rosout and /parameter_events: every node has these two.",
+        "Read once more which node you are to find, and what of it. Compare each name and each type as a whole.",
     ),
     "looked_once": (
         "You looked only once. A new node knows almost nothing of the graph, and what you look for may start later "
@@ -98,8 +98,8 @@ _TEXTS = {
     ),
     "gave_up": (
         "Your function gave up waiting{0[0]}, although what it was to find was there: {0[1]}",
-        "Look at what you leave out: of a node's topics only /rosout and /parameter_events are to be passed over. And "
-        "do you ask for the publishers of a node that publishes, and for the subscriptions of one that subscribes?",
+        "Your condition never held for it. Print what the graph gives, and compare it with your condition: the types "
+        "are a list of whole names, such as ['std_msgs/msg/String'], and not one text.",
     ),
     "no_answer": (
         "Your {0[0]}.",
@@ -124,6 +124,7 @@ class Quest:
     Args:
         draws: Draws the robots by name, in the order in which the subject meets them. The names are the same each time.
         noun: The word for what there may not be, such as ``"service"``.
+        next_steps: What the student should do now, by the key of a mistake, if this task needs other words than usual.
 
     Example::
 
@@ -142,8 +143,14 @@ class Quest:
 
     roles = ()
 
-    def __init__(self, draws: Callable[[Random], Mapping[str, Robot]], noun: str = "robot") -> None:
+    def __init__(
+        self,
+        draws: Callable[[Random], Mapping[str, Robot]],
+        noun: str = "robot",
+        next_steps: Mapping[str, str] = MappingProxyType({}),
+    ) -> None:
         self._draws, self._noun, self._names = draws, noun, tuple(draws(Random(0)))
+        self._next_steps = next_steps
         self._has_keys = False
 
     def seen(self, evidence: Evidence) -> Searches:
@@ -302,7 +309,9 @@ class Quest:
         )
 
     def _mistake(self, key: str, found: Callable[[Searches], object], *, certain: bool = False) -> Mistake:
-        return mistake(key, lambda evidence: found(self.seen(evidence)), *_TEXTS[key], certain=certain)
+        says, usual = _TEXTS[key]
+        next_step = self._next_steps.get(key, usual)
+        return mistake(key, lambda evidence: found(self.seen(evidence)), says, next_step, certain=certain)
 
     def _silent_end(self, evidence: Evidence) -> Advice | None:
         seen = self.seen(evidence)

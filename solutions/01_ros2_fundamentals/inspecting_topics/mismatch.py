@@ -82,7 +82,20 @@ def robots(random: Random) -> dict[str, Robot]:
     return drawn
 
 
-EXERCISE = Quest(robots).exercise(
+NEXT_STEPS = {
+    "gave_up": (
+        "Look at what you leave out: of a node's topics only /rosout and /parameter_events are to be "
+        "passed over. And do you ask for the publishers of a node that publishes, and for the "
+        "subscriptions of one that subscribes?"
+    ),
+    "wrong_node": (
+        "Ask each node for what it publishes or what it subscribes to, as the task needs it, and compare "
+        "the whole type. Leave out /rosout and /parameter_events: every node has these two."
+    ),
+}
+"""What the student should do now, by the key of the mistake."""
+
+EXERCISE = Quest(robots, next_steps=NEXT_STEPS).exercise(
     "inspecting_topics.mismatch",
     "Inspecting topics · Why they do not meet",
     "Find out which topic and type each of two nodes uses.",

@@ -45,7 +45,19 @@ def hears_well(seen: Searches, _: Searches) -> str:
     return next((name for nodes, name in named if "subscribes" in nodes.get(name, {})), "")
 
 
-quest = Quest(robots)
+NEXT_STEPS = {
+    "gave_up": (
+        "Go through each publisher with each subscriber. Pass the publisher's qos_profile first, then "
+        "the subscriber's, to qos_check_compatible, which returns two values: the first is the one to "
+        "compare with ERROR."
+    ),
+    "wrong_node": (
+        "Return the node_name of the subscriber of the pair that does not fit, not the publisher's."
+    ),
+}
+"""What the student should do now, by the key of the mistake."""
+
+quest = Quest(robots, next_steps=NEXT_STEPS)
 finds = Draft(
     "lab_2_1.deaf", "Lab 2.1 · Who is deaf", "Find the node that cannot hear a topic's publisher.", quest
 )

@@ -68,12 +68,14 @@ class Mutants:
         reference: The SHA-256 of the file of the reference output, with which they belong together.
         meanings: What the mutants do.
         classes: The classes of mutants, without those that crash.
+        methods: The names of the methods that the solution defines, as far as the notebook shows them.
         solution: The record of the solution in the practice drawings.
     """
 
     reference: str
     meanings: Sequence[Meaning]
     classes: Sequence[MutantClass]
+    methods: Sequence[str] = ()
     solution: Sequence[Any] = field(default=())  # of Part, which the file does not hold
 
 

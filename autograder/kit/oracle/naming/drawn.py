@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import product
 from typing import TYPE_CHECKING
 
@@ -10,16 +11,18 @@ from autograder.kit.mistakes import unfinished
 from autograder.kit.mistakes.crashes import CRASHES, OTHER_CRASHES
 from autograder.kit.mistakes.hangs import ENDLESS_LOOP
 from autograder.kit.mistakes.role_mistakes import ladder
-from autograder.kit.model import Advice, Mistake
+from autograder.kit.mistakes.uncalled import METHOD_UNCALLED
+from autograder.kit.model import UNKNOWN, Advice, Mistake
 from autograder.kit.oracle.naming import mutant_words
 from autograder.kit.oracle.naming.deltas import differences, meanings_of, rows
 from autograder.kit.oracle.naming.effects import effect
+from autograder.kit.oracle.naming.located import likely_sentence, located
 from autograder.kit.oracle.outputs import Kind
 from autograder.kit.oracle.standing_clock import KEY, on_another_clock
 from autograder.kit.recipes.own_scenario import ENDPOINTS, OwnScenario
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
+    from collections.abc import Callable, Iterator, Mapping, Sequence
 
     from autograder.kit.bench import Bench
     from autograder.kit.evidence import Evidence, Part
@@ -27,6 +30,11 @@ if TYPE_CHECKING:
 
 MUTANT, EFFECT = "mutant", "effect"
 """The entries of the ladder for what a mutant of the solution does, and for what is wrong with an output as a whole."""
+
+
+RIGHT_THERE = (
+    "With the inputs of your notebook your code is right, but not with the other ones of your class."
+)
 
 
 class Drawn(OwnScenario):
@@ -49,6 +57,8 @@ class Drawn(OwnScenario):
     ) -> None:
         super().__init__(scenario, *roles)
         self._outputs, self._is_timed = outputs, is_timed
+        self.law: Mapping[str, str] = {}
+        """The sentences of the task, each with the names of the criteria that judge it."""
 
     def expected(self, evidence: Evidence) -> Part:
         """Return the record of the solution in the drawing that the subject was given.
@@ -74,27 +84,29 @@ class Drawn(OwnScenario):
         """
         clock = Mistake(
             KEY,
-            lambda evidence: on_another_clock(self._outputs, evidence.main, self.expected(evidence)),
+            self._on_another_clock,
             certain=True,
         )
         variant, likely_variant = self._as_recorded("variant", self._same_as_a_variant)
         mutants = self._as_recorded(MUTANT, self._same_as_mutants)
-        whole = Mistake(EFFECT, self._effect)
+        whole, last = self._as_recorded(EFFECT, self._effect), Mistake(UNKNOWN, self._located)
         if not self.roles:  # plain Python, which has no node
             return (
                 *CRASHES,
                 ENDLESS_LOOP,
                 *OTHER_CRASHES,
+                METHOD_UNCALLED,
                 OWN,
                 variant,
                 likely_variant,
                 *mutants,
                 OWN_LATE,
-                whole,
+                *whole,
+                last,
             )
-        usual = ladder(self.roles, late=(*mutants, OWN_LATE, whole))
+        usual = ladder(self.roles, late=(*mutants, OWN_LATE, *whole))
         at = usual.index(unfinished.NEVER_CONSTRUCTED)
-        return (*usual[:at], variant, clock, likely_variant, *usual[at:])
+        return (*usual[:at], METHOD_UNCALLED, variant, clock, likely_variant, *usual[at:], last)
 
     def _as_recorded(
         self, key: str, recognize: Callable[[Evidence], Advice | None]
@@ -117,8 +129,8 @@ class Drawn(OwnScenario):
         mine = evidence.main
         if not mine.of("noted") or self._agree(mine, self.expected(evidence)):
             return []
-        # In real time a node may say the same once more or less, so what it did in simulated time counts, too.
-        return [mine, *([evidence.before.main] if evidence.before else [])]
+        # In real time a node may say the same once more or less, so what it did in simulated time comes first.
+        return [*([evidence.before.main] if evidence.before else []), mine]
 
     def _same_as_a_variant(self, evidence: Evidence) -> Advice | None:
         for run, variant in product(self._runs(evidence), evidence.reference.variants):
@@ -126,6 +138,12 @@ class Drawn(OwnScenario):
             if part and self._agree(run, part) and self._agree(part, run):
                 return Advice(variant.text, variant.next_step, key=variant.key)
         return None
+
+    def _on_another_clock(self, evidence: Evidence) -> Advice | None:
+        told = on_another_clock(self._outputs, evidence.main, self.expected(evidence))
+        # What a mutant does by the robot's clock, too, is no matter of the clock.
+        by_another = self._same_as_mutants(evidence) if told else None
+        return None if by_another and by_another.key != KEY else told
 
     def _agree(self, seen: Part, expected: Part) -> bool:
         made, due = ([e.data["made"] for e in part.of("noted", ENDPOINTS)] for part in (seen, expected))
@@ -167,14 +185,34 @@ class Drawn(OwnScenario):
                 yield run, practice[run.name]
 
     def _effect(self, evidence: Evidence) -> Advice | None:
+        """Return what is wrong with a whole output; None if no single sentence is true of it."""
+        for run, due in self._whole_runs(evidence):
+            if any(effect(one, rows(one, run), rows(one, due)) for one in self._outputs):
+                return self._located(evidence)
+        return None
+
+    def _located(self, evidence: Evidence) -> Advice | None:
+        """Return where the run leaves the solution's."""
+        mutants, due = evidence.reference.mutants, self.expected(evidence)
+        runs = [run for run in self._runs(evidence) if run.name == due.name and run.of("noted")]
+        mine = next((run for run in runs if not self._agree(run, due)), None)
+        if mine is None:
+            return None
+        near = ""
+        if mutants is not None:
+            apart = differences(self._outputs, mine, due)
+            quotes = {one.quote for one in meanings_of(mutants, apart, self._outputs[0].tolerance)} - {""}
+            near = quotes.pop() if len(quotes) == 1 else likely_sentence(mutants, apart)
+        told = located(self._outputs, mine, due, self.law, near)
+        is_right_there = any(
+            run.name != mine.name and self._agree(run, practice)
+            for run, practice in self._with_practice(evidence)
+        )
+        return replace(told, text=f"{RIGHT_THERE} {told.text}") if told and is_right_there else told
+
+    def _whole_runs(self, evidence: Evidence) -> Iterator[tuple[Part, Part]]:
         due = self.expected(evidence)
         for run in self._runs(evidence):
-            if (
-                run.name == due.name
-                and differences(self._outputs, run, due).is_whole
-                and not self._is_silent(run, due)
-            ):
-                told = (effect(one, rows(one, run), rows(one, due)) for one in self._outputs)
-                if text := next(filter(None, told), ""):
-                    return Advice(text, mutant_words.WITHOUT)
-        return None
+            is_whole = run.name == due.name and differences(self._outputs, run, due).is_whole
+            if is_whole and not self._is_silent(run, due):
+                yield run, due

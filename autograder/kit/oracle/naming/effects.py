@@ -38,20 +38,31 @@ def effect(output: Output, mine: Mapping[int, Any], theirs: Mapping[int, Any]) -
         return told
     if any(len(mine[step]) != len(theirs[step]) for step in steps):
         return ""
+    for what, pairs in _fields(output, name, [(mine[step], theirs[step]) for step in steps]):
+        if told := _values(what, pairs, output.tolerance):
+            return told
+    return ""
+
+
+def _fields(output: Output, name: str, listed: Pairs) -> Iterator[tuple[str, Pairs]]:
+    """Yield the words for each field, and its values in the order of the steps; of a list each item by itself."""
     for column, path in enumerate(output.paths):
         if path == NUMBER:
             continue
         pairs: Pairs = [
             (one[column], other[column])
-            for step in steps
-            for one, other in zip(mine[step], theirs[step], strict=True)
+            for mine, theirs in listed
+            for one, other in zip(mine, theirs, strict=True)
             if isinstance(one, (list, tuple)) and len(one) == len(other) == len(output.paths)
         ]
-        what = "What your code says" if path == "data" and not name else f"Your {path}{name}"
-        what = f"What your node says{name}" if path == "data" and name else what
-        if told := _values(what, pairs, output.tolerance):
-            return told
-    return ""
+        usual = f"What your {'node says' if name else 'code returns'}{name}"
+        what = usual if path == "data" else f"Your {path.removesuffix('?')}{name}"
+        widths = {len(value) if isinstance(value, (list, tuple)) else 0 for pair in pairs for value in pair}
+        if len(widths) == 1 and (width := widths.pop()):
+            for item in range(width if width <= FEW else 0):
+                yield f"{what}, as item {item + 1},", [(one[item], other[item]) for one, other in pairs]
+        else:
+            yield what, pairs
 
 
 def _twice(name: str, mine: Sequence[Any], theirs: Sequence[Any], output: Output) -> str:
@@ -69,10 +80,19 @@ def _values(what: str, pairs: Pairs, tolerance: float) -> str:
     apart = [(one, other) for one, other in pairs if not same(one, other, tolerance)]
     if len(apart) < 2:
         return ""
-    for told in (_constant, _never, _exchanged, _scaled, _late, _stuck):
+    for told in (_not_called, _constant, _never, _exchanged, _scaled, _late, _stuck):
         if text := told(what, pairs, apart, tolerance):
             return text
     return ""
+
+
+def _not_called(what: str, _: Pairs, apart: Pairs, __: float) -> str:
+    is_method = any(str(one).startswith(("<bound method ", "<function ")) for one, _ in apart)
+    return (
+        f"{what} is a method itself, and not what it returns: its parentheses () are missing."
+        if is_method
+        else ""
+    )
 
 
 def _constant(what: str, pairs: Pairs, _: Pairs, tolerance: float) -> str:
@@ -122,7 +142,7 @@ def _scaled(what: str, pairs: Pairs, apart: Pairs, tolerance: float) -> str:
     factor = nonzero[0][0] / nonzero[0][1] if nonzero else 0.0
     if (
         factor
-        and len({other for _, other in nonzero}) > 2
+        and len({other for _, other in nonzero}) > 1
         and all(same(one, other * factor, tolerance) for one, other in numbers)
     ):
         return f"{what} is {factor:.4g} times what is due."

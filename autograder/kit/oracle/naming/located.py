@@ -1,0 +1,76 @@
+"""Says where a run leaves the solution's, if nothing names the mistake: the task's sentence, input, both values."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from autograder.kit.model import Advice
+from autograder.kit.oracle.naming.deltas import rows
+from autograder.kit.oracle.naming.effects import effect
+from autograder.kit.oracle.outputs import Kind
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from autograder.kit.evidence import Part
+    from autograder.kit.oracle.naming.deltas import Differences, Mutants
+    from autograder.kit.oracle.outputs import Output
+
+ALIKE = 0.5
+"""The share of common steps from which on mutants at the place of a sentence are like the subject."""
+GO_THROUGH = "Go through your code with this input, step by step, and compare it with the task."
+
+
+def located(
+    outputs: Sequence[Output], run: Part, due: Part, law: Mapping[str, str], near: str = ""
+) -> Advice | None:
+    """Return the advice about the first output that is not the solution's; None if all are.
+
+    Args:
+        outputs: The outputs that are compared.
+        run: The run of the subject.
+        due: The run of the solution in the same drawing.
+        law: The sentences of the task, each with the names of the criteria that judge it.
+        near: The sentence that is most likely about it; empty if none is.
+    """
+    failed = [output for output in outputs if not output.compared(run, due).passed]
+    wholes = {output: effect(output, rows(output, run), rows(output, due)) for output in failed}
+    for output in sorted(failed, key=lambda one: not wholes[one]):
+        finding, whole = output.compared(run, due), wholes[output]
+        judged = [sentence for sentence, names in law.items() if output.key in names.split()]
+        sentence = near if near in judged else judged[0] if len(judged) == 1 else ""
+        says = f"The task says: “{sentence.rstrip('.')}”." if sentence else ""
+        if parting := output.parting_words(run, due):
+            when, came, asked = parting
+            does = _SAYS[output.kind].format(output.name, came)
+            what = f"{_capital(when)}, your code {does}; the task asks for {asked}."
+        else:
+            what = f"“{output.title}” is not met: {finding.seen}. Asked: {finding.expected}."
+        # Of several lines that publish, the card could not say which one it is.
+        uses = ("publish",) if [one.kind for one in outputs] in ([Kind.STEPS], [Kind.LIST]) else ()
+        return Advice(" ".join(filter(None, (whole, what, says))), GO_THROUGH, uses=uses)
+    return None
+
+
+_SAYS = {Kind.STEPS: "says on {0}: {1}", Kind.RETURNED: "returns {1}"}
+
+
+def _capital(text: str) -> str:
+    return text[:1].upper() + text[1:]
+
+
+def likely_sentence(mutants: Mutants, apart: Differences) -> str:
+    """Return the sentence of the task whose mutants differ in the same steps as the subject; empty if several do."""
+    mine = {(name, step) for name, values in apart.seen.items() for step in values}
+    best: dict[str, float] = {}
+    for one in mutants.classes:
+        theirs = {
+            (name, step) for name, values in one.parts.get(apart.drawing, {}).items() for step in values
+        }
+        share = len(mine & theirs) / max(1, len(mine | theirs))
+        for number in one.meanings:
+            quote = mutants.meanings[number].quote
+            best[quote] = max(best.get(quote, 0.0), share)
+    highest = max(best.values(), default=0.0)
+    first = [quote for quote, share in best.items() if share == highest]
+    return first[0] if len(first) == 1 and highest >= ALIKE else ""
