@@ -62,7 +62,7 @@ def recognized(said: str, heard: str, here: str = "", owner: str = "") -> KnownE
 
     Args:
         said: A traceback, or lines of output.
-        heard: Where the text comes from: one of the words that the column ``heard`` of the table uses.
+        heard: The origin of the text: one of the words that the column ``heard`` of the table uses.
         here: The packages with this course's interfaces, as :func:`packages` returns them.
         owner: What is before the dot of a missing attribute, such as ``fut.result()``; empty if unknown.
     """

@@ -202,7 +202,7 @@ def failed(exercise: str, title: str, max_score: float, diagnosis: Diagnosis, de
 
 
 NO_RESULT = "not_checked"
-"""The key of the diagnosis of a check that has no result because the grader failed, which is no fault of a student."""
+"""The key of the diagnosis of a check that has no result because the grader failed, which is not a student's fault."""
 
 
 def not_checked(

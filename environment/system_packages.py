@@ -1,4 +1,4 @@
-"""What the course needs from the operating system, and how to install it.
+"""The programs of the operating system that the course needs, and how to install them.
 
 As root on Debian or Ubuntu, a missing package is installed with apt-get. Any other user is told the one command to
 type.

@@ -1,4 +1,4 @@
-"""What the judge records about a subject, and methods with which exercises read it."""
+"""The judge's records of a subject, and methods with which exercises read it."""
 
 from __future__ import annotations
 
@@ -358,7 +358,7 @@ class Evidence:
 
 @dataclass(frozen=True)
 class Variant:
-    """What the judge recorded of a wrong answer of the bank, with the text for a student whose node does the same.
+    """The judge's record of a wrong answer of the bank, with the text for a student whose node does the same.
 
     Attributes:
         key: The key of the mistake.

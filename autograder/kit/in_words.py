@@ -21,7 +21,7 @@ def counted(number: int, thing: str) -> str:
 
 
 def first_difference(said: str, wanted: str) -> str:
-    """Return a sentence that says where a text first differs from the expected one; empty if they are equal."""
+    """Return a sentence that shows the first difference of a text from the expected one; empty if they are equal."""
     if said == wanted:
         return ""
     same = said[

@@ -1,4 +1,4 @@
-"""What students use: JupyterLab, the course page, resetting a notebook, and the hand-out (their copy of the course).
+"""The programs of students: JupyterLab, the course page, resetting a notebook, and the hand-out (the course's copy).
 
 Promises: what a student typed is kept; a hand-out holds no solution and no grader.
 Names: ``lab.open_lab``, ``handout.hand_out``, ``notebook_reset``, ``progress.standing``

@@ -97,7 +97,7 @@ def _create(name: str | None, *, use_sim_time: bool) -> Node:
     from rclpy.node import Node
     from rclpy.parameter import Parameter
 
-    # These services are never called, and would take half of the start-up time.
+    # The services of parameters are never called, and would take half of the start-up time.
     return Node(
         name or f"{NAME_PREFIX}_{os.getpid()}",
         start_parameter_services=False,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from xml.sax.saxutils import escape, quoteattr
 
-# These linters are not on the package index. If they are missing, the generated tests are skipped.
+# The linters of ament are not on the package index. If they are missing, the generated tests are skipped.
 PYTHON_TEST_DEPENDENCIES = ("ament_copyright", "ament_flake8", "ament_pep257", "python3-pytest")
 CMAKE_TEST_DEPENDENCIES = ("ament_lint_auto", "ament_lint_common")
 

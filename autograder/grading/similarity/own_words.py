@@ -101,7 +101,7 @@ def compared_answers(
     for answer, own_signs in zip(answers, signs, strict=True):
         for sequence in _sequences(own_signs):
             holders[sequence].add(answer.student)
-    # What many students wrote is how one writes it, and no hint.
+    # A sequence that many students wrote is the usual way to write it, and not a hint of copying.
     many = max(_MANY, _MANY_SHARE * students)
     common = {sequence for sequence, who in holders.items() if len(who) >= many} | given.sequences
     return [

@@ -1,1 +1,1 @@
-"""What a card shows of the events of a check: its timeline, and where a run leaves the reference solution's."""
+"""A check's events for its card: the timeline, and the step at which a run leaves the reference solution's."""

@@ -1,4 +1,4 @@
-"""Finds where a subject's run leaves the reference solution's, for a failure that no known mistake explains.
+"""Finds the step at which a run leaves the reference solution's, for a failure that no known mistake explains.
 
 A *turn* is what the subject does after one question of the judge, such as a goal with its feedback and result, or what
 it does on one service or action if it asks itself. What is compared is which kinds of events a turn has, and how many.
@@ -36,7 +36,7 @@ _DONE = {
         ("get_result", "get_result_async"),
     ),
 }
-"""What the subject does, by kinds of events, in the usual order: a noun, words for one event, and the methods or
+"""The deeds of a subject, by kinds of events, in the usual order: a noun, words for one event, and the methods or
 classes of rclpy with which a program does it, the usual one last.
 """
 _ENDS = {4: "succeed", 5: "canceled", 6: "abort"}
@@ -152,7 +152,7 @@ def _turns(part: Part) -> Iterator[_Turn]:
 
 
 def _difference(turn: _Turn, model: _Turn, *, counted: bool) -> PartingPoint | None:
-    """Return where a turn leaves the reference solution's; None if it does not.
+    """Return the point at which a turn leaves the reference solution's; None if it does not.
 
     Args:
         turn: The subject's turn.

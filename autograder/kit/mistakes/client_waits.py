@@ -46,7 +46,7 @@ class Wait:
     def _had_server(self, evidence: Evidence) -> list[Part]:
         """Return the runs in which the client must not report that the server is missing.
 
-        These are the runs with a server in which the client sent a request. But in the first run the server comes late,
+        Such a run has a server, and the client sent a request in it. But in the first run the server comes late,
         so the client may rightly report a missing server before it sends its request. So the first run is returned only
         if the client gave up in that run: it sent no request, and looked for no other server.
         """

@@ -136,7 +136,7 @@ class Launched:
     def without_rules(self) -> list[tuple[str, ...]]:
         """The programs to start again without their remapping rules, each as its package, its name and its arguments.
 
-        These are the programs that used the new name. If a program's rule was not recognized, the program is started
+        Each of them used the new name. If a program's rule was not recognized, the program is started
         without arguments, because they may contain the rule in another form.
         """
         ends = self._talk | self._listen

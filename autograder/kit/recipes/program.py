@@ -72,7 +72,7 @@ class _Ran:
 
     @property
     def first_difference(self) -> str:
-        """A sentence that says where the most similar line first differs from the expected one."""
+        """A sentence that shows the first difference of the most similar line from the expected one."""
         return first_difference(self.nearest, self.line)
 
 

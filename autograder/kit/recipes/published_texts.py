@@ -84,7 +84,7 @@ class PublisherSeen:
     def greetings(self) -> int:
         """The number of messages before the publisher began to count. Their words differ from those of later messages.
 
-        These messages must not change the verdict: if they are published as soon as the publisher exists, the judge
+        Early messages must not change the verdict: if they are published as soon as the publisher exists, the judge
         receives them only by chance.
         """
         begins = self.templates.index(Counter(self.templates).most_common(1)[0][0]) if self.texts else 0

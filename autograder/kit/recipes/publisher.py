@@ -258,7 +258,7 @@ class Publisher:
     def ladder(self) -> tuple[Mistake, ...]:
         """The common mistakes, most specific first."""
         of = Counting(self._variable)
-        # These mistakes fit only an exercise that judges texts or numbers with the kit's own criteria.
+        # The mistakes below fit only an exercise that judges texts or numbers with the kit's own criteria.
         texts, numbers = self._text is published_texts.says_text, self._course is published_texts.counts
         early = [("field_typo", published_texts.field_typo)] * texts + [("counter_stuck", of.stuck)] * numbers
         early += [("wrong_text", of.wrong_text)] * texts

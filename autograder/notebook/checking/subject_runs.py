@@ -167,7 +167,7 @@ def student_traceback(error: BaseException) -> str:
     trace = student_frames(error.__traceback__)
     shown = traceback.format_exception(type(error), error, trace)
     text = "".join(shown).strip() + meant_name(error, trace)
-    # Cut out the middle: the beginning shows where the error began, the end shows which error it was.
+    # Cut out the middle: the beginning shows the line of the error, the end its type and message.
     return text if len(text) <= MAX_TEXT else f"{text[: MAX_TEXT // 2]}\n{text[-MAX_TEXT // 2 + 1 :]}"
 
 
