@@ -77,6 +77,7 @@ RUN_BY = {
     "./course students": GUIDE,
     "./course test": f"{_SCRIPT}test_test_runs_every_check_and_the_tests_last",
     "./course try-exercise": ADDING,
+    "./course week": GUIDE,
     "./course worker": "grading/cluster/test_cluster_worker.py::test_it_says_what_it_offers_and_ends_when_it_is_told",
     "colcon build": "environment/ros2_command/test_pkg_create.py::test_colcon_builds_what_was_created",
     "git clone": "test_docs_commands.py::test_the_course_is_cloned_and_brought_up_to_date",
