@@ -20,6 +20,7 @@ from autograder.cli.class_options import (
     only_assignments,
     only_sections,
     over_option,
+    student_option,
 )
 from autograder.cli.command_results import (
     INTERRUPTED,
@@ -150,6 +151,7 @@ def students(folder: Path, new_list: Path | None, said: dict[str, str], by_name:
 )
 @from_option
 @names_option
+@student_option
 @click.option(
     "--handed-in",
     default="",
@@ -164,6 +166,7 @@ def collect(
     timezone: ZoneInfo | None,
     form: str | None,
     names: str,
+    student: str,
     handed_in: str,
     as_json: bool,
 ) -> None:
@@ -184,7 +187,14 @@ def collect(
         fail(f"--handed-in {handed_in} is not a time. A time looks like 2026-01-31T12:00.")
     with grading_errors():
         report = collecting.collect(
-            folder, files, assignment=assignment, zone=timezone, form=form or "", names=names, handed_in=when
+            folder,
+            files,
+            assignment=assignment,
+            zone=timezone,
+            form=form or "",
+            names=names,
+            handed_in=when,
+            student=student,
         )
     if as_json:
         print_json(report)
@@ -301,6 +311,7 @@ def grade(
 @one_assignment
 @from_option
 @names_option
+@student_option
 @into_columns
 @over_option
 @click.option("--dry-run", is_flag=True, help="Change nothing, and show what would be done. Checks are run.")
@@ -310,6 +321,7 @@ def week(
     assignment: str,
     form: str | None,
     names: str,
+    student: str,
     columns: dict[str, str],
     over: bool,
     dry_run: bool,
@@ -326,7 +338,9 @@ def week(
 
     need_ros()
     choices = weekly.WeekChoices(
-        {"assignment": assignment, "form": form or "", "names": names}, columns=columns, over=over
+        {"assignment": assignment, "form": form or "", "names": names, "student": student},
+        columns=columns,
+        over=over,
     )
     with grading_errors(), _finished_grades_are_stored():
         report = (weekly.rehearsed if dry_run else weekly.week)(folder.absolute(), files, choices)

@@ -56,6 +56,12 @@ from_option = click.option(
     default=None,
     help="The system from which the files come, if file names do not show it. Needed for ILIAS.",
 )
+student_option = click.option(
+    "--student",
+    default="",
+    metavar="ID",
+    help="The student to whom all files belong. The default is the one whom each name identifies.",
+)
 names_option = click.option(
     "--names",
     default="",

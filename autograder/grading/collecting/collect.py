@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from autograder import standard_output
 from autograder.grading.classes.class_directory import ClassDirectory
-from autograder.grading.collecting.archive_unpacking import is_archive
+from autograder.grading.collecting.archive_unpacking import EMPTY, is_archive
 from autograder.grading.collecting.collected_csv import Table
 from autograder.grading.collecting.collected_files import SHORT_KEY, Arrival, Delivery, Inbox, LineState
 from autograder.grading.collecting.downloaded_files import (
@@ -49,6 +49,7 @@ def collect(
     form: str = "",
     names: str = "",
     handed_in: datetime | None = None,
+    student: str = "",
 ) -> CollectReport:
     """Take files into a class, and apply what a person has written into ``collected.csv``.
 
@@ -60,6 +61,7 @@ def collect(
         zone: The time zone of times in file names and in lists of an LMS; by default that of the class.
         form: The system from which the files were downloaded, as in ``--from``; by default found from the names.
         names: The pattern of the file names, as in ``--names``.
+        student: The id of the student to whom all files belong; by default found from the names.
         handed_in: The time at which all work without a known time was handed in; in ``zone`` if it has no time zone.
 
     Raises:
@@ -72,11 +74,14 @@ def collect(
             raise GradingError(f"There is no {source}.")
     with directory.lock():
         enter_roster(directory)
-        columns = {one for student in read_roster(directory).students.values() for one in student.lms}
+        roster = read_roster(directory)
+        if student and roster.students:
+            check_known([student], list(roster.students), "student")
+        columns = {one for known in roster.students.values() for one in known.lms}
         if names:
             Pattern(names).check(sorted(columns | {"github"}))
         when = in_utc(handed_in, zone or directory.time_zone)
-        options = Delivery((), form, names, str(zone) if zone else "", assignment, when)
+        options = Delivery((), form, names, str(zone) if zone else "", assignment, when, student)
         return _Collecting(directory, options).run(sources)
 
 
@@ -198,7 +203,8 @@ class _Collecting:
         options = self._options
         with self._inbox.receiving() as receiving, Archives(self._directory.state) as archives:
             lists = [path for path in paths if path.suffix.lower() == ".csv" and path.is_file()]
-            is_own = self._knowing().are_of_students([path for path in paths if path not in lists])
+            others = [path for path in paths if path not in lists]
+            is_own = bool(options.student) or self._knowing().are_of_students(others)
             if is_own:  # next to a student's own file, a list may come from a student, too, so it is not read as a list
                 lists = []
             arrivals = [self._list(file, receiving) for path in lists for file in archives.files_of(path)]
@@ -207,8 +213,7 @@ class _Collecting:
                 files = tuple(archives.files_of(path, is_opened=not is_own))
                 source = NamedSource(path, files, is_own)
                 arrivals += self._source(source, student_of, receiving, archives)
-                note = student_of.note_on(source, options.form or options.names)
-                self._notes += [note] if note else []
+                self._notes += [] if files else [f"{path} {EMPTY}"]
             if why := without_sandbox():
                 self._notes.append(
                     f"archives and lists were read without a sandbox, only with limits on memory and time: {why}"

@@ -96,6 +96,7 @@ class Delivery:
         zone: The time zone given with ``--timezone``; empty for that of the class.
         assignment: The assignment given with ``--assignment``.
         handed_in: The time given with ``--handed-in``.
+        student: The student given with ``--student``, to whom all files belong.
     """
 
     arrivals: tuple[Arrival, ...]
@@ -104,6 +105,7 @@ class Delivery:
     zone: str = ""
     assignment: str = ""
     handed_in: datetime | None = None
+    student: str = ""
 
     @property
     def id(self) -> str:

@@ -23,7 +23,6 @@ from typing import TYPE_CHECKING
 import re2
 
 from autograder.grading.classes.class_directory import reason_against_name
-from autograder.grading.collecting.archive_unpacking import EMPTY
 from autograder.grading.collecting.submitted_file_names import (
     Pattern,
     read_lms_name,
@@ -194,9 +193,10 @@ class StudentOf:
         if owners.students:
             return ""
         if owners.facts is None and not owners.candidates:
-            form = _likeliest(name, self._roster.students.values())
-            how = f". If other names have this form, type --names '{form}'" if form else ""
-            return f"the file's name does not identify a student: {_WRITE_IT}, or add a line to students.csv{how}"
+            return (
+                f"the file's name does not identify a student: {_WRITE_IT}, or collect the file alone with --student "
+                "ID; if many names have this form, describe it with --names"
+            )
         identity = owners.facts.identity if owners.facts else Identity(name=name)
         known = self._by_number.get((identity.lms, identity.number or identity.login))
         listed = NAME_FORMS[identity.lms].list if identity.lms in NAME_FORMS and not known else ""
@@ -207,22 +207,9 @@ class StudentOf:
         called = f"{identity.login} {identity.name}".strip() or identity.number
         if known:
             called = " and ".join(str(names[-1]) for names in known.members if names) or called
-        if meant := owners.candidates or self._alike(identity):
-            ids = [one.id if one in owners.candidates else f"{one.id} ({one.name})" for one in meant]
-            return f"{called} may be {', '.join(ids)}: {how}"
+        if owners.candidates:
+            return f"{called} may be {', '.join(one.id for one in owners.candidates)}: {how}"
         return f"no student in the class is called {called}: {how}, or add a line to students.csv"
-
-    def _alike(self, identity: Identity) -> tuple[Student, ...]:
-        """Return the students who have a part of the name, or the same id without its leading zeros."""
-        words = set(identity.name.casefold().replace(",", " ").split())
-        return tuple(
-            one
-            for one in self._roster.students.values()
-            if not self._is_another(one, identity)
-            and (
-                _same_number(identity.login, one.id) or (words and words <= set(one.name.casefold().split()))
-            )
-        )
 
     def written(self, cell: str) -> tuple[tuple[str, ...], str]:
         """Return the ids of the students that a person wrote into a cell, or what is wrong with the cell."""
@@ -245,27 +232,8 @@ class StudentOf:
         """Return True if the paths of a command are each the work of one student."""
         if len(paths) == 1 and _DOWNLOAD.match(name_as_text(paths[0].name)):
             return False
-        return sum(path.is_dir() for path in paths) > 1 or any(
-            _is_loose(path) or self._has_name_of_one(path) for path in paths
-        )
-
-    def note_on(self, source: NamedSource, form: str) -> str:
-        """Return a sentence about how a path was interpreted, if its name leaves that open; otherwise an empty text."""
-        if not source.files:
-            return f"{source.path} {EMPTY}"
-        if not source.is_own and not form:
-            return (
-                f"{source.path} was taken for a download, in which names identify the students: if one student sent "
-                "the file, rename it to the student's id"
-            )
-        is_open = source.is_own and not _is_loose(source.path)
-        if is_open and not (self._roster.students and self._owners_by_name(source.path).students):
-            return (
-                f"{source.path} was taken for one student's work because of its name or the other paths of the "
-                "command: if it is a download or a list, rename it to submissions.zip or list.csv, and collect it in "
-                "a separate command"
-            )
-        return ""
+        are_files = any(path.is_file() and path.suffix.lower() not in (".zip", ".csv") for path in paths)
+        return are_files or sum(path.is_dir() for path in paths) > 1 or any(map(self._has_name_of_one, paths))
 
     def _has_name_of_one(self, path: Path) -> bool:
         """Return True if a file or folder has a name that an LMS gives to one student's work, or a student's name."""
@@ -289,36 +257,8 @@ def _same_number(one: str, other: str) -> bool:
     return bool(one.lstrip("0")) and one.lstrip("0").casefold() == other.lstrip("0").casefold()
 
 
-def _likeliest(name: str, students: Iterable[Student]) -> str:
-    """Return the pattern for ``--names`` that describes most of a name; empty if it contains nothing of a student."""
-    path = PurePath(name)
-    stem = path.stem if path.suffix.lower() in (".ipynb", ".zip") else name
-    best, most = "", 1
-    for student in students:
-        own = {
-            "email": student.email,
-            "last": student.last_name,
-            "first": student.first_name,
-            "id": student.id,
-        }
-        pattern, length = stem, 0
-        for word, value in sorted({**own, **student.lms}.items(), key=lambda item: -len(item[1])):
-            place = pattern.casefold().find(value.casefold())
-            if value and place >= 0 and "{" not in pattern[:place].rpartition("}")[2]:
-                pattern = f"{pattern[:place]}{{{word}}}{pattern[place + len(value) :]}"
-                length += len(value)
-        if length > most:
-            best, most = pattern, length
-    return best
-
-
 # Blackboard's download has a name that looks like that of a file in Canvas.
 _DOWNLOAD = re2.compile(r"^gradebook_.*_\d{4}(?:-\d\d){5}(?: ?\(\d+\))?\.zip$")
-
-
-def _is_loose(path: Path) -> bool:
-    """Return True if a path is a file that is neither a download nor a list."""
-    return path.is_file() and path.suffix.lower() not in (".zip", ".csv")
 
 
 _EXPORT = re2.compile(r"^assignment_\d+_export(?: ?\(\d+\)|-\d+)?$")

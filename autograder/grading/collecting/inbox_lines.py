@@ -101,7 +101,7 @@ class _Reading:
         for arrival in self.delivery.arrivals:
             place, edit = (arrival.source, arrival.parts), edits.get(arrival.key, Edit())
             if arrival.is_archive:
-                is_open = edit.student or not self._doubt(arrival)
+                is_open = edit.student or self.delivery.student or not self._doubt(arrival)
                 opened[place] = edit if is_open else None
                 if is_open:
                     continue
@@ -113,7 +113,8 @@ class _Reading:
         return self.student_of.owners(arrival.parts, arrival.levels, is_alone=arrival.is_own)
 
     def _doubt(self, arrival: Arrival) -> str:
-        return self.student_of.doubt(self._owners(arrival), (arrival.parts or (arrival.source,))[0])
+        why = self.student_of.doubt(self._owners(arrival), (arrival.parts or (arrival.source,))[0])
+        return f"{why}; {_ALONE}" if why and arrival.is_own else why
 
     def _line(self, arrival: Arrival, edit: Edit, of_archive: Edit) -> Line:
         """Return the line of a file.
@@ -144,7 +145,7 @@ class _Reading:
         """Return the line of a file that came from a system, completed with its students, notebook and time."""
         owners = self._owners(arrival)
         asked = edit.assignment or of_archive.assignment or self.delivery.assignment
-        if written := edit.student or of_archive.student:
+        if written := edit.student or of_archive.student or self.delivery.student:
             ids, reason = self.student_of.written(written)
         else:
             reason = self._doubt(arrival)
@@ -203,6 +204,7 @@ class _Reading:
 
 _LMS_PAGES = ("index.html", "grades.csv", GRADESCOPE)
 """The names of files that an LMS adds to a download."""
+_ALONE = "if it belongs to a download, collect the download in a command of its own"
 _OF_ONE_STUDENT = "If one student sent it, the folder has to be named after this student"
 _UNKNOWN_ARCHIVE = (
     "the archive's name identifies no student. If it is a whole download, unpack it, and collect the folder. "

@@ -93,20 +93,6 @@ def test_who_is_known_by_a_list_alone_shows_what_the_folders_are(klass: TinyClas
     assert placed(report).keys() == {"zoe"}
 
 
-def test_a_folder_that_may_be_one_students_is_said_to_be_taken_for_a_download(
-    klass: TinyClass, tmp_path: Path
-) -> None:
-    source = folder(
-        tmp_path / "homework", {"ada/lab_1_2.ipynb": work(klass), "ben/lab_1_2.ipynb": work(klass)}
-    )
-    report = collect(klass.path, [source])
-    assert placed(report).keys() == {"ada", "ben"}
-    assert report.notes == (
-        f"{source} was taken for a download, in which names identify the students: if one student sent the file, "
-        "rename it to the student's id",
-    )
-
-
 def test_a_list_in_a_students_folder_is_no_list_of_gradescopes(klass: TinyClass, tmp_path: Path) -> None:
     files = {"submission_409194023/lab_1_2.ipynb": work(klass, 1), "submission_metadata.yml": STEALS}
     source = folder(tmp_path / "lab-1-2-mallory", files)
@@ -231,7 +217,6 @@ def test_a_table_beside_files_that_students_have_named_is_no_list(klass: TinyCla
     report = collect(klass.path, sorted(folder(tmp_path / "d", files).iterdir()))
     assert when(klass, "ben") is None
     assert placed(report) == {}
-    assert any("times.csv was taken for one student's work" in note for note in report.notes)
     collect(klass.path, [tmp_path / "d" / "times.csv"])
     assert when(klass, "ben") is not None
 
