@@ -298,7 +298,7 @@ class _Collecting:
             for name in sorted({one.assignment for one in new if not one.when})
         }
         delivered = [one for one in lines if one.key in keys and one.students and one.assignment]
-        notes = [*self._notes, *self._directory.named_cells.notes]
+        notes = [*self._notes, *self._groups_in_part(lines), *self._directory.named_cells.notes]
         notes += self._roster.notices(self._directory.assignments(), {}, self._roster.students)
         if not self._roster.students:
             notes.append(
@@ -314,6 +314,21 @@ class _Collecting:
             tuple(sorted({one.assignment for one in delivered})),
             tuple(sorted({one.lms for one in delivered} - {""})),
         )
+
+    def _groups_in_part(self, lines: Sequence[Line]) -> Iterator[str]:
+        """Yield a sentence about each group in a list that handed in, but not with a file for each member."""
+        groups: dict[str, list[ListEntry]] = defaultdict(list)
+        for entry in self._entries:
+            if entry.group and entry.when:
+                groups[entry.group].append(entry)
+        there = {(one.lms, one.number) for one in lines if one.students}
+        for name, entries in groups.items():
+            without = [str(one.members[0][-1]) for one in entries if (one.lms, one.number) not in there]
+            if 0 < len(without) < len(entries):
+                yield (
+                    f"the group {name} has handed in, but there is no file of {', '.join(without)}: if the file of "
+                    "another member is theirs, too, write all ids with ; between them under student in collected.csv"
+                )
 
 
 def _taken(file: File, receiving: Receiving) -> tuple[Arrival, bytes]:

@@ -30,6 +30,7 @@ class ListEntry:
         lms: The system that made the list.
         number: The number or user name that the system also puts into file names; empty if it puts none.
         members: For each member of the group that handed in, the names of this member, the most certain first.
+        group: The name of the group that handed in; empty if it is not a group's work.
         when: The time of handing in, in the LMS's own time if it has no time zone; None if the list has no time.
     """
 
@@ -37,6 +38,7 @@ class ListEntry:
     number: str
     members: tuple[tuple[Identity, ...], ...]
     when: datetime | None = None
+    group: str = ""
 
 
 _SAMPLES = {
@@ -97,7 +99,8 @@ def _entries(form: ListForm, records: list[dict[str, str]]) -> Iterator[ListEntr
         if called := " ".join(filter(None, (record.get(name, "") for name in form.names))):
             names.append(Identity(form.lms, name=called))
         if names and (number or form.time):
-            yield ListEntry(form.lms, number, (tuple(names),), read_time(record.get(form.time, "")))
+            when, group = read_time(record.get(form.time, "")), record.get(form.group, "")
+            yield ListEntry(form.lms, number, (tuple(names),), when, group)
 
 
 def _of_gradescope(data: bytes) -> list[ListEntry] | None:

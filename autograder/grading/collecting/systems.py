@@ -42,6 +42,7 @@ class ListForm:
         logins: Columns with user names and addresses, the most certain first.
         names: The columns that together are the name, which users choose themselves.
         time: The column with the time at which the work was handed in.
+        group: The column with the name of the group that handed in.
         points: The column for the points, or :data:`EACH`; empty if the list has no place for points.
         out_of: The column with the maximum points, in a list with one column for points.
         is_numbered: True if the number is the same for all assignments.
@@ -53,6 +54,7 @@ class ListForm:
     logins: tuple[str, ...] = ()
     names: tuple[str, ...] = ()
     time: str = ""
+    group: str = ""
     points: str = ""
     out_of: str = ""
     is_numbered: bool = False

@@ -65,9 +65,9 @@ def test_a_column_without_a_meaning_is_named_and_the_student_is_found(
 ) -> None:
     """The student was not found before, and nothing said that the names of the columns were not known."""
     file = {"lovelaceada_501_7001_lab_1_2.ipynb": work(tiny, 4)}
-    (tiny.path / "students.csv").write_text("id,Vorname,Nachname,Canvas\nal01,Ada,Lovelace,501\n")
+    (tiny.path / "students.csv").write_text("id,Nome,Cognome,Canvas\nal01,Ada,Lovelace,501\n")
     report = collect(tiny.path, [write_zip(tmp_path / "c.zip", file)])
-    assert any("no meaning, except in collect --names: Vorname, Nachname" in note for note in report.notes)
+    assert any("no meaning, except in collect --names: Nome, Cognome" in note for note in report.notes)
     assert placed(report).keys() == {"al01"}
     (tiny.path / "students.csv").write_text("ID,First Name,Last Name\nal01,Ada,Lovelace\n")
     report = collect(tiny.path)
@@ -100,6 +100,14 @@ def test_lists_of_systems_are_read_as_they_are(tmp_path: Path) -> None:
         (
             'First name,Last name,Email address,Groups\nAda,Lovelace,ada@uni.example,"Mo, Tu, and We"\n',
             ("ada@uni.example", "Ada", "Lovelace", "ada@uni.example", {"Mo, Tu, and We", "Mo", "Tu", "We"}),
+        ),
+        (
+            "Full name,Email address,Groups\nAda Lovelace,ada@uni.example,Mo\n",
+            ("ada@uni.example", "Ada", "Lovelace", "ada@uni.example", {"Mo"}),
+        ),
+        (
+            "Matrikelnummer;Vorname;Nachname;E-Mail\n0042;Ada;Lovelace;ada@uni.example\n",
+            ("0042", "Ada", "Lovelace", "ada@uni.example", set()),
         ),
         (
             "Prénom,Nom de famille,Adresse de courriel\nAda,Lovelace,ada@uni.example\n",
