@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Container, Mapping
     from random import Random
 
-    from autograder.kit.counterparts import ActionCaller, ActionCounterpart, Caller, Server, Speaker
+    from autograder.kit.counterparts import ActionCaller, ActionCounterpart, Caller, Server, Speaker, Work
     from autograder.kit.evidence import Evidence, Part
 
 STEP = 0.05
@@ -159,6 +159,18 @@ class Bench(Protocol):
         """Make an action server that does only what the scenario tells it to.
 
         ``goal_answer_takes`` and ``cancel_answer_takes`` are the delays of the answers, in seconds of wall time.
+        """
+
+    def serve_goals(self, action: str, type_name: str, work: Callable[[Mapping[str, Any]], Work]) -> None:
+        """Serve an action for any number of goals, also at once. They go on while :meth:`run_time` lets time pass.
+
+        Each is recorded as ``goal``, ``goal_answered``, ``feedback``, ``cancel`` and ``result``, with its number, which
+        counts from 1.
+
+        Args:
+            action: The full name of the action.
+            type_name: The action type, such as ``"my_robot_interfaces/action/Fibonacci"``.
+            work: Returns what to do with a goal, given its fields.
         """
 
     def plant(

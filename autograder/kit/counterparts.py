@@ -6,11 +6,13 @@ field or the field cannot hold the value; an answer of a server that does not fi
 
 from __future__ import annotations
 
+from dataclasses import dataclass, field
 from enum import StrEnum
+from math import isfinite
 from typing import TYPE_CHECKING, Any, Protocol
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
 
 class Qos(StrEnum):
@@ -39,6 +41,43 @@ class Server(Protocol):
 
     def close(self) -> None:
         """Remove the service."""
+
+
+@dataclass(frozen=True)
+class Work:
+    """What the judge does with a goal that the subject sends to an action of the judge.
+
+    Attributes:
+        status: How the goal ends: ``"succeeded"``, ``"aborted"``, or ``"rejected"``, which it is at once. A goal that
+            is canceled before its end ends ``"canceled"``.
+        takes: Seconds of the subject's time until the end; ``inf`` for a goal that runs until it is canceled.
+        feedback: The fields of the feedback messages, which are spread evenly over that time; with a goal that does
+            not end, one each second.
+        result: The fields of the result.
+    """
+
+    status: str = "succeeded"
+    takes: float = 0.3
+    feedback: Sequence[Mapping[str, Any]] = ()
+    result: Mapping[str, Any] = field(default_factory=dict)
+
+    @property
+    def accepts(self) -> bool:
+        """True if the goal is accepted."""
+        return self.status != "rejected"
+
+    @property
+    def between(self) -> float:
+        """The seconds between two feedback messages."""
+        return self.takes / (len(self.feedback) + 1) if isfinite(self.takes) else 1.0
+
+    def told_after(self, seconds: float) -> int:
+        """Return how many feedback messages are due so many seconds after the goal was accepted."""
+        return int((seconds + SOON) / self.between)
+
+
+SOON = 1e-6
+"""Seconds that do not count, because clocks round."""
 
 
 class ActionCounterpart(Protocol):

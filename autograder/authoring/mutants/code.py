@@ -230,7 +230,8 @@ def _made(statement: ast.stmt) -> list[str]:
     """The names that a statement of a module defines, imports left out."""
     if isinstance(statement, _DEFINITIONS):
         return [statement.name]
-    targets = statement.targets if isinstance(statement, ast.Assign) else []
+    targets: list[ast.expr] = [statement.target] if isinstance(statement, ast.AnnAssign) else []
+    targets += statement.targets if isinstance(statement, ast.Assign) else []
     return [target.id for target in targets if isinstance(target, ast.Name)]
 
 

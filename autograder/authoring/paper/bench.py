@@ -14,6 +14,7 @@ import types
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
+from autograder.authoring.paper.actions import PaperAction
 from autograder.authoring.paper.network import EPOCH, SECOND, Hangs, Network, UnknownOnPaper, matches
 from autograder.judge.bench.qos_profiles import profile, qos_of
 from autograder.judge.bench.ros_interfaces import filled, interface, to_data
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
 
     from autograder.authoring.paper.endpoints import Publisher, Service
     from autograder.authoring.paper.nodes import PaperNode
+    from autograder.kit.counterparts import Work
     from autograder.kit.evidence import Reference
 
 _OF_PARAMETERS = "parameter"
@@ -171,6 +173,7 @@ class PaperBench:
                 if _OF_PARAMETERS not in end.name.rpartition("/")[2]
             },
             "client": {end.name: _type(end.kind) for node in nodes for end in _of(node, "clients")},
+            "action_client": {end.name: _type(end.kind) for end in self._network.action_clients},
         }
 
     def await_endpoint(self, role: str, name: str) -> bool:
@@ -249,6 +252,9 @@ class PaperBench:
                 respond()
 
         network.served[service] = take
+
+    def serve_goals(self, action: str, type_name: str, work: Callable[[Mapping[str, Any]], Work]) -> None:
+        self._network.actions[action] = PaperAction(self, action, type_name, work).take
 
     def call(self, service: str, type_name: str) -> _Caller:
         return _Caller(self, service, type_name)

@@ -78,6 +78,8 @@ class Network:
     Attributes:
         nodes: The nodes, in the order in which they were made.
         served: For each service that the bench serves, the function that takes a request and a function for its answer.
+        actions: For each action that the bench serves, the function that takes a goal and a function for its feedback.
+        action_clients: The action clients, in the order in which they were made.
         listener: Called with each message: the publisher, the message, and its number from this publisher.
         logged: Called with each line that a node logs: the node's name, the level and the text.
         simulated: The simulated time; None before the first step.
@@ -91,6 +93,8 @@ class Network:
     ) -> None:
         self.nodes: list[Any] = []  # of PaperNode, whose endpoints have other types than those of rclpy
         self.served: dict[str, Callable[[Any, Answer], None]] = {}
+        self.actions: dict[str, Callable[[Any, Callable[[Any, Any], None]], Any]] = {}
+        self.action_clients: list[Any] = []
         self.listener, self.logged = listener, logged
         self.simulated: int | None = None
         self.wall = EPOCH

@@ -17,6 +17,7 @@ from rclpy.clock import ClockType
 from rclpy.parameter_service import ParameterService
 from rclpy.time import Time
 
+from autograder.authoring.paper.actions import replace_actions
 from autograder.authoring.paper.endpoints import (
     Client,
     PaperTimer,
@@ -256,6 +257,7 @@ def replace_rclpy() -> None:
 
     Call it in a process that was made for one program.
     """
+    replace_actions()
     rclpy.node.Node = PaperNode  # type: ignore[misc]
     rclpy.clock.Clock = ComputerClock  # type: ignore[assignment,misc]
     threading.Thread = _Thread  # type: ignore[misc]

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from autograder.judge.bench import discovery
 from autograder.judge.bench.discovery import Announcements, process_of
 from autograder.judge.bench.judge_nodes import DecoyNodes, Wire
+from autograder.judge.bench.recorded_action_server import RecordedActionServer
 from autograder.judge.bench.recorded_actions import RecordedActionClient, ScriptedActionServer
 from autograder.judge.bench.recorded_services import Answer, RecordedCaller, RecordedServer
 from autograder.judge.bench.recorded_topics import LogReader, RecordedPublisher, RecordedSubscription
@@ -33,6 +34,7 @@ if TYPE_CHECKING:
     from random import Random
 
     from autograder.judge.subject import Subject
+    from autograder.kit.counterparts import Work
 
 INPUTS = frozenset(
     {"sent", "asked", "response", "goal_sent", "cancel_sent", "goal_answered", "feedback", "result"}
@@ -104,7 +106,7 @@ class TestBench:
         self._announcements = None if subject.shares_participant else Announcements(domain_id)
         self._older_processes: set[bytes] = set()
         self._open = contextlib.ExitStack()
-        self._servers: list[RecordedServer] = []
+        self._servers: list[RecordedServer | RecordedActionServer] = []
         self._on_graph: Presence | None = None
         self._time_of_part: SubjectTime | None = None
         self._there: set[discovery.Endpoint] = set()
@@ -333,6 +335,13 @@ class TestBench:
         self._open.callback(server.close)
         self._announce(server.services)
         return server
+
+    def serve_goals(self, action: str, type_name: str, work: Callable[[Mapping[str, Any]], Work]) -> None:
+        self._get_ready_to_serve(action)
+        server = RecordedActionServer(self._place(action, type_name), work)
+        self._servers.append(server)
+        self._open.callback(server.close)
+        self._announce(server.services)
 
     def _get_ready_to_serve(self, name: str) -> None:
         """Wait until the existing clients are discovered, then record the event ``serving``.

@@ -140,9 +140,7 @@ class SameAsSolution:
         # What was published before the judge listened shows only in the number of a message.
         also = {self._told: (NUMBER,)} if late_after and steps else {}
         self._outputs = [
-            Output(
-                name, (*((paths,) if isinstance(paths, str) else paths), *also.get(kind, ())), kind, tolerance
-            )
+            self._output(name, (*((paths,) if isinstance(paths, str) else paths), *also.get(kind, ())), kind)
             for kind, outputs in kinds.items()
             for name, paths in outputs.items()
         ]
@@ -178,6 +176,10 @@ class SameAsSolution:
             self._draft.knows("wrong_rate", output.another_rate, says, KEEP_THE_PERIOD, late=True)
         for output in self._outputs:
             self._draft.criterion(output.key, output.title.replace("?", ""))(partial(_by_one_server, output))
+
+    def _output(self, name: str, paths: tuple[str, ...], kind: Kind) -> Output:
+        """Return an output that is compared."""
+        return Output(name, paths, kind, self._tolerance)
 
     def exercise(self, **more: Any) -> Exercise:
         """Return the finished exercise. For ``more`` see :meth:`autograder.kit.draft.Draft.exercise`."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import dataclass
 from functools import reduce
 from math import inf, isinf
@@ -42,6 +43,26 @@ class To(NamedTuple):
     def __str__(self) -> str:
         """Return the input in words, for the card."""
         return self.name + (f", then {self.stands:g} s while the robot's time stood" if self.stands else "")
+
+
+class Text(To):
+    """An input for a topic of texts, or a service with one: JSON, or nearly. The card shows it.
+
+    Args:
+        name: The name of the topic.
+        value: What the text says, as data; a text stays as it is, for an input that is no JSON.
+        how: The other attributes of :class:`To`.
+    """
+
+    __slots__ = ()
+
+    def __new__(cls, name: str, value: Any, **how: Any) -> Text:
+        """Return the step."""
+        return super().__new__(cls, name, value if isinstance(value, str) else json.dumps(value), **how)
+
+    def __str__(self) -> str:
+        """Return the input in words, for the card."""
+        return f"{super().__str__()}: {self.value}"
 
 
 def answer_delays(steps: Sequence[Step]) -> tuple[dict[int, float], set[int]]:
