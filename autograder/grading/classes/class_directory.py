@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import functools
 import hashlib
+import json
 import unicodedata
 from dataclasses import dataclass
 from pathlib import Path
@@ -223,6 +224,16 @@ class ClassDirectory:
     def notebooks(self, assignment: str) -> list[str]:
         """Return the names of an assignment's notebooks, sorted."""
         return sorted(path.stem for path in (self.path / "source" / assignment).glob(f"*{SUFFIX}"))
+
+    def title(self, assignment: str, notebook: str) -> str:
+        """Return the heading of a notebook; its name if the notebook does not begin with one."""
+        try:
+            file = self.path / "source" / assignment / f"{notebook}{SUFFIX}"
+            lines = json.loads(file.read_bytes())["cells"][0]["source"]
+        except (OSError, ValueError, LookupError, TypeError):
+            return notebook
+        first = "".join(lines).partition("\n")[0]
+        return first.removeprefix("# ") if first.startswith("# ") else notebook
 
     def master(self, assignment: str, notebook: str) -> NotebookNode:
         """Return the trusted master of a notebook.

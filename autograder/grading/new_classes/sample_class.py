@@ -102,8 +102,8 @@ def sample_notebooks(file: Path) -> tuple[SampleNotebook, ...]:
 def _submit_sample(path: Path) -> None:
     """Write every sample notebook into ``submitted`` of the class at ``path``, and its list of students."""
     if students := sample_data(DATA).students:
-        lines = [f"{student},{name}\n" for student, name in students.items()]
-        (path / STUDENTS).write_text("".join(["id,name\n", *lines]), encoding="utf-8")
+        lines = [f"{student},{name.replace(' ', ',')}\n" for student, name in students.items()]
+        (path / STUDENTS).write_text("".join(["id,first_name,last_name\n", *lines]), encoding="utf-8")
     for notebook in sample_notebooks(DATA):
         folder = path / "submitted" / notebook.student / notebook.assignment
         folder.mkdir(parents=True, exist_ok=True)

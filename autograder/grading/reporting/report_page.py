@@ -12,10 +12,9 @@ from autograder import exercises
 from autograder.cards.html_rendering import page_templates
 from autograder.cards.readable_text import one_line
 from autograder.grading.class_store import ClassStore
-from autograder.grading.classes.class_directory import SUFFIX, ClassDirectory
+from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.collecting.collected_csv import Table
 from autograder.grading.grading_errors import GradingError, clear_disk_errors, write_output
-from autograder.grading.rebuilding import nbformat_nodes
 from autograder.grading.reporting import class_statistics as figures
 from autograder.grading.reporting.class_table import ClassTable, read_table
 from autograder.grading.returning.page_exporter import POLICY
@@ -93,7 +92,7 @@ def _page(
         absent=[student for student in table.students if student not in there],
         exercises=columns(table.rows),
         titles=_titles(columns(table.rows)),
-        labs={name: _lab_title(directory, name) for name in table.assignments},
+        labs={name: directory.title(name, name) for name in table.assignments},
         rows={
             student: {
                 (row.assignment, row.exercise): row
@@ -148,16 +147,6 @@ def _titles(headings: Mapping[tuple[str, str], str]) -> dict[str, str]:
         heading: title if often[title] == 1 else f"{title} ({heading.partition('.')[0]})"
         for heading, title in titles.items()
     }
-
-
-def _lab_title(directory: ClassDirectory, name: str) -> str:
-    """Return the title of an assignment: the heading of its notebook, or its name if that cannot be read."""
-    notebook = directory.path / "source" / name / f"{name}{SUFFIX}"
-    try:
-        first = nbformat_nodes.read(notebook.read_text(encoding="utf-8")).cells[0].source.partition("\n")[0]
-    except (OSError, ValueError, LookupError, AttributeError):
-        return name
-    return str(first.removeprefix("# ")) if first.startswith("# ") else name
 
 
 def _dropped(table: ClassTable) -> dict[str, list[str]]:

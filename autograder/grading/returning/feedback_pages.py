@@ -11,7 +11,7 @@ from nbgrader.utils import is_grade, is_solution, is_task
 from autograder.grading.classes.class_directory import SUFFIX
 from autograder.grading.classes.gradebook_reading import read_entry
 from autograder.grading.rebuilding import nbformat_nodes
-from autograder.grading.rebuilding.notebook_rebuilding import grade_id, is_check, is_the_masters
+from autograder.grading.rebuilding.notebook_rebuilding import grade_id, is_check
 from autograder.grading.returning.page_exporter import WAITS, PageExporter
 from autograder.safe_files import write_whole
 
@@ -61,7 +61,7 @@ class FeedbackPages:
             "student": submission.student,
             "name": entry.name,
             "assignment": submission.assignment,
-            "notebook": title_of(notebook, path.stem),
+            "notebook": escape(self._directory.title(submission.assignment, path.stem)),
             "score": sum(cell.score for cell in cells.values()) - penalty,
             "max_score": sum(cell.max_score for cell in cells.values()),
             "late_penalty": penalty,
@@ -73,13 +73,6 @@ class FeedbackPages:
     @functools.cached_property
     def _exporter(self) -> PageExporter:
         return PageExporter(config=self._directory.config)
-
-
-def title_of(notebook: NotebookNode, name: str) -> str:
-    """Return the title of a lab as HTML: the first heading of the text that the master gives; without one, its name."""
-    given = (cell.source for cell in notebook.cells if cell.cell_type == "markdown" and is_the_masters(cell))
-    first = next(given, "").partition("\n")[0]
-    return escape(first.removeprefix("# ") if first.startswith("# ") else name)
 
 
 _FOR_A_PERSON, _TRIED_AGAIN = "waits for your instructor", "could not be checked, and is tried again"

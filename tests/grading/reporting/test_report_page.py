@@ -105,6 +105,17 @@ def test_work_that_is_not_graded_yet_is_blank_and_in_no_figure(graded: TinyClass
     assert [cell.get_text(strip=True) for cell in zoe.find_all("td")][1:] == ["–", "–", "–"]
 
 
+def test_titles_and_quotes_take_the_place_of_ids_and_back_ticks(graded: TinyClass) -> None:
+    page = BeautifulSoup(write_report(graded.path).read_text(), "html.parser")
+    text = page.get_text(" ", strip=True)
+    assert "Lab 1.2 · The talker lab_1_2.talker" in text
+    assert "`" not in text
+    assert "wrong text" in text
+    assert "wrong_text" not in text
+    told = page.find("th", string="what they were told").find_next("tbody").find_all("tr")  # type: ignore[union-attr]
+    assert all(row.find_all("td")[2].get_text(strip=True)[0] == "“" for row in told)
+
+
 def test_the_page_needs_nothing_and_links_lead_somewhere(graded: TinyClass) -> None:
     path = write_report(graded.path)
     text = path.read_text()
