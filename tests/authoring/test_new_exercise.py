@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import re
-import shutil
 import subprocess
 import sys
 from typing import TYPE_CHECKING
@@ -274,12 +273,18 @@ def test_all_edits_that_fit_no_line_are_told_before_anything_runs(root: Path) ->
 @pytest.mark.slow
 def test_a_point_for_what_is_given_is_found(root: Path) -> None:
     new_exercise(root, ID, "switch")
-    file = root / "solutions/01_first/lab_9_1/battery_of_mine.py"
-    file.write_text(file.read_text().replace('subject.has("service")', 'subject.has("publisher")'))
+    lab = root / "solutions/01_first/lab_9_1"
+    (lab / "battery_of_mine.answers/wrong/answers.toml").unlink()
+    end, method = "        ### END SOLUTION\n", "        self.on = request"
+    before, begin, rest = (lab / "lab.md").read_text(encoding="utf-8").partition("        ### BEGIN SOLUTION\n")
+    todo, _, given = rest.replace(end, "").partition("\n")
+    text = before + given.replace(method, f"{begin}{todo}\n{method}", 1)
+    text = text.replace("        response.success", f"{end}        response.success")
+    (lab / "lab.md").write_text(text, encoding="utf-8")
     tried = autograder(root, "try-exercise", ID)
     assert tried.returncode == 1, tried.stdout + tried.stderr
-    assert ", none not as expected" in tried.stdout
-    assert "the unsolved notebook earns points: 1 for “Serves the right service and type”" in tried.stdout
+    assert ", none not as expected" in tried.stdout, tried.stdout
+    assert "the unsolved notebook earns points: 3.5 for “Says the right success on /lamp”" in tried.stdout
 
 
 @pytest.mark.ros
@@ -296,11 +301,9 @@ def test_each_recipe_makes_a_lab_that_is_recorded_built_and_executed(root: Path)
 @pytest.mark.slow
 def test_what_is_expected_does_not_change_unasked(root: Path) -> None:
     new_exercise(root, ID, "publisher")
-    lab = root / "solutions/01_first/lab_9_1"
-    shutil.copy(
-        EXAMPLES / "solutions/recipes/publisher/battery.reference.json",
-        lab / "battery_of_mine.reference.json",
-    )
+    recorded = (EXAMPLES / "solutions/recipes/publisher/battery.reference.json").read_text(encoding="utf-8")
+    reference = root / "solutions/01_first/lab_9_1/battery_of_mine.reference.json"
+    reference.write_text(recorded.replace('{"data": 97}', '{"data": 7}'), encoding="utf-8")
     tried = autograder(root, "try-exercise", ID)
     assert tried.returncode == 1, tried.stdout + tried.stderr
     assert f"./course record {ID}" in tried.stdout
