@@ -6,7 +6,10 @@ EXERCISE = SameAsSolution(
     "relay.converter",
     "A relay · The converter",
     "Publish each temperature that is heard, in degrees Fahrenheit.",
-    gives=lambda random: [To("/celsius", random.uniform(-40.0, 100.0)) for _ in range(6)],
+    gives=lambda random: [
+        *(To("/celsius", random.uniform(-40.0, 100.0)) for _ in range(5)),
+        *(To("/celsius", 20.0), To("/celsius", 20.0)),
+    ],
     tells={"/fahrenheit": "data"},
     every=True,
 ).exercise(
