@@ -19,6 +19,7 @@ from autograder.authoring.mutants.survey_lines import lines
 from autograder.authoring.mutants.trials import NotOnPaper
 from autograder.cards.text_rendering import card_text
 from autograder.command_name import COMMAND
+from autograder.judge import evidence_files
 from autograder.kit.model import UNKNOWN
 from autograder.safe_files import HeldFolder
 from autograder.verdict import to_json
@@ -182,7 +183,8 @@ def try_exercise(
     # With a part of the answers, what the bank lacks cannot be told.
     for line in to_do_in_text(exercise_id) if only else still_to_do(exercise_id, wanted):
         tell(f"to do: {line}")
-    is_ready = bool(only) or try_mutants(exercise_id, tell=tell)
+    is_kept = bool(only) or evidence_files.load_reference(exercise_id).mutants is not None
+    is_ready = bool(only) or try_mutants(exercise_id, keeps=not is_kept, tell=tell)
     return is_ready and not surprises and not gifts
 
 

@@ -81,7 +81,12 @@ def _mutants(exercise_id: str, solution: Sequence[Part]) -> Mutants | None:
         found = msgspec.json.decode(packed_files.read(file), type=Mutants)
     except (OSError, EOFError, msgspec.MsgspecError) as error:
         raise NoReference(f"{file} is damaged ({error}): run `{COMMAND} record {exercise_id}`") from error
-    return replace(found, solution=solution) if found.reference == reference_digest(exercise_id) else None
+    return replace(found, solution=solution) if found.reference == parts_digest(solution) else None
+
+
+def parts_digest(parts: Sequence[Part]) -> str:
+    """Return the SHA-256 of the record of a solution, in hexadecimal; its endpoints do not count."""
+    return hashlib.sha256(_parts_text(parts, None).encode()).hexdigest()
 
 
 def reference_digest(exercise_id: str) -> str:

@@ -54,13 +54,22 @@ class Places:
             quote=quote,
             name=self._name(mutant),
             right=right if is_shown else None,
-            value=value if is_shown else None,
+            value=value if is_shown and not (mutant.all_of == 1 and self._is_exchange(mutant)) else None,
         )
+
+    def _is_exchange(self, mutant: Mutant) -> bool:
+        """Return True if something is changed at another place, too."""
+        text, end = self._code.text, mutant.start + len(mutant.before)
+        return mutant.text != f"{text[: mutant.start]}{mutant.after}{text[end:]}"
 
     def _kind(self, mutant: Mutant) -> str:
         """Return the kind without words that the notebook does not show."""
         if mutant.operator == "comparison" and mutant.before == "==":
             return "equal"
+        if mutant.operator == "other_word" and self._code.text[: mutant.start].endswith("parameter("):
+            return "parameter"
+        if mutant.operator == "number_of_another_place" and self._is_exchange(mutant):
+            return "exchanged"
         words = mutant.kind.split()
         if "for" in words[1:-1]:
             return "for" if mutant.operator == "other_word" else ""
@@ -81,21 +90,27 @@ class Places:
     def _quote(self, mutant: Mutant, statement: ast.stmt | None, right: float | None) -> str:
         """Return the only sentence of the task that is about a place; empty if none is, or if several may be."""
         test = self._test(mutant.start)
-        if right is not None:
-            in_test = test is not None
-            return _only(one for one in self._law if right in _numbers_of(one, compares=in_test))
-        if test is not None:
-            source = self._code.source(test)
-            numbers = {float(number) for number in _NUMBER.findall(source)}
-            if numbers and (
-                quote := _only(o for o in self._law if numbers <= set(_numbers_of(o, compares=True)))
-            ):
-                return quote
         shown = self._code.source(test) if test is not None else _head(self._code, statement)
         tokens = set(_WORD.findall(shown)) & self._words - {"self"}
         scores = {one: len(tokens & _code_words(one)) for one in self._law}
         best = max(scores.values(), default=0)
-        return _only(one for one, score in scores.items() if best and score == best)
+        nearest = [one for one, score in scores.items() if best and score == best]
+        if mutant.operator == "other_word":
+            word = mutant.before.strip("'\"")
+            return _only(one for one in self._law if word in _code_words(one))
+        if right is not None and test is None and nearest:
+            return _only(
+                one for one in nearest if right in {*_numbers_of(one, compares=True), *_numbers_of(one)}
+            )
+        if right is not None:
+            return _only(one for one in self._law if right in _numbers_of(one, compares=test is not None))
+        if test is not None:
+            numbers = {float(number) for number in _NUMBER.findall(shown)}
+            if numbers and (
+                quote := _only(one for one in self._law if numbers <= {*_numbers_of(one, compares=True)})
+            ):
+                return quote
+        return _only(iter(nearest))
 
     def _statement(self, start: int) -> ast.stmt | None:
         spans = [(self._code.span(one), one) for one in self._statements]
@@ -124,7 +139,7 @@ def _number(text: str) -> float | None:
         return None
 
 
-def _numbers_of(sentence: str, *, compares: bool) -> Iterator[float]:
+def _numbers_of(sentence: str, *, compares: bool = False) -> Iterator[float]:
     """Yield the numbers of a sentence that are limits, or those that are not."""
     for found in _NUMBER.finditer(sentence):
         before = sentence[max(0, found.start() - _REACH) : found.start()]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import json
 from collections import defaultdict
 from typing import TYPE_CHECKING, Any
@@ -10,7 +11,11 @@ import msgspec
 
 from autograder import course, exercises
 from autograder.authoring.mutants.code import Code
+from autograder.authoring.mutants.engine import Mutant, mutants, python_changes
 from autograder.authoring.mutants.meanings import Places
+from autograder.authoring.mutants.survey import LATE
+from autograder.authoring.mutants.trials import paper_task, run_all
+from autograder.authoring.reference_files import reference_solution
 from autograder.judge import evidence_files
 from autograder.kit.oracle.naming.deltas import Meaning, MutantClass, Mutants, alike
 from autograder.masters.code_cells import BEGIN, END
@@ -19,6 +24,7 @@ from autograder.packed_files import packed
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
+    from autograder.authoring.mutants.solutions import Solution
     from autograder.authoring.mutants.survey import Survey
     from autograder.authoring.mutants.trials import Run
     from autograder.kit.evidence import Part
@@ -28,29 +34,65 @@ Did = dict[str, dict[str, dict[int, Any]]]
 
 
 def write(found: Survey) -> None:
-    """Write the file of an exercise."""
+    """Write the file of an exercise.
+
+    Raises:
+        NotOnPaper: The exercise cannot be run on paper.
+    """
     file, data = exercises.mutants_path(found.solution.exercise), packed(msgspec.json.encode(recorded(found)))
     if not file.exists() or file.read_bytes() != data:
         file.write_bytes(data)
 
 
 def recorded(found: Survey) -> Mutants:
-    """Return what the mutants of a survey do in the practice drawings."""
+    """Return what mutants do in the practice drawings: those of a survey, and those of the lines around the student's.
+
+    The drawings need not tell a mistake in given lines, but whoever types them anew may make one.
+    """
     of, exercise = found.solution, exercises.get(found.solution.exercise)
-    parts = evidence_files.load_reference(of.exercise).parts
-    code = Code(of.text, subject=of.root)
+    stored = evidence_files.load_reference(of.exercise)
+    parts, code = stored.parts, Code(of.text, subject=of.root)
+    task = paper_task(exercise, stored, of.text, of.root, fresh=0)
+    around = given_mutants(of)
+    order = {one.key: number for number, one in enumerate(around)}
+    given = sorted(run_all(task, ((one, one.text) for one in around)), key=lambda pair: order[pair[0].key])
+    tried = [*((one.mutant, one.runs) for one in found.tried if one.mutant.start >= 0), *given]
     places = Places(code, exercise.text, _visible(of.exercise))
     groups: dict[str, list[Meaning]] = defaultdict(list)
-    for one in found.tried:
-        if one.mutant.start >= 0 and (did := _differences(parts, one.runs, exercise.tolerance)):
-            groups[json.dumps(did, sort_keys=True)].append(places.meaning(one.mutant))
+    for mutant, runs in tried:
+        if did := _differences(parts, runs, exercise.tolerance):
+            groups[json.dumps(did, sort_keys=True)].append(places.meaning(mutant))
     meanings = list(dict.fromkeys(one for group in groups.values() for one in group))
     classes = [
         MutantClass(sorted({meanings.index(one) for one in group}), _parsed(did))
         for did, group in groups.items()
     ]
     methods = [name for name in dict.fromkeys(one.name for one in code.functions()) if places.shows(name)]
-    return Mutants(evidence_files.reference_digest(of.exercise), meanings, classes, methods)
+    return Mutants(evidence_files.parts_digest(parts), meanings, classes, methods)
+
+
+def given_mutants(of: Solution) -> list[Mutant]:
+    """Return the mutants of a solution in the given lines of the cells that the student fills in."""
+    names = {name for cell in reference_solution(of.exercise).own for name in _defined(cell)}
+    code = Code(of.text, subject=of.root)
+    spans = [code.span(one) for one in code.tree.body if getattr(one, "name", "") in names]
+    changes = [
+        (operator, edit)
+        for operator, edit in python_changes(code)
+        if operator != LATE
+        and any(begin <= edit.start < end for begin, end in spans)
+        and not any(of.is_own(piece.start) for piece in edit.pieces)
+    ]
+    return mutants(of.text, changes)
+
+
+def _defined(cell: str) -> list[str]:
+    """Return the names of the classes and functions of a cell; none for one with a magic, which no notebook imports."""
+    try:
+        body = ast.parse(cell).body
+    except SyntaxError:
+        return []
+    return [one.name for one in body if isinstance(one, (ast.ClassDef, ast.FunctionDef))]
 
 
 def _differences(parts: Sequence[Part], runs: Sequence[Run], tolerance: float) -> Did:

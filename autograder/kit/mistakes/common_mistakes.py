@@ -5,6 +5,7 @@ from __future__ import annotations
 import difflib
 import sys
 from collections import Counter
+from dataclasses import replace
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
@@ -14,6 +15,7 @@ from autograder.kit.counterparts import Qos
 from autograder.kit.mistakes.hangs import something_spins
 from autograder.kit.model import Advice, Mistake, mistake
 from autograder.kit.reported_texts import said_first_after
+from autograder.kit.runners import processes
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -43,6 +45,7 @@ _MATCHING_QOS = {
         "QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL), from rclpy.qos, instead of the queue depth."
     ),
 }
+_ALL_STARTED = "Does your launch file start every program of the task? One of them may use the missing name."
 _KEY = {"topic": "topic_name", "service": "service_name", "action": "action_name"}
 
 
@@ -65,7 +68,7 @@ def endpoint_name(role: str) -> Mistake:
         closest = difflib.get_close_matches(missing[0], strange, n=1, cutoff=0.0) or sorted(strange)
         return closest[0], missing[0]
 
-    return mistake(
+    usual = mistake(
         _KEY[noun],
         strange_and_missing,
         f"Your node {verb} {{0[0]}}, but the task asks for the {noun} {{0[1]}}.",
@@ -75,6 +78,14 @@ def endpoint_name(role: str) -> Mistake:
         certain=True,
         uses=(maker,),
     )
+
+    def recognize(evidence: Evidence) -> Advice | None:
+        advice = usual.recognize(evidence)
+        if advice is None or not processes(evidence.main):
+            return advice
+        return replace(advice, next_step=f"{_ALL_STARTED} {advice.next_step}")
+
+    return replace(usual, recognize=recognize)
 
 
 def message_type(role: str) -> Mistake:

@@ -160,8 +160,9 @@ _HANGS: tuple[tuple[str, Recognize, str, str], ...] = (
         lambda found: any(_blocks(stack) and _in_callback(stack) for stack in found),
         "{who} makes the blocking call {call}(){called} and waits forever: whatever would take in the answer, the "
         "callback group or the only thread that spins, is busy with this callback.",
-        "Write {call}_async instead of {call}. Move the code that uses the answer into another function, and pass "
-        "that function to the add_done_callback(...) of the future that {call}_async returns.",
+        "Write {call}_async instead of {call}: in an `async def` as `await ….{call}_async(...)`. Otherwise move the "
+        "code that uses the answer into another function, and pass that function to the add_done_callback(...) of the "
+        "future that {call}_async returns.",
     ),
     (
         "rate_never_spun",

@@ -160,6 +160,13 @@ class Output:
         """Return True if the subject has no parameter of this name."""
         return any(event.data["values"] == [[0, []]] for event in seen.of("noted", self.name))
 
+    def other_description(self, seen: Part, expected: Part) -> tuple[str, str] | None:
+        """Return how the subject's parameter is declared, and how the solution's, in words; None if alike."""
+        mine, theirs = (part.first("noted", self.name) for part in (seen, expected))
+        if mine is None or theirs is None or same(mine.data["values"], theirs.data["values"], self.tolerance):
+            return None
+        return self._in_words(mine.data["values"]), self._in_words(theirs.data["values"])
+
     def only_news(self, seen: Part, expected: Part) -> bool:
         """Return True if messages come after inputs alone, although a rate is asked for."""
         came = [event.moment for event in seen.of("message", self.name)]

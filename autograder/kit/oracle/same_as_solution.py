@@ -161,6 +161,13 @@ class SameAsSolution:
                 f'Declare it in __init__, with its default: self.declare_parameter("{output.name}", …).',
                 certain=True,
             )
+            self._draft.knows(
+                "other_range",
+                output.other_description,
+                f"Your node declares the parameter {output.name} as {{0[0]}}; the task asks for {{0[1]}}.",
+                "Compare the type of its default, and the range in its ParameterDescriptor, with the task.",
+                certain=True,
+            )
         for output in self._of(Kind.RATE):
             self._draft.knows(
                 "only_if_new",

@@ -65,7 +65,7 @@ class Mutants:
     """The mutants of a solution that its drawings tell from it.
 
     Attributes:
-        reference: The SHA-256 of the file of the reference output, with which they belong together.
+        reference: The SHA-256 of the record of the solution, with which they belong together.
         meanings: What the mutants do.
         classes: The classes of mutants, without those that crash.
         methods: The names of the methods that the solution defines, as far as the notebook shows them.

@@ -28,6 +28,8 @@ if TYPE_CHECKING:
     from autograder.kit.evidence import Evidence, Part
     from autograder.kit.oracle.outputs import Output
 
+EXCHANGED = "exchanged"
+"""The key of mutants with another field, of which the sentence about the whole output says more."""
 MUTANT, EFFECT = "mutant", "effect"
 """The entries of the ladder for what a mutant of the solution does, and for what is wrong with an output as a whole."""
 
@@ -161,10 +163,13 @@ class Drawn(OwnScenario):
             if not apart.is_whole or run.traceback or self._is_silent(run, due):
                 continue
             found = meanings_of(mutants, apart, self._outputs[0].tolerance)
+            if mutant_words.are_of_several_kinds(found) and self._effects(run, due):
+                continue
+            told = mutant_words.advice(found, mutants)
+            if told and told.key == EXCHANGED and self._effects(run, due):
+                continue
             # One level of a ladder may be all that tells another number.
-            if (apart.tells or mutant_words.is_one_limit(found)) and (
-                told := mutant_words.advice(found, mutants)
-            ):
+            if told and (apart.tells or mutant_words.is_one_limit(found)):
                 return told
         return None
 
@@ -187,9 +192,12 @@ class Drawn(OwnScenario):
     def _effect(self, evidence: Evidence) -> Advice | None:
         """Return what is wrong with a whole output; None if no single sentence is true of it."""
         for run, due in self._whole_runs(evidence):
-            if any(effect(one, rows(one, run), rows(one, due)) for one in self._outputs):
+            if self._effects(run, due):
                 return self._located(evidence)
         return None
+
+    def _effects(self, run: Part, due: Part) -> bool:
+        return any(effect(one, rows(one, run), rows(one, due)) for one in self._outputs)
 
     def _located(self, evidence: Evidence) -> Advice | None:
         """Return where the run leaves the solution's."""

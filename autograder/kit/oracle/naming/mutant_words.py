@@ -38,7 +38,7 @@ class Words:
 
 
 _NUMBERS = ("number", "unit", "number_of_another_place")
-_LIMIT = "comparison"
+_LIMIT, _SIGN = "comparison", "sign"
 TABLE: Sequence[Words] = msgspec.toml.decode(
     Path(__file__).with_suffix(".toml").read_bytes(), type=dict[str, list[Words]]
 )["words"]
@@ -59,14 +59,29 @@ WITHOUT = (
 
 def is_one_limit(found: Sequence[Meaning]) -> bool:
     """Return True if all that mutants differ in is the number at one place, or whether just this number counts."""
-    kinds = {(one.operator in _NUMBERS, one.spot) for one in found if one.operator in (*_NUMBERS, _LIMIT)}
-    return len(kinds) == 1 and all(one.operator in (*_NUMBERS, _LIMIT) for one in found)
+    kinds = {(_is_number(one), one.spot) for one in found}
+    return len(kinds) == 1 and all(_is_number(one) or one.operator == _LIMIT for one in found)
+
+
+def _is_number(one: Meaning) -> bool:
+    return one.operator in _NUMBERS and one.value is not None
+
+
+def are_of_several_kinds(found: Sequence[Meaning]) -> bool:
+    """Return True if mutants have several keys, so that a sentence about the whole output says more."""
+    return len({words.key for one in found if (words := _words(one))}) > 1
 
 
 def advice(found: Sequence[Meaning], mutants: Mutants) -> Advice | None:
     """Return the words for mutants that do the same as a subject; None if they have no single meaning."""
-    numbers = [one for one in found if one.operator in _NUMBERS]
-    others = [(one, words) for one in found if (words := _words(one))]
+    numbers = [one for one in found if _is_number(one)]
+    # A number with another sign is another number, if others do the same.
+    spots = {one.spot for one in numbers}
+    others = [
+        (one, words)
+        for one in found
+        if (words := _words(one)) and (one.operator, one.spot in spots) != (_SIGN, True)
+    ]
     places = {(one.quote or one.place) for one in found}
     if len(places) > 1 and len({_of_a_place(one) for one in found}) > 1:
         return None

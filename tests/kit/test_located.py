@@ -1,0 +1,63 @@
+"""A card that names nothing says which input it was, what came, what the task asks for, and where the task says it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from autograder.kit.evidence import Event, Part
+from autograder.kit.oracle.naming.deltas import Differences, Meaning, MutantClass, Mutants
+from autograder.kit.oracle.naming.located import likely_sentence, located
+from autograder.kit.oracle.outputs import Kind, Output
+
+SAID = Output("/said", ("data",), Kind.STEPS, 1e-3)
+MOVED = Output("/moved", ("linear.x", "angular.z"), Kind.STEPS, 1e-3)
+LAW = {"say far or near": "said", "drive with 0.5": "moved", "stand still where it is near": "moved"}
+
+
+def run(said: list[str], moved: list[float]) -> Part:
+    events = []
+    for step, (word, speed) in enumerate(zip(said, moved, strict=True), 1):
+        events.append(Event(0.0, "sent", "/scan", {"fields": {"ranges": [step / 10, 2.0, 2.0, 2.0, 2.0]}}))
+        for output, value in (("/said", [word]), ("/moved", [speed, 0.0])):
+            data: dict[str, Any] = {"step": step, "given": "/scan", "values": [value]}
+            events.append(Event(0.0, "noted", output, data))
+    return Part("drawing 0", {}, events)
+
+
+DUE = run(["far", "near", "far"], [0.5, 0.0, 0.5])
+
+
+def told(seen: Part, near: str = "") -> str:
+    advice = located([SAID, MOVED], seen, DUE, LAW, near)
+    return advice.text if advice else ""
+
+
+def test_the_input_and_only_what_differs_are_named() -> None:
+    text = told(run(["far", "near", "nothing"], [0.5, 0.0, 0.5]))
+    assert text == (
+        "After /scan with ranges = [0.3, 2, 2, …], your code says on /said: “nothing”; the task asks for “far”. "
+        "The task says: “say far or near”."
+    )
+    assert "angular" not in told(run(["far", "near", "far"], [0.5, 0.2, 0.5]))
+
+
+def test_of_several_sentences_the_likely_one_is_quoted() -> None:
+    seen = run(["far", "near", "far"], [0.5, 0.5, 0.5])
+    assert "The task says" not in told(seen)
+    assert "stand still where it is near" in told(seen, "stand still where it is near")
+    assert told(DUE) == ""
+
+
+def test_the_likely_sentence_is_that_of_the_mutants_that_differ_in_the_same_steps() -> None:
+    meanings = [Meaning("condition", "never", n, n, quote) for n, quote in enumerate(LAW)]
+    rows: list[dict[str, dict[int, Any]]] = [
+        {"/said": {1: [["near"]]}},
+        {"/moved": {1: [[0.1, 0.0]], 3: [[0.1, 0.0]]}},
+        {"/moved": {2: [[0.5, 0.0]]}},
+    ]
+    classes = [MutantClass([n], {"drawing 0": one}) for n, one in enumerate(rows)]
+    mutants = Mutants("", meanings, classes)
+    assert likely_sentence(mutants, Differences("drawing 0", {"/moved": {2: [[0.9, 0.0]]}}, True)) == (
+        "stand still where it is near"
+    )
+    assert likely_sentence(mutants, Differences("drawing 0", {"/moved": {9: [[0.9, 0.0]]}}, True)) == ""
