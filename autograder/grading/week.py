@@ -19,9 +19,12 @@ from autograder.grading.classes.gradebook_reading import gradebook_file
 from autograder.grading.collecting.collect import collect, report_lines
 from autograder.grading.collecting.collected_csv import NAME as TABLE
 from autograder.grading.collecting.collected_files import LineState
+from autograder.grading.collecting.downloaded_files import read_list
+from autograder.grading.collecting.list_times import NO_LIST
 from autograder.grading.collecting.systems import EACH
 from autograder.grading.grading_errors import GradingError, course_command
 from autograder.grading.new_classes.changing_students import change_students
+from autograder.grading.rebuilding.submitted_notebook import read_bytes
 from autograder.grading.reporting.export_files import ExportChoices, export
 from autograder.grading.reporting.grade_report import show
 from autograder.grading.reporting.gradebook_layouts import LAYOUTS
@@ -116,14 +119,18 @@ def _sorted_out(files: Sequence[Path]) -> _Files:
         if file.suffix.lower() != ".csv":
             downloads.append(file)
             continue
-        has_students, form = False, None
-        with contextlib.suppress(GradingError):
-            has_students = bool(read_students_csv(file).students)
+        form, has_students = None, False
         with contextlib.suppress(GradingError):
             form = read_lms_list(file).form
+        is_gradebook = form is not None and form.points == EACH
+        if form is None or is_gradebook:
+            with contextlib.suppress(GradingError):
+                has_students = bool(read_students_csv(file).students)
         into += [file] if form else []
         students += [file] if has_students else []
-        if not has_students and not (form and form.points == EACH):
+        if not has_students and not is_gradebook:
+            if read_list(file.name, read_bytes(file)) is None:
+                raise GradingError(f"{file}: {NO_LIST}.")
             downloads.append(file)
     if len(into) > 1 or len(students) > 1:
         names = ", ".join(map(str, into if len(into) > 1 else students))

@@ -11,10 +11,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pytest
+from click.testing import CliRunner
 from downloads import write_zip
 
+from autograder.cli import cli
 from autograder.grading import week as weekly
 from autograder.grading.grading_errors import GradingError
+from autograder.grading.running import execution_backends
 from autograder.grading.week import rehearsed, show_week, week
 from tests.cases import cases
 
@@ -106,3 +109,30 @@ def test_a_changed_list_of_students_and_two_lists_are_questions(folder: TinyClas
     other = Path(shutil.copy(files[1], tmp_path / "other.csv"))
     with pytest.raises(GradingError, match="name one list for the points"):
         week(folder.path, [*files, other])
+
+
+ODD = cases(__file__, "odd")
+
+
+@pytest.mark.parametrize("name", ODD)
+def test_what_a_new_instructor_may_type(
+    folder: TinyClass, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str
+) -> None:
+    """The commands of a case are typed in the class folder, after a week with Canvas; the last one counts."""
+    monkeypatch.setattr(execution_backends, "require_sandbox", lambda _: None)
+    case, files = ODD[name], downloaded(folder, tmp_path, WEEKS["canvas"])
+    monkeypatch.chdir(folder.path)
+    week(folder.path, files)
+    for name_of_file, text in case.get("files", {}).items():
+        (tmp_path / name_of_file).write_text(text, encoding="utf-8")
+    (folder.path / "class.toml").write_text(case.get("class", ""))
+    words = [word.replace("DOWNLOADS", str(tmp_path)) for word in case["type"]]
+    said = CliRunner().invoke(cli, words)
+    assert (said.exception is None or isinstance(said.exception, SystemExit), said.exit_code) == (
+        True,
+        case["exit"],
+    ), said.output
+    for sentence in case["says"]:
+        assert sentence in said.output, said.output
+    table = (folder.path / "collected.csv").read_text("utf-8-sig")
+    assert not any(name_of_file in table for name_of_file in case.get("files", {}))

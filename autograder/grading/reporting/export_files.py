@@ -1,20 +1,11 @@
-"""Writes the files for an LMS or a spreadsheet into the folder ``export`` of the class: points, and feedback pages.
-
-Each LMS finds the student of a feedback page in a zip as follows. Moodle (*Upload multiple feedback files in a zip*):
-by the folder ``<name>_<number>_assignsubmission_file``. Canvas (*Upload submissions*): by the numbers of the student
-and of the file, which are in the file name that Canvas made. Brightspace, Sakai and ILIAS (from memory): by the name of
-the student's folder, which the LMS made.
-"""
+"""Writes the files for an LMS or a spreadsheet into the folder ``export`` of the class: points, and feedback pages."""
 
 from __future__ import annotations
 
 import contextlib
 import functools
 import io
-import unicodedata
-import zipfile
 from dataclasses import dataclass, field, replace
-from pathlib import PurePath, PurePosixPath
 from typing import TYPE_CHECKING
 
 import xlsxwriter
@@ -24,14 +15,14 @@ from autograder.grading.classes.class_file import read_class_file
 from autograder.grading.collecting.collected_csv import Table
 from autograder.grading.collecting.collected_files import CollectedRecords
 from autograder.grading.collecting.lms_lists import number_in
-from autograder.grading.collecting.submitted_file_names import read_lms_name
 from autograder.grading.collecting.systems import EACH
 from autograder.grading.grading_errors import GradingError, check_known, course_command, write_output
 from autograder.grading.reporting.class_table import ClassTable, read_table
 from autograder.grading.reporting.export_memory import ExportMemory
+from autograder.grading.reporting.feedback_zips import pages_for
 from autograder.grading.reporting.gradebook_layouts import LAYOUTS, GradebookLayout
 from autograder.grading.reporting.list_columns import Called, gradebook_columns, title_of
-from autograder.grading.reporting.lms_gradebooks import cell_text, gradebook, line_from_lms
+from autograder.grading.reporting.lms_gradebooks import cell_text, gradebook
 from autograder.grading.reporting.lms_list_filling import fill_list, read_lms_list
 from autograder.grading.table.roster import NAME as ROSTER
 from autograder.grading.table.rows import COLUMNS, DROPPED, LATE, csv_cells
@@ -192,7 +183,7 @@ class _Export:
         into = source.path
         before = (f"{into.stem}.before{into.suffix}", done.original, "the list as it was")
         notices = list(done.notices)
-        pages = _pages(self.directory, self.table, lms, list(done.columns), notices)
+        pages = pages_for(self.directory, self.table, lms, list(done.columns), notices)
         files = self._write([before, (into.name, done.filled, purpose), *pages])
         for name, points in done.written.items():
             self.memory.note(lms, name, done.columns[name].name if source.form.points == EACH else "", points)
@@ -205,7 +196,10 @@ class _Export:
             )
         filled = [
             _filled(
-                column, self.table.max_score(name), [one for one in done.changes if one.assignment == name]
+                name,
+                column,
+                self.table.max_score(name),
+                [one for one in done.changes if one.assignment == name],
             )
             for name, column in done.columns.items()
         ]
@@ -271,14 +265,13 @@ class _Export:
             self.memory.write()
 
 
-def _filled(column: Column, most: float, changes: Sequence[CellChange]) -> str:
+def _filled(name: str, column: Column, most: float, changes: Sequence[CellChange]) -> str:
     """Return a sentence about what is filled into a column."""
     kept = sum(one.is_kept for one in changes)
     new = sum(not one.before and not one.is_kept for one in changes)
     replaced = len(changes) - kept - new
-    assignment = f"{changes[0].assignment} → " if changes else ""
     return (
-        f"column       {assignment}{column.name}, out of {column.out_of or most:g}: {new} new, {replaced} replaced, "
+        f"column       {name} → {column.name}, out of {column.out_of or most:g}: {new} new, {replaced} replaced, "
         f"{kept} typed into the LMS and kept"
     )
 
@@ -331,23 +324,7 @@ def _files(
     else:
         notices.append(f"{to.upper()} cannot import points from a file, so only feedback pages are written")
     if to in LAYOUTS:
-        yield from _pages(directory, table, to, assignments, notices)
-
-
-def _pages(
-    directory: ClassDirectory, table: ClassTable, to: str, assignments: Sequence[str], notices: list[str]
-) -> Iterator[_Part]:
-    layout, records = LAYOUTS[to], CollectedRecords(directory.state)
-    for assignment in assignments if layout.pages else ():
-        data, unknown = _feedback_zip(directory, table, records, assignment, to)
-        if data:
-            purpose = f"{to.capitalize()}: the assignment {assignment}, {layout.pages}"
-            yield f"feedback-{to}-{assignment}.zip", data, purpose
-        if unknown:
-            notices.append(
-                f"the zip has no feedback on {assignment} for {', '.join(unknown)}: their work was not collected from "
-                f"{to.capitalize()}, so the names that {to.capitalize()} gives to these pages are unknown"
-            )
+        yield from pages_for(directory, table, to, assignments, notices)
 
 
 _Cells = list[str | float]
@@ -405,63 +382,3 @@ def _class_xlsx(table: ClassTable, assignments: Sequence[str]) -> bytes:
             sheet.freeze_panes(1, 1)
             sheet.autofit()
     return data.getvalue()
-
-
-_MADE = (2000, 1, 1, 0, 0, 0)
-
-
-def _feedback_zip(
-    directory: ClassDirectory, table: ClassTable, records: CollectedRecords, assignment: str, lms: str
-) -> tuple[bytes, list[str]]:
-    """Return the feedback pages of one assignment as a zip, and the students whose page could not be included.
-
-    Args:
-        directory: The class.
-        table: The table of the class.
-        records: The records of what was collected.
-        assignment: The assignment's name.
-        lms: A system that takes feedback pages.
-
-    Returns:
-        The zip, empty if it would contain no page; and the students who have a page but whose name in that LMS is
-        unknown.
-    """
-    data = io.BytesIO()
-    unknown = []
-    with zipfile.ZipFile(data, "w", zipfile.ZIP_DEFLATED) as archive:
-        for student in table.students:
-            pages = sorted((directory.path / "feedback" / student / assignment).glob("*.html"))
-            if not pages:
-                continue
-            there = line_from_lms(records, assignment, student, lms)
-            if there is None:
-                unknown.append(student)
-                continue
-            for page in pages:
-                if lms == "moodle":
-                    name = table.roster.students[student].name or student
-                    plain = "".join(" " if character in "_/\\" else character for character in name)
-                    folder = f"{unicodedata.normalize('NFC', plain)}_{there.number}_assignsubmission_file"
-                    called = f"{folder}/{page.name}"
-                else:
-                    called = _page_name(there.file, lms, page, is_one=len(pages) == 1)
-                # The zip contains no time of this machine, so the same class gives the same zip.
-                archive.writestr(zipfile.ZipInfo(called, _MADE), page.read_bytes(), zipfile.ZIP_DEFLATED)
-    return (data.getvalue() if archive.namelist() else b""), unknown
-
-
-def _page_name(file: str, lms: str, page: PurePath, *, is_one: bool) -> str:
-    """Return the name of a page in the zip, derived from the name that the LMS gave to the student's file or folder.
-
-    If the student handed in a zip that was unpacked, use the folder's name, because the student chose the names in the
-    zip.
-    """
-    parts = PurePosixPath(file).parts
-    place, found = next(
-        (place, found) for place in range(len(parts)) if (found := read_lms_name(parts, place, lms))
-    )
-    above, given = "".join(f"{one}/" for one in parts[:place]), parts[place]
-    if lms == "canvas":
-        return f"{PurePosixPath(given).stem}{'' if is_one else f'_{page.stem}'}.html"
-    head = f"{given}/" if place < len(parts) - 1 else given.removesuffix(found.file)
-    return f"{above}{head}{LAYOUTS[lms].within}{page.name}"
