@@ -57,9 +57,10 @@ TALKER = '''class TalkerNode(Node):
 
 @dataclass
 class Film:
-    """The shots of one page, and the milliseconds that each is shown."""
+    """The shots of one page, and the milliseconds that each is shown; and the words of its cards."""
 
     page: Page
+    words: list[str] = field(default_factory=list)
     shots: list[tuple[Image.Image, int]] = field(default_factory=list)
 
     def say(self, words: str) -> None:
@@ -113,6 +114,7 @@ def record(folder: Path) -> str:
         correct_the_talker(film, opened(page, address, "lab_1_2"))
         browser.close()
     film.save(folder / "lab.gif")
+    (folder / "lab.txt").write_text("\n".join(film.words), encoding="utf-8")
     return "lab.gif"
 
 
@@ -182,6 +184,7 @@ def correct_the_talker(film: Film, notebook: OpenNotebook) -> None:
     notebook.run(r"^class TalkerNode")
     checked = notebook.run(r'^check\("lab_1_2\.talker"')
     expect(checked.locator(".agc-failed")).to_contain_text("chater")
+    film.words.append(checked.locator(".agc-failed").inner_text())
     at_the_top(checked)
     film.say("3. The judge heard it on the wire, and says what to do.")
     film.shoot(4000)
@@ -197,6 +200,7 @@ def correct_the_talker(film: Film, notebook: OpenNotebook) -> None:
     notebook.run(r"^class TalkerNode")
     passed = task.locator(".agc-passed")
     expect(passed).to_contain_text("10 of 10 points")
+    film.words.append(passed.inner_text())
     passed.evaluate("one => one.scrollIntoView({block: 'end'})")
     film.page.wait_for_timeout(400)
     film.say("… and it is checked again as soon as the cell has run.")

@@ -7,6 +7,7 @@ import gzip
 import html
 import re
 import subprocess
+import tomllib
 from functools import cache
 from pathlib import Path
 
@@ -70,9 +71,11 @@ def test_every_lab_has_a_page_and_every_page_is_small_and_loads_nothing(book: tu
 def test_title_and_footer_are_the_books(book: tuple[str, Path]) -> None:
     page = (book[1] / "chapters/01_ros2_fundamentals/lab_1_2.html").read_text(encoding="utf-8")
     (title,) = re.findall(r"<title>\s*(.*?)\s*</title>", page, re.DOTALL)
-    assert html.unescape(title).endswith("— ROS 2 on the Wire")
-    assert "By The maintainers of this course" in " ".join(page.split())
-    assert "License: MIT AND CC-BY-4.0" in page
+    name = (ROOT / "README.md").read_text(encoding="utf-8").partition("\n")[0].removeprefix("# ")
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    assert html.unescape(title).endswith(f"— {name}")
+    assert f"By {project['authors'][0]['name']}" in " ".join(page.split())
+    assert f"License: {project['license']}" in page
 
 
 def test_guides_stand_in_the_order_of_readers(tmp_path: Path) -> None:

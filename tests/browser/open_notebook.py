@@ -65,9 +65,11 @@ def opened_page(browser: Browser) -> Iterator[Page]:
 
 
 def look(page: Page, name: str) -> None:
-    """Keep a picture for whoever develops the cards, where ``SCREENSHOTS`` names a folder."""
+    """Keep a picture, and the words of the page, where ``SCREENSHOTS`` names a folder."""
     if folder := os.environ.get("SCREENSHOTS"):
         page.screenshot(path=Path(folder) / f"{name}.png")
+        words = [frame.locator("body").inner_text() for frame in page.frames]
+        (Path(folder) / f"{name}.txt").write_text("\n".join(words), encoding="utf-8")
 
 
 def until(page: Page, holds: Callable[[], bool]) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import re
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -12,6 +11,7 @@ import pytest
 from autograder import exercises
 from autograder.student import check_journal
 from autograder.student.check_journal import JournalEntry
+from tests.browser.open_notebook import look
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -55,12 +55,6 @@ def all_but(here: Sequence[str], chapters: Path) -> None:
             assert check_journal.note(
                 JournalEntry("check", exercise, 1, points, points), chapters / check_journal.NAME
             )
-
-
-def look(page: Page, name: str) -> None:
-    """Keep a picture for the documentation, where ``SCREENSHOTS`` names a folder."""
-    if folder := os.environ.get("SCREENSHOTS"):
-        page.screenshot(path=Path(folder) / f"{name}.png")
 
 
 def test_page_notebook_check_tick_reset_end(page: Page, lab: str, chapters: Path) -> None:

@@ -62,19 +62,12 @@ class SampleNotebook:
 
 
 class _SampleData(msgspec.Struct):
-    """The content of a data file.
-
-    Attributes:
-        notebook: The notebooks.
-        students: The students who hand in each assignment, with their names.
-        assignments: The assignments.
-        page: The student and the assignment of the feedback page that ``demo`` names: one about a mistake.
-    """
+    """The content of a data file: its notebooks, the students who hand in each assignment, and whose page to open."""
 
     notebook: tuple[SampleNotebook, ...]
     students: dict[str, str] = {}
     assignments: tuple[str, ...] = ()
-    page: tuple[str, str] = ("", "")
+    shown: tuple[str, str] = ("", "")
 
 
 @dataclass(frozen=True)
@@ -86,7 +79,7 @@ class _Answer:
 
 
 def sample_data(file: Path) -> _SampleData:
-    """Read a data file."""
+    """Return the content of a data file, such as ``DATA``."""
     return msgspec.toml.decode(file.read_bytes(), type=_SampleData)
 
 
@@ -132,12 +125,13 @@ def demo(path: Path, *, console: Console | None = None) -> GradeReport:
     report = grade(path)
     if report.exit_code or report.note:
         show(report, console)
-    student, assignment = sample_data(DATA).page
+    data = sample_data(DATA)
+    student, assignment = data.shown
     page = report.feedback / student / assignment / f"{assignment}.html"
     for line in (
         f"{report.executed} notebooks graded in {report.seconds:.0f} s, {report.reused} unchanged.",
         f"Open this page about the class:   {write_report(path)}",
-        f"Open Ben's page, as he gets it:   {page.absolute()}",
+        f"Open {data.students.get(student, '').partition(' ')[0]}'s page, as he gets it:   {page.absolute()}",
         f"Type this next, for your class:   {COMMAND} new-class ~/my-class",
     ):
         console.print(line, highlight=False, soft_wrap=True)

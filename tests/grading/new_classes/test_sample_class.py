@@ -71,7 +71,7 @@ def test_the_class_of_the_demo_is_like_a_class() -> None:
     assert len(data.assignments) == 3
     right = sum(not one.expected for one in notebooks)
     assert 0.6 < right / len(notebooks) < 0.9
-    assert data.page in {(one.student, one.assignment) for one in notebooks if one.expected}
+    assert data.shown in {(one.student, one.assignment) for one in notebooks if one.expected}
 
 
 @pytest.mark.ros
