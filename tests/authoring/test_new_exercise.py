@@ -276,7 +276,9 @@ def test_a_point_for_what_is_given_is_found(root: Path) -> None:
     lab = root / "solutions/01_first/lab_9_1"
     (lab / "battery_of_mine.answers/wrong/answers.toml").unlink()
     end, method = "        ### END SOLUTION\n", "        self.on = request"
-    before, begin, rest = (lab / "lab.md").read_text(encoding="utf-8").partition("        ### BEGIN SOLUTION\n")
+    before, begin, rest = (
+        (lab / "lab.md").read_text(encoding="utf-8").partition("        ### BEGIN SOLUTION\n")
+    )
     todo, _, given = rest.replace(end, "").partition("\n")
     text = before + given.replace(method, f"{begin}{todo}\n{method}", 1)
     text = text.replace("        response.success", f"{end}        response.success")
