@@ -207,7 +207,9 @@ def _check(
                 before = Evidence([*known.evidence.parts, *earlier], reference)
                 evidence = replace(evidence, before=before)
                 verdict = judge(exercise, evidence, seed)
-        if not verdict.passed and (lines := subject.own_lines()):
+        # To read the lines of a program takes a process.
+        reads = not verdict.passed and (evidence.reference.mutants or _causes(exercise, evidence, verdict))
+        if reads and (lines := subject.own_lines()):
             evidence = _with_own_lines(exercise, evidence, lines, seed)
             verdict = judge(exercise, evidence, seed)
         if not verdict.passed:

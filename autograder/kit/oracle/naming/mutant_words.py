@@ -130,8 +130,9 @@ def _interval(found: Sequence[Meaning], mutants: Mutants) -> str:
     values = sorted(one.value for one in found if one.value is not None)
     if not values:
         return ""
-    same_place = {one.value: one for one in mutants.meanings if one.spot == found[0].spot and _is_number(one)}
-    others = {*same_place, *([found[0].right] if found[0].right is not None else [])} - set(values)
+    here = [one for one in mutants.meanings if one.spot == found[0].spot and _is_number(one)]
+    tried = {value for one in here for value in (one.value, one.right) if value is not None}
+    others = tried - set(values)
     below = max((value for value in others if value < values[0]), default=None)
     above = min((value for value in others if value > values[-1]), default=None)
     if below is None and above is None:
