@@ -85,7 +85,7 @@ EXERCISE = Mission(
             "too_many_calls",
             lambda now: (count := len(now.part.of("request"))) > len(changes(now)) and count,
             "Your node called the service lamp {} times, and the lamp had to change less often.",
-            "Store in self.is_on what the lamp is now, and call only if it has to change.",
+            "Compare what the lamp has to be, on both sides of the door, with self.is_on; call only if they differ.",
             {"certain": True},
         ),
     ],
