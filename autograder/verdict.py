@@ -69,7 +69,7 @@ class Diagnosis:
 
 ASKS_FOR_INPUT = Diagnosis(
     "asks_for_input",
-    "The code calls `input()`, and nobody can answer `input()` while it is checked.",
+    "The code calls `input()`, and no person can answer `input()` while it is checked.",
     "Remove the line with `input()`, and write the value into the code instead. A program that needs a value takes "
     "it from `sys.argv`.",
 )

@@ -1,6 +1,6 @@
 """Appeals: saves the evidence of one check in a file, shows it, and judges it again.
 
-Promises: whoever has the file and the course gets the same verdict, or is told what differs; no student's code runs,
+Promises: a person with the file and the course gets the same verdict, or is told what differs; no student's code runs,
     and no ROS node starts.
 Names: ``appeal_file.Appeal``, ``appeal_file.dump``, ``replaying.replay``, ``replaying.Replay``
 Imports: ``exercises``, ``judge``, ``verdict``.

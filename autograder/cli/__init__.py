@@ -5,7 +5,7 @@ Promises: exit code 0 for success; 1 for a negative result, such as a failed che
 Names: ``cli``, ``GROUPS``
 Imports: ``appeals``, ``authoring``, ``boxes``, ``cards``, ``course``, ``dds_discovery``, ``exercises``, ``grading``,
     ``judge``, ``kit``, ``masters``, ``safe_files``, ``standard_output``, ``student``, ``verdict``, ``workspaces``.
-Takes: the words that somebody typed.
+Takes: the words that a person typed.
 Gives: text or JSON on standard output, messages on standard error, and an exit code.
 """
 

@@ -126,7 +126,7 @@ def _pairs(_context: click.Context, _option: click.Parameter, values: tuple[str,
 )
 @click.option("--yes", is_flag=True, help="Make the changes. Without this option, they are only shown.")
 def students(folder: Path, new_list: Path | None, said: dict[str, str], by_name: bool, yes: bool) -> None:
-    """Show what a new list of students changes in the class FOLDER: who is renamed, dropped or added.
+    """Show what a new list of students changes in the class FOLDER: the students renamed, dropped or added.
 
     LIST replaces students.csv in FOLDER; without it, students.csv itself is the new list. A student with a new id keeps
     work, points and records.

@@ -45,7 +45,7 @@ class Server(Protocol):
 
 @dataclass(frozen=True)
 class Work:
-    """What the judge does with a goal that the subject sends to an action of the judge.
+    """The behavior of the judge with a goal that the subject sends to an action of the judge.
 
     Attributes:
         status: How the goal ends: ``"succeeded"``, ``"aborted"``, or ``"rejected"``, which it is at once. A goal that

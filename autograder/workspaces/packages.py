@@ -334,7 +334,7 @@ def _what_is_wrong(entry: str) -> str:
     if "(" in entry:
         return "Leave out the parentheses: the function is named here and not called. "
     if "/" in entry:
-        return "Write dots in the module in place of slashes, as in an import. "
+        return "Write dots in the module instead of slashes, as in an import. "
     if "=" not in entry:
         return "The equals sign between the executable and the module is missing. "
     if ":" not in entry:

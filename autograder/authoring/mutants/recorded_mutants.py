@@ -47,7 +47,7 @@ def write(found: Survey) -> None:
 def recorded(found: Survey) -> Mutants:
     """Return what mutants do in the practice drawings: those of a survey, and those of the lines around the student's.
 
-    The drawings need not tell a mistake in given lines, but whoever types them anew may make one.
+    The drawings need not tell a mistake in given lines, but a student who types them again may make one.
     """
     of, exercise = found.solution, exercises.get(found.solution.exercise)
     stored = evidence_files.load_reference(of.exercise)

@@ -16,7 +16,7 @@ NAME = "class.toml"
 
 
 class LateRule(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """What being late costs; ``docs/instructor/points.md`` describes the attributes."""
+    """The cost of being late; ``docs/instructor/points.md`` describes the attributes."""
 
     percent_per_day: Annotated[float, msgspec.Meta(ge=0, le=100)] = 10.0
     grace_minutes: Annotated[float, msgspec.Meta(ge=0)] = 0.0

@@ -56,7 +56,7 @@ def bands(table: ClassTable) -> list[Band]:
     """Return the distribution of total points in ten bands, without students who have no points."""
     found: dict[int, list[str]] = defaultdict(list)
     for student, points in totals(table).items():
-        # What a student has not handed in is no zero here, as it is none in the total.
+        # Work that a student has not handed in does not count as zero here, as in the total.
         most = sum(row.max_score for row in table.of(student) if row.state != NOT_SUBMITTED)
         share = points / most if most else 0.0
         found[max(0, min(_BANDS - 1, int(share * _BANDS + 1e-9)))].append(student)

@@ -1,4 +1,4 @@
-"""Recognizes a method that nobody calls: its name is almost that of one that a class, a timer or the task calls."""
+"""Recognizes a method without a caller: its name is almost that of one that a class, a timer or the task calls."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _ALIKE = 0.75
 
 
 def uncalled(lines: Sequence[OwnLine], methods: Sequence[str]) -> list[Event]:
-    """Return an event for each method of the student's code that nobody calls, if it is almost called as a right one.
+    """Return an event for each method of the student's code without a caller, whose name is almost a right one.
 
     Args:
         lines: The lines of the student's code by the names that they use.

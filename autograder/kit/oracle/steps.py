@@ -50,7 +50,7 @@ class Text(To):
 
     Args:
         name: The name of the topic.
-        value: What the text says, as data; a text stays as it is, for an input that is no JSON.
+        value: What the text says, as data; a text stays as it is, for an input that is not JSON.
         how: The other attributes of :class:`To`.
     """
 

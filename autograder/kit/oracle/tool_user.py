@@ -65,7 +65,7 @@ class ToolUser(SameAsSolution):
     """An exercise about a node that uses tools, and does with them what the reference solution does.
 
     It is a :class:`SameAsSolution`, and has its words. What the node sends is an output like others: all of it is
-    compared in each step, so a node that calls a tool where the solution calls none fails.
+    compared in each step, so a node that calls a tool when the solution calls none fails.
 
     Args:
         exercise_id: The lab's folder and the file's name, such as ``"lab_2_5.agent"``.

@@ -81,7 +81,7 @@ class Mutants:
 
 @dataclass(frozen=True)
 class Differences:
-    """Where a run is not as the solution's: the values of each output by step, those of the solution beside.
+    """The difference of a run from the solution's: the values of each output by step, those of the solution beside.
 
     Attributes:
         drawing: The name of the drawing.
@@ -95,7 +95,7 @@ class Differences:
 
     @property
     def tells(self) -> bool:
-        """True if so much differs that it is no chance. The description of a parameter tells alone."""
+        """True if too much differs to be chance. The description of a parameter tells alone."""
         steps = [step for rows in self.seen.values() for step in rows]
         return len(steps) >= TELLING or 0 in steps
 
@@ -121,7 +121,7 @@ def rows(output: Output, part: Part) -> dict[int, Any]:
 
 
 def differences(outputs: Sequence[Output], seen: Part, due: Part) -> Differences:
-    """Return where a run of the subject is not as the solution's in the same drawing."""
+    """Return the difference of a run of the subject from the solution's in the same drawing."""
     found: dict[str, Rows] = {}
     is_whole = True
     for output in outputs:

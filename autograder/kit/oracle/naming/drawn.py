@@ -143,7 +143,7 @@ class Drawn(OwnScenario):
 
     def _on_another_clock(self, evidence: Evidence) -> Advice | None:
         told = on_another_clock(self._outputs, evidence.main, self.expected(evidence))
-        # What a mutant does by the robot's clock, too, is no matter of the clock.
+        # A mutant that does the same by the robot's clock is not a matter of the clock.
         by_another = self._same_as_mutants(evidence) if told else None
         return None if by_another and by_another.key != KEY else told
 
@@ -200,7 +200,7 @@ class Drawn(OwnScenario):
         return any(effect(one, rows(one, run), rows(one, due)) for one in self._outputs)
 
     def _located(self, evidence: Evidence) -> Advice | None:
-        """Return where the run leaves the solution's."""
+        """Return the step at which the run leaves the solution's."""
         mutants, due = evidence.reference.mutants, self.expected(evidence)
         runs = [run for run in self._runs(evidence) if run.name == due.name and run.of("noted")]
         mine = next((run for run in runs if not self._agree(run, due)), None)

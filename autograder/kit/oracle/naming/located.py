@@ -1,4 +1,4 @@
-"""Says where a run leaves the solution's, if nothing names the mistake: the task's sentence, input, both values."""
+"""Names the step at which a run leaves the solution's, for an unnamed mistake: sentence of the task, input, values."""
 
 from __future__ import annotations
 

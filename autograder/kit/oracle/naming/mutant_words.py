@@ -50,7 +50,7 @@ NEXT = {
     "kept_for_ever": "Look at each attribute: when is it set, and when is it set back?",
     "forgets": "Store it in self, in `__init__` for the first time, and change it only when it changes.",
 }
-"""What the student should do now, by the key of the diagnosis."""
+"""The next step for the student, by the key of the diagnosis."""
 USUAL = "Read that sentence of the task again, and compare your code with it step by step."
 WITHOUT = (
     "Read the task again, and compare your code with it step by step, with the values that the card shows."
