@@ -47,8 +47,8 @@ GRADING_FROM_BELOW = (
     *("grading_errors", "grading_task", "course_version"),
     *("rebuilding", "classes", "returning", "running", "cluster"),
     *("table", "export", "class_records", "store_tables", "class_store", "class_checks"),
-    *("collecting", "tasks", "similarity", "result_writer", "reporting", "appeal_writing"),
-    *("batch_work", "batch_steps", "batch", "nbgrader_commands", "new_classes"),
+    *("collecting", "tasks", "similarity", "result_writer", "reporting"),
+    *("batch_work", "batch_steps", "batch", "nbgrader_commands", "new_classes", "week"),
 )
 MOST_FILES = 15
 """In one folder of the package: a stranger must be able to read their names."""

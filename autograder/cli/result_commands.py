@@ -227,7 +227,7 @@ def appeal(folder: Path, student: str, exercise: str, output: Path | None) -> No
     The file is a zip with the student's code and page, the expected output, the judge's evidence and verdict, and the
     course's version. The command `replay` judges the check again from this file.
     """
-    from autograder.grading.appeal_writing import write_appeal
+    from autograder.grading.reporting.appeal_writing import write_appeal
 
     with grading_errors():
         print_line(str(write_appeal(folder, student, exercise, output)))

@@ -14,8 +14,8 @@ from tiny_class import QUIET
 
 from autograder.appeals import appeal_file
 from autograder.appeals.replaying import replay
-from autograder.grading.appeal_writing import write_appeal
 from autograder.grading.batch import grade
+from autograder.grading.reporting.appeal_writing import write_appeal
 
 pytestmark = [pytest.mark.ros, pytest.mark.slow]
 

@@ -14,9 +14,9 @@ from tiny_class import QUIET, write_master
 from autograder import course, exercises
 from autograder.appeals import appeal_file
 from autograder.appeals.replaying import replay
-from autograder.grading.appeal_writing import write_appeal
 from autograder.grading.batch import grade
 from autograder.grading.new_classes.new_class import new_class
+from autograder.grading.reporting.appeal_writing import write_appeal
 from autograder.judge import evidence_files
 from autograder.kit.oracle.same_as_solution import To
 from autograder.masters.reference_solutions import reference_source

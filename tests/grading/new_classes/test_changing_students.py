@@ -225,7 +225,7 @@ def test_an_id_in_other_letters_is_the_same_student(term: TinyClass) -> None:
     assert ids(term) == everywhere("ada", "BEN", "eve")
 
 
-def test_the_list_of_another_system_is_one_question(tiny: TinyClass) -> None:
+def test_the_list_of_another_system_is_one_question(tiny: TinyClass, fake_engine: FakeEngine) -> None:
     people = [
         ("Ada", "Lovelace"),
         ("Ben", "Bär"),

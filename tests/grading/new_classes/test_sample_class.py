@@ -15,10 +15,10 @@ from tiny_class import QUIET
 
 from autograder import exercises
 from autograder.appeals import appeal_file, replaying
-from autograder.grading.appeal_writing import write_appeal
 from autograder.grading.grading_errors import GradingError
 from autograder.grading.new_classes import sample_class
 from autograder.grading.new_classes.sample_class import SampleNotebook, demo, sample_notebooks
+from autograder.grading.reporting.appeal_writing import write_appeal
 from autograder.judge.machine_fitness import TOO_BUSY
 from tests.tiers import asked_for
 

@@ -17,12 +17,12 @@ from tiny_class import QUIET, FakeEngine, TinyClass
 from autograder import exercises
 from autograder.appeals import appeal_file
 from autograder.cli import cli
-from autograder.grading.appeal_writing import write_appeal
 from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.class_directory import ClassDirectory, switch_sandbox_off
 from autograder.grading.course_version import judged_by
 from autograder.grading.grading_errors import GradingError
 from autograder.grading.grading_task import Task
+from autograder.grading.reporting.appeal_writing import write_appeal
 from autograder.grading.running import execution_backends, task_execution
 from autograder.judge import evidence_files, one_check
 from autograder.kit.evidence import Event, Evidence, Part
