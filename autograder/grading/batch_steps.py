@@ -19,7 +19,6 @@ from autograder.grading.batch_work import (
 )
 from autograder.grading.class_checks import changed_master_warnings, limits_of
 from autograder.grading.classes import gradebook_reading, gradebook_writing
-from autograder.grading.classes.class_dates import read_class_dates
 from autograder.grading.classes.gradebook_reading import SubmissionEntry
 from autograder.grading.collecting.submitted_folder import misplaced_files, rename_decomposed_folders
 from autograder.grading.course_version import course_version
@@ -31,6 +30,7 @@ from autograder.grading.table.rows import rows_of, write_csv
 from autograder.grading.table.student_list import enter_roster
 from autograder.grading.table.weighted_rows import read_what_counts, true_rows
 from autograder.grading.tasks.class_drawings import DRAWINGS, ClassDrawings, all_drawings, drawings_of
+from autograder.grading.tasks.date_reading import read_class_dates
 from autograder.grading.tasks.fallen_points import FallenPoints, fallen, fits
 from autograder.grading.tasks.result_keys import ResultKeys
 from autograder.grading.tasks.source_points import check_release, read_released
