@@ -45,7 +45,7 @@ MEANINGS = [
 def mutants(*classes: tuple[list[int], dict[str, dict[int, Any]]]) -> Mutants:
     """Classes of mutants, each with what it says differently in the only drawing."""
     kept = [MutantClass(meanings, {"drawing 0": parts}) for meanings, parts in classes]
-    return Mutants("", MEANINGS, kept, [DUE])
+    return Mutants("", MEANINGS, kept, solution=[DUE])
 
 
 def named(seen: Part, of: Mutants) -> Advice | None:
