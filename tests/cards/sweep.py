@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import re2
 
+from autograder import exercises
 from autograder.cards import card_wording
 from autograder.cards.readable_text import TRACEBACK, students_line
 from autograder.verdict import State
@@ -52,7 +53,11 @@ def _of_two_things(verdict: Verdict, text: str, missed: list[str]) -> str:
     raised = _RAISED.findall(text)
     if raised and TRACEBACK in verdict.detail and raised[0] not in verdict.detail.strip().splitlines()[-1]:
         return f"its diagnosis is of a {raised[0]}, above the traceback of another: {verdict.detail[-120:]}"
-    told, seen = _QUOTED.findall(text), _QUOTED.findall(" ".join(missed))
+    law = " ".join(" ".join(sentence.split()) for sentence in exercises.get(verdict.exercise).text)
+    told = [
+        quote for quote in _QUOTED.findall(text) if quote not in law
+    ]  # the task's own words, beside the student's
+    seen = _QUOTED.findall(" ".join(missed))
     # A list of what is said quotes only the beginning of each.
     if (
         told

@@ -134,9 +134,9 @@ def _scaled(what: str, pairs: Pairs, apart: Pairs, tolerance: float) -> str:
     numbers = [(one, other) for one, other in pairs if _is_number(one) and _is_number(other)]
     if len(numbers) < len(pairs) or len({other for _, other in apart}) < 2:
         return ""
-    if all(same(one, abs(other), tolerance) for one, other in apart):
+    if all(same(one, abs(other), tolerance) for one, other in numbers):
         return f"{what} has lost its sign."
-    if all(same(one, -other, tolerance) for one, other in apart):
+    if all(same(one, -other, tolerance) for one, other in numbers):
         return f"{what} has the wrong sign."
     nonzero = [(one, other) for one, other in numbers if other]
     factor = nonzero[0][0] / nonzero[0][1] if nonzero else 0.0
