@@ -136,7 +136,8 @@ def execute_all(
             jobs,
             on_start=lambda task: progress.started(task.label),
             boxed=False,
-            overlays=_sourced(),
+            # What is sourced in this terminal: the course's own notebooks may use all that their author does.
+            overlays=[Path(one) for one in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if one],
         )
         with contextlib.closing(running):
             for done in running:
@@ -147,11 +148,6 @@ def execute_all(
                 note = f" ({done.execution.seconds:.1f} s)"
                 progress.finished(done.task.label, failed=bool(found), note=note)
     return [results[id(item.task)] for item in planned]
-
-
-def _sourced() -> list[Path]:
-    """Return the workspaces of this terminal, which the course's own notebooks may use as their author does."""
-    return [Path(one) for one in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if one]
 
 
 def _weight(cell: Cell) -> float:
