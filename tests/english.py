@@ -76,7 +76,7 @@ def prose_of(path: Path) -> Iterator[tuple[int, str]]:
             or tokenize.tok_name[token.type] == "FSTRING_MIDDLE"
         ):
             for number, line in enumerate(token.string.splitlines(), token.start[0]):
-                yield number, line.strip().lstrip("#bfruBFRU").lstrip("'\"").strip()
+                yield number, re2.sub(r"^(#+|[bfruBFRU]*['\"]+)", "", line.strip()).strip()
 
 
 def _files() -> Iterator[Path]:
