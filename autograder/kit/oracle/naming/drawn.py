@@ -32,7 +32,8 @@ EXCHANGED = "exchanged"
 """The key of mutants with another field, of which the sentence about the whole output says more."""
 MUTANT, EFFECT = "mutant", "effect"
 """The entries of the ladder for what a mutant of the solution does, and for what is wrong with an output as a whole."""
-
+BY_A_THREAD = ("one_late",)
+"""The keys of what a right node does, too, if a thread of its own publishes while the judge steps the clock."""
 
 RIGHT_THERE = (
     "With the inputs of your notebook your code is right, but not with the other ones of your class."
@@ -91,7 +92,8 @@ class Drawn(OwnScenario):
         )
         variant, likely_variant = self._as_recorded("variant", self._same_as_a_variant)
         mutants = self._as_recorded(MUTANT, self._same_as_mutants)
-        whole, last = self._as_recorded(EFFECT, self._effect), Mistake(UNKNOWN, self._located)
+        # A right node with a thread of its own may look wrong as a whole in simulated time: nothing proves an effect.
+        whole, last = Mistake(EFFECT, self._effect), Mistake(UNKNOWN, self._located)
         if not self.roles:  # plain Python, which has no node
             return (
                 *CRASHES,
@@ -103,10 +105,10 @@ class Drawn(OwnScenario):
                 likely_variant,
                 *mutants,
                 OWN_LATE,
-                *whole,
+                whole,
                 last,
             )
-        usual = ladder(self.roles, late=(*mutants, OWN_LATE, *whole))
+        usual = ladder(self.roles, late=(*mutants, OWN_LATE, whole))
         at = usual.index(unfinished.NEVER_CONSTRUCTED)
         return (*usual[:at], METHOD_UNCALLED, variant, clock, likely_variant, *usual[at:], last)
 
@@ -116,7 +118,8 @@ class Drawn(OwnScenario):
         """Return a mistake twice: certain if simulated time proves it, and as what is likely."""
 
         def proven(evidence: Evidence) -> Advice | None:
-            return recognize(evidence) if self._is_proven(evidence) else None
+            told = recognize(evidence) if self._is_proven(evidence) else None
+            return None if told and told.key in BY_A_THREAD else told
 
         return Mistake(key, proven, certain=True), Mistake(key, recognize)
 
