@@ -12,8 +12,6 @@ DOOR, NEAR = 4.0, 1.0
 """Where the door is, as x in meters, and how near the robot has to be, in meters."""
 STAYS = 0.6
 """Seconds for which the robot stays at a place."""
-ANSWERS_AFTER = (0.12, 0.42)
-"""Between how many seconds the lamp's answer is late: less than the robot stays."""
 RIGHT = "once for each change, before the robot goes on"
 """What is said of all right calls."""
 
@@ -72,7 +70,6 @@ EXERCISE = Mission(
     "Switch the robot's lamp on when it comes near the door, and off when it leaves.",
     roles=("client", "subscription"),
     draws=places,
-    late={"/lamp": lambda random: [random.uniform(*ANSWERS_AFTER) for _ in levels(NEAR)]},
     same=[("Calls once for each change, in time", calls, "lamp", 10)],
     knows=[
         (
