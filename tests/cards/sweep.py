@@ -21,7 +21,8 @@ _NO_NODE = re2.compile(r"no node (?:subscribed|published)|no (?:subscription|pub
 _MEETS = re2.compile(r"^(?:Subscribes|Publishes) ")
 _SINGULAR = re2.compile(r"\b1 (?:\w+ )?(?:messages|calls|goals|times|numbers|runs)\b")
 _RAISED = re2.compile(r"\b([A-Z]\w*(?:Error|Exception)): ")
-_QUOTED = re2.compile(r"“([^”]*)”")
+_QUOTED = re2.compile(r"“([^”]*)”(?:[^:]|$)")
+"""What is quoted, but no title of a criterion, which a colon follows."""
 _POINTS_AT = re2.compile(r"\b[Tt]hat line\b|line that is in your code")
 
 

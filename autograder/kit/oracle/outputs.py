@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from enum import Enum
+from itertools import groupby
 from typing import TYPE_CHECKING, Any
 
 from autograder.kit.in_words import counted
@@ -208,7 +209,8 @@ class Output:
             ", ".join(map(self._field_in_words, self.paths, values, other))
             for values, other in zip(listed, [*others, *listed[len(others) :]], strict=False)
         ]
-        return "; ".join(told) or "nothing"
+        same_again = [(text, len([*group])) for text, group in groupby(told)]
+        return "; ".join(text if n == 1 else f"{text}, {n} times" for text, n in same_again) or "nothing"
 
     def _field_in_words(self, path: str, value: Any, other: Any) -> str:
         if path.endswith("?"):

@@ -42,7 +42,7 @@ class Sent(Output):
     """
 
     kinds: tuple[str, ...] = TOLD
-    reads: Mapping[str, str | Read] = field(default_factory=dict)
+    reads: Mapping[str, str | Read] = field(default_factory=dict, hash=False)
 
     @property
     def title(self) -> str:
