@@ -14,6 +14,7 @@ from typing import Any
 from autograder import exercises, known_errors
 from autograder.authoring.answer_bank import answers, answers_folder
 from autograder.authoring.answer_tables import ANSWER_KINDS
+from autograder.kit.oracle.naming import mutant_words
 
 ROOT = Path(__file__).parents[1]
 NOTEBOOKS = Path(__file__).parent / "submissions" / "notebooks"
@@ -106,7 +107,7 @@ def test_every_diagnosis_is_explained_to_students() -> None:
     used |= {key for answer in IN_NOTEBOOKS for key in answer.keys}
     used |= {mistake.key for one in exercises.all_ids() for mistake in exercises.get(one).mistakes}
     # A recorded wrong answer says on the card itself what it is.
-    recorded = {"variant", *(key for answer in PROGRAMS if answer.advice for key in answer.diagnoses)}
+    recorded = {"variant", "mutant", *(key for answer in PROGRAMS if answer.advice for key in answer.diagnoses)}
     assert used - recorded - explained() == set()
 
 
@@ -114,7 +115,7 @@ def test_every_explained_diagnosis_is_one_that_a_card_can_have() -> None:
     files = [*(ROOT / "autograder").rglob("*.py"), *(ROOT / "solutions").glob("*/*/*.py")]
     key = re.compile(r'(?:"|^def )(\w+)(?:"|\()', re.MULTILINE)
     written = {found for file in files for found in key.findall(file.read_text(encoding="utf-8"))}
-    written |= {row.key for row in known_errors.rows()}
+    written |= {row.key for row in known_errors.rows()} | {row.key for row in mutant_words.TABLE}
     assert explained() - written == set()
 
 

@@ -16,7 +16,7 @@ def card(text: str, *, seen: str = "2 messages", held: str = "Builds", detail: s
         CriterionResult("b", "Says it", 1, False, "x", seen),
     )
     return Verdict(
-        "x.y", "X", State.FAILED, 1, 2, criteria, Diagnosis("key", text, "Do this."), detail=detail
+        "lab_1_2.talker", "X", State.FAILED, 1, 2, criteria, Diagnosis("key", text, "Do this."), detail=detail
     )
 
 

@@ -9,6 +9,7 @@ import pytest
 
 from autograder.kit.bench import Pace
 from autograder.kit.evidence import Event, Evidence, Part, Reference
+from autograder.kit.model import UNKNOWN
 from autograder.kit.oracle.returns import Returns
 from tests.kit.test_rules import HOSTILE
 
@@ -73,7 +74,7 @@ def judged(function: Callable[[Any], Any], *, prints: bool = False, **more: Any)
     exercise.scenario(bench)  # type: ignore[arg-type]
     evidence = Evidence(bench.parts, bench.reference)
     (criterion,) = exercise.criteria
-    keys = (one.key for one in exercise.mistakes if one.recognize(evidence))
+    keys = (one.key for one in exercise.mistakes if one.recognize(evidence) and one.key != UNKNOWN)
     return criterion.judge(evidence).passed, next(keys, "")
 
 

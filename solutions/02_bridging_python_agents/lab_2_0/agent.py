@@ -1,5 +1,6 @@
 """Lab 2.0, an agent without ROS: what a new one decides for one observation after the other."""
 
+from itertools import pairwise
 from random import Random
 
 from autograder.kit import Returns, dealt, drawn_until, levels, mixed
@@ -34,11 +35,19 @@ def observations(random: Random) -> list[list[float]]:
     return seen
 
 
+def tells(seen: list[list[float]]) -> bool:
+    """Return True if a new agent drives first, and a turn meets a second near wall, with more room on the other side."""
+    again = (
+        one[0] < NEAR > two[0] and (one[1] - one[2]) * (two[1] - two[2]) < 0 for one, two in pairwise(seen)
+    )
+    return NEAR < seen[0][0] < FREE and any(again)
+
+
 EXERCISE = Returns(
     "lab_2_0.agent",
     "Lab 2.0 · An agent that explores",
     "Return the command for each observation: drive ahead, and turn away in front of a wall.",
-    gives=lambda random: drawn_until(lambda: observations(random), lambda seen: NEAR < seen[0][0] < FREE),
+    gives=lambda random: drawn_until(lambda: observations(random), tells),
 ).exercise(
     text={
         "If it turns, and the wall ahead is farther than 1 meter, it stops turning.": "returned",

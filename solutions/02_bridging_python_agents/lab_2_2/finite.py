@@ -52,6 +52,7 @@ EXERCISE = SameAsSolution(
     roles=("service", "publisher", "subscription"),
 ).exercise(
     text={
+        "return before it if the command is": "cmd_vel",
         "publish nothing for it": "cmd_vel",
         "do not set the watchdog back": "cmd_vel",
     }

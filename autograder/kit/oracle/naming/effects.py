@@ -15,6 +15,8 @@ if TYPE_CHECKING:
 
 FEW = 6
 """The greatest number of values of a field that are told apart as words are."""
+LARGEST = 1e15
+"""A number that is larger is shown, and not computed with: Python's integers have no end."""
 Pairs = list[tuple[Any, Any]]
 """The values of one field in the order of the steps: the subject's, and the solution's."""
 
@@ -181,7 +183,8 @@ def _plain(value: Any) -> Any:
 
 
 def _is_number(value: Any) -> bool:
-    return isinstance(value, (int, float)) and not isinstance(value, bool)
+    """Return True for a number that can be computed with: neither a truth value, nor endless, nor too large."""
+    return isinstance(value, (int, float)) and not isinstance(value, bool) and -LARGEST < value < LARGEST
 
 
 def _word(value: Any) -> str:
