@@ -107,7 +107,11 @@ def test_every_diagnosis_is_explained_to_students() -> None:
     used |= {key for answer in IN_NOTEBOOKS for key in answer.keys}
     used |= {mistake.key for one in exercises.all_ids() for mistake in exercises.get(one).mistakes}
     # A recorded wrong answer says on the card itself what it is.
-    recorded = {"variant", "mutant", *(key for answer in PROGRAMS if answer.advice for key in answer.diagnoses)}
+    recorded = {
+        "variant",
+        "mutant",
+        *(key for answer in PROGRAMS if answer.advice for key in answer.diagnoses),
+    }
     assert used - recorded - explained() == set()
 
 

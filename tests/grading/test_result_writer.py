@@ -148,7 +148,9 @@ def test_nbgraders_own_steps_find_nothing_to_change(
         page = pages(tiny.path)[str(file.relative_to(tiny.path / "autograded").with_suffix(".html"))]
         theirs = str(BeautifulSoup(page_as_nbgrader_makes_it(tiny.path, file), features="html.parser"))
         # Ours has the title of the notebook, theirs the name of its file.
-        assert page == theirs.replace("<title>lab_1_2<", "<title>Tiny<").replace("<h4>lab_1_2 (", "<h4>Tiny (")
+        assert page == theirs.replace("<title>lab_1_2<", "<title>Tiny<").replace(
+            "<h4>lab_1_2 (", "<h4>Tiny ("
+        )
 
 
 def test_files_of_the_assignment_are_beside_the_graded_notebook(

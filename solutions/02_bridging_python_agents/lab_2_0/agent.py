@@ -36,7 +36,7 @@ def observations(random: Random) -> list[list[float]]:
 
 
 def tells(seen: list[list[float]]) -> bool:
-    """Return True if a new agent drives first, and a turn meets a second near wall, with more room on the other side."""
+    """Return True if a new agent drives first, and a turn meets a second near wall with more room on the other side."""
     again = (
         one[0] < NEAR > two[0] and (one[1] - one[2]) * (two[1] - two[2]) < 0 for one, two in pairwise(seen)
     )
