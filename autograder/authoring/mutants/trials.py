@@ -177,9 +177,10 @@ def _played(
 
     code = compile(text, "solution", "exec", dont_inherit=True)
     for name in names:
-        # The only drawing that the scenario knows is the one that it gives.
+        # The only drawing that the scenario knows is the one that it gives; without drawings, it names its part itself.
         same = [part for part in reference.parts if part.name == name or not exercise.is_drawn]
-        paper = PaperBench(code, root, replace(reference, parts=same, drawings=(name,)), Random(name))
+        drawn = (name,) if exercise.is_drawn else ()
+        paper = PaperBench(code, root, replace(reference, parts=same, drawings=drawn), Random(name))
         exercise.scenario(cast("Bench", paper))
         yield name, paper.parts
 
