@@ -15,8 +15,8 @@ EXERCISE = Mission(
     roles=("publisher", "subscription"),
     draws=lambda random: [World(start=Pose(random.choice((0.5, 0.8, 1.25, 1.7)), 1.0, 0.0))],
     reaches=[
-        ("Drives ahead", lambda now: now.velocity.forward > 0.1, "drives", 2),
-        ("Stands in front of the wall", lambda now: now.ahead < 1.0 and now.stood > 1.0, "stands", 5),
+        ("Drives ahead", lambda now: abs(now.velocity.forward - 0.3) < 0.02, "drives", 2),
+        ("Stands in front of the wall", lambda now: 0.45 < now.ahead < 0.9 and now.stood > 1.0, "stands", 5),
     ],
     never=[("Touches no wall", lambda now: now.bumped, "touches", 3)],
     knows=[
