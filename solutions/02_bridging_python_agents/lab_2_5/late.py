@@ -18,17 +18,18 @@ def steps(random: Random) -> list[Text | float]:
     def asks(*replies: str, takes: float) -> Text:
         return Text("/order", order(random, kind(*replies, takes=takes)))
 
+    # Each moment is a quarter of a second or more away from two seconds and from the end of its step, whatever the load.
     rows: list[list[Text | float]] = [
         [asks("good", takes=0.2)],
-        [asks("good", takes=1.9), 1.25],
-        [asks("good", takes=2.3), 1.6, PAUSE],
-        [asks(random.choice(("good", "nan")), takes=inf), 1.6, PAUSE],
+        [asks("good", takes=1.5), 1.25],
+        [asks("good", takes=2.8), 1.75, PAUSE],
+        [asks(random.choice(("good", "nan")), takes=inf), 1.75, PAUSE],
         # Two tries of which each is in time, though both together are not.
-        [asks(random.choice(("nan", "far", "chat")), "good", takes=1.3), 1.25, PAUSE],
-        [asks(*random.sample(("nan", "far", "chat", "text"), 3), takes=0.15)],
+        [asks(random.choice(("nan", "far", "chat")), "good", takes=1.25), 1.1, 1.25],
+        [asks(*random.sample(("nan", "far", "chat", "text"), 3), takes=0.05)],
         # A newer order: the reply to the older one comes last, or first.
-        [asks("good", takes=1.7), asks("good", takes=0.2), PAUSE, PAUSE],
-        [asks("nan", "good", takes=1.1), asks("good", takes=0.9), PAUSE, PAUSE],
+        [asks("good", takes=1.8), asks("good", takes=0.3), PAUSE, PAUSE],
+        [asks("nan", "good", takes=1.1), asks("good", takes=1.1), PAUSE, PAUSE],
     ]
     return [step for row in shuffled(random, rows) for step in row]
 
