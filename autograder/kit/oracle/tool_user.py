@@ -8,7 +8,8 @@ from itertools import chain, count, repeat
 from math import isinf
 from typing import TYPE_CHECKING, Any
 
-from autograder.kit.counterparts import Work
+from autograder.kit.bench import STEP, Pace
+from autograder.kit.counterparts import SOON, Work
 from autograder.kit.oracle.outputs import Kind, Output
 from autograder.kit.oracle.same_as_solution import NOTHING, SameAsSolution
 from autograder.kit.oracle.steps import Goal, Sets, Text, To, pick
@@ -161,7 +162,7 @@ class ToolUser(SameAsSolution):
 
 
 class _ServesActions:
-    """A bench on which actions are served from the beginning of a part."""
+    """A bench on which actions are served from the beginning of a part, and answers are sent when they are due."""
 
     def __init__(self, bench: Bench, works: Mapping[str, Callable[[Mapping[str, Any]], Work]]) -> None:
         self._bench, self._works = bench, works
@@ -175,6 +176,15 @@ class _ServesActions:
         for action, work in self._works.items():
             kind = self._bench.reference.interface["action_client"][action]
             self._bench.serve_goals(action, kind, work)
+
+    def run_time(self, seconds: float, **how: Any) -> bool:
+        """Let time pass. In real time a bench looks once, and then after events, whether an answer is due."""
+        if how or self._bench.pace is Pace.FAST:
+            return self._bench.run_time(seconds, **how)
+        end = self._bench.moment + seconds
+        while (left := end - self._bench.moment) > SOON and not self._bench.await_end(0.0):
+            self._bench.run_time(min(left, STEP))
+        return True
 
 
 def _answering(answers: Answers) -> Callable[[Mapping[str, Any]], Any]:
