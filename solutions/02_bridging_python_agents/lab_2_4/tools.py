@@ -59,7 +59,7 @@ EXERCISE = ToolUser(
     text={
         "`on_call` answers a wrong call with `error: ` and what `find_fault` says": "result",
         "**and sends nothing else**": "speech lamp",
-        "`say` publishes the text on `speech`, and answers `ok`.": "speech result",
+        "`say` publishes a text on `speech`, and answers `ok`.": "speech result",
         "`lamp` calls the service `lamp` and does not wait.": "lamp",
         "the answer to the model is `ok` if its `success` is true": "result",
     }

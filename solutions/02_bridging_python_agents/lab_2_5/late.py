@@ -18,7 +18,7 @@ def steps(random: Random) -> list[Text | float]:
     def asks(*replies: str, takes: float) -> Text:
         return Text("/order", order(random, kind(*replies, takes=takes)))
 
-    # Each moment is a quarter of a second or more away from two seconds and from the end of its step, whatever the load.
+    # Each moment is a quarter of a second or more away from the two seconds, and from the end of its step.
     rows: list[list[Text | float]] = [
         [asks("good", takes=0.2)],
         [asks("good", takes=1.5), 1.25],
