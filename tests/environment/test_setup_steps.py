@@ -89,6 +89,7 @@ def test_the_interfaces_are_made_from_every_file_of_their_package() -> None:
     assert {
         "AddTwoInts.srv",
         "Trigger.srv",
+        "Ask.srv",
         "Fibonacci.action",
         "WalkTo.action",
         "interface_packages.py",
