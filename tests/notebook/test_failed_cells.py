@@ -88,7 +88,7 @@ def test_code_of_elsewhere_is_told_below_the_cell_and_by_the_check(said: Callabl
     shown, checked, old = said((tutorial,), (tutorial, CHECK), (RIGHT, ros1, CHECK))
     assert "No module named 'example_interfaces'" in shown
     for words in (shown, checked):
-        assert "write my_robot_interfaces in place of example_interfaces" in words
+        assert "my_robot_interfaces in place of example_interfaces" in words
     assert "Write self.create_publisher(String, 'chatter', 10)" in old
     assert "The notebook still has an older Talker2. Correct that cell" in old
 
