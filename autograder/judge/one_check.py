@@ -210,7 +210,7 @@ def _check(
         # To read the lines of a program takes a process.
         reads = not verdict.passed and (evidence.reference.mutants or _causes(exercise, evidence, verdict))
         if reads and (lines := subject.own_lines()):
-            evidence = _with_own_lines(exercise, evidence, lines, seed)
+            evidence = _with_own_lines(exercise, evidence, verdict, lines)
             verdict = judge(exercise, evidence, seed)
         if not verdict.passed:
             certain = is_certain(exercise, evidence)
@@ -239,13 +239,16 @@ def _causes(exercise: Exercise, evidence: Evidence, verdict: Verdict) -> Sequenc
     return [[name] for name in next(lost).uses]
 
 
-def _with_own_lines(exercise: Exercise, evidence: Evidence, lines: Sequence[OwnLine], seed: str) -> Evidence:
+def _with_own_lines(
+    exercise: Exercise, evidence: Evidence, verdict: Verdict, lines: Sequence[OwnLine]
+) -> Evidence:
     """Return the evidence with those lines of the student's code that the card quotes. They decide no point."""
     if not evidence.parts:
         return evidence
     mutants = evidence.reference.mutants
-    evidence = _with_events(evidence, uncalled(lines, mutants.methods if mutants else ()))
-    verdict = judge(exercise, evidence, seed)
+    if events := uncalled(lines, mutants.methods if mutants else ()):
+        evidence = _with_events(evidence, events)
+        verdict = judge(exercise, evidence, verdict.seed)
     raising = [line for line in lines if f'/{line.place}"' in verdict.detail]
     return _with_events(evidence, claimed(_causes(exercise, evidence, verdict), raising or lines))
 

@@ -75,9 +75,8 @@ class Drawn(OwnScenario):
         reference = evidence.reference
         if not reference.parts:  # the solution is being recorded
             return evidence.main
-        if (
-            not evidence.parts
-        ):  # the subject was given no drawing and did nothing, which is wrong in each of them
+        # A subject that was given no drawing did nothing, which is wrong in each of them.
+        if not evidence.parts:
             return reference.parts[0]
         return reference.part(evidence.main.name)
 
@@ -88,11 +87,7 @@ class Drawn(OwnScenario):
         First comes that the subject does the same as a recorded wrong answer, for which a person has written the words.
         Only after an exercise's own mistakes and whatever happened to the program comes what a mutant does.
         """
-        clock = Mistake(
-            KEY,
-            self._on_another_clock,
-            certain=True,
-        )
+        clock = Mistake(KEY, self._on_another_clock, certain=True)
         variant, likely_variant = self._as_recorded("variant", self._same_as_a_variant)
         mutants = self._as_recorded(
             MUTANT, self._same_as_mutants, partial(self._same_as_mutants, surely=True)
