@@ -10,6 +10,7 @@ import importlib
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, cast
 
+from autograder.kit.mistakes.crashes import what_and_where
 from autograder.kit.model import Advice, Criterion, Exercise, Finding, Mistake
 from autograder.kit.runners import LaunchesFromPackage, RunsProgram
 
@@ -139,8 +140,9 @@ def _next_step(judged: Exercise, evidence: Evidence) -> str:
 def _symptom(judged: Exercise, evidence: Evidence) -> Finding:
     """Return what a user notices of a node that does not work: what never came, or else the first failed criterion."""
     # Chance decides what the judge hears of a node that ends soon.
-    if any(part.ending is not None and part.traceback for part in evidence):
-        return Finding(False, _ASKED, "the program ended with an error")
+    ended = next((part.traceback for part in evidence if part.ending is not None and part.traceback), "")
+    if ended:
+        return Finding(False, _ASKED, f"the program ended with an error: {what_and_where(ended)}")
     for role, names in evidence.reference.interface.items():
         kind, words = _NOTHING_CAME.get(role, ("", ""))
         for name in names if kind else ():

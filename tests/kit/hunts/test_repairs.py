@@ -114,7 +114,8 @@ def test_the_symptom_of_a_node_that_ends_with_an_error_does_not_depend_on_what_c
     raised = Event(0.5, "subject", "raised", {"traceback": "TypeError: 'NoneType' object is not callable"})
     parts = [replace(part, events=[*sent * came, raised]) for part in REFERENCE.parts]
     verdict = one_check.judge(repair(), Evidence(parts, REFERENCE), "s")
-    assert verdict.criteria[0].seen == "the program ended with an error"
+    expected = "the program ended with an error: TypeError: 'NoneType' object is not callable"
+    assert verdict.criteria[0].seen == expected
 
 
 def test_a_repair_has_one_criterion_because_a_broken_node_does_half_of_the_task() -> None:
