@@ -61,6 +61,26 @@ def _refuses_to_cancel(evidence: Evidence) -> bool:
     return first is not None and not (first.cancel_accepted or first.cancelled_too_late or first.is_quick)
 
 
+def _reads_no_request(evidence: Evidence) -> bool:
+    """Return True if the first cancel request that was answered waited until the goal's end, while feedback came."""
+    answered = (one for part in evidence for one in all_goals(part) if one.cancel_accepted is not None)
+    first = next(answered, None)
+    if first is None or not first.cancelled_too_late or first.is_quick:
+        return False
+    return first.unread >= UNREAD and not first.sent_after(first.cancel_answered_at)
+
+
+UNREAD = 2
+"""If this many feedback messages arrive after the cancel request and before its answer, the server reads no requests
+while it works.
+"""
+NO_FREE_THREAD = (
+    "Your server keeps working and does not read the cancel request, because the only thread that spins the node is "
+    "busy with the execute callback.",
+    "Spin the node with a MultiThreadedExecutor, as in rclpy.spin(your_node, executor=MultiThreadedExecutor()), so "
+    "that another thread can read the cancel request.",
+)
+"""What a server does that reads no cancel request while it works, and the next step."""
 RESULT_MISSING = Mistake("result_missing", _result_missing, certain=True)
 EXCEPTION_IN_EXECUTE = Mistake("exception_in_callback", _exception_in_execute, certain=True)
 CANCEL_REFUSED = mistake(
@@ -72,3 +92,4 @@ CANCEL_REFUSED = mistake(
     "execute callback, check is_cancel_requested of the goal handle.",
     certain=True,
 )
+CANCEL_UNREAD = mistake("cancel_not_accepted", _reads_no_request, *NO_FREE_THREAD)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Generic, TypeVar
 
 from autograder.kit.draft import OWN, OWN_LATE
 from autograder.kit.mistakes import common_mistakes as common
-from autograder.kit.mistakes.action_server_mistakes import result_type
+from autograder.kit.mistakes.action_server_mistakes import NO_FREE_THREAD, UNREAD, result_type
 from autograder.kit.mistakes.crashes import traceback_of
 from autograder.kit.mistakes.role_mistakes import ladder
 from autograder.kit.model import Finding, Mistake, mistake
@@ -19,10 +19,6 @@ if TYPE_CHECKING:
     from autograder.kit.bench import Bench
     from autograder.kit.evidence import Evidence
 
-UNREAD = 2
-"""If this many feedback messages arrive after the cancel request and before its answer, the server reads no requests
-while it works.
-"""
 CANCELED_UNASKED = "with event CANCELED"
 """In what rclpy raises if canceled() is called for a goal that no client has asked to cancel."""
 
@@ -258,10 +254,7 @@ ALONE: tuple[Row, ...] = (
     (
         "cancel_not_accepted",
         _cancel_not_read,
-        "Your server keeps working and does not read the cancel request, because the only thread that spins the node "
-        "is busy with the execute callback.",
-        "Spin the node with a MultiThreadedExecutor, as in rclpy.spin(your_node, executor=MultiThreadedExecutor()), so "
-        "that another thread can read the cancel request.",
+        *NO_FREE_THREAD,
         False,
     ),
 )

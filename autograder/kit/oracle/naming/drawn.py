@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from autograder.kit.draft import OWN, OWN_LATE
 from autograder.kit.mistakes import unfinished
+from autograder.kit.mistakes.action_server_mistakes import CANCEL_REFUSED, CANCEL_UNREAD
 from autograder.kit.mistakes.crashes import CRASHES, OTHER_CRASHES
 from autograder.kit.mistakes.hangs import ENDLESS_LOOP
 from autograder.kit.mistakes.role_mistakes import ladder
@@ -110,7 +111,9 @@ class Drawn(OwnScenario):
             )
         usual = ladder(self.roles, late=(*mutants, OWN_LATE, whole))
         at = usual.index(unfinished.NEVER_CONSTRUCTED)
-        return (*usual[:at], METHOD_UNCALLED, variant, clock, likely_variant, *usual[at:], last)
+        # Whether a cancel request is read and accepted is seen on the wire, and a recorded answer may do the same.
+        canceled = (CANCEL_REFUSED, CANCEL_UNREAD) if "action_server" in self.roles else ()
+        return (*usual[:at], METHOD_UNCALLED, *canceled, variant, clock, likely_variant, *usual[at:], last)
 
     def _as_recorded(
         self, key: str, likely: Recognized, sure: Recognized | None = None
