@@ -196,7 +196,7 @@ def test_workers_that_forge_are_turned_out_by_name_and_run_nothing_here(
         4,
     ]
     for name, words in {
-        "pickler": "the answer is not an execution",
+        "pickler": "the worker sent an impossible answer",
         "large": "the answer has 400000",
         "object": "the worker sent an impossible answer",
         "forger": "1000 of 10 points",
