@@ -100,25 +100,23 @@ class Question:
                 f"“{said}”" if said else "no answer yet",
             )
 
+        def choose(seen: Evidence) -> str:
+            noted = seen.main.first("noted")
+            listed = "; ".join(f"“{choice}”" for choice in (noted.data["order"] if noted else choices))
+            return f"Let your function return the text of one choice: {listed}."
+
         @draft.mistake("wrong_choice", certain=True)
         def wrong_choice(seen: Evidence, _: Evidence) -> Advice | None:
-            if (said := _plain(answer(seen))) == _plain(self.right) or said not in map(_plain, choices):
+            said = answer(seen)
+            if not said or right(seen, seen).passed:
                 return None
-            return Advice(f"“{answer(seen)}” is not the right choice.", _THINK)
+            if _plain(said) in map(_plain, choices):
+                return Advice(f"“{said}” is not the right choice.", _THINK)
+            return Advice(f"Your answer is “{said}”, which is not one of the choices.", choose(seen))
 
         @draft.mistake("not_written", certain=True)
         def not_written(seen: Evidence, _: Evidence) -> Advice | None:
-            if right(seen, seen).passed:
-                return None
-            noted = seen.main.first("noted")
-            listed = "; ".join(f"“{choice}”" for choice in (noted.data["order"] if noted else choices))
-            said = answer(seen)
-            return Advice(
-                f"Your answer is “{said}”, which is not one of the choices."
-                if said
-                else "There is no answer yet.",
-                f"Let your function return the text of one choice: {listed}.",
-            )
+            return None if answer(seen) else Advice("There is no answer yet.", choose(seen))
 
         return draft.exercise(recorded=(), text={self.task: "right"}, hides_causes=True, enough={})
 

@@ -49,7 +49,7 @@ def test_the_right_choice_passes(events: tuple[Event, ...]) -> None:
     ("value", "key", "words"),
     [
         ("the QoS", "wrong_choice", "“the QoS” is not the right choice."),
-        ("types", "not_written", "“types”, which is not one of the choices."),
+        ("types", "wrong_choice", "“types”, which is not one of the choices."),
         (None, "not_written", "There is no answer yet."),
     ],
 )
@@ -59,7 +59,7 @@ def test_a_wrong_answer_does_not_tell_the_right_one(value: object, key: str, wor
     assert (verdict.diagnosis.key, verdict.score) == (key, 0)
     assert words in verdict.diagnosis.text
     listed = [choice for choice in CHOICES if f"“{choice}”" in verdict.diagnosis.next_step]
-    assert len(listed) == (len(CHOICES) if key == "not_written" else 0)
+    assert len(listed) == (0 if value in CHOICES else len(CHOICES))
 
 
 class OneStudent:
