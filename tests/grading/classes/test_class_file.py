@@ -12,6 +12,8 @@ from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.classes.class_file import read_class_file, read_overlays
 from autograder.grading.grading_errors import GradingError
 from autograder.grading.running.execution_backends import on_cluster
+from autograder.grading.table.student_list import read_roster
+from autograder.grading.tasks.date_reading import read_class_dates
 from tests.cases import cases
 
 if TYPE_CHECKING:
@@ -104,3 +106,15 @@ def test_each_fault_of_the_file_has_a_sentence(tiny: TinyClass, name: str) -> No
         tiny.grade()
     for words in fault["says"]:
         assert words in str(caught.value)
+
+
+@pytest.mark.parametrize("name", DATES := cases(__file__, "date"))
+def test_an_extension_counts_for_each_member_and_is_never_a_sum(tiny: TinyClass, name: str) -> None:
+    (tiny.path / "students.csv").write_text('id,section\nada,"Mon, Team 7"\nben,Mon and Team 7\ncleo,Tue\n')
+    (tiny.path / "class.toml").write_text(
+        f"[due]\nlab_1_2 = '2026-01-31'\n[extension.lab_1_2]\n{DATES[name]['file']}"
+    )
+    directory = ClassDirectory(tiny.path)
+    dates = read_class_dates(directory, read_roster(directory))
+    days = {one: dates.of(one, "lab_1_2", None) for one in ("ada", "ben", "cleo")}
+    assert {one: at and at.day for one, at in days.items()} == DATES[name]["days"]

@@ -17,7 +17,7 @@ from autograder.execution.executed_cells import CellType
 from autograder.grading.rebuilding import nbformat_nodes
 from autograder.grading.returning.page_exporter import PageExporter
 from autograder.grading.returning.picture_sizes import PixelBudget
-from autograder.grading.returning.sanitize import TYPED, as_typed, make_harmless
+from autograder.grading.returning.sanitize import TYPED, as_typed, harmless_output, make_harmless
 from tests.cases import cases
 
 SIZE = 100_000
@@ -53,6 +53,18 @@ def test_each_character_is_shown_wherever_the_cell_is_rendered(text: str) -> Non
     expected = text.replace("data:image/png;base64,AAAA", "[picture left out: it is too large, or damaged]")
     for html in (typed(text), markdown2html_mistune(typed(text)), strip_files_prefix(typed(text))):
         assert shown(html.strip()) == expected
+
+
+def test_a_traceback_shows_no_folder_of_the_graders_machine() -> None:
+    lines = [
+        "/home/grader/c/.venv/lib/python3.12/site-packages/rclpy/node.py:3",
+        "/root/.pyenv/lib/python3.12/ast.py",
+    ]
+    output = nbformat.v4.new_output("error", ename="E", evalue=lines[0], traceback=lines)
+    shown = str(harmless_output(output))
+    assert "grader" not in shown
+    assert ".pyenv" not in shown
+    assert shown.count("site-packages/rclpy/node.py:3") == 2
 
 
 @pytest.mark.parametrize("kind", CellType)
