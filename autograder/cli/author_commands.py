@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
+from typing import Any
 
 import click
 
+from autograder.cli.class_options import jobs_option
 from autograder.cli.command_results import NO, fail, need_ros
 from autograder.command_name import COMMAND
 
@@ -23,11 +25,7 @@ def build(only_check: bool) -> None:
 
 @click.command()
 @click.argument("notebooks", nargs=-1, metavar="[NOTEBOOK]...")
-@click.option(
-    "--jobs",
-    type=click.IntRange(min=1),
-    help="The number of notebooks to run at the same time. The default is as many as processors and memory allow.",
-)
+@jobs_option
 @click.option(
     "--reports",
     type=click.Path(path_type=Path),
@@ -93,9 +91,7 @@ def record(exercises: tuple[str, ...], only_check: bool) -> None:
     help="A new message, service or action type that the chapter defines; may be given several times.",
 )
 @click.option("--lab", "to_lab", is_flag=True, help="Add the exercise to its lab, which already exists.")
-def new_exercise(
-    exercise: str, recipe: str, chapter: str | None, interfaces: tuple[str, ...], to_lab: bool
-) -> None:
+def new_exercise(exercise: str, recipe: str, **choices: Any) -> None:
     """Make the folder of a new lab with one working EXERCISE, which you then change.
 
     \b
@@ -106,9 +102,7 @@ def new_exercise(
 
     root = course.root()
     try:
-        made = making.new_exercise(
-            root, exercise, recipe, chapter=chapter, interfaces=interfaces, to_lab=to_lab
-        )
+        made = making.new_exercise(root, exercise, recipe, **choices)
     except (making.CannotMake, course.BrokenChapter) as error:
         fail(str(error))
     for file in made:
@@ -133,6 +127,7 @@ def new_exercise(
 @click.option(
     "--transcript",
     type=click.Path(path_type=Path, file_okay=False),
+    callback=lambda _context, _option, folder: folder and folder.absolute(),
     help="Write what the judge saw of each answer into this folder.",
 )
 @click.option(
@@ -142,16 +137,7 @@ def new_exercise(
     "--mutants", "only_mutants", is_flag=True, help="Try only the mutants of the solution, recorded or not."
 )
 @click.option("--judge", is_flag=True, help="With --mutants: the judge checks those that paper cannot run.")
-def try_exercise(
-    exercise: str,
-    only: tuple[str, ...],
-    jobs: int,
-    repeat: int,
-    transcript: Path | None,
-    fast: bool,
-    only_mutants: bool,
-    judge: bool,
-) -> None:
+def try_exercise(exercise: str, only_mutants: bool, judge: bool, **choices: Any) -> None:
     """Record EXERCISE if it is new, judge its sample answers, right and wrong, and show unexpected results."""
     from autograder import exercises
     from autograder.authoring import exercise_trial, reference_files
@@ -161,20 +147,12 @@ def try_exercise(
     need_ros()
     try:
         if only_mutants:
-            by_judge = jobs if judge else 0
+            by_judge = choices["jobs"] if judge else 0
             is_ready = exercise_trial.try_mutants(
                 exercise, by_judge=by_judge, must_be_recorded=False, tell=click.echo
             )
             sys.exit(0 if is_ready else NO)
-        fits = exercise_trial.try_exercise(
-            exercise,
-            only=only,
-            jobs=jobs,
-            repeat=repeat,
-            transcript=transcript and transcript.absolute(),
-            fast=fast,
-            tell=click.echo,
-        )
+        fits = exercise_trial.try_exercise(exercise, tell=click.echo, **choices)
     except (
         BadTable,
         exercises.BrokenExercise,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -14,11 +14,13 @@ from autograder.cli.class_options import (
     class_folder,
     from_option,
     into_columns,
+    jobs_option,
     known_zone,
     names_option,
     one_assignment,
     only_assignments,
     only_sections,
+    or_nothing,
     over_option,
     student_option,
 )
@@ -48,15 +50,13 @@ if TYPE_CHECKING:
     help="Show the reference solution on cards with full marks, and offer it after the last hint and five failed "
     "checks. Students could then also read it earlier, in the folder exercises.",
 )
-def hand_out(place: Path, assignments: tuple[str, ...], as_zip: bool, with_solutions: bool) -> None:
+def hand_out(place: Path, **choices: Any) -> None:
     """Make a hand-out for students in PLACE: notebooks and judge, without solutions, answers and grader."""
     from autograder import course
     from autograder.student import handout
 
     try:
-        made = handout.hand_out(
-            place, course.root(), assignments=assignments, as_zip=as_zip, with_solutions=with_solutions
-        )
+        made = handout.hand_out(place, course.root(), **choices)
     except (handout.CannotHandOut, OSError) as error:
         fail(str(error))
     print_line(
@@ -144,6 +144,7 @@ def students(folder: Path, new_list: Path | None, said: dict[str, str], by_name:
 @one_assignment
 @click.option(
     "--timezone",
+    "zone",
     default="",
     callback=known_zone,
     metavar="Europe/Berlin",
@@ -159,17 +160,7 @@ def students(folder: Path, new_list: Path | None, said: dict[str, str], by_name:
     help="The submission time of files for which no list and no file name gives one.",
 )
 @as_json_option
-def collect(
-    folder: Path,
-    files: tuple[Path, ...],
-    assignment: str,
-    timezone: ZoneInfo | None,
-    form: str | None,
-    names: str,
-    student: str,
-    handed_in: str,
-    as_json: bool,
-) -> None:
+def collect(folder: Path, files: tuple[Path, ...], handed_in: str, as_json: bool, **choices: Any) -> None:
     """Put FILES that you downloaded from an LMS into the class directory FOLDER.
 
     FILES are zips, folders and notebooks of Moodle, Canvas, Blackboard, Brightspace, Sakai, ILIAS or Gradescope, or
@@ -186,16 +177,7 @@ def collect(
     if handed_in and when is None:
         fail(f"--handed-in {handed_in} is not a time. A time looks like 2026-01-31T12:00.")
     with grading_errors():
-        report = collecting.collect(
-            folder,
-            files,
-            assignment=assignment,
-            zone=timezone,
-            form=form or "",
-            names=names,
-            handed_in=when,
-            student=student,
-        )
+        report = collecting.collect(folder, files, handed_in=when, **choices)
     if as_json:
         print_json(report)
     else:
@@ -224,11 +206,7 @@ def _finished_grades_are_stored() -> Iterator[None]:
 )
 @only_sections
 @click.option("--again", is_flag=True, help="Run unchanged submissions again.")
-@click.option(
-    "--jobs",
-    type=click.IntRange(min=1),
-    help="The number of notebooks to run at the same time. The default is as many as processors and memory allow.",
-)
+@jobs_option
 @as_json_option
 @click.option(
     "--unsafe-no-sandbox",
@@ -248,53 +226,28 @@ def _finished_grades_are_stored() -> Iterator[None]:
 @click.option(
     "--lower",
     type=click.Choice(["yes", "no"]),
-    default=None,
+    callback=or_nothing,
     help="Take over points that fell although the same files were handed in, or keep the earlier points.",
 )
-def grade(
-    folder: Path,
-    assignments: tuple[str, ...],
-    students: tuple[str, ...],
-    sections: tuple[str, ...],
-    again: bool,
-    jobs: int | None,
-    as_json: bool,
-    unsafe_no_sandbox: bool,
-    scheduler: str | None,
-    dry_run: bool,
-    lower: str | None,
-) -> None:
+def grade(folder: Path, as_json: bool, unsafe_no_sandbox: bool, **choices: Any) -> None:
     """Grade the submissions in the class directory FOLDER."""
     from autograder.grading import batch
     from autograder.grading.classes.class_directory import switch_sandbox_off
+    from autograder.grading.reporting.grade_report import report_json, show
 
-    if scheduler is not None and jobs is not None:
+    if choices["scheduler"] is not None and choices["jobs"] is not None:
         fail(
             f"--jobs is only for this machine. In a cluster, set it for each worker: {COMMAND} worker --jobs"
         )
-    if scheduler is None:
+    if choices["scheduler"] is None:
         need_ros()
     if unsafe_no_sandbox:
         switch_sandbox_off(folder)
     with grading_errors(), _finished_grades_are_stored():
-        report = batch.grade(
-            folder,
-            assignments=assignments,
-            students=students,
-            sections=sections,
-            again=again,
-            jobs=jobs,
-            scheduler=scheduler,
-            dry_run=dry_run,
-            lower=lower or "",
-        )
+        report = batch.grade(folder, **choices)
     if as_json:
-        from autograder.grading.reporting.grade_report import report_json
-
         print_json(report_json(report))
     else:
-        from autograder.grading.reporting.grade_report import show
-
         show(report)
     sys.exit(report.exit_code)
 
@@ -316,15 +269,7 @@ def grade(
 @over_option
 @click.option("--dry-run", is_flag=True, help="Change nothing, and show what would be done. Checks are run.")
 def week(
-    files: tuple[Path, ...],
-    folder: Path,
-    assignment: str,
-    form: str | None,
-    names: str,
-    student: str,
-    columns: dict[str, str],
-    over: bool,
-    dry_run: bool,
+    files: tuple[Path, ...], folder: Path, columns: dict[str, str], over: bool, dry_run: bool, **choices: Any
 ) -> None:
     """Collect DOWNLOAD, grade it, and fill the points into LIST, in the folder of a class.
 
@@ -337,13 +282,9 @@ def week(
     from autograder.grading import week as weekly
 
     need_ros()
-    choices = weekly.WeekChoices(
-        {"assignment": assignment, "form": form or "", "names": names, "student": student},
-        columns=columns,
-        over=over,
-    )
+    run = weekly.rehearsed if dry_run else weekly.week
     with grading_errors(), _finished_grades_are_stored():
-        report = (weekly.rehearsed if dry_run else weekly.week)(folder.absolute(), files, choices)
+        report = run(folder.absolute(), files, weekly.WeekChoices(choices, columns=columns, over=over))
         weekly.show_week(report)
         if dry_run:
             print_line("Nothing was changed. Without --dry-run, the same is done.")
@@ -366,7 +307,7 @@ def week(
     is_flag=True,
     help="Run submissions even if no sandbox is possible on this machine. The submissions then have all your rights.",
 )
-def worker(scheduler: str | None, jobs: int | None, name: str | None, unsafe_no_sandbox: bool) -> None:
+def worker(scheduler: str | None, unsafe_no_sandbox: bool, **choices: Any) -> None:
     """Run submissions for `grade --scheduler`, until you press Ctrl-C or the scheduler ends."""
     from autograder.grading.running import execution_backends
 
@@ -374,7 +315,7 @@ def worker(scheduler: str | None, jobs: int | None, name: str | None, unsafe_no_
         execution_backends.check_dask()
         from autograder.grading.cluster.dask_worker import start_worker
 
-        start_worker(scheduler, jobs=jobs, name=name, sandbox=not unsafe_no_sandbox, tell=click.echo)
+        start_worker(scheduler, sandbox=not unsafe_no_sandbox, tell=click.echo, **choices)
 
 
 @click.command()

@@ -49,11 +49,18 @@ one_assignment = click.option(
     default="",
     help="The assignment to which all files belong. The default is the one that cells and file names show.",
 )
+
+
+def or_nothing(_context: click.Context, _option: click.Parameter, chosen: str | None) -> str:
+    """Return the chosen word; empty if the option was not given."""
+    return chosen or ""
+
+
 from_option = click.option(
     "--from",
     "form",
     type=click.Choice(["moodle", "canvas", "blackboard", "brightspace", "gradescope", "sakai", "ilias"]),
-    default=None,
+    callback=or_nothing,
     help="The system from which the files come, if file names do not show it. Needed for ILIAS.",
 )
 student_option = click.option(
@@ -89,4 +96,9 @@ into_columns = click.option(
 )
 over_option = click.option(
     "--over", is_flag=True, help="Replace points that a person typed into the LMS. By default, they stay."
+)
+jobs_option = click.option(
+    "--jobs",
+    type=click.IntRange(min=1),
+    help="The number of notebooks to run at the same time. The default is as many as processors and memory allow.",
 )

@@ -8,7 +8,7 @@ from __future__ import annotations
 import sys
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -18,6 +18,7 @@ from autograder.cli.class_options import (
     into_columns,
     only_assignments,
     only_sections,
+    or_nothing,
     over_option,
 )
 from autograder.cli.command_results import as_json_option, fail, grading_errors, print_json, print_line
@@ -32,24 +33,21 @@ if TYPE_CHECKING:
     from autograder.verdict import Verdict
 
 
-into_option = click.option(
-    "--into",
-    type=click.Path(path_type=Path),
-    help="Fill in this list, which was exported from the LMS.",
-)
-
-
 @class_command()
 @class_folder
 @click.option(
     "--to",
     type=click.Choice(["canvas", "moodle", "blackboard", "brightspace", "sakai", "ilias", "csv", "xlsx"]),
-    default=None,
+    callback=or_nothing,
     help="The LMS that will import the files. With --into, it is the one from which the list comes.",
 )
 @only_assignments
 @only_sections
-@into_option
+@click.option(
+    "--into",
+    type=click.Path(path_type=Path),
+    help="Fill in this list, which was exported from the LMS.",
+)
 @into_columns
 @over_option
 @click.option(
@@ -65,19 +63,7 @@ into_option = click.option(
 )
 @click.option("--dry-run", is_flag=True, help="Write nothing, and show what would change in the list.")
 @as_json_option
-def export(
-    folder: Path,
-    to: str | None,
-    assignments: tuple[str, ...],
-    sections: tuple[str, ...],
-    into: Path | None,
-    columns: dict[str, str],
-    over: bool,
-    absent: str,
-    output: Path | None,
-    dry_run: bool,
-    as_json: bool,
-) -> None:
+def export(folder: Path, to: str, absent: str, output: Path | None, as_json: bool, **choices: Any) -> None:
     """Write the points and the feedback (as a zip) in the format that an LMS imports.
 
     Exit code 2: the instructor has to decide something, and the printed lines say what to type.
@@ -85,17 +71,19 @@ def export(
     from autograder.grading.reporting.export_files import ExportChoices
     from autograder.grading.reporting.export_files import export as write_files
 
-    if not to and not into:
+    if not to and not choices["into"]:
         fail("say for which system: --to canvas, or have a list of the system filled in: --into LIST")
-    choices = ExportChoices(
-        assignments, into, output, absent == "zero", columns, sections, over=over, dry_run=dry_run
-    )
     with grading_errors():
-        done = write_files(folder, to or "", choices)
+        done = write_files(folder, to, ExportChoices(folder=output, absent_zero=absent == "zero", **choices))
     if as_json:
         files = [{"path": str(file), "purpose": purpose} for file, purpose in done.files]
         print_json(
-            {"files": files, "notices": done.notices, "changes": done.changes, "questions": done.questions}
+            {
+                "files": files,
+                "notices": (*done.ungraded, *done.notices),
+                "changes": done.changes,
+                "questions": done.questions,
+            }
         )
     else:
         for line in done.lines():

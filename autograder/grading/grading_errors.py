@@ -13,7 +13,7 @@ from autograder.safe_files import write_whole
 from environment.installation import IS_CLONE, ROOT, installing
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Collection, Iterable, Iterator
 
 
 def course_command(*words: object, inside: Path | None = None) -> str:
@@ -34,7 +34,7 @@ class GradingError(Exception):
     """A problem that an instructor can fix. The message says what happened and what to do."""
 
 
-def check_known(wanted: Sequence[str], known: Sequence[str], what: str) -> None:
+def check_known(wanted: Iterable[str], known: Collection[str], what: str) -> None:
     """Check that every chosen name exists.
 
     Raises:

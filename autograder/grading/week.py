@@ -9,7 +9,7 @@ from __future__ import annotations
 import contextlib
 import shutil
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from autograder import standard_output
 from autograder.grading.batch import grade
@@ -17,8 +17,6 @@ from autograder.grading.class_store import NAME as STORE
 from autograder.grading.classes.class_directory import STATE_NAME, ClassDirectory
 from autograder.grading.classes.gradebook_reading import gradebook_file
 from autograder.grading.collecting.collect import collect, report_lines
-from autograder.grading.collecting.collected_csv import NAME as TABLE
-from autograder.grading.collecting.collected_files import LineState
 from autograder.grading.collecting.downloaded_files import read_list
 from autograder.grading.collecting.list_times import NO_LIST
 from autograder.grading.collecting.systems import EACH
@@ -35,7 +33,7 @@ from autograder.grading.table.students_csv import read_students_csv
 from autograder.safe_files import HeldFolder
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Callable, Iterator, Mapping, Sequence
     from pathlib import Path
 
     from autograder.grading.collecting.collect import CollectReport
@@ -45,17 +43,15 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class WeekChoices:
-    """The choices of the instructor, which are those of ``collect``, ``grade`` and ``export``.
+    """The choices of the instructor.
 
     Attributes:
         collecting: The options of ``collect``, by name.
-        grading: The options of ``grade``, by name.
         columns: The columns of assignments in the list, if their names do not show it.
         over: True to replace what people typed into the LMS.
     """
 
-    collecting: Mapping[str, object] = field(default_factory=dict)
-    grading: Mapping[str, object] = field(default_factory=dict)
+    collecting: Mapping[str, Any] = field(default_factory=dict)
     columns: Mapping[str, str] = field(default_factory=dict)
     over: bool = False
 
@@ -81,12 +77,8 @@ class WeekReport:
     @property
     def exit_code(self) -> int:
         """2 if something waits for the instructor, or could not be done; otherwise 0."""
-        parts = [
-            self.collected.exit_code,
-            self.graded.exit_code,
-            self.exported.exit_code if self.exported else 0,
-        ]
-        return 2 if self.questions or any(parts) else 0
+        parts = (self.collected, self.graded, self.exported)
+        return 2 if self.questions or any(one.exit_code for one in parts if one) else 0
 
 
 @dataclass(frozen=True)
@@ -149,11 +141,22 @@ def week(path: Path, files: Sequence[Path], choices: WeekChoices = WeekChoices()
     Raises:
         GradingError: One of the steps cannot be done. What the steps before it did is done.
     """
+    return _week(path, files, choices, grade)
+
+
+def _week(
+    path: Path,
+    files: Sequence[Path],
+    choices: WeekChoices,
+    grading: Callable[[Path], GradeReport],
+    *,
+    dry_run: bool = False,
+) -> WeekReport:
     sorted_out = _sorted_out(files)
     lines, questions = _take_students(path, sorted_out.students)
-    collected = collect(path, sorted_out.downloads, **choices.collecting)  # type: ignore[arg-type]
-    graded = grade(path, **choices.grading)  # type: ignore[arg-type]
-    exported = _exported(path, sorted_out.into, collected, choices)
+    collected = collect(path, sorted_out.downloads, **choices.collecting)
+    graded = grading(path)
+    exported = _exported(path, sorted_out.into, collected, choices, dry_run=dry_run)
     return WeekReport(collected, graded, exported, tuple(lines), tuple(questions))
 
 
@@ -170,27 +173,24 @@ def rehearsed(path: Path, files: Sequence[Path], choices: WeekChoices = WeekChoi
             f"The gradebook is not in {directory.path}, so no copy of the class can be made: use --dry-run with "
             "grade and with export."
         )
+
+    def grade_copy(copy: Path) -> GradeReport:
+        """Grade the copy. The class itself keeps the results of checks, so that the week need not wait again."""
+        store, ours = copy / STATE_NAME / STORE, directory.state / STORE
+        if ours.exists():
+            store.unlink()
+            store.symlink_to(ours)
+            grade(copy, dry_run=True)
+            store.unlink()
+            shutil.copy(ours, store)
+        return replace(grade(copy), path=directory.path, gradebook=None)
+
     with directory.lock(), HeldFolder("autograder-week-") as held:
         copy = held.path / directory.path.name
         shutil.copytree(directory.path, copy, symlinks=True)
         (copy / STATE_NAME / "lock").unlink(missing_ok=True)
-        store, ours = copy / STATE_NAME / STORE, directory.state / STORE
-        sorted_out = _sorted_out(files)
-        lines, questions = _take_students(copy, sorted_out.students)
-        collected = collect(copy, sorted_out.downloads, **choices.collecting)  # type: ignore[arg-type]
-        if (
-            ours.exists()
-        ):  # the results of checks are kept in the class, so that the week itself need not wait again
-            store.unlink()
-            store.symlink_to(ours)
-            grade(copy, **{**choices.grading, "dry_run": True})  # type: ignore[arg-type]
-            store.unlink()
-            shutil.copy(ours, store)
-        graded = grade(copy, **choices.grading)  # type: ignore[arg-type]
-        exported = _exported(copy, sorted_out.into, collected, choices, dry_run=True)
-        report = WeekReport(collected, graded, exported, tuple(lines), tuple(questions))
-        there = replace(graded, path=directory.path, gradebook=None)
-        return replace(report, collected=replace(collected, path=directory.path), graded=there)
+        report = _week(copy, files, choices, grade_copy, dry_run=True)
+    return replace(report, collected=replace(report.collected, path=directory.path))
 
 
 def _take_students(path: Path, new: Path | None) -> tuple[list[str], list[str]]:
@@ -218,7 +218,8 @@ def _exported(
     options = ExportChoices(
         collected.assignments, into, columns=choices.columns, over=choices.over, dry_run=dry_run
     )
-    return export(path, "" if into else systems[0], options)
+    done = export(path, "" if into else systems[0], options)
+    return replace(done, ungraded=())
 
 
 def show_week(report: WeekReport) -> None:
@@ -236,9 +237,8 @@ def _lines(report: WeekReport) -> Iterator[str]:
         yield from replace(report.exported, questions=()).lines()
     else:
         yield "note         no points were exported: name the list of your LMS as well, or use export --to SYSTEM"
-    table = report.collected.path / TABLE
-    for one in report.collected.having(LineState.NOT_PLACED):
-        to_do = course_command("collect", report.collected.path)
-        yield f"waits        {one.label}: {one.reason} (edit {table}, then type {to_do})"
+    to_do = course_command("collect", report.collected.path)
+    for one in (one for one in report.graded.refused if one.waits):
+        yield f"waits        {one.path}: {one.reason}, then type {to_do}"
     for question in (*(report.exported.questions if report.exported else ()), *report.questions):
         yield f"waits        {question}"

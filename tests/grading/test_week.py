@@ -76,6 +76,7 @@ def test_each_number_of_a_week_arrives(
     assert waiting == list(range(len(lines) - len(waiting), len(lines))), "what waits comes last"
     for words, line in zip(case["waits"], lines[len(lines) - len(waiting) :], strict=True):
         assert words in line
+        assert sum(words in one for one in lines) == 1, "each file that waits is named once"
     assert report.exit_code == (2 if waiting else 0)
     if "pages" in case:
         with zipfile.ZipFile(folder.path / "export" / case["pages"]) as pages:

@@ -33,7 +33,7 @@ from autograder.grading.classes.class_directory import (
     refuse_students_folder,
 )
 from autograder.grading.classes.class_secret import create_secret
-from autograder.grading.grading_errors import GradingError, clear_disk_errors, course_command
+from autograder.grading.grading_errors import GradingError, check_known, clear_disk_errors, course_command
 from autograder.grading.rebuilding import nbformat_nodes
 from autograder.grading.result_writer import quiet
 from autograder.masters.master_files import MasterError, lab_name, masters, relinked
@@ -165,9 +165,7 @@ def _sources_of(course_root: Path, wanted: Sequence[str]) -> Sources:
     """
     try:
         labs = {lab_name(master): master for master in masters(course_root)}
-        for name in wanted:
-            if name not in labs:
-                raise GradingError(f"The course has no lab named {name}. Its labs are: {', '.join(labs)}.")
+        check_known(wanted, labs, "lab of the course")
         sources = {name: (labs[name], source_notebook(labs[name])) for name in wanted or labs}
     except MasterError as error:
         raise GradingError(str(error)) from error
@@ -269,11 +267,7 @@ def renew(path: Path, course_root: Path, assignments: Sequence[str] = ()) -> lis
     """
     directory = ClassDirectory(path)
     names = directory.assignments()
-    for name in assignments:
-        if name not in names:
-            raise GradingError(
-                f"The class has no assignment {name}. The assignments of the class are: {', '.join(names)}."
-            )
+    check_known(assignments, names, "assignment of the class")
     sources = {name: one for name, one in _sources_of(course_root, assignments).items() if name in names}
     if not sources:
         raise GradingError(

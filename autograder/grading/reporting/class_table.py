@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.gradebook_reading import Entries, read_entries
 from autograder.grading.collecting.collected_csv import Table, Waiting
-from autograder.grading.grading_errors import GradingError, MasterUnusable
+from autograder.grading.grading_errors import GradingError, MasterUnusable, check_known
 from autograder.grading.reporting.gradebook_layouts import LAYOUTS
 from autograder.grading.table.roster import Roster, Student
 from autograder.grading.table.rows import DROPPED, EXCUSED, NOT_SUBMITTED, Row, grouped, total
@@ -240,9 +240,5 @@ def compare(store: ClassStore, before: str = "", after: str = "") -> tuple[str, 
             "There is nothing to compare yet: this class does not have two runs with different results."
         )
     before, after = before or names[-2], after or names[-1]
-    for name in (before, after):
-        if name not in names:
-            raise GradingError(
-                f"Run {name} does not exist. The runs are: {', '.join(names[-10:]) or 'none'}."
-            )
+    check_known((before, after), names, "run")
     return before, after, [Difference(*row) for row in store.differences(before, after)]

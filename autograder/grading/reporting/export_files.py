@@ -21,7 +21,7 @@ from autograder.grading.reporting.class_table import ClassTable, read_table
 from autograder.grading.reporting.export_memory import ExportMemory
 from autograder.grading.reporting.feedback_zips import pages_for
 from autograder.grading.reporting.gradebook_layouts import LAYOUTS, GradebookLayout
-from autograder.grading.reporting.list_columns import Called, gradebook_columns, title_of
+from autograder.grading.reporting.list_columns import Called, gradebook_columns
 from autograder.grading.reporting.lms_gradebooks import cell_text, gradebook
 from autograder.grading.reporting.lms_list_filling import fill_list, read_lms_list
 from autograder.grading.table.roster import NAME as ROSTER
@@ -50,6 +50,7 @@ class Exported:
         changes: The cells of an LMS's list in which the class has other points.
         filled: A sentence for each column of the list that was filled in.
         questions: What the instructor has to decide, each with what to type.
+        ungraded: Sentences about collected files that wait for the instructor, so that no points of them are exported.
     """
 
     files: tuple[tuple[Path, str], ...]
@@ -57,6 +58,7 @@ class Exported:
     changes: tuple[CellChange, ...] = ()
     filled: tuple[str, ...] = ()
     questions: tuple[str, ...] = ()
+    ungraded: tuple[str, ...] = ()
 
     @property
     def exit_code(self) -> int:
@@ -70,7 +72,7 @@ class Exported:
         for file, purpose in self.files:
             yield str(file)
             yield f"    {purpose}"
-        yield from (f"note         {notice}" for notice in self.notices)
+        yield from (f"note         {notice}" for notice in (*self.ungraded, *self.notices))
         yield from (f"waits        {question}" for question in self.questions)
 
 
@@ -132,7 +134,11 @@ def export(path: Path, to: str, choices: ExportChoices = ExportChoices()) -> Exp
         work = _Export(directory, table, ExportMemory(directory.state), choices)
         done = work.into_list(source) if source else work.plain(to)
         notices = [*done.notices, *_notices(table, source.form.lms if source else to, work.wanted, path)]
-        return replace(done, notices=tuple(notices))
+        ungraded = (
+            f"{one.label} was not graded, so no points of it are exported: {one.sentence}"
+            for one in table.unplaced
+        )
+        return replace(done, notices=tuple(notices), ungraded=tuple(ungraded))
 
 
 @dataclass
@@ -156,11 +162,7 @@ class _Export:
         self.table.check_usable(asked)
         if not self.table.assignments:
             raise GradingError("Nothing was handed in yet, so there is nothing to export.")
-        for name in asked:
-            if name not in self.table.assignments:
-                raise GradingError(
-                    f"No student has handed in {name}. These were handed in: {', '.join(self.table.assignments)}."
-                )
+        check_known(asked, self.table.assignments, "assignment that a student has handed in")
         return list(asked) or self.table.assignments
 
     def into_list(self, source: LmsList) -> Exported:
@@ -168,12 +170,10 @@ class _Export:
         lms = source.form.lms
         wanted = self._of_worksheet(source) or self.wanted
         self.wanted = list(dict.fromkeys([*wanted, *self.choices.columns]))
-        others = [name for name in self.directory.assignments() if name not in self.wanted]
         done = fill_list(
             source,
             self.table,
             self._called(lms, self.wanted),
-            self._called(lms, others),
             self.memory,
             read_class_file(self.directory.path),
             over=self.choices.over,
@@ -237,7 +237,8 @@ class _Export:
 
     def _called(self, lms: str, names: Sequence[str]) -> list[Called]:
         """Return what the columns of assignments may be called, in the order of ``names``."""
-        titled = [Called(name, title_of(self.directory, name)) for name in names]
+        notebooks = {name: self.directory.notebooks(name) for name in names}
+        titled = [Called(name, self.directory.title(name, notebooks[name][0])) for name in names]
         with contextlib.suppress(OSError):
             rows, _ = csv_rows((self.directory.path / ROSTER).read_bytes())
             in_students = gradebook_columns(rows, lms, titled)
@@ -278,8 +279,6 @@ def _filled(name: str, column: Column, most: float, changes: Sequence[CellChange
 
 def _notices(table: ClassTable, lms: str, wanted: Sequence[str], path: Path) -> Iterator[str]:
     """Yield sentences about points that are not exported, or are not final."""
-    for one in table.unplaced:
-        yield f"{one.label} was not graded, so no points of it are exported: {one.sentence}"
     for name, reason in table.unusable.items():
         yield f"{name} is left out of all students' points: {reason}"
     yield from table.notices

@@ -224,31 +224,8 @@ def show(report: GradeReport, console: Console | None = None, *, with_waiting: b
     else:
         console.print(*tables(report.rows, console, diagnoses=False))
         console.print(_diagnoses(report.rows))
-    if report.would_change is not None:
-        count = len(report.would_change)
-        found = f"{counted(count, 'result')} would change:" if count else "No result would change."
-        plain_line(console, f"Nothing was entered. {found}", "bold")
-        for change in report.would_change:
-            plain_line(console, f"would change {change.line()}")
-    for words in _legend(report.rows):
-        plain_line(console, words)
-    for refused in (one for one in report.refused if with_waiting or not one.waits):
-        word = "waits" if refused.waits else "refused"
-        plain_line(console, f"{word:<12} {refused.path}: {refused.reason}", "yellow")
-    for where, reason in _unreadable(report):
-        plain_line(console, f"unreadable   {where}: {reason}", "yellow")
-    for name, due in report.due.items():
-        plain_line(console, f"due          {name} {due:%Y-%m-%d %H:%M}, time zone {due.tzinfo}")
-    for (student, assignment), words in remarks_on(report.rows).items():
-        plain_line(console, f"remark       {student}/{assignment}: {words}")
-    for notice in report.notices:
-        plain_line(console, f"note         {notice}")
-    for why, count in report.run_again.items():
-        plain_line(console, f"run again    {counted(count, 'notebook')}: {why}")
-    for problem in report.problems:
-        plain_line(console, f"problem      {problem}", "red")
-    if report.note:
-        plain_line(console, f"unsafe       {report.note}", "red")
+    for word, text, style in _lines(report, with_waiting=with_waiting):
+        plain_line(console, f"{word:<12} {text}" if word else text, style)
     ran, entered = counted(report.executed, "notebook"), counted(report.written, "submission")
     plain_line(console, f"{ran} run, {report.reused} unchanged, {entered} entered, {report.seconds:.1f} s")
     for name, path in (
@@ -260,6 +237,28 @@ def show(report: GradeReport, console: Console | None = None, *, with_waiting: b
             plain_line(console, f"{name:<10} {_near(path)}")
     if report.executed:
         plain_line(console, report.timings.line())
+
+
+def _lines(report: GradeReport, *, with_waiting: bool) -> Iterator[tuple[str, str, str]]:
+    """Yield the word that begins each line below the table, the text of the line, and the style."""
+    if report.would_change is not None:
+        count = len(report.would_change)
+        found = f"{counted(count, 'result')} would change:" if count else "No result would change."
+        yield "", f"Nothing was entered. {found}", "bold"
+        yield from (("would change", change.line(), "") for change in report.would_change)
+    yield from (("", words, "") for words in _legend(report.rows))
+    for refused in (one for one in report.refused if with_waiting or not one.waits):
+        yield "waits" if refused.waits else "refused", f"{refused.path}: {refused.reason}", "yellow"
+    yield from (("unreadable", f"{where}: {why}", "yellow") for where, why in _unreadable(report))
+    for name, due in report.due.items():
+        yield "due", f"{name} {due:%Y-%m-%d %H:%M}, time zone {due.tzinfo}", ""
+    for key, words in remarks_on(report.rows).items():
+        yield "remark", f"{'/'.join(key)}: {words}", ""
+    yield from (("note", notice, "") for notice in report.notices)
+    for why, count in report.run_again.items():
+        yield "run again", f"{counted(count, 'notebook')}: {why}", ""
+    yield from (("problem", problem, "red") for problem in report.problems)
+    yield from (("unsafe", note, "red") for note in [report.note] if note)
 
 
 def tables(rows: Sequence[Row], console: Console, *, diagnoses: bool) -> Iterator[Table]:

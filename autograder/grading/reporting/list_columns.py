@@ -6,19 +6,13 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import re2
-from rapidfuzz import fuzz, process
 
-from autograder.execution.executed_cells import CellType
-from autograder.grading.classes.class_directory import SUFFIX
 from autograder.grading.collecting.systems import EACH, LIST_FORMS
 from autograder.grading.grading_errors import GradingError
-from autograder.grading.rebuilding.notebook_parsing import parse
-from autograder.grading.rebuilding.submitted_notebook import UnreadableSubmission, read_bytes
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from autograder.grading.classes.class_directory import ClassDirectory
     from autograder.grading.collecting.systems import ListForm
 
 _LOCKED = "(read only)"
@@ -96,31 +90,13 @@ def _same(called: str, names: Sequence[str]) -> list[str]:
     return [name for name in names if _without_number(name) == called]
 
 
-def title_of(directory: ClassDirectory, assignment: str) -> str:
-    """Return the title of an assignment: the first heading in its notebook; empty if there is none."""
-    for notebook in directory.notebooks(assignment):
-        try:
-            cells, _ = parse(read_bytes(directory.path / "source" / assignment / f"{notebook}{SUFFIX}"))
-        except UnreadableSubmission:
-            continue
-        lines = (
-            line for cell in cells if cell.kind == CellType.MARKDOWN for line in cell.source.splitlines()
-        )
-        if title := next((line.removeprefix("# ") for line in lines if line.startswith("# ")), ""):
-            return title
-    return ""
-
-
-def find_columns(
-    rows: Sequence[Sequence[str]], form: ListForm, wanted: Sequence[Called], others: Sequence[Called] = ()
-) -> FoundColumns:
+def find_columns(rows: Sequence[Sequence[str]], form: ListForm, wanted: Sequence[Called]) -> FoundColumns:
     """Find the column for each assignment.
 
     Args:
         rows: The rows of the list.
         form: The form of the list, in which each assignment has a column.
         wanted: The assignments.
-        others: The other assignments of the class, whose columns are not proposed for a wanted one.
 
     Raises:
         GradingError: No assignment has a column, or two have the same.
@@ -141,21 +117,12 @@ def find_columns(
     missing = [one for one in wanted if one.assignment not in columns]
     if not missing:
         return FoundColumns(columns)
-    taken = {one.name for one in columns.values()} | {name for one in others for name in one.among(names)}
-    free = [name for name in names if name not in taken]
-    likeliest = (
-        process.extractOne(one.assignment, free, scorer=fuzz.partial_ratio, processor=_letters)
-        for one in missing
-    )
-    advised = [match[0] if match else "COLUMN" for match in likeliest]
-    options = " ".join(
-        f'--column "{one.assignment}={name}"' for one, name in zip(missing, advised, strict=True)
-    )
+    options = " ".join(f'--column "{one.assignment}=COLUMN"' for one in missing)
     asked = ", ".join(one.named or one.assignment for one in missing)
     why = f" {_LOCKED} columns take no points: {', '.join(sorted(locked))}." if locked else ""
     question = (
         f"No column for points is called {asked}, or more than one is. The list has: {', '.join(names) or 'none'}."
-        f"{why} Name one for each, for example: {options}"
+        f"{why} Name one for each: {options}"
     )
     if not columns:
         raise GradingError(question)

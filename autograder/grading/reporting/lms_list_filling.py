@@ -136,7 +136,6 @@ def fill_list(
     source: LmsList,
     table: ClassTable,
     wanted: Sequence[Called],
-    others: Sequence[Called],
     memory: ExportMemory,
     said: ClassFile,
     *,
@@ -151,7 +150,6 @@ def fill_list(
         source: Moodle's grading worksheet, or a gradebook that another system exported.
         table: The table of the class.
         wanted: The assignments to fill in; exactly one if the list is a worksheet.
-        others: The other assignments of the class.
         memory: What was exported earlier.
         said: The content of ``class.toml``.
         over: True to replace values that a person typed into the LMS, other than the word for an excused student.
@@ -160,7 +158,7 @@ def fill_list(
         GradingError: The list has no column that takes points for an assignment.
     """
     form, rows = source.form, source.rows
-    columns, questions = _columns(source, wanted, others)
+    columns, questions = _columns(source, wanted)
     lines, strangers = _lines_by_student(rows[1:], source.header, form, table)
     certain, doubtful = _certain(lines)
     changes: list[CellChange] = []
@@ -265,9 +263,7 @@ def _notices(
         )
 
 
-def _columns(
-    source: LmsList, wanted: Sequence[Called], others: Sequence[Called]
-) -> tuple[Mapping[str, Column], list[str]]:
+def _columns(source: LmsList, wanted: Sequence[Called]) -> tuple[Mapping[str, Column], list[str]]:
     """Return the columns for points by assignment, and questions about assignments without a column.
 
     Raises:
@@ -275,7 +271,7 @@ def _columns(
     """
     form = source.form
     if form.points == EACH:
-        found = find_columns(source.rows, form, wanted, others)
+        found = find_columns(source.rows, form, wanted)
         return found.columns, [found.question] if found.question else []
     if len(wanted) != 1:
         names = ", ".join(one.assignment for one in wanted)

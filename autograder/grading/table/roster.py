@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import re2
 
-from autograder.grading.grading_errors import GradingError
+from autograder.grading.grading_errors import check_known
 from autograder.kit.in_words import counted
 
 if TYPE_CHECKING:
@@ -188,12 +188,7 @@ class Roster:
             GradingError: A section has no students.
         """
         known = {section for one in self.students.values() for section in one.sections}
-        for section in sections:
-            if section not in known:
-                raise GradingError(
-                    f"No student is in a section named {section}. The sections in {NAME} are: "
-                    f"{', '.join(sorted(known)) or 'nothing'}."
-                )
+        check_known(list(sections), sorted(known), f"section in {NAME}")
         return [one.id for one in self.students.values() if one.sections & set(sections)]
 
     def left_out(self, sections: Sequence[str]) -> list[str]:

@@ -11,7 +11,7 @@ from datetime import UTC, tzinfo
 from typing import TYPE_CHECKING
 
 from autograder.grading.classes import class_file
-from autograder.grading.grading_errors import GradingError
+from autograder.grading.grading_errors import GradingError, check_known
 from autograder.grading.table.rows import (
     BY_HAND,
     DROPPED,
@@ -117,15 +117,8 @@ def read_what_counts(directory: ClassDirectory, cells: Mapping[str, Sequence[Gra
     """
     path, said = directory.path / class_file.NAME, class_file.read_class_file(directory.path)
     exercises = {cell.exercise for of_assignment in cells.values() for cell in of_assignment}
-    for name, known in (
-        *((name, exercises) for name in (*said.leave_out, *said.points)),
-        *((name, cells.keys()) for name in (*said.weights, *said.out_of)),
-    ):
-        if name not in known:
-            raise GradingError(
-                f"{path} contains {name}, which does not exist in this class. Possible names are: "
-                f"{', '.join(sorted(known))}."
-            )
+    check_known((*said.leave_out, *said.points), sorted(exercises), f"exercise for {path}")
+    check_known((*said.weights, *said.out_of), sorted(cells), f"assignment for {path}")
     for name, points in (*said.points.items(), *said.weights.items(), *said.out_of.items()):
         if not 0 <= points < 1e6:
             raise GradingError(

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from autograder.grading.classes.class_dates import ClassDates
 from autograder.grading.classes.class_file import NAME, read_class_file
 from autograder.grading.collecting.written_times import read_time
-from autograder.grading.grading_errors import GradingError
+from autograder.grading.grading_errors import GradingError, check_known
 
 if TYPE_CHECKING:
     from autograder.grading.classes.class_directory import ClassDirectory
@@ -26,9 +26,7 @@ def read_class_dates(directory: ClassDirectory, roster: Roster) -> ClassDates:
     """
     said, path = read_class_file(directory.path), directory.path / NAME
     names = directory.assignments()
-    for name in (*said.due, *said.extension):
-        if name not in names:
-            raise GradingError(f"{path} names {name}, but the class has only {', '.join(names)}.")
+    check_known((*said.due, *said.extension), names, f"assignment for {path}")
     due = {name: _date(directory, f"due.{name}", value) for name, value in said.due.items()}
     extended: dict[tuple[str, str], datetime] = {}
     for assignment, of_assignment in said.extension.items():

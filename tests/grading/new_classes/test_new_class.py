@@ -95,7 +95,9 @@ def test_a_class_in_the_repository_is_refused_but_for_the_ignored_one(course: Pa
 
 
 def test_an_unknown_assignment_names_the_known_ones(course: Path, tmp_path: Path) -> None:
-    with pytest.raises(GradingError, match=r"no lab named lab_9. Its labs are: lab_1_2, reading"):
+    with pytest.raises(
+        GradingError, match=r"No lab of the course is named lab_9. Known names: lab_1_2, reading"
+    ):
         new_class(tmp_path / "class", course, assignments=["lab_9"])
     assert not (tmp_path / "class").exists()
 

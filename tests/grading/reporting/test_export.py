@@ -290,7 +290,7 @@ def test_what_counts_can_be_said_at_any_time_and_changed_again(graded: TinyClass
         assert sum(float(row["max"]) for row in of_ada) == float(most)
     assert in_gradebook(graded) == in_gradebooks, "the gradebook keeps what was earned"
     for text, words in (
-        ('leave_out = ["lab_9.x"]', "contains lab_9.x, which does not exist in this class"),
+        ('leave_out = ["lab_9.x"]', "class.toml is named lab_9.x. Known names"),
         ("points = 3", "cannot be used"),
         ("weigths = {}", "cannot be used"),
         ('[points]\n"lab_1_2.talker" = -1', "Write a number from 0"),
@@ -364,7 +364,7 @@ def test_an_assistant_sees_the_students_of_their_section(graded: TinyClass) -> N
     page = (graded.path / "report.html").read_text()
     assert ("(ada)" in page, "(jose)" in page) == (True, False)
     said = CliRunner().invoke(cli, ["grade", str(graded.path), "--section", "Wednesday"])
-    assert (said.exit_code, "are: Monday, Tuesday" in said.output) == (2, True)
+    assert (said.exit_code, "Known names: Monday, Tuesday" in said.output) == (2, True)
 
 
 @pytest.mark.parametrize(("login", "points"), [("", ["", ""]), ("ada", ["18.5", ""])])
@@ -390,7 +390,7 @@ def test_a_column_of_another_name_is_named(graded: TinyClass, tmp_path: Path) ->
     )
     command = ["export", str(graded.path), "--to", "canvas", "--into", str(gradebook)]
     result = CliRunner().invoke(cli, command)
-    assert 'for example: --column "lab_1_2=Week 2 (5001)"' in result.output
+    assert 'Name one for each: --column "lab_1_2=COLUMN"' in result.output
     assert CliRunner().invoke(cli, [*command, "--column", "lab_1_2=Week 2"]).exit_code == 0
     lines = rows(graded.path / "export" / "canvas.csv")
     assert [row[-1] for row in lines[2:]] == ["18.5", ""]

@@ -160,10 +160,10 @@ GRADEBOOK = (
 )
 
 
-@pytest.mark.parametrize("name", ["Woche 3 - lab 1.2 (9001)", "lab 1.2 late (9001)"])
-def test_the_likeliest_column_is_advised_and_no_column_that_names_a_student_is_written(
-    klass: TinyClass, tmp_path: Path, name: str
+def test_columns_are_asked_for_and_no_column_that_names_a_student_is_written(
+    klass: TinyClass, tmp_path: Path
 ) -> None:
+    name = "Woche 3 - lab 1.2 (9001)"
     klass.submit("ada", 8, 10)
     klass.grade()
     into = tmp_path / "list.csv"
@@ -172,10 +172,10 @@ def test_the_likeliest_column_is_advised_and_no_column_that_names_a_student_is_w
     )
     command = ["export", str(klass.path), "--to", "canvas", "--into", str(into)]
     said = CliRunner().invoke(cli, command)
-    assert (said.exit_code, f'--column "lab_1_2={name}"' in said.output) == (2, True), said.output
+    assert (said.exit_code, '--column "lab_1_2=COLUMN"' in said.output) == (2, True), said.output
     for wrong in ("Final Result", "Section", "Student", "SIS Login ID", "Final Score", "Current Score"):
         said = CliRunner().invoke(cli, [*command, "--column", f"lab_1_2={wrong}"])
-        assert (said.exit_code, f'--column "lab_1_2={name}"' in said.output) == (2, True), said.output
+        assert (said.exit_code, '--column "lab_1_2=COLUMN"' in said.output) == (2, True), said.output
         assert "(read only) columns take no points: Current Score, Final Score." in said.output
     assert not (klass.path / "export").exists()
     said = CliRunner().invoke(cli, [*command, "--column", f"lab_1_2={name}"])
@@ -218,7 +218,7 @@ def test_all_columns_that_are_missing_are_named_at_once() -> None:
     form = next(one for one in LIST_FORMS if one.lms == "canvas" and one.points == EACH)
     with pytest.raises(GradingError) as caught:
         find_columns([header], form, list(map(Called, ("first_lab_1", "second_lab_2", "third"))))
-    for word in ("first_lab_1, second_lab_2, third", '--column "first_lab_1=First lab (1)"', "third="):
+    for word in ("first_lab_1, second_lab_2, third", '--column "first_lab_1=COLUMN"', "third="):
         assert word in str(caught.value)
 
 
