@@ -19,7 +19,7 @@ from autograder.grading.collecting.downloaded_files import (
     read_list,
     without_sandbox,
 )
-from autograder.grading.collecting.file_owners import NamedSource, StudentOf
+from autograder.grading.collecting.file_owners import StudentOf, is_gradescopes_list, levels_of
 from autograder.grading.collecting.file_to_grade import decide
 from autograder.grading.collecting.inbox_lines import lines_of
 from autograder.grading.collecting.list_times import NO_LIST, entries_of, in_utc
@@ -211,8 +211,9 @@ class _Collecting:
             student_of = self._knowing()
             for path in (path for path in paths if path not in lists):
                 files = tuple(archives.files_of(path, is_opened=not is_own))
-                source = NamedSource(path, files, is_own)
-                arrivals += self._source(source, student_of, receiving, archives)
+                levels = levels_of(path, [file.arrival for file in files], is_own=is_own)
+                for file in files:
+                    arrivals += self._arrivals(file, levels, student_of, receiving, archives)
                 self._notes += [] if files else [f"{path} {EMPTY}"]
             if why := without_sandbox():
                 self._notes.append(
@@ -244,23 +245,21 @@ class _Collecting:
         self._entries += entries
         return replace(arrival, is_list=True)
 
-    def _source(
-        self, source: NamedSource, student_of: StudentOf, receiving: Receiving, archives: Archives
+    def _arrivals(
+        self, file: File, levels: int, student_of: StudentOf, receiving: Receiving, archives: Archives
     ) -> Iterator[Arrival]:
-        for file in source.files:
-            if source.is_list(file.arrival, self._options.form):
-                yield self._list(file, receiving)
-                continue
-            arrival, data = _taken(file, receiving)
-            arrival = replace(arrival, levels=source.levels, is_own=source.is_own)
-            if arrival.refused or not is_archive(arrival.name, data):
-                yield arrival
-                continue
-            yield replace(arrival, is_archive=True)
-            owners = student_of.owners(arrival.parts, source.levels, is_alone=source.is_own)
-            whose = tuple(one.id for one in (*owners.students, *owners.candidates)) or arrival.parts[:2]
-            for inner in archives.within(arrival, data, self._rooms[whose]):
-                yield _taken(inner, receiving)[0]
+        file = file._replace(arrival=replace(file.arrival, levels=levels))
+        if is_gradescopes_list(file.arrival, self._options.form):
+            yield self._list(file, receiving)
+            return
+        arrival, data = _taken(file, receiving)
+        if arrival.refused or not is_archive(arrival.name, data):
+            yield arrival
+            return
+        yield replace(arrival, is_archive=True)
+        whose = tuple(one.id for one in student_of.owners(arrival).meant) or arrival.parts[:2]
+        for inner in archives.within(arrival, data, self._rooms[whose]):
+            yield _taken(inner, receiving)[0]
 
     def _report(
         self,

@@ -48,7 +48,6 @@ class Arrival:
         content: The hash of the bytes; empty if they could not be read.
         refused: The reason why the bytes could not be read; empty if they could be read.
         levels: The number of names, from the top of the path, that may name a student.
-        is_own: True if the instructor named this file or folder as the work of one student.
         is_list: True if the file is a list made by the system and not a student's work.
         is_archive: True if the file is a student's archive. The files in the archive have arrivals of their own.
     """
@@ -59,9 +58,13 @@ class Arrival:
     content: str = ""
     refused: str = ""
     levels: int = 1
-    is_own: bool = False
     is_list: bool = False
     is_archive: bool = False
+
+    @property
+    def is_alone(self) -> bool:
+        """True if the instructor named this very file, or archive, so that its name may be the student's."""
+        return not self.source and len(self.parts) == 1
 
     @property
     def name(self) -> str:

@@ -1,14 +1,14 @@
 """Finds the student who handed in a file, by its name, by students.csv, and by lists from the LMS.
 
-A path on the command line is a download or the work of one student. Only the names on the command line decide which of
-the two it is, never the contents: all paths of a command are each the work of one student if one of them is a file
-that is neither a zip nor a list, or has a name that an LMS gives to the work of one student, or the name of a student;
-or if several are folders, as with ``repositories/*``. Names inside such a path identify no student. In a download, the
-names at the top identify students; and if a single folder at the top contains everything else, the names in that
-folder, too. Names further down do not, because students have chosen them.
+What decides is said, and nothing is guessed from likeness: ``--student``, the pattern of ``--names``, a row of
+``systems.toml``, or else an id or a name that students.csv has. If two of them say different students, or none of them
+says one, the file waits, and the instructor writes the student's id into a cell.
 
-There is one doubt about a file: its name does not say with certainty whose it is. Then the file waits, and the
-instructor writes the student's id into a cell.
+A path on the command line is a download or the work of one student. Each path is the work of one student if one of them
+is a file that is neither a zip nor a list, or a zip whose own name says a student; or if there are several and one is a
+folder, as with ``repositories/*``. Names inside such a path identify no student. In a download, the names at the top
+identify students; and if a single folder at the top contains everything else, the names in that folder, too. Names
+further down do not, because students have chosen them.
 """
 
 from __future__ import annotations
@@ -23,11 +23,8 @@ from typing import TYPE_CHECKING
 import re2
 
 from autograder.grading.classes.class_directory import reason_against_name
-from autograder.grading.collecting.submitted_file_names import (
-    Pattern,
-    read_lms_name,
-    read_plain_name,
-)
+from autograder.grading.collecting.collected_files import Arrival
+from autograder.grading.collecting.submitted_file_names import Pattern, read_lms_name, read_plain_name
 from autograder.grading.collecting.systems import GRADESCOPE, NAME_FORMS
 from autograder.grading.table.roster import Identity, Roster, Student
 from autograder.safe_files import name_as_text
@@ -36,8 +33,6 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
     from pathlib import Path
 
-    from autograder.grading.collecting.collected_files import Arrival
-    from autograder.grading.collecting.downloaded_files import File
     from autograder.grading.collecting.lms_lists import ListEntry
     from autograder.grading.collecting.submitted_file_names import NameFacts
 
@@ -54,17 +49,23 @@ class Owners:
     """The students who handed in a file, according to its name.
 
     Attributes:
-        facts: The facts in the name; None if it has no known form, or if two forms would mean different students or
-            times.
+        facts: The facts in the name; None if it has no known form, or the forms of several systems.
         students: The members of the group, or the only student; empty if they are not certain.
         candidates: If they are not certain, the students who may be meant.
         is_sure: True if a number of the LMS identifies the students, and not just a name that students may choose.
+        systems: The systems whose form the name has, if they are several: a student has chosen the end of the name.
     """
 
     facts: NameFacts | None = None
     students: tuple[Student, ...] = ()
     candidates: tuple[Student, ...] = ()
     is_sure: bool = False
+    systems: tuple[str, ...] = ()
+
+    @property
+    def meant(self) -> tuple[Student, ...]:
+        """The students whom the name means, or may mean."""
+        return (*self.students, *self.candidates)
 
 
 class StudentOf:
@@ -88,39 +89,30 @@ class StudentOf:
         # Cached, because many files have the same folder in their path.
         self._identified = functools.cache(self._identify)
 
-    def owners(self, parts: Sequence[str], levels: int, *, is_alone: bool = False) -> Owners:
+    def owners(self, arrival: Arrival) -> Owners:
         """Return the students of a file, by the topmost name in its path that has a known form.
 
         The LMS has chosen the topmost names; the student may have chosen the names below.
-
-        Args:
-            parts: The folders of the path and the file.
-            levels: The number of names, from the top, that no student has chosen.
-            is_alone: True if the instructor named this very file, so that its name may identify the student.
         """
-        parts = [unicodedata.normalize("NFC", part) for part in parts]
+        parts = [unicodedata.normalize("NFC", part) for part in arrival.parts]
         if self._names is not None:
-            facts = self._names.read(parts, levels)
+            facts = self._names.read(parts, arrival.levels)
             return self._students(facts) if facts else Owners()
-        names = [*parts[:-1], PurePath(parts[-1]).stem if is_alone else ""]
-        for place in range(min(levels, len(parts))):
-            ways = [way for form in self._forms if (way := read_lms_name(parts, place, form))]
-            read = [self._students(way) for way in ways] or [
-                self._students(read_plain_name(names[place], parts[-1]))
-            ]
-            # A student has chosen the end of a name, so two forms that fit have to mean the same student and time.
-            said = [(one.students, one.students and one.facts and one.facts.when) for one in read]
-            if any(one != said[0] for one in said):
-                return Owners(candidates=_all_meant(read))
-            if ways or read[0].students or read[0].candidates:
-                return read[0]
+        names = [*parts[:-1], PurePath(parts[-1]).stem if arrival.is_alone else ""] if parts else ()
+        for place, name in enumerate(names[: arrival.levels]):
+            forms = {form: way for form in self._forms if (way := read_lms_name(parts, place, form))}
+            if len(forms) > 1:
+                return Owners(systems=tuple(forms))
+            found = self._students(*(forms.values() or [read_plain_name(name, parts[-1])]))
+            if forms or found.meant:
+                return found
         return Owners()
 
     def _students(self, facts: NameFacts) -> Owners:
         """Return the students whom a name means, if all ways to read it that mean students mean the same ones."""
         ways = facts.identities if self._roster.students else facts.identities[:1]
         hits = [(self._identified(one), one) for one in ways]
-        hits = [(hit, one) for hit, one in hits if hit.students or hit.candidates]
+        hits = [(hit, one) for hit, one in hits if hit.meant]
         if not hits:
             return Owners(facts)
         first, identity = hits[0]
@@ -129,7 +121,8 @@ class StudentOf:
         read = [*(hit for hit, _ in hits), *rivals]
         if first.students and all(hit.students == first.students for hit in read):
             return replace(first, facts=facts)
-        return Owners(facts, candidates=_all_meant(read))
+        meant = {student.id: student for one in read for student in one.meant}
+        return Owners(facts, candidates=tuple(meant.values()))
 
     def _identify(self, identity: Identity) -> Owners:
         """Return the students whom an identity means, without facts."""
@@ -180,27 +173,24 @@ class StudentOf:
         hit = self._roster.first(names)
         return hit and (hit[0], bool(names[hit[1]].login))
 
-    def doubt(self, owners: Owners, name: str) -> str:
-        """Return why it is not certain whose a file is, and what to do; empty if it is certain.
-
-        Args:
-            owners: The students, according to the name.
-            name: The name at the top of the file's path.
-        """
+    def doubt(self, owners: Owners) -> str:
+        """Return why it is not certain whose a file is, and what to do; empty if it is certain."""
         for student in owners.students:
             if reason := reason_against_name(student.id):
                 return f"{student.id} cannot be a student's id: {reason}. List it in students.csv"
         if owners.students:
             return ""
-        if owners.facts is None and not owners.candidates:
+        if owners.systems:
+            forms = " and of ".join(owners.systems)
+            return f"the file's name has the form of {forms}: name its system with --from, or {_WRITE_IT}"
+        if owners.facts is None:
             return (
                 f"the file's name does not identify a student: {_WRITE_IT}, or collect the file alone with --student "
                 "ID; if many names have this form, describe it with --names"
             )
-        identity = owners.facts.identity if owners.facts else Identity(name=name)
+        identity, how = owners.facts.identity, _WRITE_IT
         known = self._by_number.get((identity.lms, identity.number or identity.login))
         listed = NAME_FORMS[identity.lms].list if identity.lms in NAME_FORMS and not known else ""
-        how = _WRITE_IT if owners.facts else f"name its system with --from, or {_WRITE_IT}"
         if listed:
             which = f"{listed}, which maps number {identity.number} to a student"
             how = f"collect the file together with {which}, or {_WRITE_IT}"
@@ -230,67 +220,42 @@ class StudentOf:
 
     def are_of_students(self, paths: Sequence[Path]) -> bool:
         """Return True if the paths of a command are each the work of one student."""
-        if len(paths) == 1 and _DOWNLOAD.match(name_as_text(paths[0].name)):
-            return False
-        are_files = any(path.is_file() and path.suffix.lower() not in (".zip", ".csv") for path in paths)
-        return are_files or sum(path.is_dir() for path in paths) > 1 or any(map(self._has_name_of_one, paths))
+        files = [path for path in paths if not path.is_dir()]
+        return any(map(self._is_of_one, files)) or len(files) < len(paths) > 1
 
-    def _has_name_of_one(self, path: Path) -> bool:
-        """Return True if a file or folder has a name that an LMS gives to one student's work, or a student's name."""
-        owners = self._owners_by_name(path)
-        is_plain = owners.facts is not None and owners.facts.identity.lms in ("", "github")
-        return bool(owners.candidates or owners.students or (owners.facts and not is_plain))
-
-    def _owners_by_name(self, path: Path) -> Owners:
-        """Return the students of a file or folder that the instructor named, by its own name alone."""
-        name = name_as_text(path.absolute().name)
-        return self.owners((name, "") if path.is_dir() else (name,), 1, is_alone=True)
-
-
-def _all_meant(read: Iterable[Owners]) -> tuple[Student, ...]:
-    """Return each student whom one of these ways to read a name means, or may mean, once."""
-    meant = {student.id: student for one in read for student in (*one.students, *one.candidates)}
-    return tuple(meant.values())
+    def _is_of_one(self, file: Path) -> bool:
+        """Return True for a file that is no zip, and for a zip whose own name says a student."""
+        owners = self.owners(Arrival("", (name_as_text(file.name),)))
+        is_of_system = owners.facts is not None and owners.facts.identity.lms in NAME_FORMS
+        return bool(file.suffix.lower() != ".zip" or owners.meant or owners.systems or is_of_system)
 
 
 def _same_number(one: str, other: str) -> bool:
     return bool(one.lstrip("0")) and one.lstrip("0").casefold() == other.lstrip("0").casefold()
 
 
-# Blackboard's download has a name that looks like that of a file in Canvas.
-_DOWNLOAD = re2.compile(r"^gradebook_.*_\d{4}(?:-\d\d){5}(?: ?\(\d+\))?\.zip$")
-
-
 _EXPORT = re2.compile(r"^assignment_\d+_export(?: ?\(\d+\)|-\d+)?$")
 _SUBMISSION = re2.compile(r"^submission_\d+$")
 
 
-@dataclass(frozen=True)
-class NamedSource:
-    """A download, or the files of one student.
+def levels_of(path: Path, arrivals: Sequence[Arrival], *, is_own: bool) -> int:
+    """Return the number of names, from the top of each path, that may identify a student: no student has chosen them.
 
-    Attributes:
+    Args:
         path: The file or folder that the instructor named.
-        files: All files in it, or the file itself.
+        arrivals: All files in it, or the file itself.
         is_own: True if all files belong to one student.
     """
+    if is_own:
+        return 1
+    above = 1 if path.is_dir() else 0  # the name of the folder itself
+    tops = {one.parts[above : above + 1] for one in arrivals} - {()}
+    return above + (2 if len(tops) == 1 else 1)
 
-    path: Path
-    files: tuple[File, ...]
-    is_own: bool
 
-    @functools.cached_property
-    def levels(self) -> int:
-        """The number of names, from the top of each path, that may identify a student: no student has chosen them."""
-        if self.is_own:
-            return 1
-        above = 1 if self.path.is_dir() else 0  # the name of the folder itself, which identifies no student
-        tops = {file.arrival.parts[above : above + 1] for file in self.files} - {()}
-        return above + (2 if len(tops) == 1 else 1)
-
-    def is_list(self, arrival: Arrival, form: str) -> bool:
-        """Return True if a file is the list in Gradescope's export, and not a student's file with that name."""
-        *above, name = arrival.parts or ("",)
-        is_at_top = len(arrival.parts) <= self.levels and not any(map(_SUBMISSION.match, above))
-        is_export = form == "gradescope" or bool(above and _EXPORT.match(above[-1]))
-        return name == GRADESCOPE and is_at_top and is_export
+def is_gradescopes_list(arrival: Arrival, form: str) -> bool:
+    """Return True if a file is the list in Gradescope's export, and not a student's file with that name."""
+    *above, name = arrival.parts or ("",)
+    is_at_top = len(arrival.parts) <= arrival.levels and not any(map(_SUBMISSION.match, above))
+    is_export = form == "gradescope" or bool(above and _EXPORT.match(above[-1]))
+    return name == GRADESCOPE and is_at_top and is_export

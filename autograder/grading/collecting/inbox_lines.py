@@ -12,7 +12,7 @@ from zoneinfo import ZoneInfo
 
 from autograder.grading.classes.class_directory import SUFFIX
 from autograder.grading.collecting.collected_files import BY_HAND, Line
-from autograder.grading.collecting.file_owners import Owners, StudentOf
+from autograder.grading.collecting.file_owners import StudentOf
 from autograder.grading.collecting.list_times import WAS_READ, ListTimes, entries_of, in_utc
 from autograder.grading.collecting.submitted_file_names import base_of
 from autograder.grading.collecting.systems import GRADESCOPE
@@ -109,12 +109,9 @@ class _Reading:
             if of_archive is not None:
                 yield self._line(arrival, edit, of_archive)
 
-    def _owners(self, arrival: Arrival) -> Owners:
-        return self.student_of.owners(arrival.parts, arrival.levels, is_alone=arrival.is_own)
-
     def _doubt(self, arrival: Arrival) -> str:
-        why = self.student_of.doubt(self._owners(arrival), (arrival.parts or (arrival.source,))[0])
-        return f"{why}; {_ALONE}" if why and arrival.is_own else why
+        why = self.student_of.doubt(self.student_of.owners(arrival))
+        return f"{why}; {_ALONE}" if why and arrival.is_alone else why
 
     def _line(self, arrival: Arrival, edit: Edit, of_archive: Edit) -> Line:
         """Return the line of a file.
@@ -143,7 +140,7 @@ class _Reading:
 
     def _collected(self, line: Line, arrival: Arrival, edit: Edit, of_archive: Edit) -> Line:
         """Return the line of a file that came from a system, completed with its students, notebook and time."""
-        owners = self._owners(arrival)
+        owners = self.student_of.owners(arrival)
         asked = edit.assignment or of_archive.assignment or self.delivery.assignment
         if written := edit.student or of_archive.student or self.delivery.student:
             ids, reason = self.student_of.written(written)
@@ -174,7 +171,7 @@ class _Reading:
             is_work = arrival.name.lower().endswith((".ipynb", ".zip")) or not ids
             return replace(line, reason=arrival.refused, is_soft=not is_work)
         if arrival.is_archive:
-            is_nobodys = found is None and not owners.candidates
+            is_nobodys = found is None and not owners.systems
             return replace(line, reason=_UNKNOWN_ARCHIVE if is_nobodys and not written else reason)
         data = self.inbox.read(arrival.content)
         if not _is_notebook(arrival.name, data):
@@ -204,7 +201,7 @@ class _Reading:
 
 _LMS_PAGES = ("index.html", "grades.csv", GRADESCOPE)
 """The names of files that an LMS adds to a download."""
-_ALONE = "if it belongs to a download, collect the download in a command of its own"
+_ALONE = "if it is or belongs to a download, collect that in a command of its own, with --from"
 _OF_ONE_STUDENT = "If one student sent it, the folder has to be named after this student"
 _UNKNOWN_ARCHIVE = (
     "the archive's name identifies no student. If it is a whole download, unpack it, and collect the folder. "

@@ -10,16 +10,17 @@ import sys
 import tracemalloc
 import unicodedata
 import zipfile
-from datetime import UTC, datetime
+from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from zoneinfo import ZoneInfo
 
-import nbformat
 import pytest
 from click.testing import CliRunner
-from downloads import ROSTER, write_zip, zipped
+from downloads import write_zip, zipped
+from test_real_forms import gradescope_export
 
+from autograder.boxes import reading_desks
 from autograder.cli import cli
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.collecting.collect import collect
@@ -70,202 +71,10 @@ def stamp(klass: TinyClass, student: str) -> str:
     return (klass.path / "submitted" / student / "lab_1_2" / "timestamp.txt").read_text().strip()
 
 
-def test_moodle_as_files_and_as_folders(klass: TinyClass, tmp_path: Path) -> None:
-    one, two = work(klass, 1), work(klass, 2)
-    moodle = write_zip(
-        tmp_path / "moodle.zip",
-        {
-            "Ada Lovelace_12345_assignsubmission_file_lab_1_2.ipynb": one,
-            "José Núñez_12346_assignsubmission_file/lab_1_2 (1).ipynb": two,
-            "Ben Bär_12347_assignsubmission_file_/lab_1_2.ipynb": one,
-            "Ben Bär_12347_assignsubmission_onlinetext_/onlinetext.html": "<p>hello</p>",
-        },
-    )
-    worksheet = tmp_path / "Grades.csv"
-    worksheet.write_text(
-        "\ufeffIdentifier,Full name,Email address,Status,Grade,Maximum Grade,Last modified (submission)\n"
-        'Participant 12345,Ada Lovelace,ada.love@uni.example,Submitted,,20,"Friday, 3 October 2025, 2:05 PM"\n'
-        'Participant 12346,José Núñez,jose@uni.example,Submitted,,20,"Friday, 3 October 2025, 14:06"\n',
-        encoding="utf-8",
-    )
-    report = collect(klass.path, [moodle, worksheet], zone=BERLIN)
-    assert not why(report)
-    assert placed(report).keys() == {"ada", "jose", "ben"}
-    assert (lies(klass, "ada"), lies(klass, "jose")) == (one, two)
-    assert stamp(klass, "ada") == "2025-10-03 12:05:00.000000 UTC"
-    assert stamp(klass, "jose") == "2025-10-03 12:06:00.000000 UTC"
-    assert [one.student for one in report.having(LineState.BESIDE)] == ["", "ben"]
-    assert report.missing == {"lab_1_2": ("eve", "zoe")}
-
-
-def test_canvas_marks_what_is_late_and_numbers_what_was_handed_in_again(
-    klass: TinyClass, tmp_path: Path
-) -> None:
-    one, two = work(klass, 1), work(klass, 2)
-    report = collect(
-        klass.path,
-        [
-            write_zip(
-                tmp_path / "submissions.zip",
-                {
-                    "lovelaceada_101_9001_lab_1_2.ipynb": one,
-                    "lovelaceada_101_9002_lab_1_2-1.ipynb": two,
-                    "oneilleve_LATE_104_9003_lab_1_2-3.ipynb": one,
-                    "zusezoe_105_9004_my work.ipynb": two,
-                },
-            )
-        ],
-    )
-    assert not why(report)
-    assert lies(klass, "ada") == two
-    assert [one.label for one in report.having(LineState.EARLIER)] == [
-        "submissions.zip/lovelaceada_101_9001_lab_1_2.ipynb"
-    ]
-    assert {one.student: one.late for one in report.having(LineState.PLACED)} == {
-        "ada": False,
-        "eve": True,
-        "zoe": False,
-    }
-    assert lies(klass, "zoe") == two, "told from its cells"
-
-
-def test_blackboard_says_when(klass: TinyClass, tmp_path: Path) -> None:
-    one, two = work(klass, 1), work(klass, 2)
-    report = collect(
-        klass.path,
-        [
-            write_zip(
-                tmp_path / "gradebook_ROS_lab.zip",
-                {
-                    "Lab 1.2_ada_attempt_2025-10-03-14-05-06_lab_1_2.ipynb": one,
-                    "Lab 1.2_ada_attempt_2025-10-04-14-05-06_lab_1_2.ipynb": two,
-                    "Lab 1.2_ada_attempt_2025-10-03-14-05-06.txt": "Name: Ada Lovelace (ada)",
-                    "Lab_1_2_ben_attempt_2025-11-03-14-05-06_lab_1_2.ipynb": one,
-                },
-            )
-        ],
-        zone=BERLIN,
-    )
-    assert not why(report)
-    assert lies(klass, "ada") == two
-    assert stamp(klass, "ada") == "2025-10-04 12:05:06.000000 UTC"
-    assert stamp(klass, "ben") == "2025-11-03 13:05:06.000000 UTC"
-
-
-def test_brightspace_says_when_in_the_folders_name(klass: TinyClass, tmp_path: Path) -> None:
-    report = collect(
-        klass.path,
-        [
-            write_zip(
-                tmp_path / "Lab Download Oct 5, 2025.zip",
-                {
-                    "index.html": "<html>",
-                    "12345-67890 - Ada Lovelace - Oct 3, 2025 205 PM/lab_1_2.ipynb": work(klass, 1),
-                    "12346-67890 - Eve O'Neill - October 3, 2025 1205 AM/lab_1_2.ipynb": work(klass, 1),
-                },
-            )
-        ],
-        zone=ZoneInfo("UTC"),
-    )
-    assert not why(report)
-    assert stamp(klass, "ada") == "2025-10-03 14:05:00.000000 UTC"
-    assert stamp(klass, "eve") == "2025-10-03 00:05:00.000000 UTC"
-
-
-def test_google_and_github_classroom(klass: TinyClass, tmp_path: Path) -> None:
-    one = work(klass, 1)
-    google = write_zip(
-        tmp_path / "drive.zip",
-        {"Lab/Ada Lovelace - lab_1_2.ipynb": one, "Lab/Zoë Zuse - lab_1_2(1).ipynb": one},
-    )
-    clone = tmp_path / "lab-1-2-submissions"
-    for name in ("josen", "zz-top"):
-        folder = clone / f"lab-1-2-{name}"
-        (folder / ".git").mkdir(parents=True)
-        (folder / ".git" / "lab_1_2.ipynb").write_text("no")
-        (folder / "lab_1_2.ipynb").write_text(one)
-    grades = tmp_path / "grades.csv"
-    grades.write_text(
-        "assignment_name,github_username,roster_identifier,submission_timestamp\n"
-        "lab,josen,jose@uni.example,2025-10-03 14:05:06 UTC\n"
-    )
-    assert placed(collect(klass.path, [google], names="{name} - {file}")).keys() == {"ada", "zoe"}
-    report = collect(klass.path, [clone, grades], names="{any}/lab-1-2-{github}")
-    assert placed(report).keys() == {"jose"}, "the others' is there already"
-    assert stamp(klass, "jose") == "2025-10-03 14:05:06.000000 UTC"
-
-
 def test_names_that_a_mac_writes_are_the_same_names(klass: TinyClass, tmp_path: Path) -> None:
     name = unicodedata.normalize("NFD", "José Núñez_12346_assignsubmission_file_lab_1_2.ipynb")
     report = collect(klass.path, [write_zip(tmp_path / "m.zip", {name: work(klass)})])
     assert placed(report).keys() == {"jose"}
-
-
-def test_a_zip_that_a_student_handed_in_is_opened(klass: TinyClass, tmp_path: Path) -> None:
-    inner = zipped(
-        {"my lab/lab_1_2 (2).ipynb": work(klass, 3), "my lab/notes.txt": "x", "__MACOSX/._a.ipynb": "x"}
-    )
-    name = "Ada Lovelace_12345_assignsubmission_file_lab.zip"
-    report = collect(klass.path, [write_zip(tmp_path / "m.zip", {name: inner})])
-    assert not why(report)
-    assert lies(klass, "ada") == work(klass, 3)
-
-
-def test_what_cannot_be_placed_is_listed_with_its_reason(klass: TinyClass, tmp_path: Path) -> None:
-    one = work(klass)
-    (klass.path / "students.csv").write_text(ROSTER + "ada2,Ada,Lovelace,ada2@uni.example,,\n")
-    other = klass.released()
-    other.cells = [nbformat.v4.new_code_cell("1")]
-    report = collect(
-        klass.path,
-        [
-            write_zip(
-                tmp_path / "m.zip",
-                {
-                    "Ada Lovelace_1_assignsubmission_file_lab_1_2.ipynb": one,
-                    "Guest User_2_assignsubmission_file_lab_1_2.ipynb": one,
-                    "Ben Bär_3_assignsubmission_file_homework.ipynb": nbformat.writes(other),
-                    "readme.ipynb": one,
-                },
-            )
-        ],
-    )
-    assert report.having(LineState.PLACED) == ()
-    assert report.exit_code == 2
-    lines = dict(line.partition(": ")[::2] for line in why(report).splitlines())
-    assert "may be ada, ada2" in lines["m.zip/Ada Lovelace_1_assignsubmission_file_lab_1_2.ipynb"]
-    assert (
-        "no student in the class is called Guest User"
-        in lines["m.zip/Guest User_2_assignsubmission_file_lab_1_2.ipynb"]
-    )
-    assert (
-        "write the assignment under assignment"
-        in lines["m.zip/Ben Bär_3_assignsubmission_file_homework.ipynb"]
-    )
-    assert "does not identify a student" in lines["m.zip/readme.ipynb"]
-    assert not list((klass.path / "submitted").iterdir())
-    again = collect(klass.path, [tmp_path / "m.zip"], assignment="lab_1_2")
-    assert placed(again).keys() == {"ben"}
-
-
-def test_the_newest_counts_also_later_and_nothing_is_lost(klass: TinyClass, tmp_path: Path) -> None:
-    def blackboard(name: str, hour: int, content: str) -> Path:
-        return write_zip(tmp_path / name, {f"Lab_ada_attempt_2025-10-03-{hour}-00-00_lab_1_2.ipynb": content})
-
-    one, two, three = work(klass, 1), work(klass, 2), work(klass, 3)
-    second = blackboard("b.zip", 15, two)
-    assert placed(collect(klass.path, [second])).keys() == {"ada"}
-    assert (len(collect(klass.path, [second]).having(LineState.UNCHANGED)), lies(klass, "ada")) == (1, two)
-    first = collect(klass.path, [blackboard("a.zip", 14, one)])
-    assert (len(first.having(LineState.EARLIER)), first.exit_code, lies(klass, "ada")) == (1, 0, two)
-    last = collect(klass.path, [blackboard("c.zip", 16, three)])
-    assert (last.having(LineState.PLACED)[0].reason, lies(klass, "ada")) == (
-        "instead of an earlier file",
-        three,
-    )
-    assert kept(klass) == sorted([one, two])
-    assert collect(klass.path, [second]).having(LineState.EARLIER)
-    assert lies(klass, "ada") == three
 
 
 def test_what_is_kept_is_not_larger_than_what_was_sent(klass: TinyClass, tmp_path: Path) -> None:
@@ -279,36 +88,6 @@ def test_what_is_kept_is_not_larger_than_what_was_sent(klass: TinyClass, tmp_pat
     assert len(report.having(LineState.NOT_PLACED)) == 5
     inbox = klass.path / ".autograder" / "inbox"
     assert sum(path.stat().st_size for path in inbox.glob("*.zip")) <= 3 * len(sent)
-
-
-def test_two_files_of_which_nothing_says_which_is_newer_are_both_listed(
-    klass: TinyClass, tmp_path: Path
-) -> None:
-    report = collect(
-        klass.path,
-        [
-            write_zip(
-                tmp_path / "m.zip",
-                {
-                    "Ada Lovelace_1_assignsubmission_file/a/lab_1_2.ipynb": work(klass, 1),
-                    "Ada Lovelace_1_assignsubmission_file/b/lab_1_2.ipynb": work(klass, 2),
-                },
-            )
-        ],
-    )
-    assert (len(report.having(LineState.PLACED)), len(report.having(LineState.NOT_PLACED))) == (0, 2)
-    assert "several different files" in why(report)
-
-
-def test_a_notebook_that_nobody_collected_is_not_overwritten(klass: TinyClass, tmp_path: Path) -> None:
-    mine = klass.submit("ada", 7).read_text()
-    report = collect(
-        klass.path,
-        [write_zip(tmp_path / "m.zip", {"Ada Lovelace_1_assignsubmission_file_lab_1_2.ipynb": work(klass)})],
-    )
-    (other,) = report.having(LineState.EARLIER)
-    assert "was put into the folder submitted by hand, and is graded" in other.reason
-    assert lies(klass, "ada") == mine
 
 
 def test_only_the_collectors_time_counts(klass: TinyClass, fake_engine: FakeEngine, tmp_path: Path) -> None:
@@ -338,10 +117,6 @@ def test_a_file_without_a_place_takes_no_time_from_an_exchange(klass: TinyClass,
     ]
     assert read_timestamp(there.parent) == there.read_text()
     assert not is_not_believed(there.parent)
-
-
-# -- hostile archives
-# -----------------------------------------------------------------------------------------------
 
 
 def outside(path: Path) -> set[str]:
@@ -394,44 +169,6 @@ def test_a_bomb_is_harmless(klass: TinyClass, tmp_path: Path) -> None:
     )
 
 
-@pytest.mark.parametrize(
-    "outer",
-    [
-        "Ben Bär - work.zip",
-        "Ben Bär_3_assignsubmission_file_work.zip",
-        "Guest User - work.zip",
-        "Guest User_3_assignsubmission_file_/work.zip",
-        "ben/work.zip",
-        "guest/work.zip",
-    ],
-)
-def test_what_lies_in_a_students_own_zip_never_says_whose_it_is(
-    klass: TinyClass, tmp_path: Path, outer: str
-) -> None:
-    names = (
-        "Ada Lovelace - lab_1_2.ipynb",
-        "Ada Lovelace_1_assignsubmission_file_lab_1_2.ipynb",
-        "ada/lab_1_2.ipynb",
-        "x-submissions/x-adalove/lab_1_2.ipynb",
-    )
-    inner = zipped(dict.fromkeys(names, work(klass)))
-    report = collect(
-        klass.path, [write_zip(tmp_path / "d.zip", {outer: inner, "zoe/lab_1_2.ipynb": work(klass)})]
-    )
-    assert {one.student for one in report.having(LineState.PLACED)} <= {"ben", "zoe"}
-    assert not (klass.path / "submitted" / "ada").exists()
-
-
-def test_folders_with_students_ids_or_names_are_taken_and_deeper_ones_say_nothing(
-    klass: TinyClass, tmp_path: Path
-) -> None:
-    one = work(klass)
-    names = ("ada/lab_1_2/lab_1_2.ipynb", "Ben Bär/lab_1_2.ipynb", "guest/zoe/lab_1_2.ipynb")
-    report = collect(klass.path, [write_zip(tmp_path / "p.zip", dict.fromkeys(names, one))])
-    assert placed(report).keys() == {"ada", "ben"}
-    assert [other.label for other in report.having(LineState.NOT_PLACED)] == ["p.zip/guest/zoe/lab_1_2.ipynb"]
-
-
 @pytest.mark.parametrize("method", [zipfile.ZIP_BZIP2, zipfile.ZIP_LZMA])
 def test_every_method_that_python_knows_is_unpacked(klass: TinyClass, tmp_path: Path, method: int) -> None:
     member = "Ada Lovelace_1_assignsubmission_file_lab_1_2.ipynb"
@@ -456,16 +193,6 @@ def test_what_unpacks_to_gigabytes_is_held_as_small_as_it_came(klass: TinyClass,
         tracemalloc.stop()
 
 
-def test_no_students_name_takes_the_place_of_anothers_record(tiny: TinyClass, tmp_path: Path) -> None:
-    """Without students.csv students have the names that they gave themselves: one is called as ada's record was."""
-    for number in (1, 2):
-        name = f"Lab_{{}}_attempt_2025-10-0{number}-14-00-00_lab_1_2.ipynb"
-        files = {name.format(who): work(tiny, number) for who in ("ada", "ada.json", "ada.kept")}
-        archive = write_zip(tmp_path / f"{number}.zip", files)
-        report = collect(tiny.path, [archive])
-        assert placed(report).keys() == {"ada", "ada.json", "ada.kept"}
-
-
 @pytest.mark.parametrize("damage", ["cut", "list", "crc", "text", "encrypted"])
 def test_a_damaged_archive_is_one_line(klass: TinyClass, tmp_path: Path, damage: str) -> None:
     name = "Ada Lovelace_1_assignsubmission_file_lab_1_2.ipynb"
@@ -488,48 +215,6 @@ def test_a_damaged_archive_is_one_line(klass: TinyClass, tmp_path: Path, damage:
     assert len(report.having(LineState.NOT_PLACED)) == 1
     if damage == "encrypted":
         assert "encrypted" in why(report)
-
-
-def test_a_student_id_cannot_lead_out(tiny: TinyClass, tmp_path: Path) -> None:
-    for name in ("..", "a/b", ".", "*"):
-        (tiny.path / "students.csv").write_text(f"id\n{name}\n")
-        if name == "..":
-            archive = write_zip(tmp_path / "m.zip", {".._1_assignsubmission_file_lab_1_2.ipynb": work(tiny)})
-        with pytest.raises(GradingError, match="line 2"):
-            collect(tiny.path, [archive])
-
-
-# -- roster and command line
-# ----------------------------------------------------------------------------------------
-
-
-def test_without_a_list_of_students_folders_have_the_names_of_the_lms(
-    tiny: TinyClass, tmp_path: Path
-) -> None:
-    report = collect(
-        tiny.path,
-        [write_zip(tmp_path / "c.zip", {"lovelaceada_101_9001_lab_1_2.ipynb": work(tiny)})],
-    )
-    assert placed(report).keys() == {"lovelaceada"}
-    assert (
-        "the class has no students.csv, so students' folders have the names that the LMS uses" in report.notes
-    )
-
-
-@pytest.mark.parametrize(
-    ("text", "words"),
-    [
-        ("name\nada\n", "no column named id"),
-        ("id\nada\nada\n", "also stands in line 2"),
-        ("id,email\n,a@b\n", "it has no id"),
-    ],
-)
-def test_a_roster_that_cannot_be_used_says_why(
-    tiny: TinyClass, tmp_path: Path, text: str, words: str
-) -> None:
-    (tiny.path / "students.csv").write_text(text)
-    with pytest.raises(GradingError, match=words):
-        collect(tiny.path, [write_zip(tmp_path / "m.zip", {})])
 
 
 def test_a_roster_with_semicolons_and_a_mark_is_read(tiny: TinyClass, tmp_path: Path) -> None:
@@ -585,18 +270,53 @@ def test_a_terminal_without_utf_8_collects_the_same(klass: TinyClass, tmp_path: 
     assert [path.name for path in (klass.path / "submitted").iterdir()] == ["José Núñez"]
 
 
-def test_times_of_a_download_are_in_the_zone_of_the_class(klass: TinyClass, tmp_path: Path) -> None:
-    klass.configure('c.NbGraderAPI.timezone = "Europe/Berlin"')
-    name = "Lab_ada_attempt_2025-07-01-14-00-00_lab_1_2.ipynb"
-    report = collect(klass.path, [write_zip(tmp_path / "b.zip", {name: work(klass)})])
-    assert report.having(LineState.PLACED)[0].when == datetime(2025, 7, 1, 12, tzinfo=UTC)
+def test_a_list_that_takes_gigabytes_to_read_is_a_line_that_waits(
+    klass: TinyClass, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """50 MB of YAML took 4.6 GB of memory; now the memory of the desk ends that, and a smaller one ends it sooner."""
+    monkeypatch.setattr(reading_desks, "MEMORY_BYTES", 200_000_000)
+    files = gradescope_export("assignment_1_export/", work(klass, 1), work(klass, 2))
+    (name,) = (name for name in files if name.endswith(".yml"))
+    files[name] += "a: b\n" * 1_000_000
+    report = collect(klass.path, [write_zip(tmp_path / "export.zip", files)])
+    assert placed(report) == {}
+    assert "submission_metadata.yml: the file is too large, or not a known list" in why(report)
 
 
-def test_the_time_is_kept_in_utc(klass: TinyClass, tmp_path: Path) -> None:
-    report = collect(
-        klass.path,
-        [write_zip(tmp_path / "b.zip", {"Lab_ada_attempt_2025-07-01-14-00-00_lab_1_2.ipynb": work(klass)})],
-        zone=BERLIN,
+@pytest.mark.parametrize("name", ["x" * 1_001, "..\\x", "a/../../x", "x/" * 600 + "x"])
+def test_no_name_that_is_refused_takes_the_folder_around_all_away(
+    klass: TinyClass, tmp_path: Path, name: str
+) -> None:
+    root = "assignment_8046601_export"
+    files = gradescope_export(f"{root}/", work(klass, 1), work(klass, 2))
+    with zipfile.ZipFile(tmp_path / "export.zip", "w") as archive:
+        for path, content in files.items():
+            archive.writestr(path, content)
+        archive.writestr(f"{root}/submission_500000001/{name}", "x")
+    report = collect(klass.path, [tmp_path / "export.zip"])
+    assert placed(report).keys() == {"ada", "ben", "jose"}
+    labels = [one.label for one in report.outcomes if "submission_500000001/lab_1_2" not in one.label]
+    (refused,) = (label for label in labels if label.startswith(f"export.zip/{root}/submission_500000001/"))
+    assert len(refused) < 1_200
+
+
+def test_a_named_file_whose_name_is_no_text_is_one_line(klass: TinyClass, tmp_path: Path) -> None:
+    """As unzip leaves them that knows no accents, with download/*."""
+    for name in (
+        "Jos\udce9_12_assignsubmission_file_lab_1_2.ipynb",
+        "Ben Bär_13_assignsubmission_file_x.ipynb",
+    ):
+        (tmp_path / name).write_text(work(klass))
+    (tmp_path / "Zo\udceb_14_assignsubmission_file_").mkdir()
+    (tmp_path / "Zo\udceb_14_assignsubmission_file_" / "lab_1_2.ipynb").write_text(work(klass))
+    (tmp_path / "Zo\udceb_15_assignsubmission_file_x.zip").write_bytes(zipped({"lab_1_2.ipynb": work(klass)}))
+    (tmp_path / "Zo\udceb.zip").write_bytes(
+        zipped({"Ada Lovelace_1_assignsubmission_file_x.ipynb": work(klass)})
     )
-    assert report.having(LineState.PLACED)[0].when == datetime(2025, 7, 1, 12, tzinfo=UTC)
-    assert os.sep not in report.having(LineState.PLACED)[0].student
+    sources = sorted(path for path in tmp_path.iterdir() if "_file_" in path.name)
+    report = collect(klass.path, sources)
+    assert placed(report).keys() == {"ben"}
+    assert os.fsencode(why(report)) == why(report).encode()
+    assert "no student in the class is called Jos?" in why(report)
+    report = collect(klass.path, [tmp_path / "Zo\udceb.zip"])
+    assert placed(report).keys() == {"ada"}

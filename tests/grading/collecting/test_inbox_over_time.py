@@ -16,10 +16,10 @@ from typing import TYPE_CHECKING, NoReturn
 
 import pytest
 from click.testing import CliRunner
-from downloads import ROSTER, write_zip
-from test_collect import lies, placed, stamp, why, work
+from downloads import write_zip
+from test_collect import lies, placed, work
 from test_collected_csv import edit, read, save
-from test_where_it_goes import other_lab, outcome
+from test_where_it_goes import outcome
 from tiny_class import LISTENER, TALKER
 
 from autograder.boxes.process_isolation import leave_the_host, mount_tmpfs
@@ -50,23 +50,6 @@ def counting(klass: TinyClass) -> dict[str, str]:
     return {line["file"].partition(" #")[0]: line["counts"] for line in read(klass)[1]}
 
 
-# -- the term
-# ----------------------------------------------------------------------------------------------------------
-
-
-def test_the_work_of_a_group_counts_for_all_until_one_of_them_hands_in_later(
-    klass: TinyClass, tmp_path: Path
-) -> None:
-    collect(klass.path, [write_zip(tmp_path / "group.zip", {"Group 7/lab_1_2.ipynb": work(klass, 3)})])
-    edit(klass, "Group 7", student="ada; ben", handed_in="2025-10-03 12:00")
-    assert placed(collect(klass.path)).keys() == {"ada", "ben"}
-    collect(klass.path, [blackboard(klass, tmp_path, ben=(4, 5))])
-    assert (lies(klass, "ada"), lies(klass, "ben")) == (work(klass, 3), work(klass, 5))
-    edit(klass, "Group 7", student="ada; eve")
-    collect(klass.path)
-    assert (lies(klass, "eve"), lies(klass, "ben")) == (work(klass, 3), work(klass, 5))
-
-
 def test_work_that_comes_after_grading_is_graded_again_and_the_first_one_is_kept(
     klass: TinyClass, tmp_path: Path, fake_engine: FakeEngine
 ) -> None:
@@ -82,65 +65,12 @@ def test_work_that_comes_after_grading_is_graded_again_and_the_first_one_is_kept
     assert klass.scores("ada")[TALKER] == 3
 
 
-def test_two_assignments_in_one_zip_go_to_their_places(klass: TinyClass, tmp_path: Path) -> None:
-    other = other_lab(klass)
-    files = {"ada/work.ipynb": work(klass, 3), "ada/lab_1_3.ipynb": other, "ben/x.ipynb": other}
-    report = collect(klass.path, [write_zip(tmp_path / "both.zip", files)])
-    assert not why(report)
-    found = {str(path.relative_to(klass.path)) for path in (klass.path / "submitted").rglob("*.ipynb")}
-    assert found == {
-        "submitted/ada/lab_1_2/lab_1_2.ipynb",
-        "submitted/ada/lab_1_3/lab_1_3.ipynb",
-        "submitted/ben/lab_1_3/lab_1_3.ipynb",
-    }
-
-
-def test_a_correction_by_hand_does_not_change_the_time_of_handing_in(
-    klass: TinyClass, tmp_path: Path
-) -> None:
-    collect(klass.path, [blackboard(klass, tmp_path, ada=(3, 1))])
-    before = stamp(klass, "ada")
-    klass.submit("ada", 9)
-    mine = lies(klass, "ada")
-    collect(klass.path)
-    assert (lies(klass, "ada"), stamp(klass, "ada")) == (mine, before)
-    edit(klass, "submitted/ada", handed_in="2025-10-02 08:00")
-    collect(klass.path)
-    assert stamp(klass, "ada")[:16] == "2025-10-02 08:00"
-
-
-def test_a_second_hand_in_by_the_exchange_counts_and_the_first_is_kept(klass: TinyClass) -> None:
-    texts = []
-    for points in (3, 5):
-        klass.submit("ben", points)
-        texts.append(lies(klass, "ben"))
-        collect(klass.path)
-    assert lies(klass, "ben") == texts[1]
-    assert sorted(line["counts"] for line in read(klass)[1]) == ["earlier", "yes"]
-
-
 def test_a_class_that_never_typed_collect_has_no_table(klass: TinyClass, fake_engine: FakeEngine) -> None:
     klass.submit("ada", 4)
     report = klass.grade()
     assert (report.exit_code, klass.scores("ada")[TALKER]) == (0, 4)
     assert not (klass.path / "collected.csv").exists()
     assert not (klass.path / ".autograder" / "inbox").exists()
-
-
-# -- the table
-# ----------------------------------------------------------------------------------------------------------
-
-
-def test_a_table_that_was_lost_is_written_again_with_all_that_was_edited(
-    klass: TinyClass, tmp_path: Path
-) -> None:
-    collect(klass.path, [write_zip(tmp_path / "f.zip", {"mine.ipynb": work(klass, 3)})])
-    edit(klass, "mine", student="ada")
-    collect(klass.path)
-    (klass.path / "collected.csv").unlink()
-    report = collect(klass.path)
-    assert "it is written again" in " ".join(report.notes)
-    assert (lies(klass, "ada"), read(klass)[1][0]["student"]) == (work(klass, 3), "ada")
 
 
 @pytest.mark.parametrize("separator", [",", ";", "\t"])
@@ -170,23 +100,6 @@ def test_no_cell_runs_and_a_spreadsheet_changes_nothing_by_saving(
     report = collect(klass.path)
     assert report.notes == ()
     assert outcome(klass) == before
-
-
-def test_a_cell_that_is_not_clear_changes_nothing_and_has_a_sentence(
-    klass: TinyClass, tmp_path: Path
-) -> None:
-    collect(klass.path, [blackboard(klass, tmp_path, ada=(3, 1))])
-    edit(klass, "ada", use="maybe", handed_in="soon")
-    said = " ".join(collect(klass.path).notes)
-    assert "column use: 'maybe' is neither yes nor no" in said
-    assert "column handed_in: 'soon' is not a time" in said
-    assert (lies(klass, "ada"), stamp(klass, "ada")[:10]) == (work(klass, 1), "2025-10-03")
-    edit(klass, "ada", student="nobody-at-all")
-    assert "students.csv has no student nobody-at-all" in why(collect(klass.path))
-
-
-# -- what may go wrong
-# ----------------------------------------------------------------------------------------------------------
 
 
 def test_two_instructors_at_once_are_told_so(klass: TinyClass, tmp_path: Path) -> None:
@@ -328,10 +241,3 @@ def test_killed_at_ten_random_moments_nothing_is_lost(klass: TinyClass, tmp_path
         assert not report.having(LineState.NOT_PLACED)
         assert outcome(copy) == outcome(whole), f"killed at {moment}"
         assert not [*copy.path.rglob("*.new")]
-
-
-def test_the_roster_decides_and_not_the_order_of_commands(klass: TinyClass, tmp_path: Path) -> None:
-    archive = write_zip(tmp_path / "f.zip", {"guest/lab_1_2.ipynb": work(klass, 3)})
-    assert "does not identify a student" in why(collect(klass.path, [archive]))
-    (klass.path / "students.csv").write_text(f"{ROSTER}guest,Guy,Est,,,\n", encoding="utf-8")
-    assert placed(collect(klass.path)).keys() == {"guest"}, "without the zip: it is in the inbox"

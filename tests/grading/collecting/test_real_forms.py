@@ -26,30 +26,27 @@ Columns of lists
     github.com/matthigger/gradescope_mean (test/scope.csv). Gradescope's roster, and the
     grades of GitHub Classroom: excerpts of an index that names no repository.
 
-From memory: the names of Google Classroom's files and of GitHub Classroom's folders.
+Sakai: scripts in public repositories look for ``Last, First(login)/Submission attachment(s)/`` and read ``grades.csv``.
+Moodle's worksheets in other languages: the column names are those of Moodle's language packs.
+
+From memory: the folders of ILIAS, the names of Google Classroom's files and of GitHub Classroom's folders.
 """
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
-from zoneinfo import ZoneInfo
 
 import pytest
-from downloads import ROSTER, read_path, write_zip
-from test_collect import lies, stamp, why, work
+from downloads import read_path
 
-from autograder.grading.collecting.collect import collect
-from autograder.grading.collecting.collected_files import LineState
 from autograder.grading.collecting.downloaded_files import read_list
+from autograder.grading.collecting.systems import NAME_FORMS
 from autograder.grading.table.students_csv import read_students_csv
 from tests.cases import cases
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from tiny_class import TinyClass
 
-UTC = ZoneInfo("UTC")
 METADATA = cases(__file__, "METADATA")
 
 
@@ -87,51 +84,6 @@ def gradescope_export(root: str, one: str, two: str) -> dict[str, str]:
     }
 
 
-def test_gradescopes_export_is_collected_with_its_times_and_groups(tiny: TinyClass, tmp_path: Path) -> None:
-    (tiny.path / "students.csv").write_text(ROSTER)
-    root = "assignment_8046601_export"
-    one, two = work(tiny, 1), work(tiny, 2)
-    files = {
-        **gradescope_export(f"{root}/", one, two),
-        f"{root}/submission_600000002/lab_1_2.ipynb": two,
-        f"{root}/submission_409194023/submission_metadata.yml": "the student's own",
-    }
-    report = collect(tiny.path, [write_zip(tmp_path / "export.zip", files)], zone=UTC)
-    assert [lies(tiny, student) for student in ("ada", "ben", "jose")] == [one, two, two]
-    assert stamp(tiny, "ada") == "2026-04-26 17:34:00.861687 UTC"
-    assert stamp(tiny, "jose") == "2026-04-27 08:00:00.000000 UTC"
-    assert why(report).startswith(
-        f"export.zip/{root}/submission_600000002/lab_1_2.ipynb: no student in the class is called 333"
-    )
-    assert len(report.having(LineState.NOT_PLACED)) == 1
-
-
-STEALS = """\
-submission_409194023:
-  :submitters:
-  - :name: Ben Baer
-    :email: ben@uni.example
-  :created_at: 2026-04-28 08:00:00.000000000 Z
-"""
-
-
-@pytest.mark.parametrize("root", ["", "assignment_8046601_export/"])
-def test_no_student_hands_in_the_list_that_says_whose_work_is_whose(
-    tiny: TinyClass, tmp_path: Path, root: str
-) -> None:
-    """Without the folder around it the list of a student was read, and Ada's work was Ben's."""
-    (tiny.path / "students.csv").write_text(ROSTER)
-    one, two = work(tiny, 1), work(tiny, 2)
-    files = {
-        **gradescope_export(root, one, two),
-        f"{root}submission_500000001/submission_metadata.yml": STEALS,
-    }
-    form = "" if root else "gradescope"  # its own folder says so, too
-    collect(tiny.path, [write_zip(tmp_path / "export.zip", files)], zone=UTC, form=form)
-    assert [lies(tiny, student) for student in ("ada", "ben")] == [one, two]
-    assert stamp(tiny, "ben").startswith("2026-04-27")
-
-
 def test_no_list_becomes_longer_than_it_was_typed() -> None:
     """Each line has nine times the one above: as a text the last one took all memory."""
     rows = ["a0: &a0 [x, x, x, x, x, x, x, x, x]"]
@@ -157,15 +109,9 @@ def test_a_list_of_the_lms_is_a_list_of_students(
     assert (student.id, student.first_name, student.last_name, student.email, student.lms) == expected
 
 
-def test_two_of_one_name_in_moodle_are_told_apart_by_the_worksheet(tiny: TinyClass, tmp_path: Path) -> None:
-    (tiny.path / "students.csv").write_text(
-        "id,first_name,last_name,email\nada,Ada,Lovelace,a@u.example\nada2,Ada,Lovelace,b@u.example\n"
-    )
-    archive = write_zip(
-        tmp_path / "m.zip", {"Ada Lovelace_7_assignsubmission_file_lab_1_2.ipynb": work(tiny)}
-    )
-    assert "together with the grading worksheet" in why(collect(tiny.path, [archive]))
-    sheet = tmp_path / "Grades.csv"
-    sheet.write_text("Identifier,Full name,Email address,Grade\nParticipant 7,Ada Lovelace,b@u.example,\n")
-    report = collect(tiny.path, [archive, sheet])
-    assert [one.student for one in report.having(LineState.PLACED)] == ["ada2"]
+@pytest.mark.parametrize("system", NAME_FORMS)
+def test_the_samples_of_each_row_are_read_by_this_row_and_by_no_other(system: str) -> None:
+    assert NAME_FORMS[system].samples
+    for sample in NAME_FORMS[system].samples:
+        readers = [one.system for one in NAME_FORMS.values() if read_path(sample.split("/"), one.system)]
+        assert [one for one in readers if one == system or not NAME_FORMS[one].needs_from] == [system]

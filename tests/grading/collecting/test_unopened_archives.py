@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 import pytest
 from downloads import write_zip, zipped
 from test_collect import placed, why, work
-from test_collected_csv import edit
 
 from autograder.grading.collecting.collect import collect
 
@@ -69,15 +68,6 @@ def test_a_whole_download_that_is_not_opened_is_to_be_unpacked(
     assert "STUDENT" not in line
 
 
-def test_an_archive_of_somebody_whose_name_is_no_system_still_takes_one_cell(
-    klass: TinyClass, tmp_path: Path
-) -> None:
-    inner = zipped({"lab_1_2.ipynb": work(klass, 3)})
-    collect(klass.path, [write_zip(tmp_path / "c.zip", {"by mail/homework.zip": inner})])
-    edit(klass, "homework", student="eve")
-    assert placed(collect(klass.path)).keys() == {"eve"}
-
-
 def test_of_an_encrypted_archive_of_a_student_the_line_says_so(klass: TinyClass, tmp_path: Path) -> None:
     inner = encrypted(zipped({"lab_1_2.ipynb": work(klass, 3), "notes.txt": "x"}))
     report = collect(klass.path, [write_zip(tmp_path / "c.zip", {"ada/homework.zip": inner})])
@@ -85,21 +75,3 @@ def test_of_an_encrypted_archive_of_a_student_the_line_says_so(klass: TinyClass,
         "c.zip/ada/homework.zip: it is encrypted: unpack the archive with its password, and collect the folder; "
         "to leave the file out, write no under use"
     )
-
-
-@pytest.mark.parametrize("is_folder", [True, False])
-@pytest.mark.parametrize(
-    "name", [".DS_Store", "Thumbs.db", "desktop.ini", "Desktop.ini", "$RECYCLE.BIN/x", "~$notes.docx"]
-)
-def test_what_systems_leave_in_folders_has_no_line(
-    klass: TinyClass, tmp_path: Path, name: str, *, is_folder: bool
-) -> None:
-    files = {**download(klass), name: "x"}
-    source = write_zip(tmp_path / "c.zip", files)
-    if is_folder:
-        source = tmp_path / "c"
-        for path, text in files.items():
-            (source / path).parent.mkdir(parents=True, exist_ok=True)
-            (source / path).write_text(text)
-    report = collect(klass.path, [source])
-    assert (len(report.outcomes), report.exit_code) == (2, 0)

@@ -14,9 +14,8 @@ import nbformat
 import pytest
 from click.testing import CliRunner
 from downloads import write_zip, zipped
-from test_collect import kept, lies, stamp, why, work
+from test_collect import kept, lies, stamp, work
 from test_collected_csv import edit
-from test_submitted_file_names import add_assignment
 from tiny_class import TinyClass
 
 from autograder.cli import cli
@@ -25,6 +24,7 @@ from autograder.grading.collecting import collected_csv, collected_files, submit
 from autograder.grading.collecting.collect import collect
 from autograder.grading.collecting.collected_csv import Table
 from autograder.grading.collecting.collected_files import LineState
+from autograder.grading.new_classes.new_class import release
 from autograder.grading.reporting.export_files import export
 from autograder.grading.reporting.report_page import write_report
 from autograder.safe_files import write_whole
@@ -55,33 +55,6 @@ def named(report: CollectReport, state: LineState) -> list[tuple[str, str]]:
     return [(one.label.removeprefix("c.zip/"), one.student) for one in report.having(state)]
 
 
-# -- what is not taken has a name
-# -----------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize(
-    "name", ["lab_1_2.ipynb.txt", "lab_1_2.txt", "lab_1_2", "lab_1_2.json", "LAB_1_2.IPYNB"]
-)
-def test_a_notebook_counts_by_what_it_holds_whatever_its_name_is(
-    klass: TinyClass, tmp_path: Path, name: str
-) -> None:
-    report = gathered(klass, tmp_path, {f"lovelaceada_101_9001_{name}": work(klass, 3)})
-    assert not why(report)
-    assert lies(klass, "ada") == work(klass, 3)
-
-
-def test_a_zip_in_a_zip_is_opened_up_to_a_depth(klass: TinyClass, tmp_path: Path) -> None:
-    inner = zipped({"my/lab_1_2.ipynb": work(klass, 3)})
-    report = gathered(klass, tmp_path, {"lovelaceada_101_9001_x.zip": zipped({"deep/lab.zip": inner})})
-    assert (why(report), lies(klass, "ada")) == ("", work(klass, 3))
-    for _ in range(4):
-        inner = zipped({"more.zip": inner})
-    report = gathered(klass, tmp_path, {"bärben_102_9001_x.zip": inner})
-    assert named(report, LineState.NOT_PLACED) == [
-        ("bärben_102_9001_x.zip/more.zip/more.zip/more.zip", "ben")
-    ]
-
-
 def test_who_fills_an_archive_harms_nobody_else(klass: TinyClass, tmp_path: Path) -> None:
     full = zipped({f"{place}.txt": "" for place in range(2_001)})
     files = {
@@ -91,56 +64,6 @@ def test_who_fills_an_archive_harms_nobody_else(klass: TinyClass, tmp_path: Path
     report = gathered(klass, tmp_path, files)
     assert lies(klass, "ben") == work(klass, 3)
     assert {student for _, student in named(report, LineState.NOT_PLACED)} == {"ada"}
-
-
-@pytest.mark.parametrize(
-    ("name", "words"),
-    [
-        ("lab_1_2.rar", "unpack the file into a folder named ada"),
-        ("lab_1_2.tar.gz", "the archive cannot be read"),
-        ("lab_1_2.7z", "unpack the file into a folder named ada"),
-        ("lab_1_2.py", "write no under use"),
-        ("answer.docx", "it is not a notebook; to leave the file out"),
-    ],
-)
-def test_what_is_not_taken_is_named_with_its_student_the_reason_and_what_to_type(
-    klass: TinyClass, tmp_path: Path, name: str, words: str
-) -> None:
-    files = {
-        f"lovelaceada_101_9001_{name}": b"PK\3\4 or anything",
-        "bärben_102_9002_lab_1_2.ipynb": work(klass),
-    }
-    report = gathered(klass, tmp_path, files)
-    assert report.exit_code == 2
-    assert named(report, LineState.NOT_PLACED) == [(f"lovelaceada_101_9001_{name}", "ada")]
-    assert words in why(report)
-
-
-def test_beside_a_notebook_pictures_need_no_place_and_archives_do(klass: TinyClass, tmp_path: Path) -> None:
-    ours = {"lovelaceada_101_9001_lab_1_2.ipynb": work(klass), "lovelaceada_101_9002_me.png": b"\x89PNG"}
-    report = gathered(klass, tmp_path, ours)
-    assert (report.exit_code, named(report, LineState.BESIDE)) == (
-        0,
-        [("lovelaceada_101_9002_me.png", "ada")],
-    )
-    assert gathered(klass, tmp_path, ours | {"lovelaceada_101_9003_new.rar": b"Rar!"}).exit_code == 2
-
-
-def test_the_notebook_of_one_assignment_gives_no_place_to_a_file_of_another(
-    klass: TinyClass, tmp_path: Path
-) -> None:
-    other_lab(klass)
-    files = {
-        "lovelaceada_101_9001_lab_1_2.ipynb": work(klass),
-        "lovelaceada_101_9002_lab_1_2.py": "print()",
-        "lovelaceada_101_9003_lab_1_3.py": "print()",
-    }
-    report = gathered(klass, tmp_path, files)
-    assert [(one.label.rpartition("/")[2], one.reason) for one in report.having(LineState.BESIDE)] == [
-        ("lovelaceada_101_9002_lab_1_2.py", "it is not a notebook")
-    ]
-    assert named(report, LineState.NOT_PLACED) == [("lovelaceada_101_9003_lab_1_3.py", "ada")]
-    assert "it is not a notebook; to leave the file out" in why(report)
 
 
 def test_what_has_no_place_is_repeated_until_it_has_one(
@@ -160,7 +83,7 @@ def test_what_has_no_place_is_repeated_until_it_has_one(
     assert any("collected.csv, line 2, cell use" in one.reason for one in graded.refused)
     assert label in write_report(klass.path).read_text()
     assert label not in write_report(klass.path, names=False, to=tmp_path / "r.html").read_text()
-    assert any(label in notice for notice in export(klass.path, "csv").notices)
+    assert any(label in notice for notice in export(klass.path, "csv").ungraded)
     klass.submit("ada", 1, 1)
     edit(klass, "rar", use="no")
     assert any(
@@ -169,7 +92,7 @@ def test_what_has_no_place_is_repeated_until_it_has_one(
     )
     collect(klass.path)
     assert klass.grade().exit_code == 0
-    assert not any(label in notice for notice in export(klass.path, "csv").notices)
+    assert not any(label in notice for notice in export(klass.path, "csv").ungraded)
 
 
 def test_what_needs_no_place_is_left_out_by_a_cell(
@@ -187,24 +110,6 @@ def test_what_needs_no_place_is_left_out_by_a_cell(
     assert klass.grade().exit_code == 0
 
 
-# -- which counts
-# ------------------------------------------------------------------------------------------------
-
-
-def test_of_two_notebooks_the_one_with_the_exact_name_counts(klass: TinyClass, tmp_path: Path) -> None:
-    for name in ("lab_1_2_old.ipynb", "a_lab_1_2.ipynb", "zz.ipynb"):
-        files = {
-            MOODLE.format("Ada Lovelace", "lab_1_2.ipynb"): work(klass, 3),
-            MOODLE.format("Ada Lovelace", name): work(klass, 4),
-        }
-        report = gathered(klass, tmp_path, files)
-        assert (why(report), lies(klass, "ada")) == ("", work(klass, 3))
-        assert named(report, LineState.EARLIER) == [(MOODLE.format("Ada Lovelace", name), "ada")]
-        (earlier,) = report.having(LineState.EARLIER)
-        assert earlier.reason.endswith("to have it graded instead, write yes under use")
-    assert kept(klass) == [work(klass, 4)]
-
-
 @pytest.mark.filterwarnings("ignore:Duplicate name")
 def test_two_files_of_one_name_in_an_archive_are_told_apart(klass: TinyClass, tmp_path: Path) -> None:
     names = ("lab_1_2.ipynb", "my.ipynb", "my.ipynb")
@@ -217,14 +122,12 @@ def test_two_files_of_one_name_in_an_archive_are_told_apart(klass: TinyClass, tm
     assert kept(klass) == sorted([work(klass, 1), work(klass, 2)])
 
 
-def test_who_hands_in_the_first_work_again_has_it_counted_again(klass: TinyClass, tmp_path: Path) -> None:
-    for day, points in ((3, 1), (4, 2), (5, 1)):
-        name = f"Lab_ada_attempt_2025-10-0{day}-14-00-00_lab_1_2.ipynb"
-        gathered(klass, tmp_path, {name: work(klass, points)})
-        assert lies(klass, "ada") == work(klass, points)
-    assert stamp(klass, "ada").startswith("2025-10-03"), "the first time of the same bytes"
-    gathered(klass, tmp_path, {"Lab_ada_attempt_2025-10-03-14-00-00_lab_1_2.ipynb": work(klass, 1)})
-    assert lies(klass, "ada") == work(klass, 1)
+def add_assignment(klass: TinyClass, name: str) -> None:
+    """A second assignment, with the same cells."""
+    path = klass.path / "source" / name / f"{name}.ipynb"
+    path.parent.mkdir()
+    path.write_bytes((klass.path / "source" / "lab_1_2" / "lab_1_2.ipynb").read_bytes())
+    release(ClassDirectory(klass.path))
 
 
 def other_lab(klass: TinyClass) -> str:
@@ -233,46 +136,6 @@ def other_lab(klass: TinyClass) -> str:
     source = klass.path / "source" / "lab_1_3" / "lab_1_3.ipynb"
     source.write_text(source.read_text().replace("Talker", "Server").replace("Listener", "Client"))
     return work(klass).replace("Talker", "Server").replace("Listener", "Client")
-
-
-def test_the_cells_say_which_assignment_it_is(klass: TinyClass, tmp_path: Path) -> None:
-    other = other_lab(klass)
-    ada = MOODLE.format("Ada Lovelace", "lab_1_2.ipynb")
-    gathered(klass, tmp_path, {ada: work(klass, 3)}, assignment="lab_1_2")
-    for name in ("lab_1_3.ipynb", "lab_1_2.ipynb", "homework.ipynb"):
-        report = gathered(klass, tmp_path, {MOODLE.format("Ada Lovelace", name): other}, assignment="lab_1_2")
-        (beside,) = report.having(LineState.BESIDE)
-        assert "the file is the notebook of lab_1_3, not of lab_1_2" in beside.reason
-        assert lies(klass, "ada") == work(klass, 3)
-    report = gathered(klass, tmp_path, {ada: other})
-    assert "(lab_1_2 by its name, lab_1_3 by its cells)" in why(report)
-    report = gathered(klass, tmp_path, {MOODLE.format("Ada Lovelace", "homework.ipynb"): other})
-    assert [one.assignment for one in report.having(LineState.PLACED)] == ["lab_1_3"]
-
-
-def test_a_notebook_without_a_place_is_named_whatever_else_its_student_has_handed_in(
-    klass: TinyClass, tmp_path: Path
-) -> None:
-    other, inner = other_lab(klass), {"lab_1_2.ipynb": work(klass, 3)}
-    nameless = work(klass).replace('"grade_id"', '"nobody"')
-    odd = {"lab_1_2 (1).ipynb": other, "lab_1_3_ada.ipynb": other[:-9], "homework.ipynb": nameless}
-    for name, text in odd.items():
-        held = zipped(inner | {name: text})
-        report = gathered(klass, tmp_path, {MOODLE.format("Ada Lovelace", "work.zip"): held})
-        assert [one.assignment for one in report.having(LineState.PLACED)] in ([], ["lab_1_2"])
-        (waits,) = report.having(LineState.NOT_PLACED)
-        assert (report.exit_code, waits.label.endswith(f"work.zip/{name}")) == (2, True)
-        assert f"{waits.label} {waits.key[:11]}" in {
-            one.label for one in Table(ClassDirectory(klass.path)).waiting()
-        }
-
-
-def test_a_second_copy_under_another_labs_name_waits(klass: TinyClass, tmp_path: Path) -> None:
-    other = other_lab(klass)
-    held = zipped({"lab_1_2 (1).ipynb": other, "lab_1_3.ipynb": other})
-    report = gathered(klass, tmp_path, {MOODLE.format("Ada Lovelace", "work.zip"): held})
-    assert [one.assignment for one in report.having(LineState.PLACED)] == ["lab_1_3"]
-    assert "(lab_1_2 by its name, lab_1_3 by its cells)" in why(report)
 
 
 def test_a_notebook_of_the_course_that_is_no_assignment_here_is_beside_the_work(
@@ -306,10 +169,6 @@ def test_a_notebook_of_another_assignment_that_was_put_there_by_hand_is_refused_
     page = (klass.path / "feedback" / "ada" / "lab_1_2" / "lab_1_2.html").read_text()
     assert reason in page
     assert "was missing. It was put back" not in page
-
-
-# -- whatever is collected, in any order and again
-# --------------------------------------------------------------------
 
 
 def a_download(klass: TinyClass, chance: random.Random) -> dict[str, bytes | str]:
@@ -418,18 +277,3 @@ def test_killed_at_any_write_nothing_is_lost_and_nothing_is_there_twice(
     assert (stamp(klass, "ada")[:10], stamp(klass, "ben")[:10]) == ("2025-10-04", "2025-10-03")
     assert {student for _, student in named(report, LineState.NOT_PLACED)} == {"eve"}
     assert {work(klass, 1), work(klass, 3)} <= set(kept(klass))
-
-
-def test_a_source_that_is_damaged_holds_up_no_work(klass: TinyClass, tmp_path: Path) -> None:
-    add_assignment(klass, "lab_1_3")
-    mine = work(klass, 3)
-    (klass.path / "source" / "lab_1_3" / "lab_1_3.ipynb").write_text("<<<<<<< HEAD")
-    other = mine.replace('"grade_id": "', '"grade_id": "other-')
-    files = {"lab_1_2.ipynb": mine, "lab_1_3.ipynb": other}
-    report = gathered(
-        klass, tmp_path, {MOODLE.format("Ada Lovelace", name): text for name, text in files.items()}
-    )
-    assert not why(report)
-    assert lies(klass, "ada") == mine
-    assert (klass.path / "submitted" / "ada" / "lab_1_3" / "lab_1_3.ipynb").read_text() == other
-    assert any("lab_1_3.ipynb cannot be read" in note for note in report.notes)
