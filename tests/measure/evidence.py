@@ -12,6 +12,7 @@ import functools
 import hashlib
 import json
 import lzma
+import subprocess
 import sys
 import tempfile
 from dataclasses import dataclass, replace
@@ -39,6 +40,8 @@ if TYPE_CHECKING:
 
 FOLDER = Path(__file__).parents[1] / "evidence"
 COMMAND = "python -m tests.measure evidence"
+RECORD = (sys.executable, "-m", "autograder", "record", "--check")
+"""What compares recordings with what their solutions do now."""
 
 
 class BadEvidence(ValueError):
@@ -268,9 +271,18 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def main(options: argparse.Namespace) -> int:
-    """Make evidence; 1 where an answer did not come out as expected."""
+    """Make evidence; 1 where an answer did not come out as expected, or a recording is out of date.
+
+    Evidence of the present bench says that a recording is, too, so that no test records it again.
+    """
     listed = bank.chosen(options.only)
     wanted = [one for one in listed if options.anew or not _is_up_to_date(one)]
+    changed = sorted({one.exercise for one in wanted if options.anew or is_of_another_bench(one)})
+    if changed and subprocess.run([*RECORD, *changed], check=False).returncode:
+        print(
+            "Nothing is kept: a recording is not what the solution does today. ./course record, then this again."
+        )
+        return 1
     troubles = make(wanted, jobs=options.jobs)
     print(*troubles, f"{len(wanted)} judged, {len(troubles)} not as expected", sep="\n")
     print(f"{len(listed) - len(wanted)} had evidence that is up to date")

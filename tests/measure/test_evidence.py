@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 import json
 import lzma
 import subprocess
@@ -137,3 +138,15 @@ def test_no_evidence_tells_where_the_clone_was_that_it_was_made_in() -> None:
     for file in sorted(FOLDER.glob("*.xz")):
         text = lzma.decompress(file.read_bytes()).decode()
         assert text.count("/.venv/") == text.count("/course/.venv/"), file.name
+
+
+@pytest.mark.parametrize("is_recorded", [True, False])
+def test_evidence_is_kept_anew_only_beside_a_recording_of_the_same_bench(
+    keep: Path, monkeypatch: pytest.MonkeyPatch, is_recorded: bool
+) -> None:
+    """Otherwise nothing but the nightly tier would see that a recording is out of date."""
+    options = argparse.Namespace(only=[FIRST.name], anew=False, jobs=1)
+    monkeypatch.setattr(evidence, "RECORD", (sys.executable, "-c", f"raise SystemExit({not is_recorded:d})"))
+    monkeypatch.setattr(evidence, "make", lambda *_, **__: [])
+    monkeypatch.setattr(stimulus, "digest", lambda exercise_id: "another bench")
+    assert evidence.main(options) == int(not is_recorded)
