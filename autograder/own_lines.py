@@ -30,6 +30,10 @@ LONGEST_SOURCE = 200_000
 """The maximum length of a source, in characters. Longer code is not read."""
 LONGEST_LINE = 120
 """The maximum length of a quoted line, in characters."""
+ENDLESS = ", whose condition stays true"
+"""What follows the quoted head of a loop that cannot end."""
+_LEAVES = ast.Break | ast.Return | ast.Raise | ast.Yield | ast.YieldFrom | ast.Await
+_ORDER = ast.Lt | ast.LtE | ast.Gt | ast.GtE
 
 
 def own_lines(sources: Mapping[str, str]) -> OwnLines:
@@ -80,6 +84,8 @@ def _uses(tree: ast.AST, text: str) -> Iterator[tuple[str, tuple[int, str]]]:
 def loop_around(text: str, line: int) -> str:
     """Return the line number and the quoted head of the innermost loop around a line; empty if there is none.
 
+    ``ENDLESS`` follows if the loop cannot end.
+
     Args:
         text: The source.
         line: The number of a line in it, counted from 1.
@@ -88,9 +94,33 @@ def loop_around(text: str, line: int) -> str:
         tree = ast.parse(text if len(text) <= LONGEST_SOURCE else "")
     except (SyntaxError, ValueError, RecursionError, MemoryError):
         return ""
-    loops = [one for one in ast.walk(tree) if isinstance(one, ast.While | ast.For | ast.AsyncFor)]
-    around = [one.lineno for one in loops if one.lineno <= line <= (one.end_lineno or 0)]
-    return f"{max(around)}: {_quote(text.splitlines()[max(around) - 1 :][:1])}" if around else ""
+    statements = [one for one in ast.walk(tree) if isinstance(one, ast.stmt)]
+    around = [one for one in statements if one.lineno <= line <= (one.end_lineno or 0)]
+    loops = [one for one in around if isinstance(one, ast.While | ast.For | ast.AsyncFor)]
+    if not loops:
+        return ""
+    inner = max(loops, key=lambda one: one.lineno)
+    function = next((one for one in reversed(around) if isinstance(one, ast.FunctionDef)), tree)
+    endless = isinstance(inner, ast.While) and _is_endless(inner, function)
+    return f"{inner.lineno}: {_quote(text.splitlines()[inner.lineno - 1 :][:1])}{ENDLESS if endless else ''}"
+
+
+def _is_endless(loop: ast.While, function: ast.AST) -> bool:
+    """Return True if no line of a loop leaves it, or changes a local variable that its condition compares."""
+    conditions = loop.test.values if isinstance(loop.test, ast.BoolOp) else [loop.test]
+    compares = [one for one in conditions if isinstance(one, ast.Compare) and isinstance(one.ops[0], _ORDER)]
+    sides = [side for one in compares for side in (one.left, *one.comparators)]
+    names = {getattr(side, "id", "") for side in sides if not isinstance(side, ast.Constant)}
+    leaves = any(isinstance(node, _LEAVES) for node in ast.walk(loop))
+    shares = any(isinstance(node, ast.Global | ast.Nonlocal) for node in ast.walk(function))
+    own = _set_in(function) | {one.arg for one in ast.walk(function) if isinstance(one, ast.arg)}
+    is_plain = compares == conditions and not (leaves or shares)
+    return is_plain and bool(names) and names <= own - _set_in(loop)
+
+
+def _set_in(node: ast.AST) -> set[str]:
+    names = (one for one in ast.walk(node) if isinstance(one, ast.Name))
+    return {one.id for one in names if not isinstance(one.ctx, ast.Load)}
 
 
 def _quote(lines: Sequence[str]) -> str:

@@ -9,7 +9,7 @@ import msgspec
 import pytest
 
 from autograder.messages.judge_messages import OwnLines
-from autograder.own_lines import LONGEST_LINE, MOST_NAMES, MOST_OF_A_NAME, loop_around, own_lines
+from autograder.own_lines import ENDLESS, LONGEST_LINE, MOST_NAMES, MOST_OF_A_NAME, loop_around, own_lines
 from environment.python_child import python_child
 
 if TYPE_CHECKING:
@@ -97,6 +97,29 @@ LOOPS = """def dock(self, goal):
 )
 def test_the_innermost_loop_around_a_line_is_quoted(line: int, loop: str) -> None:
     assert loop_around(LOOPS, line) == loop
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "endless"),
+    [
+        ("", "", True),
+        ("left > 0.0", "left > 0.0 and n < 3", True),
+        ("pass", "left -= 0.25", False),
+        ("pass", "break", False),
+        ("pass", "raise StopIteration", False),
+        ("pass", "yield left", False),
+        ("left > 0.0", "left", False),
+        ("left > 0.0", "self.left > 0.0", False),
+        ("left > 0.0", "left == goal", False),
+        ("left > 0.0", "left > self.end()", False),
+        ("left > 0.0", "total > 0.0", False),
+        ("        n = 1", "        nonlocal left", False),
+    ],
+)
+def test_a_loop_is_endless_only_if_no_line_ends_it(old: str, new: str, endless: bool) -> None:
+    text = "def dock():\n    def drive(left, goal):\n        n = 1\n        while left > 0.0:\n            pass\n"
+    assert old in text
+    assert loop_around(text.replace(old, new), 5).endswith(ENDLESS) is endless
 
 
 def test_code_that_cannot_be_read_has_no_loop() -> None:

@@ -6,6 +6,7 @@ import pytest
 
 from autograder.kit.evidence import Event, Evidence, Part, Reference
 from autograder.kit.mistakes.hangs import ENDLESS, ENDLESS_LOOP, HANGS, LOOPS
+from autograder.own_lines import ENDLESS as ENDLESS_LOOPS
 
 RCLPY = "/venv/lib/python3.11/site-packages/rclpy"
 WAIT = '  File "/usr/lib/python3.11/threading.py", line 320 in wait'
@@ -54,6 +55,12 @@ def test_a_callback_that_does_not_come_back_is_named(where: str) -> None:
         assert found.key == "callback_never_returns"
         assert advice is not None
         assert "work()" in advice.text
+        assert "It is at line 7." in advice.text
+
+
+def test_a_callback_that_sleeps_in_a_loop_has_this_loop_quoted() -> None:
+    found = next(filter(None, (mistake.recognize(_shown(IN_A_LOOP, 0.0)) for mistake in HANGS)))
+    assert "It is in the loop of line 12: `while left > 0.0:`." in found.text
 
 
 def test_call_line_and_callback_are_those_of_one_thread() -> None:
@@ -91,6 +98,13 @@ def test_a_callback_that_uses_the_processor_is_in_a_loop_and_the_loop_is_quoted(
 
 def test_a_callback_that_sleeps_or_waits_for_the_processor_is_in_no_proven_loop() -> None:
     assert ENDLESS_LOOP.recognize(_shown(IN_A_LOOP, LOOPS / 2)) is None
+
+
+def test_a_callback_that_sleeps_in_a_loop_that_cannot_end_is_in_a_loop() -> None:
+    endless = IN_A_LOOP.replace("0.0: (", f"0.0:{ENDLESS_LOOPS} (")
+    advice = ENDLESS_LOOP.recognize(_shown(endless, 0.0))
+    assert advice is not None
+    assert "It is in the loop of line 12: `while left > 0.0:`, whose condition stays true." in advice.text
 
 
 def test_a_goal_with_far_too_much_feedback_is_in_a_loop() -> None:

@@ -24,7 +24,10 @@ LOOPS = 2.0
 """Seconds of processor time in one callback after which it is in an endless loop, however busy the machine is."""
 ENDLESS = "endless"
 """The name of the noted event about a goal for which the subject has sent far too much feedback."""
-_LOOP = re2.compile(r" in the loop of line (?P<line>\d+): (?P<head>.*) \(most recent call first")
+_LOOP = re2.compile(
+    r" in the loop of line (?P<line>\d+): (?P<head>.*?)(?P<endless>, whose condition stays true)?"
+    r" \(most recent call first"
+)
 _FRAME = re2.compile(r'^\s*File "(?P<file>[^"]*)", line (?P<line>\d+),? in (?P<function>\S+)')
 _BLOCKING = {
     "client.py": {"call"},
@@ -137,6 +140,21 @@ def _place(stack: Stack) -> str:
     return f" (line {own[0].line}, in {own[0].function})" if own else ""
 
 
+def _loop_in(texts: Sequence[str]) -> str:
+    """Return a sentence that quotes the loop in the texts of stacks; empty if there is none."""
+    loop = next(filter(None, map(_LOOP.search, texts)), None)
+    return (
+        f" It is in the loop of line {loop['line']}: `{loop['head']}`{loop['endless'] or ''}." if loop else ""
+    )
+
+
+def _line_of(callback: str, found: list[Stack]) -> str:
+    """Return a sentence with the line at which the student's callback was; empty if there is no callback."""
+    frames = (frame for stack in found for frame in stack if not frame.rclpy and frame.function == callback)
+    frame = next(frames, None)
+    return f" It is at line {frame.line}." if frame else ""
+
+
 def _executes_a_goal(stack: Stack) -> bool:
     """Return True if an action server called the student's code to execute a goal."""
     return bool(_stuck_callback([stack])) and any(frame.rclpy == "action/server.py" for frame in stack)
@@ -174,16 +192,17 @@ _HANGS: tuple[tuple[str, Recognize, str, str], ...] = (
     (
         "callback_never_returns",
         lambda found: any(map(_executes_a_goal, found)),
-        "Your execute callback {callback}() got a goal and did not return. Either it loops or waits forever, or each "
-        "number takes longer than the one before, for example because it computes every number from the beginning.",
+        "Your execute callback {callback}() got a goal and did not return.{stays} Either it loops or waits forever, "
+        "or each number takes longer than the one before, for example because it computes every number from the "
+        "beginning.",
         "Keep the numbers found so far in a list, add one number in each turn of the loop, and leave the loop when "
         "there are enough. A pause in each turn, such as time.sleep(0.5), is right.",
     ),
     (
         "callback_never_returns",
         lambda found: bool(_stuck_callback(found)),
-        "Your callback {callback}() was called and never returned: it loops, sleeps or waits. Meanwhile the node "
-        "does nothing else.",
+        "Your callback {callback}() was called and never returned: it loops, sleeps or waits.{stays} Meanwhile the "
+        "node does nothing else.",
         "Let a callback do one short step and return. To go on when an answer arrives, give its future a function: "
         "future.add_done_callback(your_function). For work that is repeated, make a timer (create_timer). Do not "
         "use `while True` or time.sleep in callbacks.",
@@ -210,8 +229,8 @@ _HANGS: tuple[tuple[str, Recognize, str, str], ...] = (
     (
         "never_spun",
         lambda found: bool(found) and not any(frame.rclpy for stack in found for frame in stack),
-        "All threads of your program are busy with your own code, such as a loop. Nothing spins the node, so none of "
-        "its callbacks is ever called.",
+        "All threads of your program are busy with your own code, such as a loop.{stays} Nothing spins the node, so "
+        "none of its callbacks is ever called.",
         "Write rclpy.spin(your_node) instead of the loop that waits; if you wait for an answer, write "
         "rclpy.spin_until_future_complete(your_node, your_future). Or keep your loop, and spin the node in a second "
         "thread.",
@@ -224,6 +243,7 @@ def _mistake(key: str, fits: Recognize, text: str, next_step: str) -> Mistake:
         found = [stack for part in evidence for stack in _stacks(part)]
         if not found or not fits(found):
             return None
+        texts = [str(event.data["text"]) for part in evidence for event in part.of("stack")]
         blocked = _that(found, _blocks)
         callback = _stuck_callback([blocked]) or _stuck_callback(found)
         words = {
@@ -232,6 +252,7 @@ def _mistake(key: str, fits: Recognize, text: str, next_step: str) -> Mistake:
             "call": _waiting(blocked),
             "called": _place(blocked),
             "slept": _place(_that(found, _sleeps_on_rate)),
+            "stays": _loop_in(texts) or _line_of(callback, found),
         }
         return Advice(text.format(**words), next_step.format(**words))
 
@@ -242,20 +263,19 @@ def _endless_loop(evidence: Evidence) -> Advice | None:
     told = [event.data for part in evidence for event in part.of("noted", ENDLESS)]
     shown = [event.data for part in evidence for event in part.of("stack")]
     busy = [data for data in shown if data.get("busy", 0.0) >= LOOPS]
-    if not (told or busy):
-        return None
     texts = [data["text"] for data in busy or shown]
+    proven = [text for text in texts if (loop := _LOOP.search(text)) and loop["endless"]]
+    if not (told or busy or proven):
+        return None
     callback = _stuck_callback([stack for text in texts for stack in _stacks_in(text)])
     what = f"Your callback {callback}()" if callback else "Your code"
-    how = (
-        f"to one goal it has sent {told[0]['feedback']} feedback messages, and goes on"
-        if told
-        else f"it has used the processor for {busy[0]['busy']:.0f} seconds, and goes on"
-    )
-    loop = next(filter(None, map(_LOOP.search, texts)), None)
-    where = f" It is in the loop of line {loop['line']}: `{loop['head']}`." if loop else ""
+    how = "nothing in its loop ends it"
+    if told:
+        how = f"to one goal it has sent {told[0]['feedback']} feedback messages, and goes on"
+    elif busy:
+        how = f"it has used the processor for {busy[0]['busy']:.0f} seconds, and goes on"
     return Advice(
-        f"{what} does not come to an end: {how}.{where}",
+        f"{what} does not come to an end: {how}.{_loop_in(texts)}",
         "Something in the loop has to make its condition false. Look at each name in the condition, and at the line "
         "that changes it in each round.",
     )
