@@ -156,11 +156,28 @@ def _is_alive(node: Node) -> bool:
     return True
 
 
+UNREADABLE = (
+    "Exception: an error that cannot be shown, because its class, text or cause raises an error itself"
+)
+"""The traceback of an error that ends whatever asks for its name or text."""
+
+
 def student_traceback(error: BaseException) -> str:
     """Return an error's traceback with only the student's code, in the format of a terminal.
 
-    If the error contains the errors of several callbacks, only the first of them is formatted.
+    If the error contains the errors of several callbacks, only the first of them is formatted. An error whose class,
+    text or cause cannot be read has the text :data:`UNREADABLE`.
     """
+    try:
+        return _student_traceback(error)
+    except (
+        BaseException
+    ):  # also what ends this thread: then the judge would wait for a constructor that has ended
+        trace = student_frames(vars(BaseException)["__traceback__"].__get__(error))
+        return f"{''.join(traceback.format_tb(trace))}{UNREADABLE}"
+
+
+def _student_traceback(error: BaseException) -> str:
     collected = getattr(error, "errors", ())
     if collected and isinstance(getattr(collected[0], "error", None), BaseException):
         error = collected[0].error

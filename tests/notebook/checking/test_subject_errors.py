@@ -9,7 +9,7 @@ from rclpy.action import ActionServer
 
 from autograder.messages.judge_messages import Raised
 from autograder.messages.run_messages import Output
-from autograder.notebook.checking.subject_runs import SubjectRun
+from autograder.notebook.checking.subject_runs import UNREADABLE, SubjectRun
 from autograder.notebook.nodes.spin_threads import SpinFailure
 
 if TYPE_CHECKING:
@@ -48,3 +48,17 @@ def test_an_exception_of_any_other_callback_ends_the_subject() -> None:
 def test_a_missing_result_ends_the_subject_as_it_ends_rclpy_spin() -> None:
     (told,) = _told(TypeError("the execute callback must return a result of the action"), SERVER)
     assert isinstance(told, Raised)
+
+
+def test_an_error_that_ends_whoever_reads_it_is_told_with_its_line() -> None:
+    class Unreadable(Exception):
+        def __getattribute__(self, name: str) -> Any:
+            raise KeyboardInterrupt(name)
+
+    try:
+        raise Unreadable
+    except Unreadable as error:
+        (told,) = _told(error, object())
+    assert isinstance(told, Raised)
+    assert told.traceback.endswith(UNREADABLE)
+    assert "raise Unreadable" in told.traceback

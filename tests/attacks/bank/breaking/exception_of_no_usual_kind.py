@@ -1,7 +1,7 @@
 # family = "breaking"
 # tries = "The talker's constructor raises an exception without a readable name, text, cause or notes: each of them ends the process that asks for it."
 # could_earn = "A judge or a card that ends over it, so that the zero becomes no grade."
-# undefended = "Zero points; the check says that the constructor raised an error."
+# undefended = "The thread that told of it ended, and the card said that the constructor never returns."
 
 # %% solution TalkerNode
 class Unnamed(type):
