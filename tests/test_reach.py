@@ -9,6 +9,7 @@ from typing import Any
 
 import pytest
 
+from tests.reach import changes
 from tests.reach.changes import NoCommit, Selection, reaching, selection
 from tests.reach.roots import read_files
 
@@ -31,6 +32,18 @@ def test_a_change_selects_the_tests_that_reach_it(tmp_path: Path, case: dict[str
     (tmp_path / path).write_text(before.replace(case["old"], case["new"]))
     chosen = reaching(tmp_path, read_files(tmp_path, FILES), [path], {path: before}.get)
     assert {name.removeprefix("tests/") for name in chosen.tests} | chosen.about == set(case["selected"])
+
+
+def test_of_more_tests_than_a_change_needs_the_nearest_are_selected(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(changes, "MOST", 1)
+    written(tmp_path)
+    (tmp_path / "autograder/marks.py").write_text("def total(marks):\n    return 0\n")
+    before = {"autograder/marks.py": FILES["autograder/marks.py"]}
+    files = read_files(tmp_path, FILES)
+    (name,) = reaching(tmp_path, files, before, before.get).tests
+    assert name.startswith("tests/test_marks.py::")  # another test reaches it through the commands
 
 
 def test_parameters_that_name_an_exercise_are_selected_one_by_one() -> None:

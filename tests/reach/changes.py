@@ -7,9 +7,12 @@ import re
 import subprocess
 from collections import defaultdict
 from dataclasses import asdict, dataclass
+from itertools import islice, zip_longest
 from pathlib import Path, PurePosixPath
+from random import Random
 from typing import TYPE_CHECKING
 
+from tests import tiers
 from tests.reach.graph import WHOLE, Files, Graph, Node
 from tests.reach.pieces import REST, Source, read, texts
 from tests.reach.roots import HOOK, exercises_of, is_source, listed, read_files, tests_of
@@ -28,6 +31,10 @@ FOR_ALL = (
 )
 """Beginnings of the paths of files that decide on each test."""
 WORKSPACE = "solutions/ros2_ws/"
+MOST, FEW = 120, 8
+"""The most functions of tests, and exercises through the engine: nearly all reach a hub, such as a card's words."""
+FAR = 1000
+"""Files away, for a test that the graph leads to a change by the name of a method alone."""
 _TOKEN = re.compile(r"[\w.]+")
 
 
@@ -161,7 +168,7 @@ def reaching(root: Path, files: Files, changed: Iterable[str], earlier: Earlier,
     for place, node in enumerate(roots):
         bits[node] |= 1 << place
     reached = graph.reached(bits, unnamed=-1 << len(tests))  # the judge calls what an exercise defines
-    seen, about, found = 0, set[str](), set[Node]()
+    ranked, about, through = list[list[Node]](), set[str](), set[Node]()
     for path in changed:
         if path.startswith("solutions/") or path.startswith("tests/evidence/"):
             about |= _about(path, exercises)
@@ -174,18 +181,24 @@ def reaching(root: Path, files: Files, changed: Iterable[str], earlier: Earlier,
         mask = 0
         for node in nodes:
             mask |= reached.get(node, 0)
-        seen |= mask
-        found |= _hooked(nodes, tests)
+        found = {node for place, node in enumerate(roots) if mask >> place & 1} | _hooked(nodes, tests)
         if not mask and nodes and not path.startswith("docs/"):
             found |= _nearest(path, files, tests, reached, roots)
-    for place, node in enumerate(roots):
-        if seen >> place & 1 and node[1] != WHOLE:
-            found.add(node)
-    for name, node in exercises.items():
-        if seen >> roots.index(node) & 1:
-            about |= {name, name.partition(".")[0]}
-    names = frozenset(f"{path}::{name}" for path, name in found)
+        through |= found.difference(tests)
+        ranked.append(_by_distance(graph, path, found.intersection(tests)))
+    nearest = dict.fromkeys(node for row in zip_longest(*ranked) for node in row if node)
+    few = tiers.drawn([name for name, node in exercises.items() if node in through], FEW)
+    about |= few | {name.partition(".")[0] for name in few}
+    names = frozenset(f"{path}::{name}" for path, name in islice(nearest, MOST))
     return Selection(base, tuple(changed), names, frozenset(about))
+
+
+def _by_distance(graph: Graph, path: str, tests: Iterable[Node]) -> list[Node]:
+    """Sort tests by the number of files between them and a changed one; first those that have its name."""
+    away, stem = graph.files_away(path), PurePosixPath(path).stem
+    drawn = Random(tiers.seed())
+    rank = {test: (away.get(test[0], FAR), stem not in test[0], drawn.random()) for test in sorted(tests)}
+    return sorted(rank, key=rank.__getitem__)
 
 
 def _changed_pieces(root: Path, path: str, earlier: Earlier) -> set[Node]:

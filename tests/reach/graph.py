@@ -196,6 +196,18 @@ class Graph:
             if path.endswith(text):
                 yield path, REST
 
+    def files_away(self, path: str) -> dict[str, int]:
+        """Return for each file that leads to a file the number of files on the shortest way there."""
+        back: dict[str, set[str]] = defaultdict(set)
+        for (file, _), others in self.edges.items():
+            for other, _ in others:
+                back[other].add(file)
+        away, ring = {path: 0}, {path}
+        while ring:
+            ring = {file for one in ring for file in back[one]} - away.keys()
+            away |= dict.fromkeys(ring, max(away.values()) + 1)
+        return away
+
     def reached(self, roots: Mapping[Node, int], unnamed: int = 0) -> dict[Node, int]:
         """Return for each piece the roots that reach it, as the bits of a number.
 
