@@ -48,10 +48,7 @@ def own_lines(sources: Mapping[str, str]) -> OwnLines:
     """
     lines: dict[str, list[OwnLine]] = defaultdict(list)
     for place, text in sources.items():
-        try:
-            tree = ast.parse(text if len(text) <= LONGEST_SOURCE else "")
-        except (SyntaxError, ValueError, RecursionError, MemoryError):
-            continue  # the card shows this error
+        tree = _parsed(text)
         tools = {name: list(found) for name, found in lines.items()}
         for statement in ast.walk(tree):
             if isinstance(statement, ast.FunctionDef) and statement.name in tools:
@@ -63,6 +60,13 @@ def own_lines(sources: Mapping[str, str]) -> OwnLines:
     if len(lines) > MOST_NAMES:
         return OwnLines([])
     return OwnLines([line for found in lines.values() for line in found])
+
+
+def _parsed(text: str) -> ast.Module:
+    """Return the syntax tree of a source; an empty one if the source cannot be read: the card shows that error."""
+    with suppress(SyntaxError, ValueError, RecursionError, MemoryError):
+        return ast.parse(text if len(text) <= LONGEST_SOURCE else "")
+    return ast.Module([], [])
 
 
 def _uses(tree: ast.AST, text: str) -> Iterator[tuple[str, tuple[int, str]]]:
@@ -90,10 +94,7 @@ def loop_around(text: str, line: int) -> str:
         text: The source.
         line: The number of a line in it, counted from 1.
     """
-    try:
-        tree = ast.parse(text if len(text) <= LONGEST_SOURCE else "")
-    except (SyntaxError, ValueError, RecursionError, MemoryError):
-        return ""
+    tree = _parsed(text)
     statements = [one for one in ast.walk(tree) if isinstance(one, ast.stmt)]
     around = [one for one in statements if one.lineno <= line <= (one.end_lineno or 0)]
     loops = [one for one in around if isinstance(one, ast.While | ast.For | ast.AsyncFor)]

@@ -142,17 +142,17 @@ def _place(stack: Stack) -> str:
 
 def _loop_in(texts: Sequence[str]) -> str:
     """Return a sentence that quotes the loop in the texts of stacks; empty if there is none."""
-    loop = next(filter(None, map(_LOOP.search, texts)), None)
-    return (
-        f" It is in the loop of line {loop['line']}: `{loop['head']}`{loop['endless'] or ''}." if loop else ""
+    loops = filter(None, map(_LOOP.search, texts))
+    found = (
+        f" It is in the loop of line {one['line']}: `{one['head']}`{one['endless'] or ''}." for one in loops
     )
+    return next(found, "")
 
 
 def _line_of(callback: str, found: list[Stack]) -> str:
     """Return a sentence with the line at which the student's callback was; empty if there is no callback."""
     frames = (frame for stack in found for frame in stack if not frame.rclpy and frame.function == callback)
-    frame = next(frames, None)
-    return f" It is at line {frame.line}." if frame else ""
+    return next((f" It is at line {frame.line}." for frame in frames), "")
 
 
 def _executes_a_goal(stack: Stack) -> bool:
@@ -264,18 +264,15 @@ def _endless_loop(evidence: Evidence) -> Advice | None:
     shown = [event.data for part in evidence for event in part.of("stack")]
     busy = [data for data in shown if data.get("busy", 0.0) >= LOOPS]
     texts = [data["text"] for data in busy or shown]
-    proven = [text for text in texts if (loop := _LOOP.search(text)) and loop["endless"]]
-    if not (told or busy or proven):
+    how = [f"to one goal it has sent {data['feedback']} feedback messages, and goes on" for data in told]
+    how += [f"it has used the processor for {data['busy']:.0f} seconds, and goes on" for data in busy]
+    how += ["nothing in its loop ends it" for loop in map(_LOOP.search, texts) if loop and loop["endless"]]
+    if not how:
         return None
     callback = _stuck_callback([stack for text in texts for stack in _stacks_in(text)])
     what = f"Your callback {callback}()" if callback else "Your code"
-    how = "nothing in its loop ends it"
-    if told:
-        how = f"to one goal it has sent {told[0]['feedback']} feedback messages, and goes on"
-    elif busy:
-        how = f"it has used the processor for {busy[0]['busy']:.0f} seconds, and goes on"
     return Advice(
-        f"{what} does not come to an end: {how}.{_loop_in(texts)}",
+        f"{what} does not come to an end: {how[0]}.{_loop_in(texts)}",
         "Something in the loop has to make its condition false. Look at each name in the condition, and at the line "
         "that changes it in each round.",
     )
