@@ -1,10 +1,11 @@
-"""The page that leads from the course text to the notebooks leaves none of them out."""
+"""Each part of the course text is where ``course_text.toml`` says, and the page about it leaves out no notebook."""
 
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+import tomllib
 from pathlib import Path
+from typing import Any
 
 import nbformat
 import pytest
@@ -16,6 +17,7 @@ ROOT = Path(__file__).resolve().parents[2]
 PARTS_OF_THE_TEXT = 74
 CONTINUED = "Step "
 """An exercise is judged where its last step ends."""
+ROWS = tomllib.loads((Path(__file__).parent / "course_text.toml").read_text(encoding="utf-8"))["rows"]
 PAGE = (ROOT / "docs" / "course-text.md").read_text(encoding="utf-8")
 
 
@@ -25,51 +27,26 @@ def test_every_notebook_is_linked() -> None:
 
 
 def test_every_exercise_is_named() -> None:
-    named = set(re.findall(r"`(\w+\.\w+)`", PAGE))
+    named = set(re.findall(r"`(\w+\.\w+)`", PAGE)) | {cell for row in ROWS for cell in row.get("below", [])}
     hunts = {one.id for one in exercises.unbroken() if one.hides_causes}  # of these, the notebooks are linked
     assert set(exercises.all_ids()) - hunts <= named
 
 
-@dataclass(frozen=True)
-class Row:
-    """A row of the table: one or more parts of the text, and where they are."""
-
-    numbers: tuple[int, ...]
-    part: str
-    chapter: Path
-    heading: str
-    cells: tuple[str, ...]
-
-
-def rows() -> list[Row]:
-    """The rows of the table that says where each part of the text is."""
-    found = re.findall(
-        r"^\| (\d+)(?:–(\d+))? \| (.+?) \| (?:\[[^\]]+\]\(\.\./(chapters/\S+)\) )?\| (.+?) \| (.*)\|$",
-        PAGE,
-        flags=re.MULTILINE,
-    )
-    made = []
-    chapter = ""
-    for first, last, part, linked, heading, cells in found:
-        chapter = linked or chapter  # an empty one is that of the row above
-        numbers = tuple(range(int(first), int(last or first) + 1))
-        made.append(Row(numbers, part, ROOT / chapter, heading, tuple(re.findall(r"`([^`]+)`", cells))))
-    return made
-
-
 def test_the_table_has_every_part_of_the_text() -> None:
-    assert [number for row in rows() for number in row.numbers] == list(range(1, PARTS_OF_THE_TEXT + 1))
+    parts = [number for row in ROWS for number in range(row["parts"][0], row["parts"][1] + 1)]
+    assert parts == list(range(1, PARTS_OF_THE_TEXT + 1))
 
 
-@pytest.mark.parametrize("row", rows(), ids=lambda row: str(row.numbers[0]))
-def test_a_part_of_the_text_is_where_the_table_says(row: Row) -> None:
+@pytest.mark.parametrize("row", ROWS, ids=lambda row: str(row["parts"][0]))
+def test_a_part_of_the_text_is_where_the_table_says(row: dict[str, Any]) -> None:
     """The heading is in the notebook, and the cells are below it, before the next heading of its level."""
     level, below = 0, set[str]()
-    for cell in nbformat.read(row.chapter, as_version=4).cells:
+    notebook = ROOT / "chapters" / "01_ros2_fundamentals" / f"{row['notebook']}.ipynb"
+    for cell in nbformat.read(notebook, as_version=4).cells:
         if cell.cell_type == "markdown":
             text = re.sub(r"^```.*?^```", "", cell.source, flags=re.MULTILINE | re.DOTALL)
             for marks, title in re.findall(r"^(#+) (.+)$", text, flags=re.MULTILINE):
-                if title == row.heading:
+                if title == row["heading"]:
                     level = len(marks)
                 elif level and len(marks) <= level and not (level == 2 and title.startswith(CONTINUED)):
                     level = -1
@@ -78,5 +55,7 @@ def test_a_part_of_the_text_is_where_the_table_says(row: Row) -> None:
                 cell.get("metadata", {}).get("nbgrader", {}).get("grade_id", ""),
                 *cell.get("attachments", {}),
             }
-    assert level, f"no heading '{row.heading}'"
-    assert {name.replace(".", "-") if name in exercises.all_ids() else name for name in row.cells} <= below
+    assert level, f"no heading '{row['heading']}'"
+    assert {
+        name.replace(".", "-") if name in exercises.all_ids() else name for name in row.get("below", [])
+    } <= below
