@@ -33,6 +33,8 @@ class To(NamedTuple):
         value: The value of the field ``data``; a dictionary is a whole message or request.
         stands: Seconds of wall time for which the subject's clock stands still after the input. A node that asks
             another clock for the time then shows it, however busy the machine is.
+        answered: Seconds of the subject's time until the judge answers the call that the input leads to, infinity
+            for never; None if it answers at once.
     """
 
     name: str
