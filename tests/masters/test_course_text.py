@@ -26,12 +26,6 @@ def test_every_notebook_is_linked() -> None:
     assert linked == {chapter_path(ROOT, master).relative_to(ROOT).as_posix() for master in masters(ROOT)}
 
 
-def test_every_exercise_is_named() -> None:
-    named = set(re.findall(r"`(\w+\.\w+)`", PAGE)) | {cell for row in ROWS for cell in row.get("below", [])}
-    hunts = {one.id for one in exercises.unbroken() if one.hides_causes}  # of these, the notebooks are linked
-    assert set(exercises.all_ids()) - hunts <= named
-
-
 def test_the_table_has_every_part_of_the_text() -> None:
     parts = [number for row in ROWS for number in range(row["parts"][0], row["parts"][1] + 1)]
     assert parts == list(range(1, PARTS_OF_THE_TEXT + 1))
