@@ -17,7 +17,7 @@ def steps(random: Random) -> list[To | Goal]:
 
 EXERCISE = SameAsSolution(
     "lab_1_4_robot.cancel",
-    "Lab 1.4, on the robot · A dock that can be canceled",
+    "Lab 1.4, first half · A dock that can be canceled",
     "Serve dock: drive that far and send the distance that is left, or stop when a client cancels.",
     gives=steps,
     tells={

@@ -46,7 +46,7 @@ def steps(random: Random) -> list[To | Goal]:
 
 EXERCISE = SameAsSolution(
     "lab_1_4_robot.dock",
-    "Lab 1.4, on the robot · An action that docks",
+    "Lab 1.4, first half · An action that docks",
     "Serve dock: drive that far, send the distance that is left, and give up where a wall is nearer.",
     gives=steps,
     tells={

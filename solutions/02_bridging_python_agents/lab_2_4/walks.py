@@ -57,7 +57,7 @@ EXERCISE = ToolUser(
         "it sends the goal to the action `walk_to`, without waiting": "walk_to",
         "The answer comes once, and only when all is over": "result",
         "`ok` if the walk has": "result",
-        "also if the goal is rejected": "result",
+        "even if the goal is rejected": "result",
         "Write `walk_to`": "speech lamp",
     }
 )
