@@ -331,6 +331,9 @@ except ImportError:
 
     if not course_folder():
         archive = os.environ.get("ROS2_COURSE_ARCHIVE") or "{archive}"
+        if not archive:
+            problem = "This notebook is not in the course's folder, and the course has no address. Open it"
+            raise ImportError(f"{{problem}} there, or let ROS2_COURSE_ARCHIVE name a zip of it.") from None
         try:
             file, _ = urllib.request.urlretrieve(archive)
         except (OSError, ValueError) as error:
