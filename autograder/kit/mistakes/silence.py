@@ -10,10 +10,10 @@ from autograder.kit.model import Mistake, mistake
 if TYPE_CHECKING:
     from autograder.kit.evidence import Evidence
 
-NO_MESSAGE = "Your node has a publisher, but no message arrives while the judge listens."
+NO_MESSAGE = "Your node has a publisher on {}, but no message arrives there while the judge listens."
 PUBLISH = (
     "If your code still has a TODO, write that step first. A callback, such as a timer's, must call publish(...) with "
-    "the message between the parentheses; a log line is not a message."
+    "the message between the parentheses; a log line is not a message. The period of a timer is in seconds."
 )
 
 NO_MORE = "Your node published {} and then no more, although it still exists."
@@ -27,19 +27,21 @@ GO_ON = (
 def never_published() -> Mistake:
     """Return the mistake "never published": the node has all its endpoints, and publishes nothing on a topic."""
 
-    def silent(evidence: Evidence) -> bool:
+    def silent(evidence: Evidence) -> str:
         part, interface = evidence.main, evidence.reference.interface
         if part.ending is not None or part.of("unanswered"):
-            return False
+            return ""
+        topics = interface.get("publisher", {})
+        # Of a node that answers goals or requests, the answers say more.
+        if any(event.data.get("values") for event in part.of("noted") if event.name not in topics):
+            return ""
         # Without all its endpoints, the node was given nothing.
         if any(ends.keys() - part.endpoints(role) for role, ends in interface.items()):
-            return False
-        return any(
-            not part.of("message", topic) and _publishes(evidence, topic)
-            for topic in interface.get("publisher", ())
-        )
+            return ""
+        silent = (one for one in topics if not part.of("message", one) and _publishes(evidence, one))
+        return next(silent, "")
 
-    return mistake("never_published", silent, NO_MESSAGE, PUBLISH)
+    return mistake("never_published", silent, NO_MESSAGE, PUBLISH, uses=("publish",))
 
 
 def _publishes(evidence: Evidence, topic: str) -> bool:
