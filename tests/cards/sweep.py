@@ -55,15 +55,14 @@ def _of_two_things(verdict: Verdict, text: str, missed: list[str]) -> str:
     if raised and TRACEBACK in verdict.detail and raised[0] not in verdict.detail.strip().splitlines()[-1]:
         return f"its diagnosis is of a {raised[0]}, above the traceback of another: {verdict.detail[-120:]}"
     law = " ".join(" ".join(sentence.split()) for sentence in exercises.get(verdict.exercise).text)
-    told = [
-        quote for quote in _QUOTED.findall(text) if quote not in law
-    ]  # the task's own words, beside the student's
+    quotes = _QUOTED.findall(text)
+    told = [quote for quote in quotes if quote not in law]  # the task's own words, beside the student's
     seen = _QUOTED.findall(" ".join(missed))
     # A list of what is said quotes only the beginning of each.
     if (
         told
         and seen
-        and not any(one[:12] in other or other[:12] in one for one, other in product(told, seen))
+        and not any(one[:12] in other or other[:12] in one for one, other in product(quotes, seen))
     ):
         return f"its diagnosis quotes “{told[0]}”, and its criteria “{seen[0]}”"
     return ""

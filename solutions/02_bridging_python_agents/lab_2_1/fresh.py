@@ -6,12 +6,12 @@ from autograder.kit import SameAsSolution, To, drawn_until, levels, mixed, scans
 
 NEAR = 0.8
 """The distance in meters up to which the robot stands still."""
-PAUSE, FRESH, OLD = 0.45, 0.5, 0.25
-"""Seconds of the subject's time after each scan; until a scan is 0.95 s old; and until it is 1.2 s old.
+PAUSE, FRESH, OLD, OLDER = 0.45, 0.5, 0.25, 0.4
+"""Seconds of the subject's time after each scan; until a scan is 0.95 s old; until it is 1.2 s old; and 1.6 s.
 
-The subject's timer rings at any moment of its 0.2 s. The four scans that grow old come 1.65 s after one another, so
+The subject's timer rings at any moment of its 0.2 s. The four scans that grow old come 2.05 s after one another, so
 they meet it at four moments, a quarter of its period apart. One of these shows whatever the subject takes for old at
-0.95 s, or for fresh at 1.05 s.
+0.95 s, or for fresh at 1.05 s. What is old stays old: two more rings show a node that says so only once.
 """
 
 
@@ -28,7 +28,7 @@ def steps(random: Random) -> list[To | float]:
     far = random.choice([wall for wall in walls if wall > NEAR])
     early, still, *told = scans(random, NEAR, [max(walls), far, *walls])
     grow_old: list[list[To | float]] = [
-        [old, FRESH, OLD, new] for old, new in zip(told[::2], told[1::2], strict=True)
+        [old, FRESH, OLD, OLDER, new] for old, new in zip(told[::2], told[1::2], strict=True)
     ]
     start = random.choice((0.5, 0.55, 0.6, 0.65))
     return [start, early, still._replace(stands=1.2), *(step for each in grow_old for step in each)]
