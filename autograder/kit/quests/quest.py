@@ -76,7 +76,7 @@ _TEXTS = {
         "End your function with `return` and the name itself, as the graph gives it.",
     ),
     "wrong_node": (
-        "Your answer names {}, which the graph has, but which is not what you were asked for.",
+        "Your answer names what the graph has, but not what you were asked for: {}.",
         "Read once more which node you are to find, and what of it. Compare each name and each type as a whole.",
     ),
     "looked_once": (
@@ -378,7 +378,7 @@ def _is_silent(seen: Searches) -> bool:
 
 
 def _astray(seen: Searches) -> str:
-    return next((" and ".join(search.astray) for search in seen.values() if search.astray), "")
+    return next((search.astray_in_words for search in seen.values() if search.astray), "")
 
 
 def _not_returned(seen: Searches) -> Search | None:

@@ -28,6 +28,8 @@ _ENTRY = re2.compile(
 
 The value is a text, a list of one text, or nothing: a list of several texts is a guess, not an answer.
 """
+_ENDS = {"publishes": ("publishes", "serves"), "subscribes": ("subscribes to", "has a client of")}
+"""What a node does with a topic, and with an action."""
 _PACKAGE = re2.compile(r"[/.](?:msg|srv|action)[/.]")
 
 
@@ -168,6 +170,18 @@ class Search:
         """The names in the answer that the robot has, or that every node has, but that are not asked for."""
         told = {f"/{name.lstrip('/')}" for value in self.given.values() for name in value.split(", ")}
         return sorted(told & {*self.names, *EVERY_NODE_HAS} - {*self.robot.answer.values()})
+
+    @property
+    def astray_in_words(self) -> str:
+        """These names, and what the nodes of the graph do that have to do with them; empty if there are none."""
+        deeds = [
+            f"{node} {verbs['/action/' in kind]} {end} ({kind})"
+            for node, has in self.robot.nodes.items()
+            for way, verbs in _ENDS.items()
+            for end, kind in has.get(way, {}).items()
+            if not {f"/{node.lstrip('/')}", end}.isdisjoint(self.astray)
+        ]
+        return " and ".join(self.astray) + (f". On the graph, {', '.join(deeds)}" if deeds else "")
 
     @property
     def since_it_appeared(self) -> Part:

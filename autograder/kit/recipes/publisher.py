@@ -325,7 +325,8 @@ class Publisher:
             return None
         twin, period = common.twin(part), _reference_period(evidence.reference)
         return Advice(
-            NO_MESSAGE.format(seen.topic) + (f" Two nodes are called {twin}, and only one of them is spun." if twin else ""),
+            NO_MESSAGE.format(seen.topic)
+            + (f" Two nodes are called {twin}, and only one of them is spun." if twin else ""),
             "If your class makes another Node(...), delete that call: self is the node, so write "
             "self.create_publisher and self.create_timer."
             if twin
