@@ -5,6 +5,8 @@ from collections.abc import Mapping
 from random import Random
 from typing import Any
 
+import re2
+
 from autograder.kit.oracle.tool_user import Work
 
 WISHES = (
@@ -14,6 +16,8 @@ WISHES = (
     "Show me the door",
     "I need you in the hall",
 )
+_REPLIES = re2.compile(r"(good|sign|fenced|chat|nan|infinite|far|unknown|text)-(\d(?:\.\d+)?)")
+"""Matches the kind of a reply and its seconds. A subject may tell the model anything, also what no order says."""
 STRIPPED = ":,.'\"`"
 
 
@@ -56,9 +60,8 @@ def kind(*replies: str, takes: float = 0.05) -> str:
 
 def reply(request: Mapping[str, Any]) -> Work:
     """Return the reply to a context, and how long it takes. Its order says which, for each try."""
-    order, *errors = request["context"].split("\n")
-    told = order.split()[-1].split("-") if order else []
-    replies = list(zip(told[::2], told[1::2], strict=False))
+    order, *errors = request["context"].encode("utf-8", "replace").decode().split("\n")
+    replies = _REPLIES.findall(order.split()[-1]) if order.strip() else []
     if not replies:
         return Work(takes=0.0, result={"reply": "What shall I do?"})
     one, seconds = replies[min(len(errors), len(replies) - 1)]
