@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 
 from autograder import exercises
 from autograder.command_name import COMMAND
-from autograder.judge import evidence_files, one_check
+from autograder.judge import evidence_files
 from autograder.judge.evidence_files import NoEvidence, evidence_of
+from autograder.judge.verdicts import deciding
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -58,7 +59,7 @@ def replay(kept: Kept) -> Replay:
     except (exercises.UnknownExercise, exercises.BrokenExercise, evidence_files.NoReference) as error:
         raise CannotReplay(f"{error} Use the version of the course that the check was made with.") from error
     try:
-        now = one_check.decide(exercise, evidence_of(kept, expected), then.seed)
+        now = deciding.decide(exercise, evidence_of(kept, expected), then.seed)
     except NoEvidence as error:
         raise CannotReplay(f"{error} in this check, so there is nothing to judge again") from error
     except Exception as error:  # evidence from another version, or written by hand, may lack any field

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from autograder.judge.check_process import ChildResult
-    from autograder.judge.one_check import Checked
+    from autograder.judge.one_check import Look
     from autograder.kit.evidence import Reference
     from autograder.messages.judge_messages import Report
 
@@ -106,7 +106,7 @@ class Answer:
             file.write_text(self.text, encoding="utf-8")
         return [part.format(file=file, workspace=workspace) for part in self.command]
 
-    def checked(self, seed: str) -> tuple[Verdict, Checked | None]:
+    def checked(self, seed: str) -> tuple[Verdict, Look | None]:
         """Judge the answer in this process. Return the verdict, and the evidence unless the judge itself failed."""
         from autograder.judge.command_check import checked_here
 

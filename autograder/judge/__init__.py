@@ -2,7 +2,7 @@
 
 Promises: a verdict is a function of the evidence, so it can be judged again; nothing that a subject does ends the
     judge; what depends on a busy machine is “could not be checked”.
-Names: ``one_check.check``, ``one_check.judge``, ``check_server``, ``controlled_judge``, ``command_check``,
+Names: ``one_check.check``, ``verdicts.deciding.judge``, ``check_server``, ``controlled_judge``, ``command_check``,
     ``reference_recording``, ``evidence_files``
 Imports: ``course``, ``dds_discovery``, ``exercises``, ``kit``, ``messages``, ``packed_files``, ``process_trees``,
     ``safe_files``, ``standard_output``, ``verdict``, ``workspaces``.

@@ -25,8 +25,10 @@ from autograder.judge.check_process import Child
 from autograder.judge.command_check import SPARE
 from autograder.judge.machine_fitness import JudgeFailed
 from autograder.judge.notebook_subject import NotebookPath, NotebookSubject
-from autograder.judge.one_check import WHAT_TO_DO, of_exercise
 from autograder.judge.path_subject import PathSubject
+from autograder.judge.verdicts.deciding import judge
+from autograder.judge.verdicts.exercise_faults import WHAT_TO_DO, of_exercise
+from autograder.kit.evidence import Evidence
 from autograder.messages.json_lines import Hangup, Lines, NotUnderstood, encode, listen
 from autograder.messages.judge_messages import Check, Close, Judged, Open, Order, Refused, Report
 from autograder.standard_output import private_stdout
@@ -36,7 +38,7 @@ if TYPE_CHECKING:
     import socket
     from pathlib import Path
 
-    from autograder.judge.one_check import Checked
+    from autograder.judge.one_check import Look
     from autograder.kit.model import Exercise
     from autograder.messages.json_lines import Message
 
@@ -233,7 +235,7 @@ def _report(
     wanted: Open,
     *,
     marks_crowded: bool,
-) -> tuple[Report, Checked | None]:
+) -> tuple[Report, Look | None]:
     try:
         with ros_setup.lease_domain(alone=wanted.boxed) as domain_id:
             if not wanted.record:
@@ -255,7 +257,7 @@ def _report(
                     )
                 else:
                     recorded = reference_recording.record(exercise, subject, domain_id=domain_id)
-                verdict = one_check.judge(exercise, reference_recording.as_evidence(recorded), seed)
+                verdict = judge(exercise, Evidence(recorded.parts, recorded), seed)
             return Report(verdict, evidence_files.dump_reference(recorded, exercise.recorded)), None
     except (
         NoFreeDomainError,

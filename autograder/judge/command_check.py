@@ -25,7 +25,7 @@ from environment.python_child import python_child
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from autograder.judge.one_check import Checked
+    from autograder.judge.one_check import Look
     from autograder.judge.subject import CommandBox
     from autograder.kit.evidence import Reference
     from autograder.kit.model import Exercise
@@ -120,7 +120,7 @@ def is_path(exercise: Exercise, command: Sequence[str], cwd: Path | None) -> boo
 
 def checked_here(
     exercise: Exercise, command: Sequence[str], seed: str, cwd: Path | None, box: CommandBox | None = None
-) -> tuple[Verdict, Checked | None]:
+) -> tuple[Verdict, Look | None]:
     """Judge a command in this process, which was forked for it. The evidence is None if the judge failed."""
     ros_setup.prepare_judge(boxed=box is not None)
     if box is not None:

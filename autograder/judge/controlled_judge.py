@@ -259,7 +259,7 @@ def import_judge() -> None:
 def _types_of_endpoints(exercise_id: str) -> list[str]:
     """Return the types of the endpoints of a reference solution; none if it is not recorded yet."""
     try:
-        interface = evidence_files.load_reference(exercise_id).interface
+        interface = evidence_files.load_reference(exercise_id, mutants=False).interface
     except evidence_files.NoReference:
         return []
     return [name for endpoints in interface.values() for name in endpoints.values()]

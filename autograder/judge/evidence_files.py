@@ -10,6 +10,7 @@ each event. Evidence that is too long is cut and marked as cut, because no verdi
 
 from __future__ import annotations
 
+import functools
 import hashlib
 import json
 import math
@@ -32,7 +33,7 @@ from autograder.verdict import Verdict  # noqa: TC001  (msgspec reads the annota
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from autograder.judge.one_check import Checked
+    from autograder.judge.one_check import Look
 
 
 _RECORDED_KINDS = (
@@ -50,38 +51,40 @@ class NoReference(LookupError):
     """The reference output of an exercise does not exist or cannot be read."""
 
 
-def load_reference(exercise_id: str, drawing: str = "") -> Reference:
+def load_reference(exercise_id: str, drawing: str = "", *, mutants: bool = True) -> Reference:
     """Read a reference output.
 
     Args:
         drawing: The recording of a drawing of a class, as JSON. Its part replaces those with the practice drawings.
+        mutants: False to leave out what the mutants of the solution do.
 
     Raises:
         NoReference: The file does not exist, or is not a reference output.
     """
     file = reference_path(exercise_id)
     try:
-        stored = parse_reference(json.loads(file.read_text(encoding="utf-8")))
+        text = file.read_text(encoding="utf-8")
+        stored = parse_reference(json.loads(text))
     except FileNotFoundError as error:
         raise NoReference(f"{file} does not exist: run `{COMMAND} record {exercise_id}`") from error
     except (ValueError, KeyError, TypeError) as error:
         raise NoReference(
             f"{file} is not a reference output ({error}): run `{COMMAND} record {exercise_id}`"
         ) from error
-    stored = replace(stored, mutants=_mutants(exercise_id, stored.parts))
+    file = mutants_path(exercise_id)
+    try:
+        found = _mutants(packed_files.read(file), text) if mutants and file.exists() else None
+    except (OSError, EOFError, msgspec.MsgspecError) as error:
+        raise NoReference(f"{file} is damaged ({error}): run `{COMMAND} record {exercise_id}`") from error
+    stored = replace(stored, mutants=replace(found, solution=stored.parts) if found else None)
     return replace(stored, parts=parse_reference(json.loads(drawing)).parts) if drawing else stored
 
 
-def _mutants(exercise_id: str, solution: Sequence[Part]) -> Mutants | None:
-    """Return what the mutants of a solution do; None if that was not recorded, or with another reference output."""
-    file = mutants_path(exercise_id)
-    if not file.exists():
-        return None
-    try:
-        found = msgspec.json.decode(packed_files.read(file), type=Mutants)
-    except (OSError, EOFError, msgspec.MsgspecError) as error:
-        raise NoReference(f"{file} is damaged ({error}): run `{COMMAND} record {exercise_id}`") from error
-    return replace(found, solution=solution) if found.reference == parts_digest(solution) else None
+@functools.lru_cache(maxsize=16)
+def _mutants(recorded: bytes, reference: str) -> Mutants | None:
+    """Return what the mutants of a solution do; None if it was recorded with another text of the reference output."""
+    found = msgspec.json.decode(recorded, type=Mutants)
+    return found if found.reference == parts_digest(parse_reference(json.loads(reference)).parts) else None
 
 
 def parts_digest(parts: Sequence[Part]) -> str:
@@ -246,7 +249,7 @@ class Kept(msgspec.Struct, frozen=True):
     expected: list[Part] = []
 
 
-def packed(checked: Checked, drawn: Reference | None = None) -> bytes:
+def packed(checked: Look, drawn: Reference | None = None) -> bytes:
     """Pack the evidence of a check. If packing fails, return no bytes, so that the student still gets the verdict.
 
     Args:

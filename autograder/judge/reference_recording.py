@@ -12,8 +12,9 @@ from typing import TYPE_CHECKING
 
 from autograder.judge.bench.bench import TestBench
 from autograder.judge.evidence_files import as_recorded, load_reference
-from autograder.judge.one_check import is_certain, judge, look
+from autograder.judge.one_check import look
 from autograder.judge.recording_differences import differences
+from autograder.judge.verdicts.deciding import is_certain, judge
 from autograder.kit.bench import Pace
 from autograder.kit.evidence import Evidence, Reference
 from autograder.kit.runners import RunsPrograms, all_are_there, processes, report_of
@@ -63,7 +64,7 @@ def record(exercise: Exercise, subject: Subject, *, domain_id: int) -> Reference
     wrong: Reference | None = None
     for parts in _clear_looks(exercise, subject, bare, domain_id):
         recorded = replace(bare, parts=parts)
-        evidence = as_evidence(recorded)
+        evidence = Evidence(parts, recorded)
         if judge(exercise, evidence, SEED).passed:
             return recorded
         wrong = recorded
@@ -170,11 +171,6 @@ def _clear_looks(
             if any(not [*differences(earlier, recorded, exercise.tolerance)] for earlier in doubtful):
                 yield parts
             doubtful.append(recorded)
-
-
-def as_evidence(recorded: Reference) -> Evidence:
-    """Return a recording as evidence, in which the solution is both the subject and the reference."""
-    return Evidence(recorded.parts, recorded)
 
 
 def _endpoints_of_solution(exercise: Exercise, subject: Subject, domain_id: int) -> Reference:

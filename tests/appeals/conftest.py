@@ -11,7 +11,8 @@ import pytest
 from autograder import exercises
 from autograder.appeals import appeal_file
 from autograder.appeals.appeal_file import AppealedCell, AppealedCheck
-from autograder.judge import evidence_files, one_check
+from autograder.judge import evidence_files
+from autograder.judge.verdicts import deciding
 from autograder.kit.evidence import Event, Evidence, Part
 
 if TYPE_CHECKING:
@@ -39,7 +40,7 @@ def evidence() -> bytes:
     graph = Event(0.1, "interface", "graph", stored.interface)
     messages = [replace(event, t=0.2 + 0.01 * place) for place, event in enumerate(talking.events)]
     seen = Evidence([Part(talking.name, talking.inputs, [graph, *messages])], stored)
-    verdict = replace(one_check.decide(exercises.get(ID), seen, "a seed"), seconds=2.0)
+    verdict = replace(deciding.decide(exercises.get(ID), seen, "a seed"), seconds=2.0)
     return evidence_files.pack(verdict, seen, evidence_files.reference_digest(ID), at=1.8e9)
 
 

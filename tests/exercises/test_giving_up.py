@@ -5,7 +5,8 @@ from __future__ import annotations
 import pytest
 
 from autograder import exercises
-from autograder.judge import evidence_files, one_check
+from autograder.judge import evidence_files
+from autograder.judge.verdicts import deciding
 from autograder.kit.evidence import Event, Evidence, Part, Reference
 from autograder.kit.giving_up import PATIENCES, broken_patience, gave_up, objection, remark
 
@@ -81,7 +82,7 @@ def test_a_client_that_looks_once_is_told_so_whenever_it_met_the_service(
         seen = run("not available", part.inputs.get("numbers", [1, 2, 3]))
         events = [SEEN, *part.events, ENDED] if number in met_in else seen.events
         parts.append(Part(part.name, {"numbers": part.inputs.get("numbers", [1, 2, 3])}, events))
-    diagnosis, _ = one_check.diagnose(exercises.get(exercise_id), Evidence(parts, stored))
+    diagnosis, _ = deciding.diagnose(exercises.get(exercise_id), Evidence(parts, stored))
     assert diagnosis.key == "gave_up_too_early"
 
 
@@ -110,7 +111,7 @@ def test_of_a_function_that_was_not_seen_to_look_for_anybody_nobody_says_that_it
     stored = evidence_files.load_reference(exercise_id)
     inputs = {"numbers": [1, 2, 3], "patience_sec": 6.6}
     parts = [Part(part.name, inputs, events) for part in stored.parts]
-    diagnosis, _ = one_check.diagnose(exercises.get(exercise_id), Evidence(parts, stored))
+    diagnosis, _ = deciding.diagnose(exercises.get(exercise_id), Evidence(parts, stored))
     assert diagnosis.key == key
 
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 import pytest
 
 from autograder import exercises
-from autograder.judge import evidence_files, one_check
+from autograder.judge import evidence_files
+from autograder.judge.verdicts import deciding
 from autograder.kit.evidence import Event, Evidence, Part
 
 
@@ -28,7 +29,7 @@ def test_the_other_end_is_named(exercise_id: str, role: str, name: str, advice: 
     types = next(iter(stored.interface.values()))
     survey = Event(0.5, "interface", "graph", {"nodes": ["/node"], role: {name: types[name]}})
     parts = [Part(part.name, part.inputs, [survey]) for part in stored.parts]
-    told, _ = one_check.diagnose(exercises.get(exercise_id), Evidence(parts, stored))
+    told, _ = deciding.diagnose(exercises.get(exercise_id), Evidence(parts, stored))
     assert told.key == "not_written"
     assert advice in told.text
 
@@ -37,7 +38,7 @@ def test_a_type_that_is_returned_in_place_of_the_response_is_named() -> None:
     stored = evidence_files.load_reference("lab_1_3.server")
     raised = Event(0.5, "subject", "raised", {"traceback": "TypeError"})
     parts = [Part(part.name, part.inputs, [raised]) for part in stored.parts]
-    told, _ = one_check.diagnose(exercises.get("lab_1_3.server"), Evidence(parts, stored))
+    told, _ = deciding.diagnose(exercises.get("lab_1_3.server"), Evidence(parts, stored))
     assert told.key == "callback_returned_none"
     assert "the type without parentheses" in told.text
 
@@ -48,5 +49,5 @@ def test_a_string_with_braces_left_in_it_lacks_its_f() -> None:
     sent = Event(0.5, "sent", "/chatter", {"fields": {"data": "amber birch 1"}})
     said = Event(0.6, "log", "node", {"text": "I heard: {message.data}"})
     parts = [Part(part.name, part.inputs, [survey, sent, said]) for part in stored.parts]
-    told, _ = one_check.diagnose(exercises.get("lab_1_2.listener"), Evidence(parts, stored))
+    told, _ = deciding.diagnose(exercises.get("lab_1_2.listener"), Evidence(parts, stored))
     assert "with an f before the quotation mark" in told.next_step

@@ -11,7 +11,8 @@ import pytest
 from exercise_1_2 import three_ints as exercise_1_2_three_ints
 from lab_1_3 import client as lab_1_3_client
 
-from autograder.judge import evidence_files, one_check
+from autograder.judge import evidence_files
+from autograder.judge.verdicts import deciding
 from autograder.kit.bench import Pace
 from autograder.kit.evidence import Event, Evidence, Part, Reference
 from autograder.kit.lateness import ANSWERS_SOON
@@ -249,7 +250,7 @@ def test_who_raises_has_not_waited_also_where_the_answer_came_before_its_end(
     known = Event(0.05, "interface", "graph", {"nodes": ["/n"], "client": {"/add_two_ints": TYPE}})
     part = _reported(*after)
     seen = Evidence([replace(part, events=[known, *part.events])], REFERENCE)
-    found, _ = one_check.diagnose(lab_1_3_client.EXERCISE, seen)
+    found, _ = deciding.diagnose(lab_1_3_client.EXERCISE, seen)
     assert found.key == key
 
 
@@ -278,7 +279,7 @@ def test_it_earns_the_same_for_a_late_service_however_long_an_answer_is_held_bac
 
 def test_right_numbers_are_not_told_as_wrong_where_the_answer_was_not_awaited() -> None:
     early = [_given_up(name, waited=0.01, answered=0.7) for name in CALLED]
-    found, _ = one_check.diagnose(lab_1_3_client.EXERCISE, Evidence(early, REFERENCE))
+    found, _ = deciding.diagnose(lab_1_3_client.EXERCISE, Evidence(early, REFERENCE))
     assert found.key == "result_read_too_early"
 
 

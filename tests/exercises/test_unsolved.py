@@ -7,7 +7,8 @@ from dataclasses import replace
 import pytest
 
 from autograder import exercises
-from autograder.judge import evidence_files, one_check
+from autograder.judge import evidence_files
+from autograder.judge.verdicts import deciding
 from autograder.kit.evidence import Event, Evidence, Part
 from autograder.kit.mistakes.unfinished import NOTHING_THERE
 from autograder.kit.runners import WorkspaceReport, workspace_report_line
@@ -31,12 +32,12 @@ def test_of_a_subject_that_does_nothing_the_card_lists_what_is_asked(exercise_id
     stored, exercise = evidence_files.load_reference(exercise_id), exercises.get(exercise_id)
     returned = Event(0.6, "subject", "returned", {"value": None})
     silent = Evidence([Part(part.name, part.inputs, [returned]) for part in stored.parts], stored)
-    verdict = one_check.judge(exercise, silent, "")
+    verdict = deciding.judge(exercise, silent, "")
     assert verdict.nothing_seen
     assert {one.name: one.counts for one in verdict.criteria if one.counts}.items() <= exercise.counts.items()
     said = Event(0.5, "log", "node", {"text": "Here I am"})
     loud = replace(silent, parts=[replace(part, events=[said, returned]) for part in silent.parts])
-    assert not one_check.judge(exercise, loud, "").nothing_seen
+    assert not deciding.judge(exercise, loud, "").nothing_seen
 
 
 def test_of_a_launch_file_that_returns_nothing_the_card_lists_what_is_asked() -> None:
@@ -48,7 +49,7 @@ def test_of_a_launch_file_that_returns_nothing_the_card_lists_what_is_asked() ->
         lines = ("[ERROR] [launch]: Caught exception in launch", f"{words}{returned}")
         said = [Event(0.5, "output", "stderr", {"text": line}) for line in lines]
         evidence = Evidence([Part(part.name, part.inputs, said) for part in stored.parts], stored)
-        verdict = one_check.judge(exercises.get("exercise_1_1.remap"), evidence, "")
+        verdict = deciding.judge(exercises.get("exercise_1_1.remap"), evidence, "")
         assert verdict.nothing_seen is is_unwritten
 
 
@@ -80,7 +81,7 @@ def test_a_function_that_comes_back_with_nothing_is_not_written_yet(exercise_id:
     survey = Event(0.5, "interface", "graph", {"nodes": ["/client"], **stored.interface} if seen else {})
     returned = Event(0.6, "subject", "returned", {"value": None})
     parts = [Part(part.name, part.inputs, [survey, returned]) for part in stored.parts]
-    diagnosis, _ = one_check.diagnose(exercises.get(exercise_id), Evidence(parts, stored))
+    diagnosis, _ = deciding.diagnose(exercises.get(exercise_id), Evidence(parts, stored))
     asked_nothing = {"not_written", "no_call", "one_call_only"} if seen else {"not_written"}
     assert diagnosis.key in asked_nothing
 
@@ -99,7 +100,7 @@ def test_a_function_as_it_was_handed_out_is_not_written_yet(exercise_id: str, se
         Part(part.name, {"patience_sec": 2.5, **part.inputs}, [started, survey, returned])
         for part in stored.parts
     ]
-    diagnosis, _ = one_check.diagnose(exercises.get(exercise_id), Evidence(parts, stored))
+    diagnosis, _ = deciding.diagnose(exercises.get(exercise_id), Evidence(parts, stored))
     assert diagnosis.key == "not_written"
     assert "TODO" in diagnosis.next_step
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import re2
 
 from autograder import exercises
-from autograder.judge import one_check
+from autograder.judge.verdicts import deciding
 from autograder.kit.evidence import Event, Evidence, Part, spoken_by, without_tracebacks
 
 if TYPE_CHECKING:
@@ -46,7 +46,7 @@ def _of_the_traceback(verdict: Verdict, evidence: Evidence) -> str:
     if not any(part.traceback.endswith(verdict.detail) for part in evidence):
         return "the traceback on the card is of no single run"
     exercise = exercises.get(verdict.exercise)
-    if one_check.judge(exercise, _without(evidence), verdict.seed).diagnosis != verdict.diagnosis:
+    if deciding.judge(exercise, _without(evidence), verdict.seed).diagnosis != verdict.diagnosis:
         return ""
     return (
         f"{verdict.diagnosis.key} is found without the traceback, too, that the card quotes: {verdict.detail}"

@@ -7,8 +7,8 @@ from itertools import combinations
 from typing import TYPE_CHECKING
 
 from autograder import exercises
-from autograder.judge import one_check
 from autograder.judge.timeline.growing_card import GrowingCard
+from autograder.judge.verdicts import deciding
 
 if TYPE_CHECKING:
     from autograder.kit.evidence import Evidence
@@ -32,6 +32,6 @@ def met_early(exercise_id: str, ended: Evidence) -> list[str]:
     """The criteria that a card shows as met after these runs."""
     shown: list[Verdict] = []
     exercise = exercises.get(exercise_id)
-    card = GrowingCard(exercise, one_check._result, lambda verdict, _: shown.append(verdict))
+    card = GrowingCard(exercise, deciding.criterion_result, lambda verdict, _: shown.append(verdict))
     card.begin(ended)
     return [one.name for one in shown[0].criteria if one.passed]

@@ -13,6 +13,7 @@ from autograder import exercises
 from autograder.judge import evidence_files, one_check
 from autograder.judge.bench.recorder import MAX_EVENTS
 from autograder.judge.check_process import Child
+from autograder.judge.verdicts import deciding
 from autograder.kit.evidence import Event, Evidence, Part
 from autograder.verdict import State
 
@@ -126,13 +127,13 @@ def test_more_events_than_the_judge_reads_are_zero_with_a_reason(monkeypatch: py
     assert verdict.diagnosis
     assert verdict.diagnosis.key == "undecidable"
     assert len(looks) == 1  # another look would bring the same events
-    assert one_check.decide(exercise, with_events(exercise, MAX_EVENTS + 1, "matched"), "s") == replace(
+    assert deciding.decide(exercise, with_events(exercise, MAX_EVENTS + 1, "matched"), "s") == replace(
         verdict, seconds=0.0
     )
 
 
 def test_as_many_events_as_the_judge_reads_are_judged() -> None:
     exercise = exercises.get("lab_1_2.listener")
-    verdict = one_check.decide(exercise, with_events(exercise, MAX_EVENTS, "parameters"), "s")
+    verdict = deciding.decide(exercise, with_events(exercise, MAX_EVENTS, "parameters"), "s")
     assert verdict.diagnosis
     assert verdict.diagnosis.key != "undecidable"

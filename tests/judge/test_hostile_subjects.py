@@ -12,9 +12,10 @@ from hypothesis import given, strategies
 
 from autograder import exercises
 from autograder.cards.text_rendering import card_text
-from autograder.judge import evidence_files, one_check
+from autograder.judge import evidence_files
 from autograder.judge.bench import recorder
 from autograder.judge.bench.unreadable import UnreadableSubject
+from autograder.judge.verdicts import deciding
 from autograder.kit.evidence import Evidence
 from autograder.verdict import to_json
 from tests.drawn import drawn
@@ -68,11 +69,11 @@ def test_no_subject_ends_its_judge(exercise_id: str, monkeypatch: pytest.MonkeyP
         random, before = Random(seed), None
         for _ in range(2):
             before = evidence = look(exercise, random, odd, clock, before)
-            verdict = one_check.decide(exercise, evidence, "a seed")
+            verdict = deciding.decide(exercise, evidence, "a seed")
             card_text(verdict)
             to_json(verdict)
             if verdict.criteria and not verdict.passed:
-                one_check.is_certain(exercise, evidence)
-                one_check.misnamed(evidence, verdict)
+                deciding.is_certain(exercise, evidence)
+                deciding.misnamed(evidence, verdict)
 
     no_subject_ends_it()

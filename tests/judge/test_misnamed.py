@@ -10,8 +10,8 @@ import pytest
 from autograder import exercises
 from autograder.judge import evidence_files
 from autograder.judge.command_check import check_and_keep
-from autograder.judge.one_check import decide, misnamed
 from autograder.judge.timeline.verdict_timeline import moments
+from autograder.judge.verdicts.deciding import decide, misnamed
 from autograder.kit.evidence import Event, Evidence, Part, Reference
 from autograder.verdict import CriterionResult, State, Verdict
 from tests.cases import cases

@@ -9,7 +9,8 @@ import pytest
 
 from autograder import exercises
 from autograder.authoring.answer_bank import answers
-from autograder.judge import evidence_files, one_check
+from autograder.judge import evidence_files
+from autograder.judge.verdicts import deciding
 from tests.measure import evidence
 
 if TYPE_CHECKING:
@@ -42,6 +43,6 @@ def test_no_exercise_needs_an_event_to_come_to_a_verdict(exercise_id: str) -> No
         seen = evidence_files.evidence_of(evidence.record_of(answer, kept[answer.name]).seen, expected)
         for missing, less in _with_less(seen):
             try:
-                one_check.decide(exercise, less, "a seed")
+                deciding.decide(exercise, less, "a seed")
             except Exception as error:
                 pytest.fail(f"{answer.name} without {missing}: {type(error).__name__}: {error}")

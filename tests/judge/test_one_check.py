@@ -13,7 +13,8 @@ from autograder.judge import evidence_files, machine_fitness, one_check
 from autograder.judge.bench.bench import TestBench
 from autograder.judge.bench.unreadable import NAME
 from autograder.judge.machine_fitness import ANSWER_WITHIN, Crowding, NotDelivered, TooBusy
-from autograder.judge.one_check import NOT_THE_EXERCISE, WHAT_TO_DO, ExerciseFailed
+from autograder.judge.verdicts import deciding
+from autograder.judge.verdicts.exercise_faults import NOT_THE_EXERCISE, WHAT_TO_DO, ExerciseFailed
 from autograder.kit.bench import Pace
 from autograder.kit.evidence import Event, Evidence, Part
 from autograder.kit.model import Advice, Criterion, Finding, Mistake
@@ -22,6 +23,7 @@ from autograder.verdict import State, not_checked
 
 if TYPE_CHECKING:
     from autograder.kit.model import Exercise
+    from autograder.messages.judge_messages import OwnLine
     from autograder.verdict import Verdict
 
 
@@ -42,6 +44,9 @@ class Anybody:
     def tell_so_far(self, verdict: Verdict, words: str) -> None:
         assert verdict.state is State.CHECKING
         self.told.append(words)
+
+    def own_lines(self) -> list[OwnLine]:
+        return []
 
 
 def exercise(*, certain: bool = False, second_look: bool = True) -> Exercise:
@@ -207,7 +212,7 @@ def test_an_unreadable_subject_has_no_points_and_the_reason(monkeypatch: pytest.
     assert (checked.verdict.state, checked.verdict.score) == (State.FAILED, 0.0)
     assert checked.verdict.diagnosis is not None
     assert "a name that ROS does not allow" in checked.verdict.diagnosis.text
-    assert replace(one_check.decide(exercise(), checked.evidence, "s"), seconds=checked.verdict.seconds) == (
+    assert replace(deciding.decide(exercise(), checked.evidence, "s"), seconds=checked.verdict.seconds) == (
         checked.verdict
     )
 
@@ -300,5 +305,5 @@ def test_silence_proves_nothing_where_the_machine_loses_messages(
 def test_a_card_shows_what_was_expected_only_where_something_is_missing(name: str, missed: bool) -> None:
     stored = evidence_files.load_reference("lab_1_2.talker")
     stored = replace(stored, parts=[replace(stored.part("talking"), name=name)])
-    verdict = one_check.judge(exercise(), Evidence([Part(name)], stored), "seed")
+    verdict = deciding.judge(exercise(), Evidence([Part(name)], stored), "seed")
     assert any(moment.direction == "expected" for moment in verdict.timeline) is missed

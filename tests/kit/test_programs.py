@@ -8,7 +8,7 @@ from unittest.mock import MagicMock
 
 import pytest
 
-from autograder.judge import one_check
+from autograder.judge.verdicts import deciding
 from autograder.kit.evidence import INTERRUPTED, Event, Evidence, Part, Reference
 from autograder.kit.mistakes import package_mistakes
 from autograder.kit.mistakes.package_mistakes import EntryPoint
@@ -261,7 +261,7 @@ def test_an_entry_point_that_leads_nowhere_is_told_from_an_import(
 @pytest.mark.parametrize("built", [True, False])
 def test_the_card_names_what_was_changed_since_the_last_build(built: bool) -> None:
     report = WorkspaceReport("built", built=built, trouble="" if built else "build", changed="`a/setup.py`")
-    (remark,) = one_check.judge(PROGRAMS, evidence([said(workspace_report_line(report))]), "").remarks
+    (remark,) = deciding.judge(PROGRAMS, evidence([said(workspace_report_line(report))]), "").remarks
     assert remark.startswith("Changed since the last `colcon build`: `a/setup.py`.")
 
 
@@ -269,7 +269,7 @@ def test_nothing_is_said_of_a_build_that_is_not_the_students(subtests: pytest.Su
     for exercise, changed in ((PROGRAMS, ""), (NODE, "`a/setup.py`")):
         with subtests.test(exercise.id):
             report = workspace_report_line(WorkspaceReport("built", built=True, changed=changed))
-            assert one_check.judge(exercise, evidence([said(report)]), "").remarks == ()
+            assert deciding.judge(exercise, evidence([said(report)]), "").remarks == ()
 
 
 def test_a_run_that_is_made_again_is_one_of_the_same_program() -> None:

@@ -9,7 +9,7 @@ from unittest.mock import MagicMock
 
 import pytest
 
-from autograder.judge import one_check
+from autograder.judge.verdicts import deciding
 from autograder.kit.bench import Pace
 from autograder.kit.draft import Draft
 from autograder.kit.evidence import Event, Evidence, Part, Reference
@@ -134,7 +134,7 @@ def _judged(exercise: Exercise, *parts: Part) -> tuple[float, str]:
     """Return the points and the diagnosis."""
     evidence = Evidence(parts, Reference("a.b", {}))
     points = sum(criterion.points for criterion in exercise.criteria if criterion.judge(evidence).passed)
-    diagnosis, _ = one_check.diagnose(exercise, evidence)
+    diagnosis, _ = deciding.diagnose(exercise, evidence)
     return points, diagnosis.key
 
 

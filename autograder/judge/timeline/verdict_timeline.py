@@ -151,7 +151,7 @@ def _began(event: Event) -> bool:
     return event.kind == "subject" and event.name in ("started", "constructed")
 
 
-def without_echoes(events: Iterable[Event]) -> Iterator[Event]:
+def _without_echoes(events: Iterable[Event]) -> Iterator[Event]:
     """Yield all events except the judge's own messages that its own subscription has received."""
     on_their_way: Counter[str] = Counter()
     for event in events:
@@ -168,7 +168,7 @@ def without_echoes(events: Iterable[Event]) -> Iterator[Event]:
 def _under_real_names(part: Part) -> Iterator[Event]:
     """Yield the events with the names that the subject gave to topics, services and actions."""
     real = {event.name: event.data["real"] for event in part.of("misnamed")}
-    for event in without_echoes(part.events):
+    for event in _without_echoes(part.events):
         yield replace(event, name=real[event.name]) if event.name in real else event
 
 
@@ -231,7 +231,7 @@ def _missed(part: Part, reference: Reference, title: str, start: float | None) -
     known = next(
         (one for one in reference.parts if one.name == part.name and one.inputs == part.inputs), None
     )
-    if known is None or not given_the_same(part, known):
+    if known is None or not _given_the_same(part, known):
         return
     inputs = [_time(event, start) for event in part.events if event.kind in _INPUTS]
     expected = [pair for pair in _after_inputs(known) if pair[1].sim is not None]
@@ -259,7 +259,7 @@ def _missed(part: Part, reference: Reference, title: str, start: float | None) -
             )
 
 
-def given_the_same(part: Part, known: Part) -> bool:
+def _given_the_same(part: Part, known: Part) -> bool:
     """Return True if the subject got the inputs that the reference solution got. Random inputs may differ.
 
     If the subject ended early, only the inputs that it got before are compared.

@@ -24,7 +24,8 @@ from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.class_directory import ClassDirectory, Submission
 from autograder.grading.running import execution_backends
 from autograder.grading.tasks.task_making import task_of
-from autograder.judge import evidence_files, one_check
+from autograder.judge import evidence_files
+from autograder.judge.verdicts import deciding
 from autograder.kit.evidence import Evidence
 
 if TYPE_CHECKING:
@@ -52,7 +53,7 @@ def keep_evidence(tiny: TinyClass, student: str, exercise: str) -> None:
     """Have the class keep of a check what the reference solution does."""
     stored = evidence_files.load_reference(exercise)
     seen = Evidence(stored.parts, stored)
-    verdict = one_check.decide(exercises.get(exercise), seen, "s")
+    verdict = deciding.decide(exercises.get(exercise), seen, "s")
     packed = evidence_files.pack(verdict, seen, evidence_files.reference_digest(exercise), at=1.8e9)
     directory = ClassDirectory(tiny.path)
     submission = Submission(student, "lab_1_2", tiny.path / "submitted" / student / "lab_1_2")

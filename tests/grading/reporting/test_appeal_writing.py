@@ -24,7 +24,8 @@ from autograder.grading.grading_errors import GradingError
 from autograder.grading.grading_task import Task
 from autograder.grading.reporting.appeal_writing import write_appeal
 from autograder.grading.running import execution_backends, task_execution
-from autograder.judge import evidence_files, one_check
+from autograder.judge import evidence_files
+from autograder.judge.verdicts import deciding
 from autograder.kit.evidence import Event, Evidence, Part
 from autograder.messages.judge_messages import Report
 
@@ -40,7 +41,7 @@ def evidence() -> bytes:
     graph = Event(0.1, "interface", "graph", stored.interface)
     seen = Evidence([Part("talking", {}, [graph, *stored.parts[0].events])], stored)
     return evidence_files.pack(
-        one_check.decide(exercises.get(ID), seen, "s"), seen, evidence_files.reference_digest(ID), at=1.8e9
+        deciding.decide(exercises.get(ID), seen, "s"), seen, evidence_files.reference_digest(ID), at=1.8e9
     )
 
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from autograder.judge import one_check
+from autograder.judge.verdicts import deciding
 from autograder.kit.evidence import Event, Evidence, Part, Reference
 from autograder.kit.hunts.question import Question
 
@@ -24,7 +24,7 @@ def asked(*choices: str) -> Question:
 def judged(*events: Event) -> Verdict:
     """The verdict on a run with these events."""
     part = Part("asked", {}, [Event(0.0, "noted", "choices", {"order": [*CHOICES]}), *events])
-    return one_check.judge(asked().exercise(), Evidence([part], Reference("lab.why", {})), "s")
+    return deciding.judge(asked().exercise(), Evidence([part], Reference("lab.why", {})), "s")
 
 
 def returned(value: object) -> Event:

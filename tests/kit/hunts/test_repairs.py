@@ -9,7 +9,8 @@ import pytest
 
 from autograder import exercises
 from autograder.cards.text_rendering import card_text
-from autograder.judge import evidence_files, one_check
+from autograder.judge import evidence_files
+from autograder.judge.verdicts import deciding
 from autograder.kit.evidence import Event, Evidence, Part
 from autograder.kit.hunts.repairs import Repairs, without_causes
 
@@ -50,10 +51,10 @@ def misspelt() -> Evidence:
 
 
 def test_the_card_of_a_broken_node_tells_the_symptom_and_no_cause() -> None:
-    ordinary = card_text(one_check.judge(JUDGED, misspelt(), "s"))
+    ordinary = card_text(deciding.judge(JUDGED, misspelt(), "s"))
     assert "/chater" in ordinary
     assert "topic_name" in ordinary
-    verdict = one_check.judge(repair(), misspelt(), "s")
+    verdict = deciding.judge(repair(), misspelt(), "s")
     card = card_text(verdict)
     assert "Seen: no message arrived on /chatter." in card
     assert not [
@@ -64,13 +65,13 @@ def test_the_card_of_a_broken_node_tells_the_symptom_and_no_cause() -> None:
 
 
 def test_the_card_of_a_repaired_node_states_the_cause() -> None:
-    verdict = one_check.judge(repair(), solved(), "s")
+    verdict = deciding.judge(repair(), solved(), "s")
     assert verdict.passed
     assert verdict.remarks == (CAUSE,)
 
 
 def test_what_came_and_is_wrong_stands_on_the_card() -> None:
-    verdict = one_check.judge(repair(), solved(_shouting), "s")
+    verdict = deciding.judge(repair(), solved(_shouting), "s")
     assert verdict.diagnosis is not None
     assert "Asked for: “Says the right string”: “Hello, world! 0”" in verdict.diagnosis.text
     assert "HELLO" in verdict.diagnosis.text
@@ -91,12 +92,12 @@ def test_what_a_subscriber_never_got_is_its_symptom() -> None:
     ends = {"nodes": ["/listener"], "subscription": {"/chater": STRING}}
     events = [Event(0.1, "interface", "graph", ends)]
     parts = [replace(part, events=events) for part in reference.parts]
-    verdict = one_check.judge(exercise, Evidence(parts, reference), "s")
+    verdict = deciding.judge(exercise, Evidence(parts, reference), "s")
     assert verdict.criteria[0].seen == "no message on /chatter reached the node"
     assert "chater" not in card_text(verdict)
     met = [*events, Event(0.2, "matched", "/chatter", {"count": 1, "now": 1})]
     parts = [replace(part, events=met) for part in reference.parts]
-    assert "reached" not in one_check.judge(exercise, Evidence(parts, reference), "s").criteria[0].seen
+    assert "reached" not in deciding.judge(exercise, Evidence(parts, reference), "s").criteria[0].seen
 
 
 def test_a_wrong_name_is_no_symptom_even_in_a_role_that_the_exercise_does_not_ask_for() -> None:
@@ -113,7 +114,7 @@ def test_the_symptom_of_a_node_that_ends_with_an_error_does_not_depend_on_what_c
     sent = [Event(0.1, "message", "/chatter", {"fields": {"data": "Hello, world! 0"}, "number": 1})]
     raised = Event(0.5, "subject", "raised", {"traceback": "TypeError: 'NoneType' object is not callable"})
     parts = [replace(part, events=[*sent * came, raised]) for part in REFERENCE.parts]
-    verdict = one_check.judge(repair(), Evidence(parts, REFERENCE), "s")
+    verdict = deciding.judge(repair(), Evidence(parts, REFERENCE), "s")
     expected = "the program ended with an error: TypeError: 'NoneType' object is not callable"
     assert verdict.criteria[0].seen == expected
 
@@ -121,4 +122,4 @@ def test_the_symptom_of_a_node_that_ends_with_an_error_does_not_depend_on_what_c
 def test_a_repair_has_one_criterion_because_a_broken_node_does_half_of_the_task() -> None:
     assert [criterion.points for criterion in repair().criteria] == [4]
     half = Part(REFERENCE.parts[0].name, {}, [])
-    assert one_check.judge(repair(), Evidence([half], REFERENCE), "s").score == 0
+    assert deciding.judge(repair(), Evidence([half], REFERENCE), "s").score == 0
