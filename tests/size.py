@@ -1,7 +1,8 @@
 """The size of each part of the code, held by ceilings that only fall.
 
 ``tests/size_ceilings.toml`` contains the ceilings. ``python -m tests.size`` lowers them to the present sizes, and
-never raises one; only if the file contains no ceiling, it sets all anew. If a change is worth more lines, say for whom
+never raises one; only if the file contains no ceiling, it sets all anew. ``python -m tests.size --since COMMIT`` lists
+the parts and files that have grown or shrunk, and changes nothing. If a change is worth more lines, say for whom
 and until when in docs/decisions.md, and name that entry in a table ``[[raised]]`` of the ceilings file::
 
     [[raised]]
@@ -15,8 +16,11 @@ rows at the top of a module, is not counted: a row more is not a program that is
 
 from __future__ import annotations
 
+import argparse
 import ast
+import io
 import subprocess
+import tarfile
 import tokenize
 import tomllib
 from collections import Counter
@@ -138,8 +142,46 @@ def files_of_the_course() -> dict[Path, Module]:
     return {
         path: module_of((ROOT / path).read_text(encoding="utf-8"))
         for path in paths
-        if (ROOT / path).exists() and not any(part.endswith(".answers") for part in path.parts)
+        if (ROOT / path).exists() and _counts(path)
     }
+
+
+def files_at(commit: str) -> dict[Path, Module]:
+    """Return the counted files of a commit, with paths relative to the course.
+
+    Raises:
+        subprocess.CalledProcessError: Git does not know the commit.
+    """
+    archive = subprocess.run(
+        ["git", "archive", commit, "--", *COUNTED], cwd=ROOT, stdout=subprocess.PIPE, check=True
+    )
+    with tarfile.open(fileobj=io.BytesIO(archive.stdout)) as tar:
+        texts = {Path(one.name): tar.extractfile(one) for one in tar if one.name.endswith(".py")}
+        return {
+            path: module_of(text.read().decode()) for path, text in texts.items() if text and _counts(path)
+        }
+
+
+def _counts(path: Path) -> bool:
+    return not any(part.endswith(".answers") for part in path.parts)
+
+
+def growth(before: dict[Path, Module], now: dict[Path, Module]) -> list[str]:
+    """Return a line for each part whose logic lines have changed, and below it one for each file, the largest first."""
+    lines = []
+    then, present = sizes(before), sizes(now)
+    for part in sorted({*then, *present}):
+        inside = {path for path in {*before, *now} if part_of(path) == part}
+        more = {
+            path: (now[path].logic if path in now else 0) - (before[path].logic if path in before else 0)
+            for path in inside
+        }
+        if any(more.values()):
+            was, size = (of.get(part, Counter())["logic"] for of in (then, present))
+            lines.append(f"{part}: {was} logic lines before, {size} now ({size - was:+})")
+            changed = sorted((path for path in inside if more[path]), key=lambda path: (-more[path], path))
+            lines += [f"    {more[path]:+5} {path}" for path in changed]
+    return lines
 
 
 def wrong_ceilings(parts: dict[str, Counter[str]], data: dict[str, Any], decisions: str) -> list[str]:
@@ -184,7 +226,13 @@ def lowered(parts: dict[str, Counter[str]], data: dict[str, Any]) -> str:
 
 
 def main() -> None:
-    """Lower the ceilings, and print the sizes."""
+    """Lower the ceilings, and print the sizes; or list what has grown since a commit."""
+    parser = argparse.ArgumentParser(prog="python -m tests.size", description=main.__doc__)
+    parser.add_argument("--since", metavar="COMMIT", help="list what has grown or shrunk since this commit")
+    since = parser.parse_args().since
+    if since is not None:
+        print(*growth(files_at(since), files_of_the_course()), sep="\n")
+        return
     found = sizes(files_of_the_course())
     CEILINGS.write_text(lowered(found, tomllib.loads(CEILINGS.read_text())))
     for part, size in sorted(found.items()):

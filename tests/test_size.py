@@ -16,7 +16,9 @@ from tests.size import (
     DECISIONS,
     ROOT,
     WORDS,
+    files_at,
     files_of_the_course,
+    growth,
     lowered,
     module_of,
     part_of,
@@ -82,6 +84,32 @@ def test_a_name_that_another_file_uses_is_public() -> None:
     here = Path("autograder/kit/a.py"), module_of("import x\ndef _a(): return x._a\ndef _b(): pass\n")
     there = Path("autograder/cli/b.py"), module_of("from kit.a import _b\n")
     assert sizes(dict([here, there]))["autograder/kit"] == {"logic": 2, "public": 1}
+
+
+def test_who_has_grown_is_named() -> None:
+    short, long = module_of("a = 1\n"), module_of("a = 1\nb = 2\n")
+    kit, cli = Path("autograder/kit/a.py"), Path("autograder/cli/b.py")
+    gone, new = Path("autograder/kit/gone.py"), Path("autograder/kit/new.py")
+    lines = growth({kit: short, cli: short, gone: long}, {kit: long, cli: short, new: short})
+    assert lines == [
+        "autograder/kit: 3 logic lines before, 3 now (+0)",
+        f"       +1 {kit}",
+        f"       +1 {new}",
+        f"       -2 {gone}",
+    ]
+
+
+def test_the_files_of_a_commit_are_those_that_it_had() -> None:
+    files = files_at("HEAD")
+    listed = subprocess.run(
+        ["git", "ls-tree", "-r", "--name-only", "HEAD", "autograder/kit"],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        check=True,
+    ).stdout.split()
+    of_the_kit = {path.as_posix() for path in files if part_of(path) == "autograder/kit"}
+    assert of_the_kit == {path for path in listed if path.endswith(".py")}
 
 
 def test_parts_are_folders() -> None:
