@@ -41,23 +41,21 @@ _PACKAGE = Path(course.__file__).resolve().parents[1]
 _SETTINGS = _PACKAGE / "pyproject.toml"
 
 
-def still_to_do(exercise_id: str, listed: Sequence[Answer]) -> Iterator[str]:
+def still_to_do(exercise: Exercise, listed: Sequence[Answer]) -> Iterator[str]:
     """Yield a line for each thing that an exercise still lacks before it can be committed.
 
     Args:
-        exercise_id: The exercise's id, such as ``"lab_1_2.talker"``.
+        exercise: The exercise.
         listed: All answers to the exercise in the bank.
 
     Raises:
-        autograder.exercises.UnknownExercise: The exercise does not exist.
-        autograder.exercises.BrokenExercise: The exercise's file is not a valid exercise.
         autograder.masters.master_files.MasterError: The lab's master cannot be used.
     """
-    yield from _of_endpoints(exercises.get(exercise_id))
-    yield from _of_answers(listed, exercises.get(exercise_id).enough)
-    yield from _of_mistakes(exercise_id, listed)
-    lab = exercises.path(exercise_id).parent
-    yield from to_do_in_text(exercise_id)
+    yield from _of_endpoints(exercise)
+    yield from _of_answers(listed, exercise.enough)
+    yield from _of_mistakes(exercise, listed)
+    lab = exercises.path(exercise.id).parent
+    yield from to_do_in_text(exercise)
     yield from (f"{course.LAB}: {rule}" for rule in broken_rules(lab / course.LAB))
     yield from _of_linters(lab)
 
@@ -123,20 +121,20 @@ def _without(recorded: Reference, gone: str) -> Evidence:
     return Evidence(parts, recorded)
 
 
-def _of_mistakes(exercise_id: str, listed: Sequence[Answer]) -> Iterator[str]:
+def _of_mistakes(exercise: Exercise, listed: Sequence[Answer]) -> Iterator[str]:
     page = course.root() / _MISTAKES_PAGE
     if page.is_file():
         explained = set(re.findall(r"^### `(\w+)`$", page.read_text(encoding="utf-8"), re.MULTILINE))
-        used = {mistake.key for mistake in exercises.get(exercise_id).mistakes}
+        used = {mistake.key for mistake in exercise.mistakes}
         used |= {key for answer in listed for key in answer.diagnoses}
         # A recorded wrong answer says on the card itself what it is.
         used -= {"variant", *(key for answer in listed if answer.advice for key in answer.diagnoses)}
         yield from (f"{_MISTAKES_PAGE}: no paragraph about `{key}` yet" for key in sorted(used - explained))
 
 
-def to_do_in_text(exercise_id: str) -> Iterator[str]:
+def to_do_in_text(exercise: Exercise) -> Iterator[str]:
     """Yield a line for each fault in ``Exercise.text``, which maps sentences of the lab to criteria."""
-    exercise, master = exercises.get(exercise_id), exercises.path(exercise_id).parent / course.LAB
+    master = exercises.path(exercise.id).parent / course.LAB
     if not exercise.text:
         yield "text: map words of the task to the criteria that judge them (the argument text of the exercise)"
         return

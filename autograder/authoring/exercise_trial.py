@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from autograder.kit.evidence import Evidence
+    from autograder.kit.model import Exercise
     from autograder.verdict import Verdict
 
 
@@ -123,7 +124,7 @@ def _transcript(evidence: Evidence) -> Iterator[str]:
 
 
 def try_exercise(
-    exercise_id: str,
+    exercise: Exercise,
     *,
     only: Sequence[str] = (),
     jobs: int = JOBS,
@@ -139,7 +140,7 @@ def try_exercise(
     decided. The notebook as students get it must earn no points.
 
     Args:
-        exercise_id: The exercise's id, such as ``"lab_1_2.talker"``.
+        exercise: The exercise.
         only: Only answers whose name contains one of these texts are judged; all answers if empty.
         jobs: The number of answers to judge at the same time.
         repeat: The number of times to judge each answer, each time with different random inputs.
@@ -151,19 +152,17 @@ def try_exercise(
         True if everything is as the author expects.
 
     Raises:
-        autograder.exercises.UnknownExercise: The exercise does not exist.
-        autograder.exercises.BrokenExercise: The exercise's file is not a valid exercise.
         autograder.authoring.answer_tables.BadTable: A table of the exercise's answers cannot be used.
         autograder.authoring.reference_files.CannotRecord: The master's solution cannot be recorded.
         NothingToTry: No answer has one of the requested names.
     """
-    exercises.get(exercise_id)
-    wanted: Sequence[Answer] = _chosen(exercise_id, only)
+    wanted: Sequence[Answer] = _chosen(exercise, only)
     _refuse_edits_that_do_not_fit(wanted)
-    if not (only and exercises.reference_path(exercise_id).exists()) and not _is_recorded(exercise_id, tell):
+    is_stored = exercises.reference_path(exercise.id).exists()
+    if not (only and is_stored) and not _is_recorded(exercise, is_stored, tell):
         return False
     # `only` asks about single answers, so whatever concerns the whole exercise is left out.
-    gifts = [] if only else list(_of_unsolved(exercise_id, wanted))
+    gifts = [] if only else list(_of_unsolved(exercise, wanted))
     twice = {answer.name: not (fast and answer.diagnoses) for answer in wanted}
     wanted = [
         _Tried(**{**vars(answer), "looks_twice": twice[answer.name]}, folder=transcript) for answer in wanted
@@ -181,15 +180,15 @@ def try_exercise(
     for line in gifts:
         tell(f"the unsolved notebook {line}")
     # With a part of the answers, what the bank lacks cannot be told.
-    for line in to_do_in_text(exercise_id) if only else still_to_do(exercise_id, wanted):
+    for line in to_do_in_text(exercise) if only else still_to_do(exercise, wanted):
         tell(f"to do: {line}")
-    is_kept = bool(only) or evidence_files.load_reference(exercise_id).mutants is not None
-    is_ready = bool(only) or try_mutants(exercise_id, keeps=not is_kept, tell=tell)
+    is_kept = bool(only) or evidence_files.load_reference(exercise.id).mutants is not None
+    is_ready = bool(only) or try_mutants(exercise, keeps=not is_kept, tell=tell)
     return is_ready and not surprises and not gifts
 
 
 def try_mutants(
-    exercise_id: str,
+    exercise: Exercise,
     *,
     by_judge: int = 0,
     must_be_recorded: bool = True,
@@ -199,7 +198,7 @@ def try_mutants(
     """Run the mutants of an exercise's solution, and print which of them its drawings do not tell.
 
     Args:
-        exercise_id: The exercise's id.
+        exercise: The exercise.
         by_judge: If the mutants cannot be run on paper: how many of them the judge checks at the same time; 0 for none.
         must_be_recorded: False if the drawings may differ from the recorded ones.
         keeps: True to write beside the reference output what they do, for the cards of students who do the same.
@@ -210,43 +209,43 @@ def try_mutants(
     """
     warm_up()
     try:
-        found = survey(exercise_id, must_be_recorded=must_be_recorded)
+        found = survey(exercise, must_be_recorded=must_be_recorded)
     except NotOnPaper as why:
         if not by_judge:
-            tell(f"{exercise_id}: no mutants on paper: {why}")
+            tell(f"{exercise.id}: no mutants on paper: {why}")
             return True
         try:
-            found = survey_by_judge(exercise_id, jobs=by_judge)
+            found = survey_by_judge(exercise, jobs=by_judge)
         except NotOnPaper as no_mutants:
-            tell(f"{exercise_id}: no mutants: {no_mutants}")
+            tell(f"{exercise.id}: no mutants: {no_mutants}")
             return True
     if keeps and found.practice:
-        recorded_mutants.write(found)
+        recorded_mutants.write(exercise, found)
     for line in lines(found):
         tell(line)
     return found.is_ready
 
 
-def _chosen(exercise_id: str, only: Sequence[str] = ()) -> list[Answer]:
+def _chosen(exercise: Exercise, only: Sequence[str] = ()) -> list[Answer]:
     """Return the answers to an exercise, in the order in which answers.toml lists them.
 
     Args:
-        exercise_id: The exercise's id, such as ``"lab_1_2.talker"``.
+        exercise: The exercise.
         only: Texts. An answer is returned if its name contains one of them; every answer is, if there are no texts.
 
     Raises:
         NothingToTry: No answer has a name with one of these parts.
     """
-    found = list(answers([exercise_id]))
-    if not found and exercises.get(exercise_id).enough:
+    found = list(answers([exercise.id]))
+    if not found and exercise.enough:
         raise NothingToTry(
-            f"{exercise_id} has no answers yet: write some in the folders right and wrong of "
-            f"{answers_folder(exercise_id)}, as docs/adding-an-exercise.md shows"
+            f"{exercise.id} has no answers yet: write some in the folders right and wrong of "
+            f"{answers_folder(exercise.id)}, as docs/adding-an-exercise.md shows"
         )
     wanted = [answer for answer in found if not only or any(part in answer.short_name for part in only)]
     if found and not wanted:
         raise NothingToTry(
-            f"no answer to {exercise_id} has {' or '.join(only)} in its name. The answers are: "
+            f"no answer to {exercise.id} has {' or '.join(only)} in its name. The answers are: "
             + ", ".join(answer.short_name for answer in found)
         )
     return wanted
@@ -336,9 +335,9 @@ def _refuse_edits_that_do_not_fit(wanted: Sequence[Answer]) -> None:
         raise BadTable("\n".join(troubles))
 
 
-def _of_unsolved(exercise_id: str, listed: Sequence[Answer]) -> Iterator[str]:
+def _of_unsolved(exercise: Exercise, listed: Sequence[Answer]) -> Iterator[str]:
     """Yield what is wrong with a notebook as students get it: a criterion that it meets, or an unexpected failure."""
-    verdict, exercise = reference_files.unsolved(exercise_id), exercises.get(exercise_id)
+    verdict = reference_files.unsolved(exercise)
     for one in verdict.criteria if verdict is not None else ():
         if one.passed:
             yield (
@@ -354,15 +353,14 @@ def _of_unsolved(exercise_id: str, listed: Sequence[Answer]) -> Iterator[str]:
         )
 
 
-def _is_recorded(exercise_id: str, tell: Callable[[str], object]) -> bool:
+def _is_recorded(exercise: Exercise, is_stored: bool, tell: Callable[[str], object]) -> bool:
     """Return True if the stored reference output equals a new recording. If none is stored, store the new one."""
-    is_stored = exercises.reference_path(exercise_id).exists()
-    changed = reference_files.record([exercise_id], only_check=is_stored, tell=tell)
+    changed = reference_files.record([exercise], only_check=is_stored, tell=tell)
     if not (is_stored and changed):
         return True
     tell(
         "The solution or the scenario has changed since the reference output was recorded. "
-        f"If the change is intended, run `{COMMAND} record {exercise_id}`, "
+        f"If the change is intended, run `{COMMAND} record {exercise.id}`, "
         "look at the difference, and try again."
     )
     return False

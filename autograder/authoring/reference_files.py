@@ -29,7 +29,7 @@ from autograder.safe_files import HeldFolder
 from environment.python_child import installed_program
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Iterable
     from pathlib import Path
 
     from autograder.kit.evidence import Reference
@@ -45,11 +45,11 @@ class CannotRecord(RuntimeError):
     """A reference solution could not be run, or does not meet the criteria of its exercise."""
 
 
-def record(wanted: Sequence[str], *, only_check: bool, tell: Callable[[str], object]) -> list[str]:
+def record(wanted: Iterable[Exercise], *, only_check: bool, tell: Callable[[str], object]) -> list[str]:
     """Record reference outputs and store them.
 
     Args:
-        wanted: Exercise ids; all exercises if empty.
+        wanted: The exercises.
         only_check: True to compare with the stored reference outputs, and to store nothing.
         tell: Called with one line for each exercise.
 
@@ -60,18 +60,18 @@ def record(wanted: Sequence[str], *, only_check: bool, tell: Callable[[str], obj
         CannotRecord: A solution could not be recorded. The reference outputs recorded before it are stored.
     """
     changed = []
-    for exercise_id in wanted or exercises.all_ids():
-        text = recording(exercise_id)
-        file = exercises.reference_path(exercise_id)
-        different = [] if not file.exists() else _different(file, text, exercises.get(exercise_id).tolerance)
+    for exercise in wanted:
+        text = recording(exercise)
+        file = exercises.reference_path(exercise.id)
+        different = [] if not file.exists() else _different(file, text, exercise.tolerance)
         if file.exists() and not different:
-            tell(f"{exercise_id}: unchanged")
+            tell(f"{exercise.id}: unchanged")
             continue
-        changed.append(exercise_id)
+        changed.append(exercise.id)
         if not only_check:
             file.write_text(text, encoding="utf-8")
         what = "differs from" if only_check else "recorded in"
-        tell("\n  ".join([f"{exercise_id}: {what} {file.relative_to(course.root())}", *different]))
+        tell("\n  ".join([f"{exercise.id}: {what} {file.relative_to(course.root())}", *different]))
     return changed
 
 
@@ -88,16 +88,12 @@ def _parsed(text: str) -> Reference:
     return evidence_files.parse_reference(json.loads(text))
 
 
-def recording(exercise_id: str) -> str:
+def recording(exercise: Exercise) -> str:
     """Record the reference output of an exercise, and return it as text.
 
     Raises:
         CannotRecord: No master has the exercise, or the solution does not meet the criteria of the exercise.
     """
-    try:
-        exercise = exercises.get(exercise_id)
-    except (exercises.UnknownExercise, exercises.BrokenExercise) as error:
-        raise CannotRecord(str(error)) from error
     report, output = judged(exercise.id, program(exercise.id), record=True)
     if report.reference is None or report.verdict is None:
         raise CannotRecord(
@@ -137,13 +133,13 @@ def _variant(answer: answer_bank.Answer, reference: Reference) -> bytes:
     return msgspec.json.encode(answer.recorded(reference))
 
 
-def unsolved(exercise_id: str) -> Verdict | None:
+def unsolved(exercise: Exercise) -> Verdict | None:
     """Return the verdict on the notebook as students get it; None if the notebook ends before its check.
 
     Raises:
         CannotRecord: No master checks the exercise, or its master cannot be used.
     """
-    report, _ = judged(exercise_id, program(exercise_id, solved=False))
+    report, _ = judged(exercise.id, program(exercise.id, solved=False))
     return report.verdict
 
 

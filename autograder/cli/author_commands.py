@@ -59,16 +59,17 @@ def record(exercises: tuple[str, ...], only_check: bool) -> None:
     what the mutants do.
     """
     from autograder.authoring import exercise_trial, reference_files
-    from autograder.exercises import all_ids
+    from autograder.exercises import BrokenExercise, UnknownExercise, all_ids, get
 
     need_ros()
     try:
-        changed = reference_files.record(exercises, only_check=only_check, tell=click.echo)
-    except reference_files.CannotRecord as error:
+        wanted = [get(exercise_id) for exercise_id in exercises or all_ids()]
+        changed = reference_files.record(wanted, only_check=only_check, tell=click.echo)
+    except (BrokenExercise, UnknownExercise, reference_files.CannotRecord) as error:
         fail(str(error))
     if only_check:
         sys.exit(NO if changed else 0)
-    tried = [exercise_trial.try_mutants(one, keeps=True, tell=click.echo) for one in exercises or all_ids()]
+    tried = [exercise_trial.try_mutants(one, keeps=True, tell=click.echo) for one in wanted]
     sys.exit(0 if all(tried) else NO)
 
 
@@ -147,12 +148,14 @@ def try_exercise(exercise: str, only_mutants: bool, judge: bool, **choices: Any)
     need_ros()
     try:
         if only_mutants:
-            by_judge = choices["jobs"] if judge else 0
-            is_ready = exercise_trial.try_mutants(
-                exercise, by_judge=by_judge, must_be_recorded=False, tell=click.echo
+            fits = exercise_trial.try_mutants(
+                exercises.get(exercise),
+                by_judge=choices["jobs"] if judge else 0,
+                must_be_recorded=False,
+                tell=click.echo,
             )
-            sys.exit(0 if is_ready else NO)
-        fits = exercise_trial.try_exercise(exercise, tell=click.echo, **choices)
+        else:
+            fits = exercise_trial.try_exercise(exercises.get(exercise), tell=click.echo, **choices)
     except (
         BadTable,
         exercises.BrokenExercise,

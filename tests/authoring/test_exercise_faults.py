@@ -43,7 +43,7 @@ def forget() -> None:
 
 
 def told() -> list[str]:
-    lines = still_to_do(ID, list(answers([ID])))
+    lines = still_to_do(exercises.get(ID), list(answers([ID])))
     return [line for line in lines if not line.startswith(FOR_ITS_AUTHOR)]
 
 
@@ -51,7 +51,7 @@ def told() -> list[str]:
 def test_an_example_keeps_every_rule(recipe: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv(course.VARIABLE, str(EXAMPLES))
     example = next(name for name in exercises.all_ids() if name.startswith(f"{recipe}."))
-    lines = list(still_to_do(example, list(answers([example]))))
+    lines = list(still_to_do(exercises.get(example), list(answers([example]))))
     assert [line for line in lines if not line.startswith(FOR_ITS_AUTHOR)] == []
 
 

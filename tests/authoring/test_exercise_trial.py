@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from autograder import exercises
 from autograder.authoring import exercise_trial
 from autograder.authoring.answer_bank import Answer
 from autograder.authoring.exercise_trial import slowest_step
@@ -64,5 +65,5 @@ def test_fast_leaves_out_second_looks_at_wrong_answers_alone(
     monkeypatch.setattr(exercise_trial, "_chosen", lambda *_: bank)
     monkeypatch.setattr(exercise_trial, "_refuse_edits_that_do_not_fit", lambda _: None)
     monkeypatch.setattr(exercise_trial, "_judged", judged)
-    exercise_trial.try_exercise("lab_1_2.talker", only=["a"], fast=fast, tell=lambda _: None)
+    exercise_trial.try_exercise(exercises.get("lab_1_2.talker"), only=["a"], fast=fast, tell=lambda _: None)
     assert looks == {"right": True, "wrong": not fast, "true": not fast}

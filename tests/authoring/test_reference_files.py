@@ -7,6 +7,7 @@ import subprocess
 import sys
 from pathlib import Path
 from types import SimpleNamespace
+from typing import TYPE_CHECKING, cast
 
 import pytest
 
@@ -16,6 +17,9 @@ from autograder.kit.recipes.own_scenario import Met
 from autograder.verdict import CriterionResult
 from tests.measure import evidence
 from tests.tiers import due
+
+if TYPE_CHECKING:
+    from autograder.kit.model import Exercise
 
 ROOT = Path(__file__).parents[2]
 INPUTS = "random.sample(range(1001, 99_999), 2)"
@@ -103,11 +107,10 @@ def test_a_solution_without_an_endpoint_that_the_recipe_judges_is_named(
     failed = SimpleNamespace(passed=False, criteria=(criterion,))
     report = SimpleNamespace(reference='{"interface": {"subscription": {}}}', verdict=failed, trouble="")
     exercise = SimpleNamespace(id="lab_8_1.dog", roles=("subscription", "publisher"))
-    monkeypatch.setattr(exercises, "get", lambda _: exercise)
     monkeypatch.setattr(reference_files, "program", lambda _: "")
     monkeypatch.setattr(reference_files, "judged", lambda *_, **__: (report, ""))
     with pytest.raises(reference_files.CannotRecord) as raised:
-        reference_files.recording(exercise.id)
+        reference_files.recording(cast("Exercise", exercise))
     said = str(raised.value)
     assert "The solution has no publisher, which this recipe judges." in said
     assert "Says lost: expected lost, 4 times; seen lost, 0 times" in said

@@ -28,29 +28,29 @@ if TYPE_CHECKING:
     from autograder.authoring.mutants.survey import Survey
     from autograder.authoring.mutants.trials import Run
     from autograder.kit.evidence import Part
+    from autograder.kit.model import Exercise
 
 Did = dict[str, dict[str, dict[int, Any]]]
 """The values of each output that are not the solution's, by drawing, output and step."""
 
 
-def write(found: Survey) -> None:
+def write(exercise: Exercise, found: Survey) -> None:
     """Write the file of an exercise.
 
     Raises:
         NotOnPaper: The exercise cannot be run on paper.
     """
-    file, data = exercises.mutants_path(found.solution.exercise), packed(msgspec.json.encode(recorded(found)))
+    file, data = exercises.mutants_path(exercise.id), packed(msgspec.json.encode(recorded(exercise, found)))
     if not file.exists() or file.read_bytes() != data:
         file.write_bytes(data)
 
 
-def recorded(found: Survey) -> Mutants:
+def recorded(exercise: Exercise, found: Survey) -> Mutants:
     """Return what mutants do in the practice drawings: those of a survey, and those of the lines around the student's.
 
     The drawings need not tell a mistake in given lines, but a student who types them again may make one.
     """
-    of, exercise = found.solution, exercises.get(found.solution.exercise)
-    stored = evidence_files.load_reference(of.exercise)
+    of, stored = found.solution, evidence_files.load_reference(exercise.id)
     parts, code = stored.parts, Code(of.text, subject=of.root)
     task = paper_task(exercise, stored, of.text, of.root, fresh=0)
     around = given_mutants(of)

@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING
 
 import msgspec
 
-from autograder import exercises
 from autograder.authoring.answer_bank import answers_folder, in_children
 from autograder.authoring.answer_tables import answer_settings
 from autograder.authoring.mutants.code import Code
@@ -26,6 +25,8 @@ from autograder.masters.reference_solutions import ReferenceSolution
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
+
+    from autograder.kit.model import Exercise
 
 LATE = late.__name__
 """The operator for callbacks that take long or die after some calls, of which a task says nothing."""
@@ -139,11 +140,11 @@ def own_mutants(of: Solution) -> list[Mutant]:
     return mutants(of.text, [*changes, *in_all_places(changes)])
 
 
-def survey(exercise_id: str, *, fresh: int = FRESH, must_be_recorded: bool = True) -> Survey:
+def survey(exercise: Exercise, *, fresh: int = FRESH, must_be_recorded: bool = True) -> Survey:
     """Make the mutants of an exercise's solution, and run them on paper.
 
     Args:
-        exercise_id: The exercise's id.
+        exercise: The exercise.
         fresh: The number of fresh drawings, beside those that are recorded.
         must_be_recorded: False to take what the solution does on paper for its recording, for an author who changes the
             drawings.
@@ -151,8 +152,8 @@ def survey(exercise_id: str, *, fresh: int = FRESH, must_be_recorded: bool = Tru
     Raises:
         NotOnPaper: The exercise cannot be run on paper.
     """
-    began, found = time.monotonic(), _solution(exercise_id)
-    exercise, stored = exercises.get(exercise_id), evidence_files.load_reference(exercise_id)
+    began, found = time.monotonic(), _solution(exercise)
+    stored = evidence_files.load_reference(exercise.id)
     task = paper_task(
         exercise, stored, found.text, found.root, fresh=fresh, must_be_recorded=must_be_recorded
     )
@@ -166,19 +167,19 @@ def survey(exercise_id: str, *, fresh: int = FRESH, must_be_recorded: bool = Tru
     return _survey(found, made, runs, began, len(task.practice))
 
 
-def survey_by_judge(exercise_id: str, *, jobs: int) -> Survey:
+def survey_by_judge(exercise: Exercise, *, jobs: int) -> Survey:
     """Make the mutants of an exercise's solution, and have the judge check them, which takes seconds for each.
 
     Args:
-        exercise_id: The exercise's id.
+        exercise: The exercise.
         jobs: The number of mutants to judge at the same time.
 
     Raises:
         NotOnPaper: The solution is files, of which no mutants are made.
     """
-    began, found = time.monotonic(), _solution(exercise_id)
+    began, found = time.monotonic(), _solution(exercise)
     made = own_mutants(found)
-    works = ((one, partial(_checks, exercise_id, one.text, found.root)) for one in made)
+    works = ((one, partial(_checks, exercise.id, one.text, found.root)) for one in made)
     runs = {
         one.key: msgspec.json.decode(outcome.data, type=list[Run]) if outcome.data else []
         for one, outcome in in_children(works, jobs=jobs, limit=JUDGING_LIMIT)
@@ -200,9 +201,9 @@ def _checks(exercise_id: str, text: str, root: str) -> bytes:
     return msgspec.json.encode(runs)
 
 
-def _solution(exercise_id: str) -> Solution:
-    found = solution(exercise_id)
-    if found is None or exercises.get(exercise_id).hides_causes:
+def _solution(exercise: Exercise) -> Solution:
+    found = solution(exercise.id)
+    if found is None or exercise.hides_causes:
         raise NotOnPaper(
             "its solution is not a class or a function of a notebook, or it repairs another one's"
         )

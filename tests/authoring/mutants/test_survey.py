@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import pytest
 from click.testing import CliRunner
 
@@ -11,6 +13,9 @@ from autograder.authoring.answer_tables import AnswerSettings
 from autograder.authoring.mutants import survey
 from autograder.cli.author_commands import record, try_exercise
 from tests.authoring.mutants.test_trials import ACTIONS, ON_PAPER
+
+if TYPE_CHECKING:
+    from autograder.kit.model import Exercise
 
 pytestmark = pytest.mark.ros
 
@@ -45,9 +50,9 @@ def test_a_row_that_nothing_needs_is_named(monkeypatch: pytest.MonkeyPatch) -> N
 def test_record_fails_if_an_exercise_is_not_ready(monkeypatch: pytest.MonkeyPatch, names: list[str]) -> None:
     asked: list[str] = []
 
-    def is_ready(exercise_id: str, **_: object) -> bool:
-        asked.append(exercise_id)
-        return exercise_id != EXERCISE
+    def is_ready(exercise: Exercise, **_: object) -> bool:
+        asked.append(exercise.id)
+        return exercise.id != EXERCISE
 
     monkeypatch.setattr(reference_files, "record", lambda *_, **__: [])
     monkeypatch.setattr(exercise_trial, "try_mutants", is_ready)
@@ -58,4 +63,4 @@ def test_record_fails_if_an_exercise_is_not_ready(monkeypatch: pytest.MonkeyPatc
 @pytest.mark.parametrize("exercise_id", [one for one in ON_PAPER if one not in ACTIONS])
 def test_each_exercise_of_the_course_is_ready(exercise_id: str) -> None:
     said: list[str] = []
-    assert exercise_trial.try_mutants(exercise_id, tell=said.append), "\n".join(said)
+    assert exercise_trial.try_mutants(exercises.get(exercise_id), tell=said.append), "\n".join(said)
