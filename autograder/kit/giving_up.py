@@ -65,12 +65,12 @@ PART_OF_A_WAIT = 1.0
 """The number of seconds by which a function may end before its patience is over, because it may wait in whole seconds.
 """
 NOT_AVAILABLE = Outcome("not available")
+"""The words that a client must report if its service or action server is missing."""
 COUNTS = (
     "Another exception, or a line that contains `not available`, counts as well. A program without `patience_sec` ends "
     "within 12 seconds, or says every three that it is `waiting`."
 )
 """Says on the card which ways to give up count (:attr:`autograder.kit.model.Exercise.counts`)."""
-"""The words that a client must report if its service or action server is missing."""
 WAITING = Outcome("not available", "waiting")
 """The words that a client must repeat if it keeps waiting."""
 AGAIN_AND_AGAIN = 3
