@@ -24,11 +24,10 @@ from jupyter_client.manager import KernelManager
 from nbclient import NotebookClient
 from nbformat.v4 import new_code_cell, new_notebook
 
-from autograder import course
+from autograder import check_journal, course
 from autograder.masters.master_files import chapter_path, lab_name, masters
 from autograder.masters.source_notebooks import source_notebook
 from autograder.safe_files import HeldFolder
-from autograder.student import check_journal
 from autograder.student.lab import join_domain
 from environment.python_child import installed_program
 

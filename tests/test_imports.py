@@ -26,6 +26,7 @@ FOR_ALL = frozenset({"command_name"})
 """What every part may import: the words of messages."""
 MODULES_MAY_IMPORT = {
     "exercises": frozenset({"course", "kit"}),
+    "check_journal": frozenset({"course", "verdict"}),
     "own_lines": frozenset({"messages"}),
     "__main__": frozenset({"cli", "course", "standard_output"}),
 }

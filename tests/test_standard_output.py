@@ -10,11 +10,11 @@ import sys
 import pytest
 from click.testing import CliRunner
 
+from autograder import check_journal
 from autograder.authoring.answer_bank import Turn, judge_all
 from autograder.cli import cli
 from autograder.judge import command_check
 from autograder.standard_output import short_lines, split_lines, stray_lines_on_stderr
-from autograder.student import check_journal
 from autograder.verdict import State, Verdict, to_json
 
 LOG_LINE = b"2026-11-20 14:02:11.123 [RTPS_TRANSPORT_SHM Error] Failed to create segment\n"

@@ -4,8 +4,9 @@ Promises: nothing is written over that a person wrote; what an author is told ab
     for mutants of the solution, on paper.
 Names: ``new_exercise``, ``exercise_trial``, ``reference_files``, ``notebook_execution.execute_command``,
     ``site_building.build_site``, ``answer_bank.answers``
-Imports: ``boxes``, ``cards``, ``course``, ``dds_discovery``, ``execution``, ``exercises``, ``grading``, ``judge``,
-    ``kit``, ``masters``, ``messages``, ``packed_files``, ``safe_files``, ``standard_output``, ``student``, ``verdict``.
+Imports: ``boxes``, ``cards``, ``check_journal``, ``course``, ``dds_discovery``, ``execution``, ``exercises``,
+    ``grading``, ``judge``, ``kit``, ``masters``, ``messages``, ``packed_files``, ``safe_files``,
+    ``standard_output``, ``student``, ``verdict``.
 Takes: the folder of a lab: master, exercise, tables of answers.
 Gives: reference outputs, the website, and what passes or fails, in words and as an exit code.
 """

@@ -15,12 +15,11 @@ from nbclient.exceptions import CellExecutionComplete
 from nbclient.util import ensure_async
 from nbconvert.preprocessors import CoalesceStreamsPreprocessor
 
-from autograder import course
+from autograder import check_journal, course
 from autograder.dds_discovery import DOMAIN_VARIABLE, claim_free_domain
 from autograder.masters.master_files import lab_name
 from autograder.masters.source_notebooks import source_notebook
 from autograder.safe_files import HeldFolder
-from autograder.student import check_journal
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

@@ -3,8 +3,9 @@
 Promises: exit code 0 for success; 1 for a negative result, such as a failed check; 2 if the command could not do its
     work, for example after a wrong option. Each command makes its imports itself, so that ``check`` starts fast.
 Names: ``cli``, ``GROUPS``
-Imports: ``appeals``, ``authoring``, ``boxes``, ``cards``, ``course``, ``dds_discovery``, ``exercises``, ``grading``,
-    ``judge``, ``kit``, ``masters``, ``safe_files``, ``standard_output``, ``student``, ``verdict``, ``workspaces``.
+Imports: ``appeals``, ``authoring``, ``boxes``, ``cards``, ``check_journal``, ``course``, ``dds_discovery``,
+    ``exercises``, ``grading``, ``judge``, ``kit``, ``masters``, ``safe_files``,
+    ``standard_output``, ``student``, ``verdict``, ``workspaces``.
 Takes: the words that a person typed.
 Gives: text or JSON on standard output, messages on standard error, and an exit code.
 """

@@ -89,7 +89,7 @@ def check(
         fail(str(error))
     # A program of another person, or a solution that the course brings, does not count as the user's progress.
     if not boxed and _is_students(command):
-        from autograder.student import check_journal
+        from autograder import check_journal
 
         check_journal.note_check(verdict)
     show(verdict, as_json=as_json)
@@ -182,8 +182,7 @@ def lab(folder: Path | None, arguments: tuple[str, ...]) -> None:
 @_notebooks
 def progress(as_json: bool, folder: Path | None) -> None:
     """Show which points you have reached, and which task is next. This is not a grade."""
-    from autograder import course, exercises
-    from autograder.student import check_journal
+    from autograder import check_journal, course, exercises
     from autograder.student.progress import standing, standing_json, standing_text
 
     try:
@@ -216,8 +215,7 @@ def reset(notebook: str, folder: Path | None) -> None:
 
 def _notebooks_and_journal(root: Path, folder: Path | None) -> tuple[Path, Path | None]:
     """Return the folder with the student's notebooks, and the path of the journal that records their checks."""
-    from autograder import course
-    from autograder.student import check_journal
+    from autograder import check_journal, course
     from autograder.student.lab import NOTEBOOKS_VARIABLE
 
     if folder is not None:

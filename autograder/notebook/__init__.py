@@ -3,8 +3,8 @@
 Promises: nothing here is secret or decides a grade, because the judge is a separate process.
 Names: ``start_ros``, ``start_robot``, ``check``, ``watch``, ``spinning``, ``spin_in_background``, ``draw_graph``,
     ``recording``
-Imports: ``cards``, ``course``, ``dds_discovery``, ``known_errors``, ``mcap_files``, ``messages``, ``own_lines``,
-    ``packed_files``, ``robot``, ``safe_files``, ``standard_output``, ``student``, ``verdict``, ``workspaces``.
+Imports: ``cards``, ``check_journal``, ``course``, ``dds_discovery``, ``known_errors``, ``mcap_files``, ``messages``,
+    ``own_lines``, ``packed_files``, ``robot``, ``safe_files``, ``standard_output``, ``verdict``, ``workspaces``.
 Takes: the student's classes and functions, in the kernel.
 Gives: running nodes, pictures, and cards below the cells.
 """

@@ -11,8 +11,8 @@ import threading
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from autograder import check_journal
 from autograder.dds_discovery import DOMAIN_VARIABLE, DomainClaim, claim_free_domain, domain_from_environment
-from autograder.student import check_journal
 from autograder.student.known_classes import is_known
 
 if TYPE_CHECKING:

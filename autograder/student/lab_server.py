@@ -24,10 +24,9 @@ from jupyter_server.utils import url_path_join
 from nbgrader.server_extensions.validate_assignment.handlers import ValidateAssignmentHandler
 from tornado import web
 
-from autograder import course, exercises
+from autograder import check_journal, course, exercises
 from autograder.cards.html_rendering import certificate_svg
-from autograder.student import check_journal
-from autograder.student.check_journal import JournalEntry
+from autograder.check_journal import JournalEntry
 from autograder.student.lab import COURSE_PAGE
 from autograder.student.notebook_reset import CannotReset, reset
 from autograder.student.progress import Standing, page_html, standing, trouble_html

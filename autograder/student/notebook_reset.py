@@ -9,8 +9,8 @@ from pathlib import PurePath
 from typing import TYPE_CHECKING
 
 from autograder import course
+from autograder.check_journal import JournalEntry, note
 from autograder.safe_files import write_whole
-from autograder.student.check_journal import JournalEntry, note
 from autograder.student.progress import notebook_path
 
 if TYPE_CHECKING:

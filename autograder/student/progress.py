@@ -14,11 +14,10 @@ from urllib.parse import quote
 
 import msgspec
 
-from autograder import course, exercises
+from autograder import check_journal, course, exercises
 from autograder.cards.card_wording import points, points_of, with_solution
 from autograder.cards.html_rendering import certificate_svg, certificate_text
 from autograder.command_name import COMMAND
-from autograder.student import check_journal
 from autograder.student.lab import COURSE_PAGE
 
 if TYPE_CHECKING:
@@ -27,7 +26,7 @@ if TYPE_CHECKING:
 
     from jinja2 import Environment
 
-    from autograder.student.check_journal import JournalEntry
+    from autograder.check_journal import JournalEntry
 
 
 State = Literal["new", "begun", "done"]

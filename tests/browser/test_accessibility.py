@@ -10,10 +10,9 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from autograder import exercises
+from autograder import check_journal, exercises
 from autograder.cards.html_rendering import card_html, waiting_bundle
-from autograder.student import check_journal
-from autograder.student.check_journal import JournalEntry
+from autograder.check_journal import JournalEntry
 from autograder.verdict import from_json
 
 sys.path.insert(0, str(Path(__file__).parent))

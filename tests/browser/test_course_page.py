@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from autograder import exercises
-from autograder.student import check_journal
-from autograder.student.check_journal import JournalEntry
+from autograder import check_journal, exercises
+from autograder.check_journal import JournalEntry
 from tests.browser.open_notebook import look
 
 if TYPE_CHECKING:

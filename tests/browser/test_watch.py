@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from autograder.student import check_journal
-from autograder.student.check_journal import JournalEntry
+from autograder import check_journal
+from autograder.check_journal import JournalEntry
 
 sys.path.insert(0, str(Path(__file__).parent))
 from open_notebook import OpenNotebook, look

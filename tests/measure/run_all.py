@@ -21,12 +21,11 @@ from typing import TYPE_CHECKING
 from nbclient import NotebookClient
 from nbclient.exceptions import CellExecutionError, CellTimeoutError, DeadKernelError
 
-from autograder import course
+from autograder import check_journal, course
 from autograder.authoring.executed_masters import execute_in_new_kernel
 from autograder.dds_discovery import DOMAIN_VARIABLE, claim_free_domain
 from autograder.masters.master_files import lab_name, masters
 from autograder.masters.source_notebooks import source_notebook
-from autograder.student import check_journal
 
 if TYPE_CHECKING:
     import argparse

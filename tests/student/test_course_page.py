@@ -9,11 +9,10 @@ from typing import TYPE_CHECKING
 
 from click.testing import CliRunner
 
-from autograder import course, exercises
+from autograder import check_journal, course, exercises
 from autograder.cards.html_rendering import CERTIFICATE_WORDS, certificate_svg
+from autograder.check_journal import JournalEntry
 from autograder.cli import cli
-from autograder.student import check_journal
-from autograder.student.check_journal import JournalEntry
 from autograder.student.progress import hours, page_html, standing, standing_text, trouble_html
 
 if TYPE_CHECKING:

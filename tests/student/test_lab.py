@@ -18,9 +18,9 @@ from jupyterlab.labapp import LabApp
 from jupyterlab_server.config import get_page_config
 from nbgrader.server_extensions.validate_assignment.handlers import ValidateAssignmentHandler
 
-from autograder import exercises
+from autograder import check_journal, exercises
 from autograder.dds_discovery import claim_free_domain
-from autograder.student import check_journal, known_classes
+from autograder.student import known_classes
 from autograder.student.lab import (
     NOTEBOOKS_VARIABLE,
     NOTHING_TO_SAVE,

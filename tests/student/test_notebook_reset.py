@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING
 import pytest
 from click.testing import CliRunner
 
-from autograder import course
+from autograder import check_journal, course
 from autograder.cli import cli
-from autograder.student import check_journal
 from autograder.student.notebook_reset import CannotReset, reset
 
 if TYPE_CHECKING:

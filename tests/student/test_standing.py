@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from autograder import course, exercises
-from autograder.student.check_journal import JournalEntry
+from autograder.check_journal import JournalEntry
 from autograder.student.handout import hand_out
 from autograder.student.progress import Standing, standing
 

@@ -22,7 +22,7 @@ import weakref
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Self
 
-from autograder import course, packed_files
+from autograder import check_journal, course, packed_files
 from autograder.cards import card_wording, html_rendering
 from autograder.cards.card_content import Solution
 from autograder.cards.card_wording import duration
@@ -30,7 +30,6 @@ from autograder.cards.readable_text import one_line, paragraph, wrap
 from autograder.messages.judge_messages import SOCKET_VARIABLE
 from autograder.notebook.cell_output import notebook_shell
 from autograder.notebook.checking.subject_runs import own_text
-from autograder.student import check_journal
 
 if TYPE_CHECKING:
     from collections.abc import Callable

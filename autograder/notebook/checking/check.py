@@ -7,7 +7,7 @@ import inspect
 import os
 from typing import TYPE_CHECKING, Any
 
-from autograder import course
+from autograder import check_journal, course
 from autograder.cards import html_rendering
 from autograder.messages import judge_messages as messages
 from autograder.messages import run_messages
@@ -32,7 +32,6 @@ from autograder.notebook.checking.subject_runs import (
     send_sources,
 )
 from autograder.notebook.nodes.ros_session import prepare_environment
-from autograder.student import check_journal
 from autograder.verdict import Verdict, not_checked
 from autograder.workspaces.sources import full_disk
 

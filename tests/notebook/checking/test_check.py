@@ -8,12 +8,11 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from autograder import course, exercises
+from autograder import check_journal, course, exercises
+from autograder.check_journal import JournalEntry
 from autograder.messages.judge_messages import SOCKET_VARIABLE
 from autograder.notebook.checking import check as check_cell
 from autograder.notebook.checking.card_display import Progress
-from autograder.student import check_journal
-from autograder.student.check_journal import JournalEntry
 from autograder.verdict import State, Verdict
 from autograder.workspaces import sources
 

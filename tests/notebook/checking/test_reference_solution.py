@@ -7,13 +7,12 @@ from typing import Any
 
 import pytest
 
-from autograder import exercises
+from autograder import check_journal, exercises
 from autograder.cards.card_wording import OFFER, OUR_CHANGE, OWN_CHANGE, SOLUTION
+from autograder.check_journal import JournalEntry
 from autograder.messages.judge_messages import SOCKET_VARIABLE
 from autograder.notebook.checking import card_display, subject_runs
 from autograder.notebook.checking.card_display import solution_of
-from autograder.student import check_journal
-from autograder.student.check_journal import JournalEntry
 from autograder.student.handout import hand_out
 from autograder.verdict import State, Verdict
 

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from autograder.student import check_journal
-from autograder.student.check_journal import JournalEntry
+from autograder import check_journal
+from autograder.check_journal import JournalEntry
 from autograder.verdict import State, Verdict, not_checked
 
 if TYPE_CHECKING:
