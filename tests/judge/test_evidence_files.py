@@ -211,3 +211,16 @@ def test_where_nothing_was_seen_there_is_nothing_to_decide() -> None:
     empty = evidence_files.Kept(1.5, "abc", VERDICT, [])
     with pytest.raises(evidence_files.NoEvidence):
         evidence_files.evidence_of(empty, EXPECTED)
+
+
+def test_what_mutants_do_is_unpacked_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    exercise_id = next(one for one in exercises.all_ids() if exercises.mutants_path(one).exists())
+    first = evidence_files.load_reference(exercise_id)
+
+    def fails(_: object) -> str:
+        raise AssertionError("hashed again")
+
+    monkeypatch.setattr(evidence_files, "parts_digest", fails)
+    assert first.mutants is not None
+    assert evidence_files.load_reference(exercise_id) == first
+    assert evidence_files.load_reference(exercise_id, mutants=False) == replace(first, mutants=None)
