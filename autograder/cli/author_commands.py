@@ -205,11 +205,4 @@ def site(edition: str, folder: Path | None, quick: bool) -> None:
     sys.exit(NO if problems else 0)
 
 
-AUTHOR_COMMANDS = (
-    build,
-    execute,
-    site,
-    record,
-    new_exercise,
-    try_exercise,
-)
+AUTHOR_COMMANDS = (build, execute, site, record, new_exercise, try_exercise)

@@ -329,14 +329,4 @@ def demo(folder: Path) -> None:
     sys.exit(report.exit_code)
 
 
-CLASS_COMMANDS = (
-    demo,
-    hand_out,
-    new_class,
-    renew_class,
-    students,
-    week,
-    collect,
-    grade,
-    worker,
-)
+CLASS_COMMANDS = (demo, hand_out, new_class, renew_class, students, week, collect, grade, worker)

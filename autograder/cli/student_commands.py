@@ -22,9 +22,7 @@ if TYPE_CHECKING:
 
 
 _notebooks = click.option(
-    "--folder",
-    type=click.Path(path_type=Path),
-    help="The folder of your notebooks. The default is chapters.",
+    "--folder", type=click.Path(path_type=Path), help="The folder of your notebooks. The default is chapters."
 )
 
 
@@ -49,11 +47,7 @@ _notebooks = click.option(
     help="Run COMMAND in the sandbox in which submissions of a class run. It can read only the current folder.",
 )
 def check(
-    exercise: str | None,
-    command: tuple[str, ...],
-    as_json: bool,
-    seed: str | None,
-    boxed: bool,
+    exercise: str | None, command: tuple[str, ...], as_json: bool, seed: str | None, boxed: bool
 ) -> None:
     """Run a command as the subject of an exercise and print the verdict."""
     from autograder import course, exercises
@@ -233,10 +227,4 @@ def doctor(as_json: bool) -> None:
     sys.exit(probes.main(["--json"] if as_json else []))
 
 
-STUDENT_COMMANDS = (
-    check,
-    lab,
-    progress,
-    reset,
-    doctor,
-)
+STUDENT_COMMANDS = (check, lab, progress, reset, doctor)

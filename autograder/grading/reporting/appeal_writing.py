@@ -10,12 +10,7 @@ from autograder.appeals.appeal_file import AppealedCell, AppealedCheck, dump
 from autograder.command_name import COMMAND
 from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.class_directory import ClassDirectory
-from autograder.grading.grading_errors import (
-    GradingError,
-    clear_disk_errors,
-    course_command,
-    write_output,
-)
+from autograder.grading.grading_errors import GradingError, clear_disk_errors, course_command, write_output
 from autograder.judge import evidence_files
 from autograder.judge.evidence_files import NoEvidence, unpack
 
@@ -101,11 +96,7 @@ def _before(cells: list[RunCell], exercise_id: str) -> Iterator[AppealedCell]:
 
 
 def _why_nothing(
-    directory: ClassDirectory,
-    attempts: Sequence[Attempt],
-    student: str,
-    exercise_id: str,
-    again: str,
+    directory: ClassDirectory, attempts: Sequence[Attempt], student: str, exercise_id: str, again: str
 ) -> str:
     for attempt in reversed(attempts):
         for row in attempt.rows:

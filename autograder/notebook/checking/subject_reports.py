@@ -111,7 +111,7 @@ class CapturedOutput:
             times += [_processor_time(thread)] if own else []
             loops = (loop_around("".join(linecache.getlines(c.filename)), c.lineno or 0) for c in own)
             loop = f" in the loop of line {found}" if (found := next(filter(None, loops), "")) else ""
-            lines.append(f"Thread {thread.name}{loop} (most recent call first):")
+            lines.append(f"Thread {thread.ident:#x}{loop} (most recent call first):")
             lines += [f'  File "{call.filename}", line {call.lineno} in {call.name}' for call in calls]
         return "\n".join(lines), max(times)
 

@@ -234,6 +234,6 @@ def test_a_stack_quotes_the_loop_of_the_student_and_counts_its_processor_time(tm
             pass
     finally:
         over.set()
-    assert f"Thread {thread.name} in the loop of line 2: while not over.is_set(): (most recent" in told[0]
-    assert f"Thread {waiting.name} (most recent" in told[0]
+    assert f"Thread {thread.ident:#x} in the loop of line 2: while not over.is_set(): (most recent" in told[0]
+    assert f"Thread {waiting.ident:#x} (most recent" in told[0]
     assert "autograder" not in told[0]
