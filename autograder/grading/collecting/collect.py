@@ -287,6 +287,8 @@ class _Collecting:
         here = {one.assignment for one in (new if keys else counting)}
         settled = {(one.student, one.assignment) for one in self._directory.submissions()[0]}
         settled |= self._roster.excused
+        waiting = [one for one in lines if one.state == LineState.NOT_PLACED]
+        settled |= {(student, one.assignment) for one in waiting for student in one.students}
         missing = {
             name: tuple(ids)
             for name in sorted(here)
@@ -308,7 +310,7 @@ class _Collecting:
             tuple(sorted(outcomes, key=lambda one: one.label)),
             untimed,
             missing,
-            sum(one.state == LineState.NOT_PLACED for one in lines),
+            len(waiting),
             tuple(notes),
             tuple(sorted({one.assignment for one in delivered})),
             tuple(sorted({one.lms for one in delivered} - {""})),
