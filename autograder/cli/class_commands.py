@@ -20,7 +20,6 @@ from autograder.cli.class_options import (
     one_assignment,
     only_assignments,
     only_sections,
-    or_nothing,
     over_option,
     student_option,
 )
@@ -226,7 +225,7 @@ def _finished_grades_are_stored() -> Iterator[None]:
 @click.option(
     "--lower",
     type=click.Choice(["yes", "no"]),
-    callback=or_nothing,
+    callback=lambda _context, _option, chosen: chosen or "",
     help="Take over points that fell although the same files were handed in, or keep the earlier points.",
 )
 def grade(folder: Path, as_json: bool, unsafe_no_sandbox: bool, **choices: Any) -> None:

@@ -51,16 +51,11 @@ one_assignment = click.option(
 )
 
 
-def or_nothing(_context: click.Context, _option: click.Parameter, chosen: str | None) -> str:
-    """Return the chosen word; empty if the option was not given."""
-    return chosen or ""
-
-
 from_option = click.option(
     "--from",
     "form",
     type=click.Choice(["moodle", "canvas", "blackboard", "brightspace", "gradescope", "sakai", "ilias"]),
-    callback=or_nothing,
+    callback=lambda _context, _option, chosen: chosen or "",
     help="The system from which the files come, if file names do not show it. Needed for ILIAS.",
 )
 student_option = click.option(

@@ -18,7 +18,6 @@ from autograder.cli.class_options import (
     into_columns,
     only_assignments,
     only_sections,
-    or_nothing,
     over_option,
 )
 from autograder.cli.command_results import as_json_option, fail, grading_errors, print_json, print_line
@@ -38,7 +37,7 @@ if TYPE_CHECKING:
 @click.option(
     "--to",
     type=click.Choice(["canvas", "moodle", "blackboard", "brightspace", "sakai", "ilias", "csv", "xlsx"]),
-    callback=or_nothing,
+    callback=lambda _context, _option, chosen: chosen or "",
     help="The LMS that will import the files. With --into, it is the one from which the list comes.",
 )
 @only_assignments

@@ -174,7 +174,7 @@ def rehearsed(path: Path, files: Sequence[Path], choices: WeekChoices = WeekChoi
             "grade and with export."
         )
 
-    def grade_copy(copy: Path) -> GradeReport:
+    def _grade_copy(copy: Path) -> GradeReport:
         """Grade the copy. The class itself keeps the results of checks, so that the week need not wait again."""
         store, ours = copy / STATE_NAME / STORE, directory.state / STORE
         if ours.exists():
@@ -189,7 +189,7 @@ def rehearsed(path: Path, files: Sequence[Path], choices: WeekChoices = WeekChoi
         copy = held.path / directory.path.name
         shutil.copytree(directory.path, copy, symlinks=True)
         (copy / STATE_NAME / "lock").unlink(missing_ok=True)
-        report = _week(copy, files, choices, grade_copy, dry_run=True)
+        report = _week(copy, files, choices, _grade_copy, dry_run=True)
     return replace(report, collected=replace(report.collected, path=directory.path))
 
 
