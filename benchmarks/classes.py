@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING
 from autograder import course
 from autograder.grading.classes.class_directory import SUFFIX, ClassDirectory
 from autograder.grading.new_classes.new_class import new_class
-from autograder.grading.new_classes.sample_class import BANK, SampleNotebook, made_notebook
-from autograder.grading.rebuilding import nbformat_nodes
+from tests.submissions.odd_notebooks import BANK, OddNotebook, text_of
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -71,11 +70,10 @@ def make_class(path: Path, students: int, assignments: tuple[str, ...] = ()) -> 
             files = _answers(bank, assignment, number)
             if not any("/wrong/" in file for file in files):
                 honest.add((student, assignment))
-            wanted = SampleNotebook(student, assignment, "", {}, bank=files)
+            wanted = OddNotebook(student, assignment, "", {}, bank=files)
             folder = path / "submitted" / student / assignment
             folder.mkdir(parents=True)
-            text = nbformat_nodes.text(made_notebook(path, wanted))
-            (folder / f"{assignment}{SUFFIX}").write_text(text, encoding="utf-8")
+            (folder / f"{assignment}{SUFFIX}").write_text(text_of(path, wanted), encoding="utf-8")
     return BenchmarkClass(path, names, frozenset(honest))
 
 

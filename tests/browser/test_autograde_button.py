@@ -22,13 +22,11 @@ from tiny_class import TinyClass
 from autograder import course
 from autograder.cli import cli
 from autograder.grading.new_classes.new_class import new_class
-from autograder.grading.new_classes.sample_class import made_notebook, sample_notebooks
-from autograder.grading.rebuilding import nbformat_nodes
+from tests.submissions.odd_notebooks import odd_notebooks, text_of
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
 
-FIXTURES = Path(__file__).parents[1] / "submissions" / "fixture_class.toml"
 LAB, OWN = "exercise_1_2", "own"
 
 
@@ -40,13 +38,11 @@ def test_formgraders_button_has_the_judge_decide(page: Page, tmp_path: Path) -> 
     made = TinyClass(tmp_path / "class")
     new_class(made.path, course.root(), assignments=[LAB])
     write_assignment(made, OWN)
-    samples = {one.student: one for one in sample_notebooks(FIXTURES) if one.assignment == LAB}
+    samples = {one.student: one for one in odd_notebooks() if one.assignment == LAB}
     for student, sample in samples.items():
         folder = made.path / "submitted" / student / LAB
         folder.mkdir(parents=True)
-        (folder / f"{LAB}.ipynb").write_text(
-            nbformat_nodes.text(made_notebook(made.path, sample)), encoding="utf-8"
-        )
+        (folder / f"{LAB}.ipynb").write_text(text_of(made.path, sample), encoding="utf-8")
     hand_in(made, "all-right", "def add(a, b):\n    return abs(a) - abs(b)", OWN)
     points = {
         student: sum(score for score, _ in sample.expected.values()) for student, sample in samples.items()

@@ -19,10 +19,9 @@ import msgspec
 from autograder import course
 from autograder.grading.classes.class_directory import SUFFIX
 from autograder.grading.new_classes.new_class import new_class
-from autograder.grading.new_classes.sample_class import BANK, SampleNotebook, made_notebook
-from autograder.grading.rebuilding import nbformat_nodes
 from tests.measure.ends import Ends, Repeated, in_one_line
 from tests.measure.soak import busy_loops
+from tests.submissions.odd_notebooks import BANK, OddNotebook, text_of
 
 if TYPE_CHECKING:
     import argparse
@@ -73,10 +72,10 @@ def make(path: Path) -> None:
     for student, files in STUDENTS.items():
         for assignment in ASSIGNMENTS:
             mine = tuple(file for file in files if file.startswith(f"{assignment}."))
-            notebook = made_notebook(path, SampleNotebook(student, assignment, "", {}, bank=mine))
+            text = text_of(path, OddNotebook(student, assignment, "", {}, bank=mine))
             folder = path / "submitted" / student / assignment
             folder.mkdir(parents=True)
-            (folder / f"{assignment}{SUFFIX}").write_text(nbformat_nodes.text(notebook), encoding="utf-8")
+            (folder / f"{assignment}{SUFFIX}").write_text(text, encoding="utf-8")
 
 
 def grade(path: Path, *options: str) -> dict[str, str]:

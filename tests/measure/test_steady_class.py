@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from autograder import course
-from autograder.grading.new_classes.sample_class import BANK
 from tests.measure.steady_class import STUDENTS
+from tests.submissions.odd_notebooks import BANK
 
 
 def test_each_file_that_a_student_hands_in_is_in_the_bank_of_notebooks() -> None:

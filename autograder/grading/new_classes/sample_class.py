@@ -14,7 +14,6 @@ import msgspec
 from autograder import course, standard_output
 from autograder.boxes import sandbox
 from autograder.command_name import COMMAND
-from autograder.execution.executed_cells import CellType
 from autograder.grading.batch import grade
 from autograder.grading.classes.class_directory import CONFIG_NAME, STATE_NAME, SUFFIX, switch_sandbox_off
 from autograder.grading.grading_errors import GradingError
@@ -27,7 +26,6 @@ from autograder.grading.table.roster import NAME as STUDENTS
 from autograder.masters.master_files import lab_name, masters
 
 if TYPE_CHECKING:
-    from nbformat import NotebookNode
     from rich.console import Console
 
     from autograder.grading.reporting.grade_report import GradeReport
@@ -36,8 +34,6 @@ DATA = Path(__file__).with_suffix(".toml")
 CELL_SECONDS = 8.0
 """The time limit of a cell in seconds. It is short, so that a student with an endless loop keeps no visitor waiting."""
 NOTEBOOK_SECONDS = 120.0
-BANK = Path("tests", "submissions", "notebooks")
-"""The path, in the course, of a folder with right and wrong sample answers."""
 _STAMP = "sample"
 
 
@@ -49,16 +45,9 @@ class SampleNotebook:
     assignment: str
     about: str = "Everything is right."
     expected: dict[str, tuple[float, str]] = field(default_factory=dict)
-    bank: tuple[str, ...] = ()
     change: dict[str, tuple[str, str]] = field(default_factory=dict)
-    answers: dict[str, str] = field(default_factory=dict)
-    delete: tuple[str, ...] = ()
-    duplicate: tuple[str, ...] = ()
-    retype: dict[str, CellType] = field(default_factory=dict)
-    insert: dict[str, str] = field(default_factory=dict)
     unsolved: bool = False
     missing: bool = False
-    file: str = ""
 
 
 class _SampleData(msgspec.Struct):
@@ -68,14 +57,6 @@ class _SampleData(msgspec.Struct):
     students: dict[str, str] = {}
     assignments: tuple[str, ...] = ()
     shown: tuple[str, str] = ("", "")
-
-
-@dataclass(frozen=True)
-class _Answer:
-    """A student's text for a solution cell, and the texts of the cells that the student added before it."""
-
-    source: str
-    extra: tuple[str, ...]
 
 
 def sample_data(file: Path) -> _SampleData:
@@ -100,7 +81,7 @@ def _submit_sample(path: Path) -> None:
     for notebook in sample_notebooks(DATA):
         folder = path / "submitted" / notebook.student / notebook.assignment
         folder.mkdir(parents=True, exist_ok=True)
-        text = notebook.file or nbformat_nodes.text(made_notebook(path, notebook))
+        text = sample_text(path, notebook)
         (folder / f"{notebook.assignment}{SUFFIX}").write_text(text, encoding="utf-8")
 
 
@@ -164,19 +145,14 @@ def _make(path: Path, console: Console) -> None:
 def _version(root: Path) -> str:
     """Return a hash of all files from which the sample class is made."""
     digest = hashlib.sha256(DATA.read_bytes() + CONFIG.encode())
-    notebooks = sample_notebooks(DATA)
-    names = {notebook.assignment for notebook in notebooks}
-    used = [path for path in masters(root) if lab_name(path) in names]
-    answers = [
-        root / BANK / file for file in sorted({file for notebook in notebooks for file in notebook.bank})
-    ]
-    for path in (*used, *answers):
+    names = {notebook.assignment for notebook in sample_notebooks(DATA)}
+    for path in (path for path in masters(root) if lab_name(path) in names):
         digest.update(path.read_bytes())
     return digest.hexdigest()
 
 
-def made_notebook(path: Path, wanted: SampleNotebook) -> NotebookNode:
-    """Return a sample student's notebook.
+def sample_text(path: Path, wanted: SampleNotebook) -> str:
+    """Return the text of a sample student's notebook.
 
     Args:
         path: The class, with notebooks in ``source`` and ``release``.
@@ -184,58 +160,13 @@ def made_notebook(path: Path, wanted: SampleNotebook) -> NotebookNode:
     """
     name = f"{wanted.assignment}{SUFFIX}"
     notebook = nbformat_nodes.read((path / "release" / wanted.assignment / name).read_text(encoding="utf-8"))
-    right: dict[str, str] = {}
-    if not wanted.unsolved:
-        source = nbformat_nodes.read((path / "source" / wanted.assignment / name).read_text(encoding="utf-8"))
-        right = {grade_id(cell): _without_markers(cell.source) for cell in source.cells}
-    answers = {name: answer for file in wanted.bank for name, answer in _bank_answers(file).items()}
-    answers |= {name: _Answer(text.strip(), ()) for name, text in wanted.answers.items()}
-    answers |= {name: _Answer(right[name].replace(*pair), ()) for name, pair in wanted.change.items()}
-    notebook.cells = [
-        changed for cell in notebook.cells for changed in _changed(cell, wanted, right, answers)
-    ]
-    return notebook
-
-
-def _changed(
-    cell: NotebookNode, wanted: SampleNotebook, right: dict[str, str], answers: dict[str, _Answer]
-) -> list[NotebookNode]:
-    """Return the cells that replace one cell of the released notebook in the student's notebook."""
-    name = grade_id(cell)
-    if not name:
-        return [cell]
-    answer = answers.get(name)
-    cell.source = answer.source if answer else right.get(name, cell.source)
-    before = [nbformat_nodes.cell(CellType.CODE, source) for source in (answer.extra if answer else ())]
-    if name in wanted.insert:
-        before.append(nbformat_nodes.cell(CellType.CODE, wanted.insert[name]))
-    if name in wanted.delete:
-        return before
-    if name in wanted.retype:
-        retyped = nbformat_nodes.cell(wanted.retype[name], cell.source)
-        retyped.metadata = cell.metadata
-        return [*before, retyped]
-    if name in wanted.duplicate:
-        twin = nbformat_nodes.copied(cell)
-        twin.id = f"{cell.id}-again"[:64]
-        return [*before, cell, twin]
-    return [*before, cell]
-
-
-def _bank_answers(file: str) -> dict[str, _Answer]:
-    """Read a sample answer from a file in which each cell begins with ``# %% extra`` or ``# %% solution NAME``."""
-    text = (course.root() / BANK / file).read_text(encoding="utf-8")
-    answers: dict[str, _Answer] = {}
-    extra: list[str] = []
-    for part in text.split("# %% ")[1:]:
-        head, _, source = part.partition("\n")
-        kind, _, name = head.strip().partition(" ")
-        if kind == "solution":
-            answers[name] = _Answer(source.strip(), tuple(extra))
-            extra = []
-        else:
-            extra.append(source.strip())
-    return answers
+    source = nbformat_nodes.read((path / "source" / wanted.assignment / name).read_text(encoding="utf-8"))
+    right = {grade_id(cell): _without_markers(cell.source) for cell in source.cells}
+    changed = {name: right[name].replace(*pair) for name, pair in wanted.change.items()}
+    for cell in filter(grade_id, notebook.cells):
+        given = cell.source if wanted.unsolved else right.get(grade_id(cell), cell.source)
+        cell.source = changed.get(grade_id(cell), given)
+    return nbformat_nodes.text(notebook)
 
 
 def _without_markers(source: str) -> str:

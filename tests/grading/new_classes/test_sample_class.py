@@ -6,7 +6,6 @@ import csv
 import shutil
 import subprocess
 import sys
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
@@ -20,16 +19,17 @@ from autograder.grading.new_classes import sample_class
 from autograder.grading.new_classes.sample_class import SampleNotebook, demo, sample_notebooks
 from autograder.grading.reporting.appeal_writing import write_appeal
 from autograder.judge.machine_fitness import TOO_BUSY
+from tests.submissions.odd_notebooks import FIXTURES, odd_notebooks, text_of
 from tests.tiers import asked_for
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
+    from pathlib import Path
 
     from autograder.grading.reporting.grade_report import GradeReport
 
 pytestmark = pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning")
-FIXTURES = Path(__file__).parents[2] / "submissions" / "fixture_class.toml"
-SAMPLES = (*sample_notebooks(FIXTURES), *(one for one in sample_notebooks(sample_class.DATA) if one.expected))
+SAMPLES = (*odd_notebooks(), *(one for one in sample_notebooks(sample_class.DATA) if one.expected))
 """Every kind of submission, and the mistakes of the class of ``./course demo``."""
 NBGRADER = (sys.executable, "-W", "ignore", "-m", "nbgrader")
 
@@ -49,11 +49,12 @@ def graded(
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(sample_class, "DATA", FIXTURES)
         patch.setattr(sample_class, "sample_notebooks", lambda _: handed_in)
+        patch.setattr(sample_class, "sample_text", text_of)
         yield demo(tmp_path_factory.mktemp("demo") / "demo-class", console=QUIET)
 
 
 def test_the_data_names_students_and_exercises_once() -> None:
-    notebooks = sample_notebooks(FIXTURES)
+    notebooks = odd_notebooks()
     assert len({(notebook.student, notebook.assignment) for notebook in notebooks}) == len(notebooks)
     assert len({notebook.student for notebook in notebooks}) >= 12
     for notebook in notebooks:
