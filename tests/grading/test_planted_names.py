@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-import os
+import contextlib
 import re
 import shutil
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -14,9 +15,13 @@ import pytest
 from rich.text import Text
 
 from autograder import standard_output
+from autograder.__main__ import main
 from autograder.cli import GROUPS
+from autograder.grading.cluster import dask_worker
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from tiny_class import TinyClass
 
 PLANTED = (
@@ -35,14 +40,25 @@ NAME = "".join(PLANTED)
 SERVERS = {"lab", "demo", "site", "build"}  # with a name as an argument they would begin something long
 
 
-def typed(*words: str, cwd: Path | None = None) -> str:
-    """What a terminal gets of a command."""
-    done = subprocess.run(
-        [sys.executable, "-m", "autograder", *words],
-        cwd=cwd, capture_output=True, check=False, stdin=subprocess.DEVNULL,
-        env={**os.environ, "PYTHONSAFEPATH": "1"},
-    )  # fmt: skip
-    return (done.stdout + done.stderr).decode("utf-8", "surrogateescape")
+@pytest.fixture
+def typed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[..., str]:
+    """What a terminal gets of a command, which runs in this process."""
+
+    def run(*words: str) -> str:
+        terminal = tmp_path / "terminal"
+        with monkeypatch.context() as patch, terminal.open("w") as out, terminal.open("a") as err:
+            patch.setattr(sys, "argv", ["autograder", *words])
+            patch.setattr(sys, "stdout", out)
+            patch.setattr(sys, "stderr", err)
+            with contextlib.suppress(SystemExit):
+                main()
+            for stream in (sys.stdout, sys.stderr):
+                stream.flush()
+            return terminal.read_bytes().decode("utf-8", "surrogateescape")
+
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(signal, "signal", lambda *_: None)
+    return run
 
 
 @pytest.fixture
@@ -59,10 +75,17 @@ def planted(tiny: TinyClass) -> TinyClass:
 COMMANDS = [str(command.name) for commands in GROUPS.values() for command in commands]
 
 
+FIRST = {"new-class": [NAME, "--assignment", NAME]}
+"""What is typed in place of the name alone, which would make a whole class."""
+
+
 @pytest.mark.parametrize("command", [name for name in COMMANDS if name not in SERVERS])
-def test_a_name_that_is_typed_or_completed_is_escaped(tmp_path: Path, command: str) -> None:
-    for words in ([NAME], [NAME, NAME, NAME], [f"--{NAME}"]):
-        shown = typed(command, *words, cwd=tmp_path)
+def test_a_name_that_is_typed_or_completed_is_escaped(
+    typed: Callable[..., str], monkeypatch: pytest.MonkeyPatch, command: str
+) -> None:
+    monkeypatch.setattr(dask_worker, "_CONNECT_SECONDS", 0.1)
+    for words in (FIRST.get(command, [NAME]), [NAME, NAME, NAME], [f"--{NAME}"]):
+        shown = typed(command, *words)
         assert not RAW.search(shown), shown
 
 
@@ -80,14 +103,18 @@ def test_a_name_that_is_typed_or_completed_is_escaped(tmp_path: Path, command: s
     ],
     ids=lambda words: " ".join(words[:2]).partition("\x1b")[0],
 )
-def test_names_in_a_class_are_escaped(planted: TinyClass, words: list[str]) -> None:
+def test_names_in_a_class_are_escaped(
+    planted: TinyClass, typed: Callable[..., str], words: list[str]
+) -> None:
     shown = typed(words[0], str(planted.path), *words[1:])
     assert not RAW.search(shown), shown
     if words[0] == "grade":
         assert "a\\nPASSED: ben" in shown
 
 
-def test_names_in_a_download_are_escaped(planted: TinyClass, tmp_path: Path) -> None:
+def test_names_in_a_download_are_escaped(
+    planted: TinyClass, typed: Callable[..., str], tmp_path: Path
+) -> None:
     download = tmp_path / "download"
     for name in PLANTED:
         (download / name).mkdir(parents=True)
@@ -102,6 +129,7 @@ def test_whatever_prints_goes_through_the_same_exit(tmp_path: Path) -> None:
     program.write_text(f"""
 import logging, sys, warnings
 from autograder import standard_output
+from autograder.__main__ import main
 standard_output.guard_terminal()
 name = {NAME!r}
 print(name); print(name, file=sys.stderr); warnings.warn(name); logging.error(name)
