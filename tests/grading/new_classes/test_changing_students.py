@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import os
+import shutil
 import signal
 import sqlite3
 from contextlib import closing
@@ -32,7 +33,6 @@ from autograder.grading.table.student_list import KnownStudents, compare
 if TYPE_CHECKING:
     from pathlib import Path
 
-pytestmark = pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning")
 
 HEAD = "id,first_name,last_name,email,section,canvas\n"
 ADA = "ada,Ada,Lovelace,ada@uni.example,Mon,101\n"
@@ -45,16 +45,22 @@ FILES = {
 }
 
 
+@pytest.fixture(scope="module")
+def _term(to_be_copied: TinyClass, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    listed(to_be_copied, ADA, BEN, EVE)
+    files = {name: work(to_be_copied, points) for name, points in FILES.items()}
+    collect(to_be_copied.path, [write_zip(tmp_path_factory.mktemp("downloads") / "c.zip", files)])
+    with FakeEngine().at_work():
+        to_be_copied.grade()
+        by_person(to_be_copied, "ben", TALKER, 5, extra=0)
+        to_be_copied.grade()
+    return to_be_copied.path
+
+
 @pytest.fixture
-def term(tiny: TinyClass, fake_engine: FakeEngine, tmp_path: Path) -> TinyClass:
+def term(_term: Path, fake_engine: FakeEngine, tmp_path: Path) -> TinyClass:
     """Three students' work was collected from Canvas and graded; a person has given Ben 5 points more."""
-    listed(tiny, ADA, BEN, EVE)
-    files = {name: work(tiny, points) for name, points in FILES.items()}
-    collect(tiny.path, [write_zip(tmp_path / "c.zip", files)])
-    tiny.grade()
-    by_person(tiny, "ben", TALKER, 5, extra=0)
-    tiny.grade()
-    return tiny
+    return TinyClass(shutil.copytree(_term, tmp_path / "class"))
 
 
 def listed(klass: TinyClass, *lines: str) -> None:

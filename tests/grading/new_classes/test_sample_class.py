@@ -28,7 +28,6 @@ if TYPE_CHECKING:
 
     from autograder.grading.reporting.grade_report import GradeReport
 
-pytestmark = pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning")
 SAMPLES = (*odd_notebooks(), *(one for one in sample_notebooks(sample_class.DATA) if one.expected))
 """Every kind of submission, and the mistakes of the class of ``./course demo``."""
 NBGRADER = (sys.executable, "-W", "ignore", "-m", "nbgrader")
