@@ -48,8 +48,6 @@ NIGHTLY = (
     "tests/authoring/mutants/test_survey.py::test_each_exercise_of_the_course_is_ready",
     "tests/benchmarks/test_ros2_command.py::test_no_command_misses_anything_beside_open_notebooks",
     # Commands of nbgrader itself, each of which takes seconds to start; what they end in is tested within the process.
-    "tests/grading/classes/test_class_lock.py::test_the_command_of_nbgrader_does_nothing_while_a_batch_runs",
-    "tests/grading/classes/test_class_lock.py::test_two_batches_at_once_on_two_classes",
     "tests/grading/new_classes/test_new_class.py::test_its_gradebook_has_the_version_that_nbgraders_own_would_have",
     "tests/grading/table/test_spreadsheet_csv.py::test_plain_nbgrader_export_is_defused_too",
     "tests/masters/test_equals_nbgrader.py::test_the_command_gives_the_same_bytes",

@@ -28,6 +28,11 @@ _once: dict[bytes, Any] = {}
 """What a desk answered about the bytes of a notebook."""
 
 
+def pytest_itemcollected(item: pytest.Item) -> None:
+    """Called for each test below this folder: SQLAlchemy warns of nbgrader's own models."""
+    item.add_marker(pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning"))
+
+
 @pytest.fixture(scope="session")
 def _made(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return make_tiny_class(tmp_path_factory.mktemp("classes"))

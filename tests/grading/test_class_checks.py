@@ -20,9 +20,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 
-pytestmark = pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning")
-
-
 def test_what_new_class_writes_is_honoured(tiny: TinyClass) -> None:
     check_configuration(ClassDirectory(tiny.path))
 

@@ -19,8 +19,6 @@ from autograder.grading.grading_errors import DiskFull, GradebookTrouble
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-pytestmark = pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning")
-
 
 def points(tiny: TinyClass) -> dict[str, float | None]:
     """The talker's points of everybody, read without nbgrader."""
@@ -124,7 +122,7 @@ def fill(disk: Path, but: int) -> Path:
 
 
 @pytest.mark.parametrize("when", ["before the run", "in its middle"])
-@pytest.mark.parametrize("free", [0, 4, 8, 12, 20, 32, 64, 200, 400])
+@pytest.mark.parametrize("free", [0, 8, 32, 200])
 def test_a_disk_that_is_full_at_any_moment(
     tiny: TinyClass, fake_engine: FakeEngine, small_disk: Path, free: int, when: str
 ) -> None:
@@ -164,18 +162,13 @@ def test_a_disk_that_is_full_at_any_moment(
 # ----------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("what", ["notebook", "assignment", "student", "everything"])
+@pytest.mark.parametrize("what", ["notebook", "everything"])
 def test_a_submission_that_vanishes_while_it_runs(
     tiny: TinyClass, fake_engine: FakeEngine, tmp_path: Path, what: str
 ) -> None:
     path = tiny.submit("ada", 7, 8)
     tiny.submit("zoe", 3, 4)
-    gone = {
-        "notebook": path,
-        "assignment": path.parent,
-        "student": path.parents[1],
-        "everything": path.parents[2],
-    }[what]
+    gone = path if what == "notebook" else path.parents[2]
     aside = tmp_path / "aside"
     fake_engine.before = lambda _: gone.rename(aside) if gone.exists() else None
     report = tiny.grade()
@@ -189,36 +182,3 @@ def test_a_submission_that_vanishes_while_it_runs(
     assert tiny.grade().exit_code == 0
     assert tiny.scores("ada") == {TALKER: 7, LISTENER: 8}
     assert tiny.scores("zoe") == {TALKER: 3, LISTENER: 4}
-
-
-def test_a_submission_that_is_replaced_while_it_runs(tiny: TinyClass, fake_engine: FakeEngine) -> None:
-    """Neither the points of the old one nor of one that nobody has run."""
-    tiny.submit("ada", 10, 10)
-
-    def replace(_: object) -> None:
-        tiny.submit("ada", 2, 2)
-
-    fake_engine.before = replace
-    report = tiny.grade()
-    assert report.exit_code == 2
-    assert not points(tiny).get("ada")
-    fake_engine.before = lambda _: None
-    tiny.grade()
-    assert tiny.scores("ada") == {TALKER: 2, LISTENER: 2}
-
-
-def test_nothing_is_run_before_all_old_grades_are_gone(tiny: TinyClass, fake_engine: FakeEngine) -> None:
-    for student in ("ada", "ben", "cleo"):
-        tiny.submit(student, 10)
-    tiny.grade()
-    for student in ("ada", "ben", "cleo"):
-        tiny.submit(student, 3)
-    seen: list[dict[str, float | None]] = []
-
-    def look(_: object) -> None:
-        seen.append(points(tiny))
-
-    fake_engine.before = look
-    tiny.grade()
-    assert seen[0] == {"ada": 0, "ben": 0, "cleo": 0}
-    assert all(score in (0, 3) for scores in seen for score in scores.values())

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
     from autograder.grading.reporting.grade_report import GradeReport
 
-pytestmark = pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning")
+pytestmark = pytest.mark.usefixtures("fake_engine")
 NOTHING = {TALKER: 0, LISTENER: 0}
 
 
@@ -120,8 +120,8 @@ def test_what_is_no_file_is_named_once_and_earns_nothing(tiny: TinyClass, fake_e
         assert [refused.path for refused in report.refused].count(paths[kind]) == 1
 
 
-@pytest.mark.parametrize("kind", ["pipe", "device", "folder", "hard link"])
-def test_plain_nbgrader_is_not_held_up_either(tiny: TinyClass, fake_engine: FakeEngine, kind: str) -> None:
+@pytest.mark.parametrize("kind", ["pipe", "hard link"])
+def test_plain_nbgrader_is_not_held_up_either(tiny: TinyClass, kind: str) -> None:
     tiny.submit("ada", 7, 8)
     path = in_place_of_the_notebook(tiny, kind)
     with pytest.raises(NbGraderException, match=rf"{path}: .*{ODD[kind][1]}"):
@@ -132,7 +132,7 @@ def test_plain_nbgrader_is_not_held_up_either(tiny: TinyClass, fake_engine: Fake
 
 @pytest.mark.parametrize("command", ["ours", "nbgrader's"])
 def test_what_lies_beside_the_notebook_holds_nothing_up_and_costs_nothing(
-    tiny: TinyClass, fake_engine: FakeEngine, command: str
+    tiny: TinyClass, command: str
 ) -> None:
     tiny.submit("ada")
     names = ("timestamp.txt", "robot.py", "deep/robot.py")
@@ -151,12 +151,11 @@ def test_what_lies_beside_the_notebook_holds_nothing_up_and_costs_nothing(
         assert tiny.scores(student) == {TALKER: 3, LISTENER: 4}
         files = (tiny.path / "autograded" / student).rglob("*.*")
         assert [file.name for file in files] == ["lab_1_2.ipynb"]
+        assert not [*tiny.path.glob(f"feedback/{student}/*/robot.py")]
 
 
 @pytest.mark.parametrize("command", ["ours", "nbgrader's"])
-def test_a_file_with_a_hole_of_a_terabyte_fills_no_disk(
-    tiny: TinyClass, fake_engine: FakeEngine, command: str
-) -> None:
+def test_a_file_with_a_hole_of_a_terabyte_fills_no_disk(tiny: TinyClass, command: str) -> None:
     beside = tiny.submit("eve", 3, 4).parent / "huge.bin"
     instead = tiny.path / "submitted" / "mallory" / "lab_1_2" / "lab_1_2.ipynb"
     instead.parent.mkdir(parents=True)
@@ -174,9 +173,7 @@ def test_a_file_with_a_hole_of_a_terabyte_fills_no_disk(
     assert tiny.scores("mallory") == NOTHING
 
 
-def test_a_notebook_that_may_not_be_read(
-    tiny: TinyClass, fake_engine: FakeEngine, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_notebook_that_may_not_be_read(tiny: TinyClass, monkeypatch: pytest.MonkeyPatch) -> None:
     """Root may read everything, so the refusal is played."""
     locked = tiny.submit("eve")
     tiny.submit("ada")
@@ -197,9 +194,7 @@ def test_a_notebook_that_may_not_be_read(
     assert tiny.scores("ada")[TALKER] == 10
 
 
-def test_a_students_folder_that_may_not_be_read(
-    tiny: TinyClass, fake_engine: FakeEngine, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_students_folder_that_may_not_be_read(tiny: TinyClass, monkeypatch: pytest.MonkeyPatch) -> None:
     tiny.submit("ada")
     locked = tiny.submit("eve").parents[1]
     usual = Path.iterdir
@@ -219,12 +214,13 @@ def test_a_students_folder_that_may_not_be_read(
 
 
 MISLEADING = (
+    *("a*", "x\ny", "=cmd", "[a-z]", "{0}", "a\x1b[2J", ";rm", "a,b"),
     *("a\u202eb", "a\u2066b", "\u200badmin", "\ufeffada", "a\u007f", "a\tb", "a\rb", "\u2215etc"),
     *("a\\b", "~", "$HOME", "`id`", "%2e%2e", "a:b", "<b>", '"', "a?b", "#a", "&a", "x" * 101, "ö" * 60),
 )
 
 
-def test_a_name_that_misleads_is_refused_in_one_line(tiny: TinyClass, fake_engine: FakeEngine) -> None:
+def test_a_name_that_misleads_is_refused_in_one_line(tiny: TinyClass) -> None:
     tiny.submit("ada")
     for name in MISLEADING:
         (tiny.path / "submitted" / name / "lab_1_2").mkdir(parents=True)
@@ -237,10 +233,8 @@ def test_a_name_that_misleads_is_refused_in_one_line(tiny: TinyClass, fake_engin
     assert all(line.isprintable() for line in lines)
 
 
-@pytest.mark.parametrize("name", ["<b>", '";fired()//', "a\u202eb", "a\nb", "x" * 101])
-def test_plain_nbgrader_makes_no_student_of_such_a_name(
-    tiny: TinyClass, fake_engine: FakeEngine, name: str
-) -> None:
+@pytest.mark.parametrize("name", ["<b>", "a\nb"])
+def test_plain_nbgrader_makes_no_student_of_such_a_name(tiny: TinyClass, name: str) -> None:
     """Formgrader writes a student's name into a script of its page."""
     tiny.submit("ada")
     (tiny.path / "submitted" / name).mkdir()
@@ -253,16 +247,7 @@ def test_plain_nbgrader_makes_no_student_of_such_a_name(
     assert tiny.scores("ada")[TALKER] == 10
 
 
-def test_a_name_that_is_no_text_is_refused(tiny: TinyClass, fake_engine: FakeEngine) -> None:
-    tiny.submit("ada")
-    Path(os.fsdecode(os.fsencode(tiny.path / "submitted") + b"/\xff\xfe")).mkdir()
-    report = tiny.grade()
-    assert len(report.refused) == 1
-    assert said(report)
-    assert tiny.scores("ada")[TALKER] == 10
-
-
-def test_a_pipe_in_the_place_of_a_student_is_named(tiny: TinyClass, fake_engine: FakeEngine) -> None:
+def test_a_pipe_in_the_place_of_a_student_is_named(tiny: TinyClass) -> None:
     tiny.submit("ada")
     os.mkfifo(tiny.path / "submitted" / "eve")
     report = tiny.grade()
@@ -339,7 +324,7 @@ def test_what_is_no_notebook_is_said_in_one_line(data: bytes) -> None:
     assert len(str(caught.value)) < 300
 
 
-def test_a_file_that_is_no_notebook_has_its_line(tiny: TinyClass, fake_engine: FakeEngine) -> None:
+def test_a_file_that_is_no_notebook_has_its_line(tiny: TinyClass) -> None:
     tiny.submit("ada")
     tiny.hand_in("eve", "hello")
     tiny.hand_in("mallory", "[" * 200_000)
@@ -367,9 +352,7 @@ def test_the_largest_file_is_read_and_the_costliest_ends_at_the_limit_of_the_des
         read_notebook(notebook("[" + "[]," * ((submitted_notebook.MAX_BYTES - 100) // 3) + "0]"))
 
 
-def test_a_folder_that_cannot_be_listed_is_named_to_whoever_grades_one_student(
-    tiny: TinyClass, fake_engine: FakeEngine
-) -> None:
+def test_a_folder_that_cannot_be_listed_is_named_to_whoever_grades_one_student(tiny: TinyClass) -> None:
     (tiny.path / "students.csv").write_text("id\nada\n")
     (tiny.path / "submitted").rmdir()
     (tiny.path / "submitted").touch()

@@ -26,7 +26,7 @@ from autograder.grading.new_classes.new_class import release
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-pytestmark = pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning")
+pytestmark = pytest.mark.usefixtures("fake_engine")
 
 
 def _programs() -> Path:
@@ -132,7 +132,7 @@ def hand_in(tiny: TinyClass) -> None:
     tiny.hand_in("dora", "this is no notebook")
 
 
-def test_it_has_the_same_grades(tiny: TinyClass, moved: Moved, fake_engine: FakeEngine) -> None:
+def test_it_has_the_same_grades(tiny: TinyClass, moved: Moved) -> None:
     reports = []
     for there in (tiny, moved.tiny):
         hand_in(there)
@@ -153,9 +153,7 @@ def test_it_has_the_same_grades(tiny: TinyClass, moved: Moved, fake_engine: Fake
     }
 
 
-def test_what_is_missing_is_said(
-    tiny: TinyClass, fake_engine: FakeEngine, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_what_is_missing_is_said(tiny: TinyClass, monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("psycopg", reason="./course setup --with postgresql installs psycopg")
     tiny.submit("ada", 3)
     config = tiny.path / "nbgrader_config.py"
@@ -198,9 +196,7 @@ def test_a_second_run_executes_nothing_and_a_changed_notebook_is_graded_anew(
     assert scores(moved.url)["ada"] == {TALKER: 3, LISTENER: 3}
 
 
-def test_a_grade_that_cannot_be_entered_is_no_grade(
-    moved: Moved, server: str, fake_engine: FakeEngine
-) -> None:
+def test_a_grade_that_cannot_be_entered_is_no_grade(moved: Moved, server: str) -> None:
     """The database refuses one student's row; the others are graded, and the old score is not left standing."""
     hand_in(moved.tiny)
     moved.tiny.grade()

@@ -14,11 +14,11 @@ from autograder.grading.reporting.grade_report import report_json, show
 from autograder.grading.reporting.report_page import write_report
 
 if TYPE_CHECKING:
-    from tiny_class import FakeEngine, TinyClass
+    from tiny_class import TinyClass
 
     from autograder.grading.reporting.grade_report import GradeReport
 
-pytestmark = pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning")
+pytestmark = pytest.mark.usefixtures("fake_engine")
 
 
 def printed(report: GradeReport) -> list[str]:
@@ -27,9 +27,7 @@ def printed(report: GradeReport) -> list[str]:
     return out.getvalue().splitlines()
 
 
-def test_it_is_said_everywhere_also_when_nothing_has_changed_since(
-    tiny: TinyClass, fake_engine: FakeEngine
-) -> None:
+def test_it_is_said_everywhere_also_when_nothing_has_changed_since(tiny: TinyClass) -> None:
     notebook = tiny.released()
     notebook.cells = [
         cell for cell in notebook.cells if cell.metadata.get("nbgrader", {}).get("grade_id") != "Talker"
@@ -49,9 +47,7 @@ def test_it_is_said_everywhere_also_when_nothing_has_changed_since(
     assert "Another cell contains the answer" not in write_report(tiny.path, names=False).read_text()
 
 
-def test_nbgraders_own_command_says_it_too(
-    tiny: TinyClass, fake_engine: FakeEngine, caplog: pytest.LogCaptureFixture
-) -> None:
+def test_nbgraders_own_command_says_it_too(tiny: TinyClass, caplog: pytest.LogCaptureFixture) -> None:
     notebook = tiny.released()
     notebook.cells.pop()
     tiny.hand_in("eve", notebook)
@@ -59,6 +55,6 @@ def test_nbgraders_own_command_says_it_too(
     assert "eve/lab_1_2: The cell `lab_1_2-listener` was missing and put back." in caplog.text
 
 
-def test_an_honest_notebook_has_no_line(tiny: TinyClass, fake_engine: FakeEngine) -> None:
+def test_an_honest_notebook_has_no_line(tiny: TinyClass) -> None:
     tiny.submit("ada")
     assert "remark " not in "\n".join(printed(tiny.grade()))

@@ -31,7 +31,7 @@ from autograder.verdict import State, Verdict
 if TYPE_CHECKING:
     from sqlalchemy import Connection
 
-pytestmark = pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning")
+pytestmark = pytest.mark.usefixtures("fake_engine")
 
 
 @pytest.mark.parametrize("worth", [7, 150, 1000, 99_999])
@@ -112,9 +112,7 @@ def page_as_nbgrader_makes_it(path: Path, file: Path) -> str:
 
 
 @pytest.mark.parametrize("penalty", ["none", "zero"])
-def test_nbgraders_own_steps_find_nothing_to_change(
-    tiny: TinyClass, fake_engine: FakeEngine, tmp_path: Path, penalty: str
-) -> None:
+def test_nbgraders_own_steps_find_nothing_to_change(tiny: TinyClass, tmp_path: Path, penalty: str) -> None:
     tiny.configure(f"c.LateSubmissionPlugin.penalty_method = {penalty!r}")
     with sqlite3.connect(tiny.path / "gradebook.db") as book:
         book.execute("UPDATE assignment SET duedate = '2026-01-02 03:04:05.000000'")
@@ -153,18 +151,8 @@ def test_nbgraders_own_steps_find_nothing_to_change(
         )
 
 
-def test_files_of_the_assignment_are_beside_the_graded_notebook(
-    tiny: TinyClass, fake_engine: FakeEngine
-) -> None:
-    (tiny.path / "source" / "lab_1_2" / "data.csv").write_text("1,2\n")
-    tiny.submit("ada")
-    tiny.grade()
-    assert notebooks(tiny.path)["ada/lab_1_2/data.csv"] == (0o100444, b"1,2\n")
-    assert notebooks(tiny.path)["ada/lab_1_2/lab_1_2.ipynb"][0] == 0o100444
-
-
 def test_what_cannot_be_converted_leaves_zero_and_a_word(
-    tiny: TinyClass, fake_engine: FakeEngine, monkeypatch: pytest.MonkeyPatch
+    tiny: TinyClass, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     tiny.submit("ada")
     tiny.submit("ben")
@@ -188,7 +176,7 @@ def test_what_cannot_be_converted_leaves_zero_and_a_word(
 
 
 def test_what_is_entered_for_a_submission_is_one_transaction(
-    tiny: TinyClass, fake_engine: FakeEngine, monkeypatch: pytest.MonkeyPatch
+    tiny: TinyClass, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     tiny.submit("ada")
 
@@ -205,7 +193,7 @@ def test_what_is_entered_for_a_submission_is_one_transaction(
     assert everything(tiny.path)["grade g"] == everything(tiny.path)["student"] == []
 
 
-def test_a_gradebook_that_was_put_back_is_read_anew(tiny: TinyClass, fake_engine: FakeEngine) -> None:
+def test_a_gradebook_that_was_put_back_is_read_anew(tiny: TinyClass) -> None:
     """What SQLAlchemy knows of a gradebook is kept between transactions, but nothing of what is in it."""
     book = tiny.path / "gradebook.db"
     url = ClassDirectory(tiny.path).gradebook_url
@@ -234,7 +222,7 @@ def test_a_notebook_that_was_replaced_while_it_ran_is_not_given_the_old_ones_poi
     assert tiny.scores("ada")[TALKER] == 1
 
 
-def test_a_timestamp_that_is_a_link_is_none(tiny: TinyClass, fake_engine: FakeEngine, tmp_path: Path) -> None:
+def test_a_timestamp_that_is_a_link_is_none(tiny: TinyClass, tmp_path: Path) -> None:
     (tmp_path / "secret").write_text("2026-01-02 05:04:05.000000 UTC")
     tiny.submit("ada").with_name("timestamp.txt").symlink_to(tmp_path / "secret")
     tiny.submit("ben").with_name("timestamp.txt").write_text("yesterday\x00, I think")

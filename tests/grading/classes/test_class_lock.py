@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import re
 import select
-import shutil
 import signal
 import subprocess
 import sys
@@ -14,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from nbgrader.converters import NbGraderException
 from test_nbgrader_and_ours import nbgrader_autograde, nbgrader_generate_feedback
-from tiny_class import GRADE, LISTENER, TALKER, FakeEngine, TinyClass
+from tiny_class import LISTENER, TALKER, FakeEngine, TinyClass
 
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.grading_errors import ClassBusy
@@ -23,7 +22,6 @@ from autograder.grading.running import execution_backends
 if TYPE_CHECKING:
     from pathlib import Path
 
-pytestmark = pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning")
 WHO = rf"process {os.getpid()}, since \d{{4}}-\d\d-\d\d \d\d:\d\d:\d\d"
 
 HOLD = """
@@ -154,20 +152,6 @@ def test_formgraders_buttons_do_nothing_while_a_batch_runs(
     conversion(tiny)
 
 
-def test_the_command_of_nbgrader_does_nothing_while_a_batch_runs(
-    tiny: TinyClass, fake_engine: FakeEngine
-) -> None:
-    tiny.submit("ada", 3, 4)
-    ended: list[subprocess.CompletedProcess[str]] = []
-    fake_engine.before = lambda _: ended.append(command(tiny, "nbgrader", "autograde", "lab_1_2", "--force"))
-    tiny.grade()
-    (autograde,) = ended
-    assert autograde.returncode == 2
-    assert re.search(f"Another run is grading .*{WHO}", autograde.stderr)
-    assert "Traceback" not in autograde.stderr
-    assert tiny.scores("ada") == {TALKER: 3, LISTENER: 4}
-
-
 def test_a_batch_does_nothing_while_nbgrader_grades(
     tiny: TinyClass, fake_engine: FakeEngine, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -187,14 +171,6 @@ def test_a_batch_does_nothing_while_nbgrader_grades(
 
 # -- two at once
 # ---------------------------------------------------------------------------------------------------------
-
-
-def batch(tiny: TinyClass, judge: str) -> subprocess.Popen[str]:
-    return subprocess.Popen(
-        [sys.executable, "-W", "ignore", "-c", GRADE, str(tiny.path), judge],
-        stderr=subprocess.PIPE,
-        text=True,
-    )
 
 
 def test_two_batches_started_at_once_on_one_class(tiny: TinyClass, with_fake_judge: str) -> None:
@@ -217,19 +193,3 @@ def test_two_batches_started_at_once_on_one_class(tiny: TinyClass, with_fake_jud
     assert "Another run is grading" in said
     assert done.returncode == 0
     assert {student: tiny.scores(student)[TALKER] for student in right} == right
-
-
-@pytest.mark.slow
-def test_two_batches_at_once_on_two_classes(tiny: TinyClass, with_fake_judge: str, tmp_path: Path) -> None:
-    other = TinyClass(tmp_path / "other")
-    shutil.copytree(tiny.path, other.path)
-    for student in ("ada", "ben"):
-        tiny.submit(student, 3, 4)
-        other.submit(student, 5, 6)
-    ended = [
-        (process, process.communicate()[1])
-        for process in [batch(one, with_fake_judge) for one in (tiny, other)]
-    ]
-    assert [(process.returncode, said) for process, said in ended if process.returncode] == []
-    assert tiny.scores("ada") == tiny.scores("ben") == {TALKER: 3, LISTENER: 4}
-    assert other.scores("ada") == other.scores("ben") == {TALKER: 5, LISTENER: 6}

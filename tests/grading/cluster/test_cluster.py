@@ -32,7 +32,6 @@ if TYPE_CHECKING:
     from autograder.grading.reporting.grade_report import GradeReport
 
 pytest.importorskip("distributed", reason="./course setup --with cluster installs it")
-pytestmark = pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning")
 
 
 @pytest.fixture(scope="module")

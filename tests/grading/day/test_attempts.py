@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 from typing import TYPE_CHECKING
 
-import pytest
 from click.testing import CliRunner
 
 from autograder.cli import cli
@@ -16,8 +15,6 @@ if TYPE_CHECKING:
     from tiny_class import FakeEngine, TinyClass
 
     from autograder.grading.class_records import Attempt
-
-pytestmark = pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning")
 
 
 def attempts(tiny: TinyClass, student: str) -> list[Attempt]:

@@ -31,7 +31,6 @@ from autograder.kit.evidence import Evidence
 if TYPE_CHECKING:
     from tiny_class import FakeEngine, TinyClass
 
-pytestmark = pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning")
 GUIDE = Path(__file__).parents[3] / "docs" / "instructors-guide.md"
 ELSEWHERE = {"own-course"}
 """Pages about the course itself: its tests run the same commands."""

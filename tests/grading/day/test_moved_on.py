@@ -16,8 +16,6 @@ from autograder.grading import class_checks
 from autograder.grading.grading_errors import DiskFull, GradingError
 from autograder.grading.new_classes.new_class import new_class, renew
 
-pytestmark = pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning")
-
 
 @pytest.fixture
 def course(tmp_path: Path) -> Path:

@@ -20,8 +20,6 @@ from autograder.grading.new_classes.new_class import release
 if TYPE_CHECKING:
     from tiny_class import TinyClass
 
-pytestmark = pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning")
-
 
 def points(tiny: TinyClass, student: str) -> dict[str, float]:
     """The table, which has to say what the gradebook says."""

@@ -17,7 +17,6 @@ from autograder.grading.returning.page_exporter import without_dead_links
 if TYPE_CHECKING:
     from pathlib import Path
 
-pytestmark = pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning")
 
 QUESTION = """
 +++ {"tags": ["manual"], "points": 5, "grade_id": "why_a_topic"}

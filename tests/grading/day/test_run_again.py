@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 JUDGE, CARDS, EXERCISE, OF_ANOTHER_LAB = COURSE
 
-pytestmark = pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning")
+pytestmark = pytest.mark.usefixtures("fake_engine")
 
 
 @pytest.fixture
@@ -69,11 +69,7 @@ def store_of(tiny: TinyClass) -> ClassStore:
     ],
 )
 def test_a_change_of_the_course(
-    tiny: TinyClass,
-    fake_engine: FakeEngine,
-    course: Callable[..., None],
-    files: list[str],
-    why: dict[str, int],
+    tiny: TinyClass, course: Callable[..., None], files: list[str], why: dict[str, int]
 ) -> None:
     tiny.submit("ada", 4, 7)
     tiny.submit("ben")
@@ -145,7 +141,7 @@ def write_appeal_of(student: str, klass: TinyClass) -> bool:
     return bool(kept and entered[student, "lab_1_2"].tasks["lab_1_2"] == kept.task)
 
 
-def test_a_newer_submission_that_is_worse_has_a_line(tiny: TinyClass, fake_engine: FakeEngine) -> None:
+def test_a_newer_submission_that_is_worse_has_a_line(tiny: TinyClass) -> None:
     tiny.submit("ada", 4, 7)
     tiny.grade()
     tiny.submit("ada", 4, 2)
@@ -154,10 +150,7 @@ def test_a_newer_submission_that_is_worse_has_a_line(tiny: TinyClass, fake_engin
 
 
 def test_a_corrected_sentence_on_a_card_makes_pages_again_and_executes_nothing(
-    tiny: TinyClass,
-    fake_engine: FakeEngine,
-    course: Callable[..., None],
-    monkeypatch: pytest.MonkeyPatch,
+    tiny: TinyClass, course: Callable[..., None], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     tiny.submit("ada", 4, 7)
     tiny.grade(feedback=True)
@@ -172,7 +165,7 @@ def test_a_corrected_sentence_on_a_card_makes_pages_again_and_executes_nothing(
     assert tiny.grade(feedback=True).written == 0
 
 
-def test_a_change_of_the_class(tiny: TinyClass, fake_engine: FakeEngine) -> None:
+def test_a_change_of_the_class(tiny: TinyClass) -> None:
     file = tiny.submit("ada", 4, 7)
     tiny.submit("ben", "'die'")
     source = tiny.path / "source" / "lab_1_2" / "lab_1_2.ipynb"

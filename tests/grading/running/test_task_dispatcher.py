@@ -42,8 +42,6 @@ if TYPE_CHECKING:
     from autograder.grading.grading_task import Task
     from autograder.grading.running.task_dispatcher import Done
 
-pytestmark = pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning")
-
 
 @pytest.fixture(autouse=True)
 def _version(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -21,7 +21,6 @@ if TYPE_CHECKING:
     from autograder.grading.grading_task import Task
     from autograder.grading.running.task_dispatcher import Done
 
-pytestmark = pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning")
 
 ONE = Offer("here", slots=1, obstacle="")
 FOUR = Offer("here", slots=4, obstacle="")

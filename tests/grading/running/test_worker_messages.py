@@ -28,8 +28,6 @@ if TYPE_CHECKING:
 
     from autograder.grading.grading_task import Task
 
-pytestmark = pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning")
-
 
 @pytest.fixture
 def task(tiny: TinyClass) -> Task:

@@ -240,11 +240,3 @@ def test_where_nothing_was_handed_in_there_is_nothing_to_compare(class_: TinyCla
     assert not (class_.path / "similar.html").exists()
     with pytest.raises(GradingError, match="for lab_1_2"):
         found(class_, "lab_1_2")
-
-
-def test_a_folder_that_cannot_be_listed_is_named(class_: TinyClass) -> None:
-    (class_.path / "submitted").rmdir()
-    (class_.path / "submitted").touch()
-    code, said = run(class_)
-    assert code == 2
-    assert f"refused      {class_.path / 'submitted'}: the folder could not be read" in said

@@ -23,8 +23,6 @@ if TYPE_CHECKING:
 
     from tiny_class import FakeEngine, TinyClass
 
-pytestmark = pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning")
-
 
 @pytest.mark.parametrize(
     ("text", "written"),
