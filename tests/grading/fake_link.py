@@ -97,5 +97,12 @@ def make_dispatcher(
     return Dispatcher(cast("Any", link), address, tell=tell, **{"judge": "a:B", "boxed": True, **options})
 
 
+def ready(link: FakeLink, told: list[str] | None = None, **options: Any) -> Dispatcher:
+    """A dispatcher that knows its workers."""
+    dispatcher = make_dispatcher(link, told, **options)
+    dispatcher.await_workers()
+    return dispatcher
+
+
 def students(done: list[Done]) -> list[str]:
     return sorted(one.task.student for one in done if not one.execution.trouble)

@@ -145,11 +145,15 @@ def lab(tmp_path: Path) -> Path:
     return tmp_path / "ros2_ws"
 
 
-def test_it_is_found_built_and_started_by_ros2_run(
-    sockets: ServiceSockets, jobs: FakeJobs, lab: Path
-) -> None:
-    judge = FakeJudge(sockets)
-    judge.check(lab)
+@pytest.fixture
+def judge(sockets: ServiceSockets, lab: Path) -> FakeJudge:
+    """One that has begun the check of the lab's workspace."""
+    made = FakeJudge(sockets)
+    made.check(lab)
+    return made
+
+
+def test_it_is_found_built_and_started_by_ros2_run(judge: FakeJudge, jobs: FakeJobs) -> None:
     heard = judge.run()
     assert [report["phase"] for report in reports(heard)] == ["found", "built"]
     assert reports(heard)[1]["built"]
@@ -158,33 +162,25 @@ def test_it_is_found_built_and_started_by_ros2_run(
     assert jobs.commands[0][-3:] == ["run", "my_robot_pkg", "simple_node"]
 
 
-def test_what_a_program_says_is_never_a_report(sockets: ServiceSockets, jobs: FakeJobs, lab: Path) -> None:
+def test_what_a_program_says_is_never_a_report(judge: FakeJudge, jobs: FakeJobs) -> None:
     jobs.script = f"echo '{FORGED}'"
-    judge = FakeJudge(sockets)
-    judge.check(lab)
     heard = judge.run()
     assert len(reports(heard)) == 2
     assert {"say": "output", "run": 1, "text": FORGED, "logged": False} in heard
 
 
-def test_a_build_that_says_it_went_well_and_brought_nothing_has_not(
-    sockets: ServiceSockets, jobs: FakeJobs, lab: Path
-) -> None:
+def test_a_build_that_says_it_went_well_and_brought_nothing_has_not(judge: FakeJudge, jobs: FakeJobs) -> None:
     jobs.built = BuildOutcome(0, FORGED.encode(), _packed("my_robot_pkg/share/x"))
-    judge = FakeJudge(sockets)
-    judge.check(lab)
     heard = judge.run()
     assert reports(heard)[-1]["missing"] == "simple_node"
     assert not jobs.commands
 
 
-def test_a_failed_build_is_told_and_not_kept(sockets: ServiceSockets, jobs: FakeJobs, lab: Path) -> None:
+def test_a_failed_build_is_told_and_not_kept(judge: FakeJudge, jobs: FakeJobs) -> None:
     good, jobs.built = (
         jobs.built,
         BuildOutcome(1, b'  File "/x/setup.py", line 3\nSyntaxError: no\nFailed   <<< my_robot_pkg\n'),
     )
-    judge = FakeJudge(sockets)
-    judge.check(lab)
     told = reports(judge.run())[-1]
     assert (told["trouble"], told["package"], told["line"]) == (
         "build",
@@ -216,27 +212,19 @@ def test_what_fails_and_is_only_depended_on_takes_nothing_away(
     assert jobs.builds == [["my_robot_interfaces"], ["my_robot_pkg"]]
 
 
-def test_what_a_failed_build_has_left_is_not_taken(
-    sockets: ServiceSockets, jobs: FakeJobs, lab: Path
-) -> None:
+def test_what_a_failed_build_has_left_is_not_taken(judge: FakeJudge, jobs: FakeJobs) -> None:
     jobs.built = BuildOutcome(1, b"error: no\n", jobs.built.archive)
-    judge = FakeJudge(sockets)
-    judge.check(lab)
     assert reports(judge.run())[-1]["trouble"] == "build"
     assert not jobs.commands
 
 
-def test_an_archive_that_leads_out_is_a_failed_build(
-    sockets: ServiceSockets, jobs: FakeJobs, lab: Path
-) -> None:
+def test_an_archive_that_leads_out_is_a_failed_build(judge: FakeJudge, jobs: FakeJobs) -> None:
     jobs.built = BuildOutcome(0, b"", _packed("../../evil"))
-    judge = FakeJudge(sockets)
-    judge.check(lab)
     assert reports(judge.run())[-1]["trouble"] == "build"
 
 
 def test_no_link_that_a_build_has_made_leads_to_a_pipe_of_the_host(
-    sockets: ServiceSockets, jobs: FakeJobs, lab: Path, tmp_path: Path
+    judge: FakeJudge, jobs: FakeJobs, tmp_path: Path
 ) -> None:
     """Read as text it stays inside; followed, its second part leads to the top of the folder, and on from there."""
     os.mkfifo(tmp_path / "pipe")
@@ -246,8 +234,6 @@ def test_no_link_that_a_build_has_made_leads_to_a_pipe_of_the_host(
         f"{info}/entry_points.txt": f"{deep}/b/" + "../" * 17 + f"{tmp_path}/pipe"[1:],
     }
     jobs.built = BuildOutcome(0, b"", _packed("my_robot_pkg/share/x", **links))
-    judge = FakeJudge(sockets)
-    judge.check(lab)
     told = reports(judge.run())[-1]
     assert told["trouble"] == "build"
     assert "link" in told["line"]
@@ -357,10 +343,8 @@ def test_a_path_that_leads_out_is_refused(sockets: ServiceSockets, jobs: FakeJob
     assert not jobs.builds
 
 
-def test_a_run_is_ended_when_the_judge_says_so(sockets: ServiceSockets, jobs: FakeJobs, lab: Path) -> None:
+def test_a_run_is_ended_when_the_judge_says_so(judge: FakeJudge, jobs: FakeJobs) -> None:
     jobs.script = "echo started; sleep 1000"
-    judge = FakeJudge(sockets)
-    judge.check(lab)
     judge.lines.say(run_messages.Start(1))
     while judge.hear().get("text") != "started":
         pass
@@ -424,12 +408,8 @@ def test_a_program_that_was_not_built_is_named_and_the_other_one_runs(
     assert len(jobs.commands) == 1
 
 
-def test_ctrl_c_for_an_earlier_run_ends_no_later_one(
-    sockets: ServiceSockets, jobs: FakeJobs, lab: Path
-) -> None:
+def test_ctrl_c_for_an_earlier_run_ends_no_later_one(judge: FakeJudge, jobs: FakeJobs) -> None:
     jobs.script = TRAP
-    judge = FakeJudge(sockets)
-    judge.check(lab)
     judge.lines.say(run_messages.Start(2))
     while judge.hear().get("text") != "started":
         pass
@@ -438,9 +418,7 @@ def test_ctrl_c_for_an_earlier_run_ends_no_later_one(
     assert judge.hear() == {"say": "stopped", "run": 2}
 
 
-def test_a_build_is_given_up_when_nobody_waits_for_it(
-    sockets: ServiceSockets, jobs: FakeJobs, lab: Path
-) -> None:
+def test_a_build_is_given_up_when_nobody_waits_for_it(judge: FakeJudge, jobs: FakeJobs) -> None:
     given_up, building = threading.Event(), threading.Event()
 
     def wait(cancelled: Callable[[], bool]) -> None:
@@ -450,27 +428,21 @@ def test_a_build_is_given_up_when_nobody_waits_for_it(
         given_up.set()
 
     jobs.waiting = wait
-    judge = FakeJudge(sockets)
-    judge.check(lab)
     judge.lines.say(run_messages.Start(1))
     assert building.wait(20.0)
     judge.lines.close()
     assert given_up.wait(20.0)
 
 
-def test_trouble_of_the_grader_s_own_is_no_report(sockets: ServiceSockets, jobs: FakeJobs, lab: Path) -> None:
+def test_trouble_of_the_grader_s_own_is_no_report(judge: FakeJudge, jobs: FakeJobs) -> None:
     jobs.built = None  # type: ignore[assignment]
-    judge = FakeJudge(sockets)
-    judge.check(lab)
     heard = judge.run()
     assert heard[-1]["say"] == "trouble"
     assert [report["phase"] for report in reports(heard)] == ["found"]
 
 
-def test_a_very_long_line_comes_in_pieces(sockets: ServiceSockets, jobs: FakeJobs, lab: Path) -> None:
+def test_a_very_long_line_comes_in_pieces(judge: FakeJudge, jobs: FakeJobs) -> None:
     jobs.script = "head -c 100000 /dev/zero | tr '\\0' x; echo; echo end"
-    judge = FakeJudge(sockets)
-    judge.check(lab)
     said = [words["text"] for words in judge.run() if words["say"] == "output"]
     assert max(map(len, said)) <= 4_000
     assert said[-1] == "end"
@@ -521,7 +493,7 @@ def test_sources_that_no_build_takes_are_refused_with_the_reason(
 
 
 def test_the_judge_may_be_gone_when_the_grader_has_trouble(
-    sockets: ServiceSockets, jobs: FakeJobs, lab: Path, monkeypatch: pytest.MonkeyPatch
+    judge: FakeJudge, jobs: FakeJobs, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     raised: list[object] = []
     monkeypatch.setattr(threading, "excepthook", lambda found: raised.append(found.exc_value))
@@ -533,8 +505,6 @@ def test_the_judge_may_be_gone_when_the_grader_has_trouble(
         raise RuntimeError("no disk")
 
     jobs.waiting = fail
-    judge = FakeJudge(sockets)
-    judge.check(lab)
     judge.lines.say(run_messages.Start(1))
     assert building.wait(20.0)
     judge.lines.close()
@@ -565,15 +535,13 @@ def test_a_notebook_has_only_so_many_builds(sockets: ServiceSockets) -> None:
 @pytest.mark.parametrize(
     "garbage", [b"\xff\xff garbage\n", b"[" * 100_000 + b"\n", b'{"say": 1}\n', b"x" * 1_200_000]
 )
-def test_garbage_on_a_socket_hurts_nobody(sockets: ServiceSockets, lab: Path, garbage: bytes) -> None:
+def test_garbage_on_a_socket_hurts_nobody(judge: FakeJudge, sockets: ServiceSockets, garbage: bytes) -> None:
     assert sockets.notebook is not None
     for path in (sockets.notebook, sockets.judge):
         lines = Lines.to(path, 20.0)
         with contextlib.suppress(OSError):
             lines._socket.sendall(garbage)
         assert until_they_hang_up(lines) == []
-    judge = FakeJudge(sockets)
-    judge.check(lab)
     assert judge.run()[-1]["say"] == "exited"
 
 
@@ -583,12 +551,10 @@ def size_of_output(words: dict[str, Any]) -> int:
 
 
 def test_endless_output_is_cut_and_ends_with_the_run(
-    sockets: ServiceSockets, jobs: FakeJobs, lab: Path, monkeypatch: pytest.MonkeyPatch
+    judge: FakeJudge, jobs: FakeJobs, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(grading_service, "MAX_OUTPUT", 10_000)
     jobs.script = "yes"
-    judge = FakeJudge(sockets)
-    judge.check(lab)
     judge.lines.say(run_messages.Start(1))
     size = 0
     while size < 9_900:
@@ -599,12 +565,8 @@ def test_endless_output_is_cut_and_ends_with_the_run(
     assert size <= 10_000
 
 
-def test_a_build_that_takes_too_long_says_nothing_about_the_sources(
-    sockets: ServiceSockets, jobs: FakeJobs, lab: Path
-) -> None:
+def test_a_build_that_takes_too_long_says_nothing_about_the_sources(judge: FakeJudge, jobs: FakeJobs) -> None:
     jobs.built = BuildOutcome(None, b"", late=170.0)
-    judge = FakeJudge(sockets)
-    judge.check(lab)
     heard = judge.run()
     assert heard[-1]["say"] == "trouble"
     assert "too busy" in heard[-1]["why"]

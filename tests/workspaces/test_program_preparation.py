@@ -38,6 +38,13 @@ def part(*lines: str) -> Part:
     return Part("x", {}, [Event(0.0, "output", "stdout", {"text": line}) for line in lines])
 
 
+def reported(seen: Part, phase: str = "built") -> WorkspaceReport:
+    """The report of a run, which has one."""
+    found = report_of(seen, phase)
+    assert found is not None
+    return found
+
+
 REPORT = WorkspaceReport(
     phase="built",
     built=False,
@@ -91,8 +98,7 @@ def test_packages_beside_the_needed_ones_take_nothing_from_them(number: int) -> 
     others = [other(n) for n in range(number)]
     line = workspace_report_line(REPORT, others)
     assert len(line.encode()) <= MAX_LINE
-    seen = report_of(part(line))
-    assert seen is not None
+    seen = reported(part(line))
     assert seen.complete
     assert seen.packages[:1] == REPORT.packages
     assert len(seen.packages) == 1 + min(number, 12 if number < 100 else 10)
@@ -102,12 +108,10 @@ def test_what_was_left_out_is_not_taken_for_missing() -> None:
     whole = Interface("srv/A.srv", "int64 a\n---\n", True)
     long = Interface("srv/B.srv", "int64 a\n" * 1_000, True)
     package = replace(REPORT.packages[0], interfaces=[whole, long])
-    seen = report_of(part(workspace_report_line(replace(REPORT, packages=[package]))))
-    assert seen is not None
+    seen = reported(part(workspace_report_line(replace(REPORT, packages=[package]))))
     assert not seen.complete
     assert list(seen.packages[0].interfaces) == [whole, replace(long, text=None)]
-    many = report_of(part(workspace_report_line(replace(REPORT, packages=[package] * 200))))
-    assert many is not None
+    many = reported(part(workspace_report_line(replace(REPORT, packages=[package] * 200))))
     assert not many.complete
 
 
@@ -119,8 +123,7 @@ def test_of_definitions_the_one_that_is_asked_for_is_reported_without_comments(t
     )
     found = Build(tmp_path, ok=True, packages=(Package("a", tmp_path, "ament_cmake"),))
     plan = Plan(lambda _: ["a"], lambda _: "", lambda _: [], definition="B.srv")
-    seen = report_of(part(report_line("found", found, plan)), "found")
-    assert seen is not None
+    seen = reported(part(report_line("found", found, plan)), "found")
     assert [(i.file, i.text) for i in seen.packages[0].interfaces] == [
         ("srv/B.srv", "int64 a\nstring b '#'  # two\n---\nint64 c"),
         ("srv/A.srv", None),
@@ -166,8 +169,7 @@ def test_a_definition_without_room_is_left_out_and_not_taken_for_missing(tmp_pat
     long = package_with(tmp_path, "a", A_srv="int64 a\n" * 20_000, CMakeLists_txt="#" * 60_000)
     found = Build(tmp_path, ok=True, packages=(long,))
     plan = Plan(lambda _: ["a"], lambda _: "", lambda _: [], definition="A.srv")
-    seen = report_of(part(report_line("found", found, plan)), "found")
-    assert seen is not None
+    seen = reported(part(report_line("found", found, plan)), "found")
     assert not seen.complete
     assert list(seen.packages[0].interfaces) == [Interface("A.srv", None, True)]
 
@@ -207,12 +209,10 @@ def test_entry_points_are_those_that_are_installed(tmp_path: Path) -> None:
     (prefix / "share" / "a").mkdir(parents=True)
     (prefix / "share" / "a" / "package.xml").write_text("")
     made = Build(tmp_path, ok=True, install=tmp_path / "install", packages=(Package("a", tmp_path, ""),))
-    seen = report_of(part(report_line("built", made)))
-    assert seen is not None
+    seen = reported(part(report_line("built", made)))
     assert (list(seen.packages[0].programs), list(seen.packages[0].installed)) == (["p = a.b:c"], ["p"])
     (metadata / "entry_points.txt").write_text("p = a.b:c\n" * 20_000)
-    seen = report_of(part(report_line("built", made)))
-    assert seen is not None
+    seen = reported(part(report_line("built", made)))
     assert list(seen.packages[0].programs) == []
 
 
@@ -239,8 +239,7 @@ def test_launch_files_are_those_of_the_sources_and_after_the_build_those_that_ar
 
 def launches(line: str) -> list[str]:
     """The launch files of the one package of a report."""
-    report = report_of(part(line), "built" if '"phase":"built"' in line else "found")
-    assert report is not None
+    report = reported(part(line), "built" if '"phase":"built"' in line else "found")
     (package,) = report.packages
     return list(package.launch_files)
 
@@ -270,7 +269,6 @@ def test_what_a_package_needs_for_interfaces_is_what_is_left_out_last() -> None:
             Interface(f"a_message_with_a_long_name_{n}.msg", "string text", listed=True) for n in range(40)
         ],
     )
-    report = report_of(part(workspace_report_line(replace(REPORT, packages=[package]))))
-    assert report is not None
+    report = reported(part(workspace_report_line(replace(REPORT, packages=[package]))))
     assert not report.complete
     assert {"rosidl_default_generators", "rosidl_default_runtime"} < set(report.packages[0].dependencies)

@@ -14,6 +14,7 @@ from fake_link import (
     honest,
     joined,
     make_dispatcher,
+    ready,
     students,
     task_in,
     tasks_of_six,
@@ -56,10 +57,8 @@ def tasks(tiny: TinyClass) -> list[Task]:
 
 def test_every_task_is_executed_once_and_its_own_result_comes_back(tasks: list[Task]) -> None:
     link = FakeLink(joined("a"), joined("b"), Asked())
-    dispatcher = make_dispatcher(link)
-    dispatcher.await_workers()
     started: list[str] = []
-    done = list(dispatcher.execute_all(iter(tasks), lambda task: started.append(task.student)))
+    done = list(ready(link).execute_all(iter(tasks), lambda task: started.append(task.student)))
     assert students(done) == started == [task.student for task in tasks]
     assert len(link.given) == len(tasks)
     assert link.most_in_flight <= 2 * HERE.slots
@@ -75,9 +74,7 @@ def test_no_more_tasks_are_made_than_are_in_flight(tasks: list[Task]) -> None:
             yield task
 
     link = FakeLink(joined("a"), Asked())
-    dispatcher = make_dispatcher(link)
-    dispatcher.await_workers()
-    for _ in dispatcher.execute_all(one_by_one()):
+    for _ in ready(link).execute_all(one_by_one()):
         assert len(made) <= len(link.given) + 1
         assert len(link.in_flight) <= HERE.slots
     assert len(made) == len(tasks)
@@ -85,9 +82,7 @@ def test_no_more_tasks_are_made_than_are_in_flight(tasks: list[Task]) -> None:
 
 def test_a_worker_learns_no_name_and_no_secret(tasks: list[Task], tiny: TinyClass) -> None:
     link = FakeLink(joined("a"), Asked())
-    dispatcher = make_dispatcher(link)
-    dispatcher.await_workers()
-    list(dispatcher.execute_all(tasks))
+    list(ready(link).execute_all(tasks))
     secret = ClassDirectory(tiny.path).secret
     for give in link.given:
         assert b"student-" not in give.order
@@ -107,9 +102,7 @@ def test_a_worker_that_leaves_costs_only_its_tasks_again(tasks: list[Task]) -> N
 
     link.answer = answer
     told: list[str] = []
-    dispatcher = make_dispatcher(link, told)
-    dispatcher.await_workers()
-    done = list(dispatcher.execute_all(tasks))
+    done = list(ready(link, told).execute_all(tasks))
     assert students(done) == [task.student for task in tasks]
     assert told == ["The worker name-b (b) has ended: the notebooks that it was executing run again."]
     assert len(link.given) == len(tasks) + 2
@@ -123,8 +116,7 @@ def test_a_task_that_costs_worker_after_worker_is_given_up(tasks: list[Task]) ->
     poison = tasks[0].seed + "!"
     tasks[2] = replace(tasks[2], seed=poison)
     link.answer = lambda give, task: Left(give.worker) if task.seed == poison else honest(give, task)
-    dispatcher = make_dispatcher(link)
-    dispatcher.await_workers()
+    dispatcher = ready(link)
     for _ in "abcdefgh":
         dispatcher._take_in(link.hear(None))
     done = list(dispatcher.execute_all(tasks))
@@ -140,9 +132,7 @@ def test_what_a_worker_could_not_run_is_run_by_another_one(tasks: list[Task]) ->
     link.answer = lambda give, task: (
         Failed(give.number, "no room") if give.number == 1 else honest(give, task)
     )
-    dispatcher = make_dispatcher(link)
-    dispatcher.await_workers()
-    assert students(list(dispatcher.execute_all(tasks))) == [task.student for task in tasks]
+    assert students(list(ready(link).execute_all(tasks))) == [task.student for task in tasks]
 
 
 def test_what_a_worker_cannot_run_does_not_come_back_to_it(tasks: list[Task]) -> None:
@@ -150,18 +140,14 @@ def test_what_a_worker_cannot_run_does_not_come_back_to_it(tasks: list[Task]) ->
     link.answer = lambda give, task: (
         Failed(give.number, "no room") if give.worker == "full" else honest(give, task)
     )
-    dispatcher = make_dispatcher(link)
-    dispatcher.await_workers()
-    assert students(list(dispatcher.execute_all(tasks))) == [task.student for task in tasks]
+    assert students(list(ready(link).execute_all(tasks))) == [task.student for task in tasks]
 
 
 def test_a_worker_that_is_sick_does_not_swallow_the_class(tasks: list[Task]) -> None:
     told: list[str] = []
     link = FakeLink(joined("sick"), joined("good"), Asked())
     link.answer = lambda give, task: (troubled if give.worker == "sick" else honest)(give, task)
-    dispatcher = make_dispatcher(link, told)
-    dispatcher.await_workers()
-    assert students(list(dispatcher.execute_all(tasks))) == [task.student for task in tasks]
+    assert students(list(ready(link, told).execute_all(tasks))) == [task.student for task in tasks]
     assert (
         "name-sick (sick) gets no work: the worker failed on 3 notebooks in a row: no space left." in told[0]
     )
@@ -172,9 +158,7 @@ def test_trouble_that_is_the_notebooks_own_is_told_and_turns_nobody_out(tasks: l
     told: list[str] = []
     link = FakeLink(joined("a"), Asked())
     link.answer = troubled
-    dispatcher = make_dispatcher(link, told)
-    dispatcher.await_workers()
-    done = list(dispatcher.execute_all(tasks))
+    done = list(ready(link, told).execute_all(tasks))
     assert [one.execution.trouble for one in done] == ["no space left"] * len(tasks)
     assert len(link.given) == 2 * len(tasks)
     assert told == []
@@ -183,9 +167,7 @@ def test_trouble_that_is_the_notebooks_own_is_told_and_turns_nobody_out(tasks: l
 def test_what_no_worker_can_run_is_given_up(tasks: list[Task]) -> None:
     link = FakeLink(joined("a"), joined("b"), Asked())
     link.answer = lambda give, task: Failed(give.number, "no room")
-    dispatcher = make_dispatcher(link)
-    dispatcher.await_workers()
-    done = list(dispatcher.execute_all(tasks))
+    done = list(ready(link).execute_all(tasks))
     assert len(done) == len(tasks)
     assert {one.execution.trouble for one in done} == {"the worker could not run this submission: no room"}
 
@@ -196,9 +178,7 @@ def test_a_worker_that_forges_is_turned_out_by_name(tasks: list[Task]) -> None:
     link.answer = lambda give, task: (
         Answered(give.number, b"\x80\x04K\x01.") if give.worker == "bad" else honest(give, task)
     )
-    dispatcher = make_dispatcher(link, told)
-    dispatcher.await_workers()
-    assert students(list(dispatcher.execute_all(tasks))) == [task.student for task in tasks]
+    assert students(list(ready(link, told).execute_all(tasks))) == [task.student for task in tasks]
     assert len(told) == 1
     assert "name-bad (bad) gets no work: the worker sent an impossible answer: it has another form" in told[0]
     assert sum(give.worker == "bad" for give in link.given) <= HERE.slots
@@ -214,10 +194,8 @@ def test_forgers_use_up_no_attempt_of_a_notebook(tasks: list[Task]) -> None:
         return honest(give, task) if give.worker == "good" else Failed(give.number, "no bytes", forged=True)
 
     link.answer = answer
-    dispatcher = make_dispatcher(link)
-    dispatcher.await_workers()
     started: list[str] = []
-    done = list(dispatcher.execute_all(tasks[:1], lambda task: started.append(task.student)))
+    done = list(ready(link).execute_all(tasks[:1], lambda task: started.append(task.student)))
     assert students(done) == started == [tasks[0].student]
     assert len(link.given) == len(names) + 1
 
@@ -227,9 +205,7 @@ def test_a_worker_that_falls_silent_is_turned_out(tasks: list[Task], monkeypatch
     link = FakeLink(joined("good"), joined("mute"), Asked())
     told: list[str] = []
     link.answer = lambda give, task: None if give.worker == "mute" else honest(give, task)
-    dispatcher = make_dispatcher(link, told)
-    dispatcher.await_workers()
-    assert students(list(dispatcher.execute_all(tasks))) == [task.student for task in tasks]
+    assert students(list(ready(link, told).execute_all(tasks))) == [task.student for task in tasks]
     assert "name-mute (mute) gets no work: the worker has not answered in time. Start it again." in told[0]
 
 
@@ -249,9 +225,7 @@ def test_a_worker_that_does_not_fit_is_refused_by_name_and_the_others_go_on(
 ) -> None:
     told: list[str] = []
     link = FakeLink(joined("misfit", offer), joined("a"), Asked())
-    dispatcher = make_dispatcher(link, told)
-    dispatcher.await_workers()
-    assert students(list(dispatcher.execute_all(tasks))) == [task.student for task in tasks]
+    assert students(list(ready(link, told).execute_all(tasks))) == [task.student for task in tasks]
     assert {give.worker for give in link.given} == {"a"}
     assert "name-misfit (misfit) gets no work" in told[0]
     assert words in told[0]
@@ -259,9 +233,7 @@ def test_a_worker_that_does_not_fit_is_refused_by_name_and_the_others_go_on(
 
 def test_without_boxes_asked_for_a_worker_without_a_sandbox_will_do(tasks: list[Task]) -> None:
     link = FakeLink(joined("a", Offer("here", 1, obstacle="none")), Asked())
-    dispatcher = make_dispatcher(link, boxed=False)
-    dispatcher.await_workers()
-    assert len(list(dispatcher.execute_all(tasks))) == len(tasks)
+    assert len(list(ready(link, boxed=False).execute_all(tasks))) == len(tasks)
 
 
 def test_a_worker_cannot_write_on_the_terminal(tasks: list[Task]) -> None:
@@ -301,9 +273,7 @@ def test_no_scheduler_says_so() -> None:
 
 def test_a_worker_that_comes_later_gets_work_too(tasks: list[Task]) -> None:
     link = FakeLink(joined("a", Offer("here", 1, obstacle="")), Asked(), joined("late"))
-    dispatcher = make_dispatcher(link)
-    dispatcher.await_workers()
-    assert students(list(dispatcher.execute_all(tasks))) == [task.student for task in tasks]
+    assert students(list(ready(link).execute_all(tasks))) == [task.student for task in tasks]
     assert {give.worker for give in link.given} == {"a", "late"}
 
 
@@ -312,17 +282,13 @@ def test_when_the_last_worker_is_gone_the_batch_waits_a_little_and_then_stops(
 ) -> None:
     link = FakeLink(joined("a"), Asked())
     link.answer = lambda give, task: honest(give, task) if give.number < 3 else Left("a")
-    dispatcher = make_dispatcher(link)
-    dispatcher.await_workers()
     done: list[Done] = []
     with pytest.raises(GradingError, match="What was graded so far is kept"):
-        done.extend(dispatcher.execute_all(tasks))
+        done.extend(ready(link).execute_all(tasks))
     link = FakeLink(joined("a"), Asked())
     link.answer = lambda give, task: honest(give, task) if give.number != 3 else Left("a")
     monkeypatch.setattr(task_dispatcher, "_RETURN_SECONDS", 30.0)
-    dispatcher = make_dispatcher(link)
-    dispatcher.await_workers()
-    running = dispatcher.execute_all(tasks)
+    running = ready(link).execute_all(tasks)
     assert next(running)
     link.news.append(joined("a again"))
     assert len(list(running)) == len(tasks) - 1
@@ -330,9 +296,7 @@ def test_when_the_last_worker_is_gone_the_batch_waits_a_little_and_then_stops(
 
 def test_every_free_slot_has_a_task_before_the_caller_gets_a_result(tasks: list[Task]) -> None:
     link = FakeLink(joined("w"))
-    dispatcher = make_dispatcher(link)
-    dispatcher.await_workers()
-    for _ in dispatcher.execute_all(tasks):
+    for _ in ready(link).execute_all(tasks):
         assert len(link.in_flight) == HERE.slots or len(link.given) == len(tasks)
 
 
@@ -342,10 +306,8 @@ def test_a_silent_worker_is_judged_after_all_that_came_while_the_caller_was_busy
     monkeypatch.setattr(task_dispatcher, "_EXTRA_SECONDS", 0.2 - 2 * tasks[0].limits.longest)
     told: list[str] = []
     link = FakeLink(joined("w"))
-    dispatcher = make_dispatcher(link, told)
-    dispatcher.await_workers()
     done = []
-    for one in dispatcher.execute_all(tasks):
+    for one in ready(link, told).execute_all(tasks):
         done.append(one)
         time.sleep(0.25)  # longer than a worker may be silent
     assert (students(done), told) == ([task.student for task in tasks], [])
@@ -353,12 +315,10 @@ def test_a_silent_worker_is_judged_after_all_that_came_while_the_caller_was_busy
 
 def test_what_came_before_the_scheduler_was_lost_is_handed_on(tasks: list[Task]) -> None:
     link = FakeLink(joined("w"))
-    dispatcher = make_dispatcher(link)
-    dispatcher.await_workers()
     link.answer = lambda give, task: (
         link.news.append(honest(give, task)) if give.number < 3 else Broken("refused")
     )
     done: list[Done] = []
     with pytest.raises(GradingError, match="cannot be reached"):
-        done.extend(dispatcher.execute_all(tasks))
+        done.extend(ready(link).execute_all(tasks))
     assert students(done) == [task.student for task in tasks[:2]]

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import msgspec
 import pytest
-from fake_link import FakeLink, honest, joined, make_dispatcher, students, tasks_of_six, troubled
+from fake_link import FakeLink, honest, joined, ready, students, tasks_of_six, troubled
 from tiny_class import FakeEngine, TinyClass
 
 from autograder.grading.grading_errors import GradingError
@@ -62,10 +62,8 @@ def tasks(tiny: TinyClass) -> list[Task]:
 
 
 def executed(link: FakeLink, tasks: list[Task]) -> list[Done]:
-    dispatcher = make_dispatcher(link)
-    dispatcher.await_workers()
     started: list[str] = []
-    done = list(dispatcher.execute_all(tasks, lambda task: started.append(task.student)))
+    done = list(ready(link).execute_all(tasks, lambda task: started.append(task.student)))
     assert started == [task.student for task in tasks]
     assert sorted(one.task.student for one in done) == started
     return done
@@ -123,8 +121,7 @@ def test_notebooks_with_trouble_of_their_own_turn_no_good_worker_out_at_the_end(
     bad = {"student-0", "student-1", "student-2"}
     link.answer = lambda give, task: (troubled if task.seed[:9] in bad else honest)(give, task)
     more = [replace(task, seed=task.seed + "again", student=task.student + "again") for task in tasks]
-    dispatcher = make_dispatcher(link, told)
-    dispatcher.await_workers()
+    dispatcher = ready(link, told)
     for _ in "bc":
         dispatcher._take_in(link.hear(None))
     done = list(dispatcher.execute_all(tasks + more))
@@ -175,8 +172,7 @@ def test_what_another_worker_loses_meanwhile_waits_for_the_one_that_is_alone(tas
         return said
 
     link.answer = answer
-    dispatcher = make_dispatcher(link)
-    dispatcher.await_workers()
+    dispatcher = ready(link)
     for _ in range(2):
         dispatcher._take_in(link.hear(None))
     assert students(list(dispatcher.execute_all(tasks[:3]))) == [task.student for task in tasks[:3]]
@@ -195,9 +191,7 @@ def test_being_crowded_out_counts_as_no_loss(tasks: list[Task]) -> None:
 def test_who_waits_to_be_alone_when_the_last_worker_is_gone_is_not_done(tasks: list[Task]) -> None:
     link = CrowdedLink(joined("a"), Asked(), crowded=["student-0"])
     link.answer = lambda give, task: link.crowd(give, task) if task.limits.beside else Left("a")
-    dispatcher = make_dispatcher(link)
-    dispatcher.await_workers()
     done: list[Done] = []
     with pytest.raises(GradingError, match="What was graded so far is kept"):
-        done.extend(dispatcher.execute_all(tasks))
+        done.extend(ready(link).execute_all(tasks))
     assert students(done) == [task.student for task in tasks[1:]]
