@@ -7,6 +7,8 @@ import tomllib
 from pathlib import Path
 from typing import Any
 
+import pytest
+
 
 def cases(test: str, name: str) -> Any:
     """Return a value of the file of cases that belongs to a test; arrays are tuples.
@@ -16,6 +18,11 @@ def cases(test: str, name: str) -> Any:
         name: The key in the file.
     """
     return _with_tuples(_read(Path(test).with_suffix(".toml"))[name])
+
+
+def named_cases(test: str, name: str) -> list[Any]:
+    """Return the rows of a table as parameters that are called by their keys."""
+    return [pytest.param(*row, id=key) for key, row in cases(test, name).items()]
 
 
 @functools.cache

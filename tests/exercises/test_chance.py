@@ -24,6 +24,7 @@ from autograder.kit.quests.robot import Search
 from autograder.kit.recipes.service_client import ANSWER_NOT_AWAITED
 from autograder.kit.reported_texts import has_much_of
 from autograder.kit.service_calls import BIASED, CALLED, EXTREME
+from tests.cases import cases
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -232,14 +233,7 @@ def test_a_listener_that_dies_at_once_earns_the_same(seen: list[Event]) -> None:
 
 
 @pytest.mark.parametrize(
-    ("line", "is_made_of_it"),
-    [
-        ("I heard: 'ta tundra 2548'", True),
-        ("I HEARD: 'DELTA TUNDRA'", True),
-        ("I heard something", False),
-        ("heard a message with 17 characters", False),
-        ("I heard: 'delta tundra 2548'", False),
-    ],
+    ("line", "is_made_of_it"), cases(__file__, "a_text_is_known_again_when_it_was_changed")
 )
 def test_a_text_is_known_again_when_it_was_changed(line: str, is_made_of_it: bool) -> None:
     assert has_much_of(line, "delta tundra 2548") is is_made_of_it

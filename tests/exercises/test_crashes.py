@@ -47,15 +47,7 @@ def test_what_is_newer_than_jazzy_is_said_to_be(lines: list[str], newer: bool) -
     assert (found.key == "newer_api") is newer
 
 
-@pytest.mark.parametrize(
-    "raised",
-    [
-        "IPython.core.error.StdinNotImplementedError: raw_input was called, but this frontend does not support input "
-        "requests.",
-        "StdinNotImplementedError: raw_input was called, but this frontend does not support input requests.",
-        "EOFError: EOF when reading a line",
-    ],
-)
+@pytest.mark.parametrize("raised", cases(__file__, "input_is_named_and_not_taken_for_an_open_part"))
 def test_input_is_named_and_not_taken_for_an_open_part(raised: str) -> None:
     """The name of IPython's error ends like that of a stub's."""
     shown = _shown(['    name = input("Your name? ")', raised])
@@ -141,10 +133,7 @@ def test_saying_that_nobody_serves_is_no_crash() -> None:
 HEAD = 'Traceback (most recent call last):\n  File "client.py", line 9, in <module>\n    main()\n'
 
 
-@pytest.mark.parametrize(
-    ("rest", "expected"),
-    cases(__file__, "the_innermost_line_tells"),
-)
+@pytest.mark.parametrize(("rest", "expected"), cases(__file__, "the_innermost_line_tells"))
 def test_the_innermost_line_tells(rest: str, expected: bool) -> None:
     assert meant(HEAD + rest) is expected
 

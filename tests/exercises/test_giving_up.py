@@ -9,6 +9,7 @@ from autograder.judge import evidence_files
 from autograder.judge.verdicts import deciding
 from autograder.kit.evidence import Event, Evidence, Part, Reference
 from autograder.kit.giving_up import PATIENCES, broken_patience, gave_up, objection, remark
+from tests.cases import named_cases
 
 ASKED = Event(0.0, "request", "/add_two_ints", {"fields": {"a": 1, "b": 2}})
 ANSWERED = Event(0.0, "response", "/add_two_ints", {"fields": {"sum": 3}})
@@ -32,18 +33,7 @@ def has_asked(part: Part) -> bool:
 
 @pytest.mark.parametrize(
     ("served", "absent", "expected"),
-    [
-        pytest.param(["not available", "not available"], "not available", True, id="never met it"),
-        pytest.param(
-            ["not available for 1 2", "not available for 10 12"],
-            "not available for 7 8",
-            True,
-            id="names its own numbers",
-        ),
-        pytest.param(["the sum is 3", "the sum is 22"], "not available", False, id="waited and did not ask"),
-        pytest.param(["the sum is 3", "the sum is 22"], "the sum is 15", False, id="neither waits nor asks"),
-        pytest.param(["", ""], "", False, id="says nothing"),
-    ],
+    named_cases(__file__, "it_says_the_same_where_the_server_is_as_where_it_is_not"),
 )
 def test_it_says_the_same_where_the_server_is_as_where_it_is_not(
     served: list[str], absent: str, expected: bool

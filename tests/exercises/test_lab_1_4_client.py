@@ -91,19 +91,7 @@ def test_a_late_echo_of_feedback_is_no_word_on_the_result() -> None:
     assert aborted_as_seen(evidence("all done", Part(ABORTED, {}, events))) != ""
 
 
-@pytest.mark.parametrize(
-    ("line", "error", "told"),
-    [
-        ("rejected :(", "", True),
-        ("refusé", "", False),
-        ("goal sent", "", False),
-        ("the goal was ABORTED", "", False),
-        ("Final status: CANCELED", "", False),
-        ("the goal was rejected, so it is aborted", "", True),
-        ("goal sent", "RuntimeError: rejected", True),
-        ("goal sent", "AttributeError: 'NoneType' object has no attribute 'status'", False),
-    ],
-)
+@pytest.mark.parametrize(("line", "error", "told"), cases(__file__, "a_refusal_is_told_by_its_word"))
 def test_a_refusal_is_told_by_its_word(line: str, error: str, told: bool) -> None:
     events = [GOAL, say(line)]
     if error:
@@ -170,18 +158,7 @@ def test_a_function_returns_the_numbers_in_any_kind_of_sequence(value: str | Non
     assert (returned_instead(part, [1, 2]) == "") is right
 
 
-@pytest.mark.parametrize(
-    ("value", "right"),
-    [
-        ("[]", True),
-        ("()", True),
-        ("array('i')", True),
-        ("False", False),
-        ("''", False),
-        ("'rejected'", False),
-        ("{}", False),
-    ],
-)
+@pytest.mark.parametrize(("value", "right"), cases(__file__, "only_an_empty_sequence_is_an_empty_list"))
 def test_only_an_empty_sequence_is_an_empty_list(value: str, right: bool) -> None:
     part = Part(LATE, {}, [Event(0.0, "subject", "returned", {"value": value})])
     assert (returned_instead(part, []) == "") is right

@@ -25,6 +25,7 @@ from lab_1_4._goals import (
 )
 
 from autograder.kit.evidence import Event, Evidence, Part, Reference
+from tests.cases import cases
 
 FIBONACCI = [0, 1, 1, 2, 3, 5]
 ACTION, TYPE = "/fibonacci", "my_robot_interfaces/action/Fibonacci"
@@ -128,17 +129,7 @@ def test_feedback_grows_by_one_number(feedback: list[list[int]], right: bool) ->
 
 
 @pytest.mark.parametrize(
-    ("sequence", "status", "accepted", "right"),
-    [
-        ([0, 1, 1, 2], 5, True, True),
-        ([0, 1, 1, 2, 3, 5], 5, True, True),
-        ([0, 1, 1, 2, 3, 5, 8], 5, True, False),
-        ([], 5, True, False),
-        ([0, 1, 1], 5, True, False),
-        ([0, 1, 1, 2, 4], 5, True, False),
-        ([0, 1, 1, 2, 3], 4, True, False),
-        ([0, 1, 1, 2, 3], 4, False, False),
-    ],
+    ("sequence", "status", "accepted", "right"), cases(__file__, "a_cancel_brings_the_part_that_was_computed")
 )
 def test_a_cancel_brings_the_part_that_was_computed(
     sequence: list[int], status: int, accepted: bool, right: bool

@@ -7,6 +7,7 @@ import pytest
 from autograder import exercises
 from autograder.kit.evidence import Event, Evidence, Part, Reference
 from autograder.kit.runners import PackageReport, WorkspaceReport, workspace_report_line
+from tests.cases import cases
 
 PACKAGE = "my_robot_pkg"
 RIGHT = f"share/{PACKAGE}/launch/remap.launch.py"
@@ -45,30 +46,7 @@ def test_a_launch_file_of_each_language_is_installed_in_the_folder_launch(name: 
 
 
 @pytest.mark.parametrize(
-    ("found", "built", "key", "words"),
-    [
-        ([], [], "launch_not_installed", "does not install remap.launch.py"),
-        (["launch/remap.launch.py"], [], "launch_not_installed", "does not install remap.launch.py"),
-        (
-            ["launch/remap.launch.py"],
-            ["share/my_robot_pkg/remap.launch.py"],
-            "launch_elsewhere",
-            "into share/my_robot_pkg,",
-        ),
-        (["launch/remap.launch.py"], ["launch/remap.launch.py"], "launch_elsewhere", "into launch,"),
-        (
-            ["launch/remap.py"],
-            ["share/my_robot_pkg/launch/remap.py"],
-            "launch_file_name",
-            "is launch/remap.py",
-        ),
-        (
-            ["launch/a.launch.py", "launch/remap.launch.xml"],
-            [],
-            "launch_not_installed",
-            "does not install",
-        ),
-    ],
+    ("found", "built", "key", "words"), cases(__file__, "what_is_wrong_with_the_place_of_a_launch_file")
 )
 def test_what_is_wrong_with_the_place_of_a_launch_file(
     found: list[str], built: list[str], key: str, words: str

@@ -8,22 +8,10 @@ from autograder import exercises
 from autograder.judge import evidence_files
 from autograder.judge.verdicts import deciding
 from autograder.kit.evidence import Event, Evidence, Part
+from tests.cases import cases
 
 
-@pytest.mark.parametrize(
-    ("exercise_id", "role", "name", "advice"),
-    [
-        ("lab_1_2.listener", "publisher", "/chatter", "subscribes to /chatter"),
-        (
-            "lab_1_2.talker",
-            "subscription",
-            "/chatter",
-            "publishes on /chatter",
-        ),
-        ("lab_1_3.server", "client", "/add_two_ints", "serves /add_two_ints"),
-        ("lab_1_4.server", "action_client", "/fibonacci", "serves the action /fibonacci"),
-    ],
-)
+@pytest.mark.parametrize(("exercise_id", "role", "name", "advice"), cases(__file__, "the_other_end_is_named"))
 def test_the_other_end_is_named(exercise_id: str, role: str, name: str, advice: str) -> None:
     stored = evidence_files.load_reference(exercise_id)
     types = next(iter(stored.interface.values()))

@@ -14,6 +14,7 @@ from autograder.kit.runners import (
     process_line,
     workspace_report_line,
 )
+from tests.cases import cases
 
 STRING = "std_msgs/msg/String"
 NEW, OLD = "/robot/status_updates", "/chatter"
@@ -42,22 +43,7 @@ def _evidence(*started: int, talkers: dict[int, str], listener: int) -> Evidence
     return Evidence([Part("launching", {"text": "status 1"}, [*launched, interface])], REFERENCE)
 
 
-@pytest.mark.parametrize(
-    ("what", "next_step"),
-    [
-        (
-            "TypeError: LaunchDescription.__init__() takes from 1 to 2 positional arguments but 3 were",
-            "one list",
-        ),
-        ("TypeError: 'Node' object is not iterable (n.launch.py, line 6)", "one list"),
-        ("NameError: name 'Nod' is not defined (l.launch.py, line 6)", "imports"),
-        (
-            "TypeError: Node.__init__() takes 1 positional argument but 3 were given",
-            'Node(package="...", ',
-        ),
-        ("TypeError: Node.__init__() missing 1 required keyword-only argument: 'executable'", "executable="),
-    ],
-)
+@pytest.mark.parametrize(("what", "next_step"), cases(__file__, "the_next_step_fits_what_the_launch_says"))
 def test_the_next_step_fits_what_the_launch_says(what: str, next_step: str) -> None:
     failed = Event(0.0, "output", "stderr", {"text": f"[ERROR] [launch]: {what}"})
     seen = Evidence([Part("launching", {"text": "status 1"}, [failed])], REFERENCE)

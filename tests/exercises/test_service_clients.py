@@ -148,10 +148,7 @@ def test_each_check_has_a_zero_a_negative_answer_64_bits_and_an_answer_that_is_h
         assert any(held)
 
 
-@pytest.mark.parametrize(
-    ("line", "number", "expected"),
-    cases(__file__, "a_number_is_known_among_words"),
-)
+@pytest.mark.parametrize(("line", "number", "expected"), cases(__file__, "a_number_is_known_among_words"))
 def test_a_number_is_known_among_words(line: str, number: int, expected: bool) -> None:
     assert mentions([line], number) is expected
 

@@ -9,6 +9,7 @@ from lab_1_2 import talker
 
 from autograder.kit.evidence import Event, Evidence, Part, Reference
 from autograder.kit.recipes.published_texts import template
+from tests.cases import cases
 
 TOPIC, TYPE = "/chatter", "std_msgs/msg/String"
 
@@ -90,15 +91,7 @@ def _started_at(seconds: float, messages: list[Event]) -> list[Event]:
 
 @pytest.mark.parametrize(
     ("first", "after", "simulated", "right"),
-    [
-        (2, 0.8, False, True),
-        (4, 1.8, False, True),
-        (4, 1.0, False, False),
-        (4, 1.3, True, True),
-        (4, 0.8, True, False),
-        (20, 12.0, False, True),
-        (20, 6.0, False, False),
-    ],
+    cases(__file__, "what_came_before_anybody_could_hear_needs_its_time"),
 )
 def test_what_came_before_anybody_could_hear_needs_its_time(
     first: int, after: float, simulated: bool, right: bool

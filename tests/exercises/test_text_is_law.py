@@ -15,6 +15,7 @@ import pytest
 from autograder import course, exercises
 from autograder.authoring.exercise_faults import faults_of_text
 from autograder.masters.master_files import chapter_path
+from tests.cases import cases
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -118,15 +119,7 @@ def test_a_task_is_the_requirement_and_nothing_else(lab: Path) -> None:
     assert [part for part in asked_for if _BELONGS_ON_THE_CARD.search(part)] == []
 
 
-@pytest.mark.parametrize(
-    "added",
-    [
-        "\n5. Log the request.",
-        "\n\nLet it also blink.",
-        " The node must say who it is.",
-        "\n\nThe sum has to be even.",
-    ],
-)
+@pytest.mark.parametrize("added", cases(__file__, "a_demand_that_nobody_judges_is_found"))
 def test_a_demand_that_nobody_judges_is_found(added: str) -> None:
     lab = exercises.path("lab_1_3.client").parent
     task = next(text for text in tasks(lab) if "Raise `TimeoutError`" in text)

@@ -34,25 +34,13 @@ def test_who_reads_it_waits_for_no_import_of_nbgrader(tiny: TinyClass) -> None:
     assert done.stdout.split() == []
 
 
-@pytest.mark.parametrize(
-    "line",
-    [
-        'c.CourseDirectory.course_id = "ros2"',
-        "c.CourseDirectory.max_file_size = 1000",
-        'c.LateSubmissionPlugin.penalty_method = "zero"',
-        "c.LimitOutput.max_lines = 10",
-        "c.WireExecute.memory_bytes = 4_000_000_000",
-    ],
-)
+@pytest.mark.parametrize("line", cases(__file__, "what_the_conversion_honours_is_not_refused"))
 def test_what_the_conversion_honours_is_not_refused(tiny: TinyClass, line: str) -> None:
     tiny.configure(line)
     check_configuration(ClassDirectory(tiny.path))
 
 
-@pytest.mark.parametrize(
-    ("line", "option"),
-    cases(__file__, "what_it_does_not_know_is_refused"),
-)
+@pytest.mark.parametrize(("line", "option"), cases(__file__, "what_it_does_not_know_is_refused"))
 def test_what_it_does_not_know_is_refused(tiny: TinyClass, line: str, option: str) -> None:
     tiny.configure(line)
     with pytest.raises(GradingError, match=rf"sets c\.{option}, .*delete the line"):

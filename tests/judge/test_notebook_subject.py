@@ -13,6 +13,7 @@ from autograder.kit.mistakes.hangs import LOOPS
 from autograder.kit.runners import WorkspaceReport, workspace_report_line
 from autograder.messages.judge_messages import Stacks
 from autograder.messages.run_messages import Output
+from tests.cases import named_cases
 
 
 @pytest.mark.parametrize(
@@ -34,12 +35,7 @@ def test_the_report_of_a_build_ends_it(line: str, building: bool) -> None:
 
 @pytest.mark.parametrize(
     ("used", "asked", "busy"),
-    [
-        pytest.param([0.0], 1, 0.0, id="it waits"),
-        pytest.param([3.0, 3.0], 2, 0.0, id="it waits, and has worked before"),
-        pytest.param([0.5, 0.6, 0.7, 2.0, 2.6, 9.0], 5, 2.1, id="it loops on a busy machine"),
-        pytest.param([1.0, 1.5, 1.5], 3, 0.5, id="its work ends"),
-    ],
+    named_cases(__file__, "a_loop_is_told_by_the_processor_time_that_the_subject_uses"),
 )
 def test_a_loop_is_told_by_the_processor_time_that_the_subject_uses(
     monkeypatch: pytest.MonkeyPatch, used: list[float], asked: int, busy: float

@@ -14,6 +14,7 @@ from autograder.kit.counterparts import Qos
 from autograder.kit.evidence import Event, Evidence, Part, Reference, Variant
 from autograder.kit.oracle.same_as_solution import SameAsSolution, Sets, To
 from autograder.kit.oracle.steps import Step, Turn, answer_delays
+from tests.cases import cases
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -161,18 +162,7 @@ def test_a_number_may_differ_by_the_tolerance() -> None:
     assert failed(run([RIGHT[0], [0.21, 0.0], RIGHT[2]]))
 
 
-@pytest.mark.parametrize(
-    ("beats", "passes"),
-    [
-        ((1, 2, 3, 4), True),
-        ((1, 2, 3, 4, 5, 6, 7), True),
-        ((1, 2), False),
-        ((1, 2, 3, 4, 5, 6, 7, 8), False),
-        ((1, 2, 4, 5), False),
-        ((0, 1, 2, 3, 4), False),
-        ((), False),
-    ],
-)
+@pytest.mark.parametrize(("beats", "passes"), cases(__file__, "a_list_may_end_a_little_earlier_or_later"))
 def test_a_list_may_end_a_little_earlier_or_later(beats: Sequence[int], passes: bool) -> None:
     assert ("beat" not in failed(run(RIGHT, beats))) == passes
 
@@ -236,13 +226,7 @@ def test_a_rate_is_kept_if_the_usual_interval_is_right(moments: Sequence[float])
 
 
 @pytest.mark.parametrize(
-    ("speed", "seen"),
-    [
-        (((3, []), (False, True)), "double without a range"),
-        (((0, []), (False, True)), "not declared at the start"),
-        (((3, [[0.0, 2.0]]), (True, False)), "taken after speed = 2.5"),
-        (((3, [[0.0, 2.0]]), (False, False)), "refused without a reason after speed = 2.5"),
-    ],
+    ("speed", "seen"), cases(__file__, "a_parameter_is_described_and_refused_as_the_solutions")
 )
 def test_a_parameter_is_described_and_refused_as_the_solutions(speed: Sequence[Any], seen: str) -> None:
     assert seen in failed(run(RIGHT, speed=speed))["speed"][1]

@@ -71,15 +71,7 @@ def test_a_number_behind_the_word_status_is_its_name() -> None:
 
 
 @pytest.mark.parametrize(
-    "line",
-    [
-        "status=5",
-        "Status of the goal of order 20: 5",
-        "status of goal #1 is 5",
-        "Status (4 is good) = 5",
-        "{'order': 20, 'status': 5, 'numbers': 12}",
-        "finished with status code 5.",
-    ],
+    "line", cases(__file__, "the_number_of_a_status_may_have_other_words_and_numbers_around_it")
 )
 def test_the_number_of_a_status_may_have_other_words_and_numbers_around_it(line: str) -> None:
     assert CANCELED.is_said_in(line)

@@ -15,6 +15,7 @@ from autograder.kit.draft import Draft
 from autograder.kit.evidence import Event, Evidence, Part, Reference
 from autograder.kit.quests.quest import ACCEPTED, Quest
 from autograder.kit.quests.robot import Robot, Search
+from tests.cases import cases
 
 if TYPE_CHECKING:
     from autograder.kit.model import Exercise
@@ -98,17 +99,7 @@ OPEN = Robot(
 )
 
 
-@pytest.mark.parametrize(
-    ("said", "given"),
-    [
-        (["mia/open"], "/mia/open"),
-        (["I see /z", "I see /mia/open"], "/mia/open"),
-        (["it is /mia/open", "others: /z, /mia/open_all"], "/mia/open"),
-        (["/mia/open_all"], "/mia/open_all"),
-        (["/z and /mia/open"], "/mia/open, /z"),
-        (["open"], ""),
-    ],
-)
+@pytest.mark.parametrize(("said", "given"), cases(__file__, "a_single_name_is_the_last_that_stands_alone"))
 def test_a_single_name_is_the_last_that_stands_alone(said: list[str], given: str) -> None:
     search = Search(part(OPEN, *said))
     assert search.given.get("name", "") == given
@@ -199,14 +190,7 @@ def late() -> Robot:
 
 
 @pytest.mark.parametrize(
-    ("said", "at", "points", "key"),
-    [
-        (("/mia/open", "/mia/open", "not available"), 5.0, 10, ""),
-        (("/mia/open", "/mia/open", "/z"), 5.0, 7, ""),
-        (("/mia/open", "/mia/open", "so it ends"), 5.0, 7, "silent_end"),
-        (("nothing", "/mia/open", "not available"), 0.4, 0, "looked_once"),
-        (("nothing", "/mia/open", "not available"), 5.0, 6, ""),
-    ],
+    ("said", "at", "points", "key"), cases(__file__, "who_looks_once_finds_only_by_chance")
 )
 def test_who_looks_once_finds_only_by_chance(
     said: tuple[str, ...], at: float, points: float, key: str

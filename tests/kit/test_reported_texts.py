@@ -8,6 +8,7 @@ import pytest
 
 from autograder.kit.evidence import Event, Part
 from autograder.kit.reported_texts import GROWING, invented, is_said, repeated, retold, tells
+from tests.cases import cases
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -32,18 +33,7 @@ def _notebook(text: str) -> list[Event]:
     return [_log(text), _output(text, "notebook log")]
 
 
-@pytest.mark.parametrize(
-    ("line", "told"),
-    [
-        ('I heard: "amber birch 1234"', True),
-        ("amber birch 1234", True),
-        ("b'amber birch 1234'", True),
-        ("b'\\x00\\x01\\x00\\x00\\x11\\x00\\x00\\x00amber birch 1234\\x00'", False),
-        ("b'amber birch 1234\\x00'", False),
-        ("\0\1\0\0\x11\0\0\0amber birch 1234\0", False),
-        ("amber birch", False),
-    ],
-)
+@pytest.mark.parametrize(("line", "told"), cases(__file__, "bytes_are_no_text"))
 def test_bytes_are_no_text(line: str, told: bool) -> None:
     assert tells(line, SENT[0]) is told
     assert is_said(SENT[0], Part("p", {}, [_log(line)])) is told
@@ -112,15 +102,7 @@ def test_several_texts_in_one_line_are_none() -> None:
 
 
 @pytest.mark.parametrize(
-    ("frame", "other"),
-    [
-        ("[listener] {}", "[listener] ready, waiting for messages"),
-        ("Heard {}", "Heard 5 messages so far"),
-        ("I heard: {}", "I heard: nothing yet"),
-        ("Heard: {}.", "Heard: 5 texts."),
-        ('{{"node": "listener", "text": "{}"}}', '{"node": "listener", "text": "ready"}'),
-        ('level=info msg="{}"', 'level=info msg="subscribed"'),
-    ],
+    ("frame", "other"), cases(__file__, "a_line_that_begins_as_each_line_does_is_no_claim")
 )
 def test_a_line_that_begins_as_each_line_does_is_no_claim(frame: str, other: str) -> None:
     heard = _log(frame.format(SENT[0]))

@@ -15,6 +15,7 @@ from autograder.notebook.package_files import (
 )
 from environment.ros2_command import pkg_templates
 from environment.ros2_command.pkg_templates import Package
+from tests.cases import cases
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -79,16 +80,7 @@ def test_what_is_no_entry_point_changes_nothing(workspace: Path, entry: str) -> 
     assert (workspace / "src/my_robot_pkg/setup.py").read_text() == before
 
 
-@pytest.mark.parametrize(
-    ("entry", "what"),
-    [
-        ("t", "square brackets"),
-        ("simple_node = my_robot_pkg.simple_node:main()", "Leave out the parentheses"),
-        ("simple_node = my_robot_pkg/simple_node:main", "dots in the module"),
-        ("simple_node : my_robot_pkg.simple_node:main", "equals sign"),
-        ("simple_node = my_robot_pkg.simple_node.main", "colon between"),
-    ],
-)
+@pytest.mark.parametrize(("entry", "what"), cases(__file__, "what_is_wrong_with_it_is_said"))
 def test_what_is_wrong_with_it_is_said(workspace: Path, entry: str, what: str) -> None:
     told = add_entry_points(workspace, [entry])
     assert "is not an entry point" in told
@@ -138,12 +130,7 @@ def test_letters_of_other_alphabets_do_not_shift_the_list(workspace: Path) -> No
 
 
 @pytest.mark.parametrize(
-    "element",
-    [
-        "f'simple_node = {package_name}.simple_node:main'",
-        "'simple_node = ' + package_name + '.simple_node:main'",
-        "('simple_node = '\n        'my_robot_pkg.simple_node:main')",
-    ],
+    "element", cases(__file__, "an_entry_point_that_is_put_together_stays_until_it_is_replaced")
 )
 def test_an_entry_point_that_is_put_together_stays_until_it_is_replaced(
     workspace: Path, element: str

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from autograder.notebook.checking.subject_runs import student_traceback
+from tests.cases import cases
 
 CELL = """
 class Driver:
@@ -17,20 +18,7 @@ class Driver:
 """
 
 
-@pytest.mark.parametrize(
-    ("line", "end"),
-    [
-        ("self.publisher(comand)", "name 'comand' is not defined. Did you mean: 'command'?"),
-        ("sefl.publisher(command)", "name 'sefl' is not defined. Did you mean: 'self'?"),
-        ("publisher(command)", "name 'publisher' is not defined. Did you mean: 'self.publisher'?"),
-        ("self.publsher(command)", "object has no attribute 'publsher'. Did you mean: 'publisher'?"),
-        ("self.DRIVE()", "object has no attribute 'DRIVE'. Did you mean: 'drive'?"),
-        ("raise TimeOutError", "name 'TimeOutError' is not defined. Did you mean: 'TimeoutError'?"),
-        ("chatter", "name 'chatter' is not defined"),
-        ("self.publisher[command]", "is not subscriptable"),
-        ("raise AttributeError('nothing')", "AttributeError: nothing"),
-    ],
-)
+@pytest.mark.parametrize(("line", "end"), cases(__file__, "the_name_that_was_meant_is_said"))
 def test_the_name_that_was_meant_is_said(line: str, end: str) -> None:
     names: dict[str, type] = {}
     exec(compile(CELL.format(line=line), "/tmp/ipykernel_7/123.py", "exec"), names)

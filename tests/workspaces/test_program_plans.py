@@ -12,6 +12,7 @@ from autograder.workspaces.builds.colcon_build import Build
 from autograder.workspaces.jobs import PlainJobs
 from autograder.workspaces.packages import Package
 from autograder.workspaces.program_plans import lacks_programs, launch_targets, plan_for
+from tests.cases import cases
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -32,16 +33,7 @@ def built(workspace: Path, *programs: str) -> Build:
 
 
 @pytest.mark.parametrize(
-    ("programs", "text", "lacking"),
-    [
-        ("", "Node(executable='talker'), Node(executable='listener')", True),
-        ("talker", "Node(executable='talker'), Node(executable='listener')", True),
-        ("talker listener", "Node(executable='talker'), Node(executable='listener')", False),
-        ("speak hear", "talker = Node(executable='speak'); listener = Node(executable='hear')", False),
-        ("talker hear", "[Node(executable='talker'), Node(executable='hear')]  # the listener", False),
-        ("node", '<node exec="talker"/><node exec="listener"></node>', True),
-        ("node", "- node: {exec: talker}\n- node: {exec: listener}", True),
-    ],
+    ("programs", "text", "lacking"), cases(__file__, "the_course_s_programs_stand_in_for_missing_ones")
 )
 def test_the_course_s_programs_stand_in_for_missing_ones(
     programs: str, text: str, lacking: bool, tmp_path: Path

@@ -24,6 +24,8 @@ from autograder.workspaces.sources import BadSources, SourceTree, read_sources
 sys.path.insert(0, str(Path(__file__).parent))
 from made_workspaces import packages_in
 
+from tests.cases import cases
+
 if TYPE_CHECKING:
     from collections.abc import Callable
 
@@ -295,16 +297,7 @@ def test_of_far_too_much_that_is_sent_nothing_is_kept(one: Source, tmp_path: Pat
     assert most < 20_000_000
 
 
-@pytest.mark.parametrize(
-    "words",
-    [
-        {},
-        {"path": 1},
-        {"path": "a", "data": 1},
-        {"path": "a", "data": "?"},
-        {"path": "a", "executable": "yes"},
-    ],
-)
+@pytest.mark.parametrize("words", cases(__file__, "what_is_no_file_is_refused"))
 def test_what_is_no_file_is_refused(words: dict[str, object]) -> None:
     with pytest.raises(NotUnderstood):
         sent_over(json.dumps({"say": "source", **words}).encode() + b"\n")

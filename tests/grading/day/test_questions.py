@@ -13,6 +13,7 @@ from tiny_class import MASTER, FakeEngine, TinyClass, write_master
 
 from autograder.grading.new_classes.new_class import new_class
 from autograder.grading.returning.page_exporter import without_dead_links
+from tests.cases import cases
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -88,17 +89,7 @@ def test_a_question_that_somebody_has_answered_is_not_built_over(asked: TinyClas
     assert holds_work(asked.path / "submitted" / "ada" / "lab_1_2" / "lab_1_2.ipynb")
 
 
-@pytest.mark.parametrize(
-    ("link", "stays"),
-    [
-        ('<a href="lab_1_3.ipynb">Lab 1.3</a>', False),
-        ('<a class="x" href="../docs/page.md#part">the <em>page</em></a>', False),
-        ('<a href="/lab/tree/x.ipynb">x</a>', False),
-        ('<a href="#why">why</a>', True),
-        ('<a href="https://docs.ros.org/">ROS</a>', True),
-        ('<a href="mailto:a@b.example">mail</a>', True),
-    ],
-)
+@pytest.mark.parametrize(("link", "stays"), cases(__file__, "a_link_to_a_file_beside_the_page_becomes_text"))
 def test_a_link_to_a_file_beside_the_page_becomes_text(link: str, stays: bool) -> None:
     shown = without_dead_links(f"<p>See {link}.</p>")
     assert (link in shown) is stays

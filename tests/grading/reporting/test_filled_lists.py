@@ -183,16 +183,7 @@ def test_columns_are_asked_for_and_no_column_that_names_a_student_is_written(
     assert rows(klass.path / "export" / "list.csv")[2][5:] == ["18", "", "7.0", "7.0"]
 
 
-@pytest.mark.parametrize(
-    "name",
-    [
-        "lab_1_2 (815)",
-        "Lab 1.2 (9001)",
-        "LAB-1_2",
-        "Lab 1.2: A talker and a listener (9001)",
-        "lab_1_2: all (9001)",
-    ],
-)
+@pytest.mark.parametrize("name", cases(__file__, "a_column_that_has_the_assignments_name_or_title_is_found"))
 def test_a_column_that_has_the_assignments_name_or_title_is_found(
     klass: TinyClass, tmp_path: Path, name: str
 ) -> None:

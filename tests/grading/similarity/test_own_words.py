@@ -5,24 +5,14 @@ from __future__ import annotations
 import pytest
 
 from autograder.grading.similarity.own_words import chosen_names, neutral_words, words
+from tests.cases import cases
 
 
-@pytest.mark.parametrize(
-    ("text", "expected"),
-    [
-        ("a = b % two  # a comment", ["a", "=", "b", "%", "two"]),
-        ("a = b %two", ["a", "=", "b", "%", "two"]),
-        ("%%writefile a.py\nx += 1", ["x", "+=", "1"]),
-        ('"""A docstring\nof two lines."""\nreturn rb"\\"" != 0x1f', ["return", 'rb"\\""', "!=", "0x1f"]),
-        ("s = 'not # a comment'", ["s", "=", "'not # a comment'"]),
-        ("größe = 'ä", ["größe", "=", "'", "ä"]),
-        ("", []),
-    ],
-)
-def test_words(text: str, expected: list[str]) -> None:
+@pytest.mark.parametrize(("text", "expected"), cases(__file__, "words"))
+def test_words(text: str, expected: tuple[str, ...]) -> None:
     found = list(words(text))
-    assert [word.text for word in found] == expected
-    assert [text[word.start : word.end] for word in found] == expected
+    assert tuple(word.text for word in found) == expected
+    assert tuple(text[word.start : word.end] for word in found) == expected
 
 
 def test_names_that_somebody_has_chosen() -> None:

@@ -11,6 +11,7 @@ from test_collect import placed, work
 from autograder.grading.collecting.collect import collect
 from autograder.grading.grading_errors import GradingError
 from autograder.grading.table.students_csv import read_students_csv
+from tests.cases import cases
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -20,15 +21,7 @@ if TYPE_CHECKING:
 ADA = ("ada", "Ada", "Lovelace", "ada@uni.example")
 
 
-@pytest.mark.parametrize(
-    "header",
-    [
-        "ID,First Name,Last Name,Email",
-        "Id,first-name,LAST_NAME,E-Mail",
-        "id, First Name ,Surname,Email Address",
-        "ID,Given name,Family name,Email address",
-    ],
-)
+@pytest.mark.parametrize("header", cases(__file__, "a_header_in_other_letters_is_known"))
 def test_a_header_in_other_letters_is_known(tmp_path: Path, header: str) -> None:
     (tmp_path / "list.csv").write_text(f"{header}\nada,Ada,Lovelace,ada@uni.example\n")
     file = read_students_csv(tmp_path / "list.csv")
@@ -36,24 +29,7 @@ def test_a_header_in_other_letters_is_known(tmp_path: Path, header: str) -> None
     assert file.unknown == ()
 
 
-@pytest.mark.parametrize(
-    ("text", "said"),
-    [
-        (
-            "id,id,last_name\na,Ada,Love\n",
-            r"2 columns named id: columns 1, 2\..*id and, if you have them, first_name",
-        ),
-        ("id,First Name,first_name\na,A,B\n", r"2 columns named first_name: columns 2, 3"),
-        ("id,matrikel,matrikel\na,1,2\n", r"2 columns named matrikel"),
-        ("matrikel,First Name\n1,A\n", r"no column named id, but matrikel, First Name\..*to contain"),
-        ("", r"no column named id, but nothing"),
-        ("id,canvas\na,501\nb,\nc,501\n", r"line 4: 501 under canvas also stands in line 2"),
-        ("id,moodle\na,Ada\nb,ada\n", r"line 3: ada under moodle also stands in line 2"),
-        ("id,first_name\nid,first_name\na,A\n", r"line 2: the names of the columns stand there again"),
-        ("id,first_name\na,A\n\nid,first_name\nt,T\n", r"line 4: the names of the columns stand there again"),
-        ("id\nal01\nAL01\n", r"line 3: the id AL01 also stands in line 2"),
-    ],
-)
+@pytest.mark.parametrize(("text", "said"), cases(__file__, "a_list_that_leaves_open_who_is_meant_is_refused"))
 def test_a_list_that_leaves_open_who_is_meant_is_refused(tmp_path: Path, text: str, said: str) -> None:
     (tmp_path / "list.csv").write_text(text)
     with pytest.raises(GradingError, match=said):

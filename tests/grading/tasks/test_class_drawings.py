@@ -15,6 +15,7 @@ from autograder.grading import course_version
 from autograder.grading.course_version import CourseFiles
 from autograder.grading.running import execution_backends
 from autograder.grading.tasks import class_drawings
+from tests.cases import cases
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -121,13 +122,7 @@ def test_another_class_has_other_drawings(tiny: TinyClass, engine: Recorder) -> 
 
 @pytest.mark.parametrize(
     ("file", "is_recorded_again"),
-    [
-        ("solutions/chapter/lab_1_2/talker.py", True),
-        ("solutions/chapter/lab_1_2/talker.reference.json", True),
-        ("autograder/judge/check_server.py", True),
-        ("autograder/cards/card_wording.py", False),
-        ("solutions/chapter/lab_1_3/server.py", False),
-    ],
+    cases(__file__, "a_drawing_is_recorded_again_if_what_it_comes_from_has_changed"),
 )
 def test_a_drawing_is_recorded_again_if_what_it_comes_from_has_changed(
     file: str, is_recorded_again: bool, tiny: TinyClass, engine: Recorder, monkeypatch: pytest.MonkeyPatch

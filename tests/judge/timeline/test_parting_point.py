@@ -15,6 +15,7 @@ from autograder.judge.timeline.parting_point import (
 )
 from autograder.kit.evidence import Event, Evidence, Part, Reference
 from autograder.messages.judge_messages import OwnLine
+from tests.cases import cases
 from tests.measure import evidence as kept_evidence
 
 ACTION = "/fibonacci"
@@ -123,12 +124,7 @@ def _talking(texts: list[str]) -> Part:
 
 
 @pytest.mark.parametrize(
-    ("texts", "says"),
-    [
-        ([], "On /chatter: no message. Asked: “0”."),
-        (["0"], "until “0”, your run is as asked. Then: no more messages. Asked: “1”, 0.5 s later."),
-        (["0", "x", "2", "3"], "until “0”, your run is as asked. Then: “x”. Asked: “1”, 0.5 s later."),
-    ],
+    ("texts", "says"), cases(__file__, "a_message_that_does_not_come_is_told_with_the_one_that_is_due")
 )
 def test_a_message_that_does_not_come_is_told_with_the_one_that_is_due(texts: list[str], says: str) -> None:
     reference = Reference("x", {}, [_talking(["0", "1", "2", "3"])])

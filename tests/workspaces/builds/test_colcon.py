@@ -17,6 +17,8 @@ from autograder.workspaces.builds.install_folder import with_prefixes
 sys.path.insert(0, str(Path(__file__).parent))
 from made_workspaces import interface_package, python_package
 
+from tests.cases import cases
+
 if TYPE_CHECKING:
     from autograder.workspaces.builds.colcon_build import Build, Targets
 
@@ -92,12 +94,7 @@ def test_a_failure_is_one_line_and_is_not_kept(workspace: Path, empty_cache: Pat
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "trouble", "words"),
-    [
-        ("tiny_pkg.hello:main", "tiny_pkg.hello:main()", "entry_point", "Leave out the parentheses"),
-        ("hello = tiny", "hello: tiny", "entry_point", "The equals sign"),
-        ("version='0.0.0'", "python_requires='x y', version='0.0.0'", "build", "python3 setup.py --version"),
-    ],
+    ("old", "new", "trouble", "words"), cases(__file__, "what_setuptools_refuses_without_a_word_is_named")
 )
 def test_what_setuptools_refuses_without_a_word_is_named(
     workspace: Path, old: str, new: str, trouble: str, words: str
