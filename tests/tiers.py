@@ -27,11 +27,9 @@ SEED = "COURSE_TEST_DRAW"
 
 NIGHTLY = (
     # Killed and interrupted: each kills a whole batch, again and again.
-    "tests/grading/test_interrupt.py",
     "tests/grading/day/test_killed_at_random.py::test_a_command_is_ended_and_goes_on[20-",
     "tests/grading/day/test_killed_at_random.py::test_grade_is_ended_and_goes_on",
     "tests/grading/running/test_order_executor.py::test_a_killed_batch",
-    "tests/grading/running/test_order_executor.py::test_ctrl_c",
     "tests/grading/running/test_order_executor.py::test_fork_servers_that_die",
     # Servers of others, which few classes use.
     "tests/grading/cluster/test_cluster.py",

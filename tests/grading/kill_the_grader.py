@@ -1,7 +1,7 @@
 """Kills a grader at random moments of a batch and looks at what is left: ``python tests/grading/kill_the_grader.py``.
 
 Each round hands in new work for a whole class, starts a batch in a process of its own, ends that process with
-``SIGKILL`` or ``SIGTERM`` at a moment drawn from the time that a batch takes, and asks:
+``SIGKILL``, ``SIGTERM`` or Ctrl-C at a moment drawn from the time that a batch takes, and asks:
 
 * gradebook and store open and are sound;
 * either no grade was touched yet, or each is zero or the right one, never one of an earlier round;
@@ -229,7 +229,7 @@ def kill_the_grader(folder: Path, kills: int, seed: int, jobs: int) -> None:
     moments = random.Random(seed)
     for round_number in range(1, kills + 1):
         trial.hand_in(round_number)
-        with_ = (signal.SIGKILL, signal.SIGTERM)[round_number % 2]
+        with_ = (signal.SIGKILL, signal.SIGTERM, signal.SIGINT)[round_number % 3]
         print(trial.kill_after(moments.uniform(0, whole), with_), flush=True)
 
 

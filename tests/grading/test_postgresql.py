@@ -183,19 +183,6 @@ def test_a_class_that_moves_is_entered_anew_and_not_executed(
     assert scores(url) == scores(f"sqlite:///{tiny.path / 'gradebook.db'}")
 
 
-def test_a_second_run_executes_nothing_and_a_changed_notebook_is_graded_anew(
-    moved: Moved, fake_engine: FakeEngine
-) -> None:
-    hand_in(moved.tiny)
-    moved.tiny.grade()
-    fake_engine.ran.clear()
-    moved.tiny.grade()
-    assert fake_engine.ran == ["cleo"]  # could not be checked, so it is tried again
-    moved.tiny.submit("ada", 3, 3)
-    moved.tiny.grade()
-    assert scores(moved.url)["ada"] == {TALKER: 3, LISTENER: 3}
-
-
 def test_a_grade_that_cannot_be_entered_is_no_grade(moved: Moved, server: str) -> None:
     """The database refuses one student's row; the others are graded, and the old score is not left standing."""
     hand_in(moved.tiny)

@@ -218,11 +218,6 @@ def test_what_a_failed_build_has_left_is_not_taken(judge: FakeJudge, jobs: FakeJ
     assert not jobs.commands
 
 
-def test_an_archive_that_leads_out_is_a_failed_build(judge: FakeJudge, jobs: FakeJobs) -> None:
-    jobs.built = BuildOutcome(0, b"", _packed("../../evil"))
-    assert reports(judge.run())[-1]["trouble"] == "build"
-
-
 def test_no_link_that_a_build_has_made_leads_to_a_pipe_of_the_host(
     judge: FakeJudge, jobs: FakeJobs, tmp_path: Path
 ) -> None:
@@ -304,23 +299,12 @@ def test_what_is_not_needed_is_not_built(sockets: ServiceSockets, jobs: FakeJobs
     assert jobs.builds == [["my_robot_pkg"]]
 
 
-@pytest.mark.parametrize(
-    ("make", "trouble"),
-    [
-        (lambda ws: None, "no_workspace"),
-        (lambda ws: ws.mkdir(), "no_workspace"),
-        (lambda ws: (ws / "src").mkdir(parents=True), "no_package"),
-    ],
-    ids=["nothing", "no src", "empty src"],
-)
-def test_what_is_no_workspace_says_so(
-    sockets: ServiceSockets, tmp_path: Path, make: Any, trouble: str
-) -> None:
-    make(tmp_path / "ros2_ws")
+def test_what_is_no_workspace_says_so(sockets: ServiceSockets, tmp_path: Path) -> None:
+    (tmp_path / "ros2_ws" / "src").mkdir(parents=True)
     judge = FakeJudge(sockets)
     judge.check(tmp_path / "ros2_ws")
     told = reports(judge.run())[-1]
-    assert told["trouble"] == trouble
+    assert told["trouble"] == "no_package"
     assert str(tmp_path) not in told["line"]
 
 

@@ -64,15 +64,6 @@ def test_the_key_is_of_bytes_names_and_bits(workspace: Path) -> None:
     assert len(set(keys)) == 4
 
 
-def test_what_python_and_jupyter_leave_behind_is_no_source(workspace: Path) -> None:
-    src = workspace / "src"
-    before = key_of(src)
-    for name in ("__pycache__", ".ipynb_checkpoints"):
-        (src / "tiny_pkg" / name).mkdir()
-        (src / "tiny_pkg" / name / "left.py").write_text("left")
-    assert key_of(src) == before
-
-
 def test_the_toolchain_is_in_the_key(workspace: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     before = key_of(workspace / "src")
     monkeypatch.setenv("CXXFLAGS", "-O0")

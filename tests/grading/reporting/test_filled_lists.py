@@ -146,14 +146,6 @@ def test_a_doubtful_line_is_settled_by_what_the_list_has_in_it(klass: TinyClass,
     assert [row[-1] for row in rows(klass.path / "export" / "list.csv")[1:]] == ["", "17"]
 
 
-def test_a_line_without_its_empty_cells_is_filled_in_too(klass: TinyClass, tmp_path: Path) -> None:
-    """Some spreadsheet programs leave out the empty cells at the end of a line: Ben's points went nowhere."""
-    into = tmp_path / "list.csv"
-    into.write_text("Student ID,Student Name,lab_1_2\nben,Ben Bar\n")
-    export(klass.path, "sakai", ExportChoices(into=into))
-    assert rows(klass.path / "export" / "list.csv")[1] == ["ben", "Ben Bar", "17"]
-
-
 GRADEBOOK = (
     "Student,ID,SIS User ID,SIS Login ID,Section,{columns},Current Score,Final Score\n"
     '    Points Possible,,,,,{possible},(read only),(read only)\n"Lovelace, Ada",101,,al,A,{cells},7.0,7.0\n'
@@ -196,14 +188,6 @@ def test_a_column_that_has_the_assignments_name_or_title_is_found(
     assert rows(klass.path / "export" / "list.csv")[2][5:8] == ["", "18", ""]
 
 
-def test_of_two_columns_that_fit_neither_is_filled(klass: TinyClass, tmp_path: Path) -> None:
-    into = tmp_path / "list.csv"
-    columns = "Lab 1.2: bonus (9000),Lab 1.2: work (9001)"
-    into.write_text(GRADEBOOK.format(columns=columns, possible="1,2", cells=","), encoding="utf-8")
-    with pytest.raises(GradingError, match="called lab_1_2, or more than one is"):
-        export(klass.path, "canvas", ExportChoices(into=into))
-
-
 def test_all_columns_that_are_missing_are_named_at_once() -> None:
     header = ["Student", "ID", "SIS User ID", "SIS Login ID", "Section", "First lab (1)", "Second lab (2)"]
     form = next(one for one in LIST_FORMS if one.lms == "canvas" and one.points == EACH)
@@ -211,17 +195,6 @@ def test_all_columns_that_are_missing_are_named_at_once() -> None:
         find_columns([header], form, list(map(Called, ("first_lab_1", "second_lab_2", "third"))))
     for word in ("first_lab_1, second_lab_2, third", '--column "first_lab_1=COLUMN"', "third="):
         assert word in str(caught.value)
-
-
-def test_who_has_points_and_no_line_is_named(klass: TinyClass, tmp_path: Path) -> None:
-    klass.submit("ada", 8, 10)
-    klass.grade()
-    into = tmp_path / "list.csv"
-    into.write_text(CANVAS, encoding="utf-8")
-    assert any(
-        "the list has no line for ben, so their points are not in it" in one
-        for one in export(klass.path, "canvas", ExportChoices(into=into)).notices
-    )
 
 
 def test_canvas_own_late_penalty_is_warned_of_where_work_is_late(klass: TinyClass) -> None:
@@ -270,15 +243,6 @@ def test_what_an_export_changes_in_a_list(klass: TinyClass, tmp_path: Path, name
         assert (klass.path / "export" / "list.before.csv").read_text("utf-8") == case["list"]
     elif not case.get("earlier"):
         assert not there.exists()
-
-
-def test_a_gradebook_without_an_assignment_says_so(klass: TinyClass, tmp_path: Path) -> None:
-    klass.submit("ada", 8, 10)
-    klass.grade()
-    into = tmp_path / "list.csv"
-    into.write_text("Student,ID,Section\n    Points Possible,,\n")
-    said = CliRunner().invoke(cli, ["export", str(klass.path), "--to", "canvas", "--into", str(into)])
-    assert (said.exit_code, "The list has: none" in said.output) == (2, True), said.output
 
 
 def test_who_has_a_page_after_a_repair_by_hand_and_an_empty_file_is_named(

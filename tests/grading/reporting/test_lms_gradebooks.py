@@ -90,12 +90,3 @@ def test_a_list_of_the_system_is_filled_in(graded: TinyClass, tmp_path: Path, lm
     (tmp_path / "list.csv").write_text(given, encoding="utf-8")
     export(graded.path, lms, ExportChoices(into=tmp_path / "list.csv"))
     assert (graded.path / "export" / "list.csv").read_text("utf-8").partition("\n")[2] == wanted
-
-
-def test_moodles_worksheet_in_french_is_filled_in(graded: TinyClass, tmp_path: Path) -> None:
-    collected(graded, tmp_path, "sakai")
-    (tmp_path / "notes.csv").write_text(
-        "Identifiant,Nom complet,Adresse de courriel,Note\nParticipant31,Ada Lovelace,,\n", encoding="utf-8"
-    )
-    export(graded.path, "moodle", ExportChoices(into=tmp_path / "notes.csv"))
-    assert (graded.path / "export" / "notes.csv").read_text("utf-8").endswith("Ada Lovelace,,11.5\n")

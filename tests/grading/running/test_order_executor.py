@@ -3,34 +3,29 @@
 from __future__ import annotations
 
 import os
-import signal
 import socket
 import subprocess
 import sys
 import tempfile
 import time
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 from unittest.mock import Mock
 
 import msgspec
 import psutil
 import pytest
-from nbgrader.api import Gradebook
-from tiny_class import GRADE, LISTENER, TALKER, FakeEngine, TinyClass
+from tiny_class import GRADE, LISTENER, TALKER, TinyClass
 
 from autograder.boxes.run_limits import Ended
 from autograder.execution.executed_cells import Cell, CellCheck, CellRun, Execution
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.grading_task import Task
-from autograder.grading.running import execution_backends, order_executor
+from autograder.grading.running import order_executor
 from autograder.grading.running.task_execution import _a_check_was_stopped
 from autograder.grading.running.worker_messages import ADDRESS, Answered, Drop, Give, Joined, News, Order
 from autograder.messages.json_lines import Lines
 from tests.cases import cases
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
 
 
 def leftovers(tiny: TinyClass) -> list[psutil.Process]:
@@ -108,67 +103,6 @@ def test_a_failure_on_a_crowded_machine_counts_only_where_nothing_else_runs(
     assert [notes.read_text().splitlines().count(said) for said in ("crowded 6", "5")] == [2, 1]
 
 
-@pytest.fixture
-def batch(
-    tiny: TinyClass, with_fake_judge: str, monkeypatch: pytest.MonkeyPatch
-) -> Iterator[subprocess.Popen[str]]:
-    """A batch of four in a process of its own; one of them had full marks before."""
-    tiny.submit("ada", 10, 10)
-    with monkeypatch.context() as patch:
-        patch.setattr(execution_backends, "execute_all", FakeEngine().execute_all)
-        tiny.grade()
-    assert tiny.scores("ada")[TALKER] == 10
-    for number, student in enumerate(("ada", "ben", "cleo", "dora")):
-        tiny.submit(student, number + 1, 9)
-    process = subprocess.Popen(
-        [sys.executable, "-W", "ignore", "-c", GRADE, str(tiny.path), with_fake_judge],
-        stderr=subprocess.PIPE,
-        text=True,
-    )
-    yield process
-    process.kill()
-    process.wait()
-    assert process.stderr
-    process.stderr.close()
-
-
-def graded(process: subprocess.Popen[str], count: int) -> None:
-    """Wait until the batch says that it has graded so many."""
-    assert process.stderr
-    for line in process.stderr:
-        if line.startswith(f"graded {count} of"):
-            return
-    raise AssertionError("the batch ended early")
-
-
-@pytest.mark.parametrize("after", [0, 2])
-def test_a_killed_batch_leaves_no_wrong_grade_and_no_process_and_the_next_one_goes_on(
-    tiny: TinyClass, with_fake_judge: str, batch: subprocess.Popen[str], after: int
-) -> None:
-    if after:
-        graded(batch, after)
-    else:
-        while not leftovers(tiny):  # the workers have started, so the old grades are taken back
-            assert batch.poll() is None
-            time.sleep(0.05)
-    orphans = psutil.Process(batch.pid).children(recursive=True)
-    batch.send_signal(signal.SIGKILL)
-    batch.wait()
-    _, alive = psutil.wait_procs(orphans, timeout=180)
-    assert alive == []
-    right = {"ada": 1, "ben": 2, "cleo": 3, "dora": 4}
-    with Gradebook(f"sqlite:///{tiny.path / 'gradebook.db'}") as book:
-        for submission in book.find_assignment("lab_1_2").submissions:
-            for grade in submission.notebooks[0].grades:
-                full = right[submission.student.id] if grade.name == TALKER else 9
-                assert grade.auto_score in (None, 0, full), submission.student.id
-    report = tiny.grade(judge=with_fake_judge, jobs=2)
-    assert {student: tiny.scores(student)[TALKER] for student in right} == right
-    assert report.executed <= 4 - after
-    assert report.exit_code == 0
-    assert leftovers(tiny) == []
-
-
 def test_a_killed_batch_does_not_wait_for_the_notebook_that_is_running(
     tiny: TinyClass, with_fake_judge: str
 ) -> None:
@@ -182,16 +116,6 @@ def test_a_killed_batch_does_not_wait_for_the_notebook_that_is_running(
     batch.wait()
     _, alive = psutil.wait_procs(orphans, timeout=180)
     assert alive == []
-
-
-def test_ctrl_c_stops_in_good_order(
-    tiny: TinyClass, with_fake_judge: str, batch: subprocess.Popen[str]
-) -> None:
-    graded(batch, 1)
-    batch.send_signal(signal.SIGINT)
-    batch.wait(timeout=180)
-    assert leftovers(tiny) == []
-    assert tiny.grade(judge=with_fake_judge, jobs=2).executed < 4
 
 
 def test_the_worker_says_why_it_could_not_begin(tiny: TinyClass, monkeypatch: pytest.MonkeyPatch) -> None:
