@@ -32,10 +32,17 @@ from checked import _Changed
 pytestmark = pytest.mark.ros
 
 
-@pytest.fixture
-def judge(tmp_path: Path) -> Iterator[JudgeProcess]:
-    with JudgeProcess(tmp_path / "judge", seed="a seed") as process:
+@pytest.fixture(scope="module")
+def _judge(tmp_path_factory: pytest.TempPathFactory) -> Iterator[JudgeProcess]:
+    with JudgeProcess(tmp_path_factory.mktemp("judge") / "judge", seed="a seed") as process:
         yield process
+
+
+@pytest.fixture
+def judge(_judge: JudgeProcess) -> JudgeProcess:
+    """A judge that was asked before, as a grader's is in a notebook with several checks."""
+    _judge.keeps_evidence = _judge.is_boxed = False
+    return _judge
 
 
 class Kernel:
@@ -170,12 +177,13 @@ def test_a_kernel_that_goes_away_in_the_middle_gets_no_points(judge: JudgeProces
     assert verdict is None or verdict.score == 0
 
 
-def test_a_judge_that_dies_is_reported_and_never_a_verdict(judge: JudgeProcess) -> None:
-    judge.open("lab_1_2.talker")
-    assert isinstance(judge._process, _Child)
-    os.kill(judge._process._process.pid, signal.SIGKILL)
-    with pytest.raises(JudgeDied):
-        judge.close()
+def test_a_judge_that_dies_is_reported_and_never_a_verdict(tmp_path: Path) -> None:
+    with JudgeProcess(tmp_path / "judge", seed="a seed") as judge:
+        judge.open("lab_1_2.talker")
+        assert isinstance(judge._process, _Child)
+        os.kill(judge._process._process.pid, signal.SIGKILL)
+        with pytest.raises(JudgeDied):
+            judge.close()
 
 
 class EndedChild:

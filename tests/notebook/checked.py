@@ -7,19 +7,25 @@ import signal
 import subprocess
 import sys
 import tempfile
+from collections.abc import Callable
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
+
+import pytest
 
 from autograder.judge.controlled_judge import JudgeProcess
 from autograder.messages.judge_messages import SOCKET_VARIABLE
 from autograder.notebook.checking.check import check
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Iterator
 
-    from autograder.verdict import Verdict
+    from autograder.verdict import Diagnosis, Verdict
 
+Checked = Callable[[str, object], "Verdict"]
+"""Checks a subject by an exercise."""
+Diagnosed = Callable[[str, object], "Diagnosis"]
 _JUDGE = """
 import runpy, sys
 from autograder.judge import ros_setup
@@ -48,7 +54,7 @@ class _Changed:
 
 
 @contextmanager
-def a_judge(*, seed: str = "a test", change: str = "") -> Iterator[Callable[[str, object], Verdict]]:
+def a_judge(*, seed: str = "a test", change: str = "") -> Iterator[Checked]:
     """A judge for several checks of functions of this process.
 
     Args:
@@ -58,23 +64,17 @@ def a_judge(*, seed: str = "a test", change: str = "") -> Iterator[Callable[[str
     Yields:
         A function that checks a subject, and gives the verdict that the judge hands to a grader.
     """
-    before = os.environ.get(SOCKET_VARIABLE)
     with tempfile.TemporaryDirectory(prefix="judge-") as folder:
         path = Path(folder) / "judge.socket"
         with JudgeProcess(path, seed=seed, start=lambda one, two: _Changed(change, one, two)) as judge:
-            os.environ[SOCKET_VARIABLE] = str(path)
 
             def checked(exercise: str, subject: object) -> Verdict:
                 judge.open(exercise)
-                check(exercise, subject)
+                with pytest.MonkeyPatch.context() as patch:
+                    patch.setenv(SOCKET_VARIABLE, str(path))
+                    check(exercise, subject)
                 verdict = judge.close().verdict
                 assert verdict is not None
                 return verdict
 
-            try:
-                yield checked
-            finally:
-                if before is None:
-                    del os.environ[SOCKET_VARIABLE]
-                else:
-                    os.environ[SOCKET_VARIABLE] = before
+            yield checked

@@ -7,7 +7,6 @@ import logging
 import sys
 import threading
 from functools import partial
-from pathlib import Path
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
@@ -19,11 +18,11 @@ from std_msgs.msg import String
 from autograder.notebook.checking import subject_reports
 from autograder.notebook.checking.subject_reports import CapturedOutput
 
-sys.path.insert(0, str(Path(__file__).parents[1]))
-from checked import a_judge
-
 if TYPE_CHECKING:
     from collections.abc import Callable
+    from pathlib import Path
+
+    from tests.notebook.checked import Checked
 
 
 class Unchangeable:
@@ -155,7 +154,7 @@ def test_a_log_line_that_nobody_is_shown_is_not_told(told: list[str]) -> None:
 
 
 @pytest.mark.ros
-def test_a_listener_with_a_logger_of_pythons_own_passes() -> None:
+def test_a_listener_with_a_logger_of_pythons_own_passes(checked: Checked) -> None:
     log = logging.Logger("listener")
     log.addHandler(logging.StreamHandler(sys.stderr))
 
@@ -167,13 +166,12 @@ def test_a_listener_with_a_logger_of_pythons_own_passes() -> None:
         def hear(self, message: String) -> None:
             log.warning("I heard: %s", message.data)
 
-    with a_judge() as checked:
-        verdict = checked("lab_1_2.listener", ListenerNode)
+    verdict = checked("lab_1_2.listener", ListenerNode)
     assert verdict.score == verdict.max_score
 
 
 @pytest.mark.ros
-def test_a_listener_that_logs_at_a_level_that_is_not_shown_says_nothing() -> None:
+def test_a_listener_that_logs_at_a_level_that_is_not_shown_says_nothing(checked: Checked) -> None:
     class ListenerNode(Node):
         def __init__(self) -> None:
             super().__init__("listener_node")
@@ -182,8 +180,7 @@ def test_a_listener_that_logs_at_a_level_that_is_not_shown_says_nothing() -> Non
         def hear(self, message: String) -> None:
             self.get_logger().debug(message.data)  # type: ignore[no-untyped-call]
 
-    with a_judge() as checked:
-        verdict = checked("lab_1_2.listener", ListenerNode)
+    verdict = checked("lab_1_2.listener", ListenerNode)
     assert verdict.diagnosis is not None
     assert verdict.diagnosis.key == "not_logged"
     assert "debug(...) are not shown" in verdict.diagnosis.next_step

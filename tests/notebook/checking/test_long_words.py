@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import socket
-import sys
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
@@ -14,11 +12,9 @@ from std_msgs.msg import String
 from autograder.messages.judge_messages import Constructed, Started
 from autograder.notebook.checking.judge_link import JudgeLink
 
-sys.path.insert(0, str(Path(__file__).parents[1]))
-from checked import a_judge
-
 if TYPE_CHECKING:
     from autograder.messages.json_lines import Message
+    from tests.notebook.checked import Checked
 
 pytestmark = pytest.mark.ros
 
@@ -39,13 +35,12 @@ class TalkerNode(Node):
         self.i += 1
 
 
-def test_a_line_of_a_megabyte_costs_no_points() -> None:
-    with a_judge() as checked:
-        verdict = checked("lab_1_2.talker", TalkerNode)
+def test_a_line_of_a_megabyte_costs_no_points(checked: Checked) -> None:
+    verdict = checked("lab_1_2.talker", TalkerNode)
     assert verdict.score == verdict.max_score
 
 
-def test_a_conversation_that_ended_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_conversation_that_ended_is_named(monkeypatch: pytest.MonkeyPatch, checked: Checked) -> None:
     say = JudgeLink.say
 
     def hang_up(link: JudgeLink, message: Message) -> None:
@@ -54,8 +49,7 @@ def test_a_conversation_that_ended_is_named(monkeypatch: pytest.MonkeyPatch) -> 
         say(link, message)
 
     monkeypatch.setattr(JudgeLink, "say", hang_up)
-    with a_judge() as checked:
-        verdict = checked("lab_1_2.talker", TalkerNode)
+    verdict = checked("lab_1_2.talker", TalkerNode)
     assert not verdict.passed
     assert verdict.diagnosis is not None
     assert verdict.diagnosis.key == "cut_off"

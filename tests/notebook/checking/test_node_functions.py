@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import sys
 from itertools import count
-from pathlib import Path
 from queue import Queue
 from typing import TYPE_CHECKING
 
@@ -15,11 +13,9 @@ from std_msgs.msg import String
 
 from autograder.notebook.checking.subject_runs import SubjectRun
 
-sys.path.insert(0, str(Path(__file__).parents[1]))
-from checked import a_judge
-
 if TYPE_CHECKING:
     from autograder.messages.json_lines import Message
+    from tests.notebook.checked import Checked
 
 pytestmark = [pytest.mark.ros, pytest.mark.slow]
 
@@ -35,10 +31,9 @@ def hurried() -> Node:
     return talker(0.3)
 
 
-def test_a_function_that_returns_a_node_is_as_good_as_a_class() -> None:
-    with a_judge() as checked:
-        assert checked("lab_1_2.talker", talker).passed
-        wrong = checked("lab_1_2.talker", hurried)
+def test_a_function_that_returns_a_node_is_as_good_as_a_class(checked: Checked) -> None:
+    assert checked("lab_1_2.talker", talker).passed
+    wrong = checked("lab_1_2.talker", hurried)
     assert wrong.diagnosis is not None
     assert wrong.diagnosis.key == "wrong_rate"
 

@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import asyncio
-import sys
 import threading
 import time
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -16,11 +14,10 @@ from my_robot_interfaces.srv import AddTwoInts
 from rclpy.action import ActionClient
 from rclpy.executors import SingleThreadedExecutor
 
-sys.path.insert(0, str(Path(__file__).parents[1]))
-from checked import a_judge
-
 if TYPE_CHECKING:
     from collections.abc import Callable
+
+    from tests.notebook.checked import Checked, Diagnosed
 
 pytestmark = [pytest.mark.ros, pytest.mark.slow]
 
@@ -157,9 +154,8 @@ def never_where_it_is_short(client: Any, patience: float) -> bool:
         until_a_thread_has_slept,
     ],
 )
-def test_who_keeps_the_patience_is_right(wait: Any) -> None:
-    with a_judge() as checked:
-        verdict = checked("lab_1_3.client", adder(wait))
+def test_who_keeps_the_patience_is_right(wait: Any, checked: Checked) -> None:
+    verdict = checked("lab_1_3.client", adder(wait))
     assert verdict.passed, [f"{c.name}: {c.seen}" for c in verdict.criteria if not c.passed]
 
 
@@ -189,11 +185,8 @@ def greets(a: int, b: int, patience_sec: float = 5.0) -> None:
         ),
     ],
 )
-def test_who_waits_by_another_limit_is_wrong(function: Any, diagnosis: str) -> None:
-    with a_judge() as checked:
-        verdict = checked("lab_1_3.client", function)
-    assert verdict.diagnosis is not None
-    assert verdict.diagnosis.key == diagnosis
+def test_who_waits_by_another_limit_is_wrong(function: Any, diagnosis: str, diagnosed: Diagnosed) -> None:
+    assert diagnosed("lab_1_3.client", function).key == diagnosis
 
 
 def asks_again(a: int, b: int, patience_sec: float = 5.0) -> int:
@@ -227,17 +220,17 @@ def sends_a_goal_at_once(order: int, patience_sec: float = 5.0) -> None:
     ("exercise", "function"),
     [("lab_1_3.client", adder(lambda *_: True)), ("lab_1_4.client", sends_a_goal_at_once)],
 )
-def test_a_call_before_the_server_is_there_is_told_after_one_run(exercise: str, function: Any) -> None:
-    with a_judge() as checked:
-        verdict = checked(exercise, function)
+def test_a_call_before_the_server_is_there_is_told_after_one_run(
+    exercise: str, function: Any, checked: Checked
+) -> None:
+    verdict = checked(exercise, function)
     assert verdict.diagnosis is not None
     assert verdict.diagnosis.key == "called_too_early"
     assert {moment.part for moment in verdict.timeline} == {""}
 
 
-def test_a_client_that_asks_again_finds_the_late_service() -> None:
-    with a_judge() as checked:
-        verdict = checked("lab_1_3.client", asks_again)
+def test_a_client_that_asks_again_finds_the_late_service(checked: Checked) -> None:
+    verdict = checked("lab_1_3.client", asks_again)
     found = {criterion.name: criterion.passed for criterion in verdict.criteria}
     assert found["late"]
     assert found["sum"]

@@ -22,6 +22,8 @@ from checked import a_judge
 if TYPE_CHECKING:
     from rclpy.action.server import ServerGoalHandle
 
+    from tests.notebook.checked import Checked
+
 pytestmark = [pytest.mark.ros, pytest.mark.slow]
 
 LARGEST = 46
@@ -162,9 +164,10 @@ class Fibonaccis(_Starting):
         ("lab_1_4.server", Fibonaccis),
     ],
 )
-def test_a_node_may_make_its_endpoint_once_it_is_spun(exercise: str, node: type[Node]) -> None:
-    with a_judge() as checked:
-        verdict = checked(exercise, node)
+def test_a_node_may_make_its_endpoint_once_it_is_spun(
+    exercise: str, node: type[Node], checked: Checked
+) -> None:
+    verdict = checked(exercise, node)
     assert verdict.passed, [f"{c.name}: {c.seen}" for c in verdict.criteria if not c.passed]
 
 

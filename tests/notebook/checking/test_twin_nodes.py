@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from rclpy.node import Node
 from std_msgs.msg import String
 
-from tests.notebook.checked import a_judge
+if TYPE_CHECKING:
+    from tests.notebook.checked import Checked
 
 
 class TwinNode(Node):
@@ -18,9 +21,8 @@ class TwinNode(Node):
         self.node.create_timer(0.5, lambda: self.publisher.publish(String(data="Hello, world! 0")))
 
 
-def test_a_second_node_of_the_same_name_is_named() -> None:
-    with a_judge() as checked:
-        diagnosis = checked("lab_1_2.talker", TwinNode).diagnosis
+def test_a_second_node_of_the_same_name_is_named(checked: Checked) -> None:
+    diagnosis = checked("lab_1_2.talker", TwinNode).diagnosis
     assert diagnosis is not None
     assert diagnosis.key == "never_published"
     assert "Two nodes are called talker_node" in diagnosis.text

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import sys
 import time
-from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
 import rclpy
@@ -12,8 +11,8 @@ from my_robot_interfaces.srv import AddTwoInts
 from rclpy.node import Node
 from std_msgs.msg import String
 
-sys.path.insert(0, str(Path(__file__).parents[1]))
-from checked import a_judge
+if TYPE_CHECKING:
+    from tests.notebook.checked import Checked, Diagnosed
 
 pytestmark = [pytest.mark.ros, pytest.mark.slow]
 
@@ -71,9 +70,10 @@ class DeafListener(Node):
     ("exercise", "node"),
     [("lab_1_2.talker", Talker), ("lab_1_2.listener", Listener), ("lab_1_3.server", Adder)],
 )
-def test_what_works_in_its_constructor_passes_with_a_word_on_it(exercise: str, node: type[Node]) -> None:
-    with a_judge() as checked:
-        verdict = checked(exercise, node)
+def test_what_works_in_its_constructor_passes_with_a_word_on_it(
+    exercise: str, node: type[Node], checked: Checked
+) -> None:
+    verdict = checked(exercise, node)
     assert verdict.passed, [f"{c.name}: {c.seen}" for c in verdict.criteria if not c.passed]
     assert any("does its work inside its __init__" in remark for remark in verdict.remarks)
 
@@ -82,8 +82,5 @@ def test_what_works_in_its_constructor_passes_with_a_word_on_it(exercise: str, n
     ("exercise", "node", "key"),
     [("lab_1_2.talker", HurriedTalker, "wrong_rate"), ("lab_1_2.listener", DeafListener, "never_ended")],
 )
-def test_what_is_wrong_there_is_told(exercise: str, node: type[Node], key: str) -> None:
-    with a_judge() as checked:
-        verdict = checked(exercise, node)
-    assert verdict.diagnosis is not None
-    assert verdict.diagnosis.key == key
+def test_what_is_wrong_there_is_told(exercise: str, node: type[Node], key: str, diagnosed: Diagnosed) -> None:
+    assert diagnosed(exercise, node).key == key

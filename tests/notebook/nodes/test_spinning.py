@@ -13,6 +13,7 @@ from my_robot_interfaces.action import Fibonacci
 from my_robot_interfaces.srv import AddTwoInts
 from rclpy.action import ActionServer
 from rclpy.callback_groups import ReentrantCallbackGroup
+from rclpy.executors import MultiThreadedExecutor, SingleThreadedExecutor
 from rclpy.node import Node
 
 from autograder.notebook.nodes.background_nodes import Interrupted, spinning
@@ -86,6 +87,13 @@ def test_an_interrupt_ends_the_block_in_one_line(nodes: Any, count_spin_threads:
     assert raised.value._render_traceback_() == ["Interrupted: ticker stopped."]
     assert count_spin_threads() == 0
     assert rclpy.ok()
+
+
+def test_threads_choose_the_executor(nodes: Any) -> None:
+    with spinning(nodes.Ticker()) as ticker:
+        assert isinstance(ticker.executor, SingleThreadedExecutor)
+    with spinning(nodes.Ticker(), threads=2) as ticker:
+        assert isinstance(ticker.executor, MultiThreadedExecutor)
 
 
 def test_two_threads_run_two_callbacks_at_a_time() -> None:
