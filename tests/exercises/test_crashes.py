@@ -10,18 +10,7 @@ from autograder.verdict import ASKS_FOR_INPUT
 from tests.cases import cases
 
 NO_CONTEXT = "object does not support the context manager protocol"
-NO_ASYNC = "object does not support the asynchronous context manager protocol"
-NEWER = {
-    "several": ["    with (", "    ^", f"TypeError: 'NoneType' {NO_CONTEXT}"],
-    "async": ["    async with rclpy.init():", f"TypeError: 'NoneType' {NO_ASYNC}"],
-    "3.10": ["    with rclpy.init():", "AttributeError: __enter__"],
-    "import": [
-        "    import x",
-        "ImportError: cannot import name 'TimerInfo' from 'rclpy.timer' (/x/timer.py)",
-    ],
-    "endpoints": ["    f()", "AttributeError: 'A' object has no attribute 'get_servers_info_by_service'"],
-    "durations": ["    a + b", "TypeError: unsupported operand type(s) for +: 'Duration' and 'Duration'"],
-}
+NEWER = cases(__file__, "NEWER")
 OLD = {
     "a lock that is None": ["    with self.lock:", f"TypeError: 'NoneType' {NO_CONTEXT}"],
     "a class of one's own": ["    with Stopwatch() as watch:", f"TypeError: 'Stopwatch' {NO_CONTEXT}"],
@@ -77,36 +66,11 @@ def test_of_two_tracebacks_that_two_threads_print_at_once_the_place_is_told_and_
     )
 
 
-DESTRUCTOR = [
-    "Exception ignored in: <function Executor.__del__ at 0x7f46>",
-    "Traceback (most recent call last):",
-    '  File "/opt/ros/jazzy/rclpy/executors.py", line 257, in __del__',
-    "    if self._sigint_gc is not None:",
-    "AttributeError: 'SingleThreadedExecutor' object has no attribute '_sigint_gc'",
-]
+DESTRUCTOR = cases(__file__, "DESTRUCTOR")
 
 
 @pytest.mark.parametrize(
-    ("lines", "key"),
-    [
-        (
-            [
-                '  File "/opt/ros/jazzy/rclpy/guard_condition.py", line 23, in __init__',
-                "    with self._context.handle:",
-                f"TypeError: 'NoneType' {NO_CONTEXT}",
-            ],
-            "not_initialized",
-        ),
-        (
-            [
-                '  File "/opt/ros/jazzy/rclpy/node.py", line 1952, in destroy_node',
-                "    while self._publishers:",
-                "          ^^^^^^^^^^^^^^^^",
-                "AttributeError: 'Talker' object has no attribute '_publishers'. Did you mean: 'publishers'?",
-            ],
-            "super_init_missing",
-        ),
-    ],
+    ("lines", "key"), cases(__file__, "what_a_destructor_raised_does_not_hide_what_ended_the_program")
 )
 def test_what_a_destructor_raised_does_not_hide_what_ended_the_program(lines: list[str], key: str) -> None:
     shown = _shown([*lines, *DESTRUCTOR])
@@ -140,41 +104,7 @@ def test_the_innermost_line_tells(rest: str, expected: bool) -> None:
 
 @pytest.mark.parametrize(
     ("lines", "key"),
-    [
-        (["    f()", "AttributeError: 'Talker' object has no attribute '_handle_message'"], "crashed"),
-        (["    f()", "AttributeError: 'Talker' object has no attribute '_parameters'"], "super_init_missing"),
-        (["    self.say('x')", "TypeError: 'NoneType' object is not callable"], "crashed"),
-        (["    with self.make_lock:", f"TypeError: 'method' {NO_CONTEXT}"], "crashed"),
-        (["    with self.handle:", f"TypeError: 'method' {NO_CONTEXT}"], "handle_overwritten"),
-        (
-            ["    self.speed = 1", "AttributeError: property 'speed' of 'Robot' object has no setter"],
-            "crashed",
-        ),
-        (
-            [
-                "    self.make_callback(1)",
-                "TypeError: R.make_callback() takes 1 positional argument but 2 were",
-            ],
-            "crashed",
-        ),
-        (
-            ["    self.send_response(1)", "TypeError: unsupported operand type(s) for +: 'A' and 'A'"],
-            "crashed",
-        ),
-        (
-            [
-                "    pass",
-                '  File "/opt/ros/jazzy/rclpy/service.py", line 9, in send_response',
-                "    raise TypeError()",
-                "TypeError",
-            ],
-            "callback_returned_none",
-        ),
-        (
-            ["    robot.spin_left()", "AttributeError: 'NoneType' object has no attribute 'spin_left'"],
-            "crashed",
-        ),
-    ],
+    cases(__file__, "what_happens_in_a_line_of_ones_own_is_not_taken_for_a_mistake_with_ros"),
 )
 def test_what_happens_in_a_line_of_ones_own_is_not_taken_for_a_mistake_with_ros(
     lines: list[str], key: str

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from autograder.kit.in_words import counted, first_difference, of_its_kind, shortened, visible
+from tests.cases import cases
 
 LINE = "Hello, ROS 2! From SimpleNode."
 
@@ -14,22 +15,7 @@ def test_one_is_not_many(number: int, words: str) -> None:
     assert counted(number, "message") == words
 
 
-@pytest.mark.parametrize(
-    ("said", "words"),
-    [
-        (LINE, ""),
-        (
-            "Hello, ROS 2! from SimpleNode.",
-            "After “Hello, ROS 2! ” the task has “From SimpleNode.”, and yours has “from SimpleNode.”.",
-        ),
-        (
-            "Hello, ROS 2! From SimpleNode",
-            "After “ From SimpleNode” the task has “.”, and yours has nothing more.",
-        ),
-        (LINE + "!", "After “From SimpleNode.” the task has nothing more, and yours has “!”."),
-        ("hello", "At the beginning the task has “Hello, ROS 2! Fr…”, and yours has “hello”."),
-    ],
-)
+@pytest.mark.parametrize(("said", "words"), cases(__file__, "the_first_difference_is_quoted_from_both"))
 def test_the_first_difference_is_quoted_from_both(said: str, words: str) -> None:
     told = first_difference(said, LINE)
     assert told.startswith(words)

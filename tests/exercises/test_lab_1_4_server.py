@@ -109,20 +109,7 @@ def test_a_server_without_a_pause_is_not_canceled_by_the_machine_s_being_busy(ot
     assert advice[0] == "done_at_once"
 
 
-@pytest.mark.parametrize(
-    ("feedback", "right"),
-    [
-        ([[0, 1], [0, 1, 1], [0, 1, 1, 2], [0, 1, 1, 2, 3]], True),
-        ([[0, 1, 1], [0, 1, 1, 2], [0, 1, 1, 2, 3], FIBONACCI], True),
-        ([[0, 1, 1], [0, 1, 1, 2], [0, 1, 1, 2, 3]], True),
-        ([], False),
-        ([FIBONACCI], False),
-        ([[1], [2], [3], [5]], False),
-        ([[0, 1, 1], [0, 1, 1], [0, 1, 1, 2], [0, 1, 1, 2, 3]], False),
-        ([[0, 1, 1], [0, 1, 1, 2, 3]], False),
-        ([[0, 1, 1], [0, 1, 1, 2]], False),
-    ],
-)
+@pytest.mark.parametrize(("feedback", "right"), cases(__file__, "feedback_grows_by_one_number"))
 def test_feedback_grows_by_one_number(feedback: list[list[int]], right: bool) -> None:
     seen = evidence([*goal(0, 5, feedback=feedback), *RIGHT[len(goal(0, 5)) :]])
     assert ("feedback" not in failed(seen)) is right

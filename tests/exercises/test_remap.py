@@ -131,13 +131,7 @@ def test_what_is_no_packages_program_is_not_started_again(argv: tuple[str, ...])
 
 @pytest.mark.parametrize(
     ("started", "alone"),
-    [
-        (("-m", "my_robot_pkg.talker"), ("speak", "--ros-args")),
-        (("-u", "-m", "my_robot_pkg.talker", "7"), ("speak", "7", "--ros-args")),
-        (("/home/student/ros2_ws/src/my_robot_pkg/my_robot_pkg/hear.py",), ("hear", "--ros-args")),
-        (("my_robot_pkg/hear.py",), ("hear", "--ros-args")),
-        ((f"{PATH}/talker",), ("talker", "--ros-args")),
-    ],
+    cases(__file__, "a_module_or_file_is_started_again_as_the_program_that_setup_py_makes_of_it"),
 )
 def test_a_module_or_file_is_started_again_as_the_program_that_setup_py_makes_of_it(
     started: tuple[str, ...], alone: tuple[str, ...]

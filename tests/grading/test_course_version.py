@@ -21,19 +21,12 @@ from autograder.grading.course_version import (
     part_of,
 )
 from autograder.grading.running import task_dispatcher
+from tests.cases import cases
 from tests.reach.imports import imports_of
 
 ROOT = Path(__file__).resolve().parents[2]
 # What git keeps of these counts. That list is not taken from the code under test.
-PLACES = (
-    "autograder",
-    "environment",
-    ":(glob)solutions/*/*/*.py",
-    ":(glob)solutions/*/*/*.reference.json",
-    ":(glob)solutions/*/*/*.ticket.toml",
-    ":(glob)solutions/*/chapter.toml",
-    "solutions/ros2_ws",
-)
+PLACES = cases(__file__, "PLACES")
 
 
 @pytest.fixture

@@ -18,6 +18,7 @@ from autograder.cli import cli
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.student.known_classes import CONFIG_NAME, reason_against
 from environment.python_child import installed_program
+from tests.cases import cases
 
 if TYPE_CHECKING:
     from tiny_class import TinyClass
@@ -28,19 +29,7 @@ SETTINGS = (
     *("sitecustomize.py", "usercustomize.py", "conftest.py", "setup.py", ".jupytext.py", "ipython_config.py"),
     *("jupyter_config.py", "jupyter_server_config.py", "jupyter_nbconvert_config.py", "nbgrader_config.py"),
 )
-PROGRAMS = (
-    "python3",
-    "python",
-    "autograder",
-    "bwrap",
-    "rm",
-    "git",
-    "cat",
-    "cksum",
-    "dirname",
-    "readlink",
-    "sh",
-)
+PROGRAMS = cases(__file__, "PROGRAMS")
 TEMPLATES = ("lab", "base", "classic", "autograder_feedback", "feedback")
 
 

@@ -14,7 +14,7 @@ from autograder.kit.counterparts import Qos
 from autograder.kit.evidence import Event, Evidence, Part, Reference, Variant
 from autograder.kit.oracle.same_as_solution import SameAsSolution, Sets, To
 from autograder.kit.oracle.steps import Step, Turn, answer_delays
-from tests.cases import cases
+from tests.cases import cases, named_cases
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -212,15 +212,7 @@ def test_a_rate_that_the_task_asks_for_is_kept(
     assert seen in came
 
 
-@pytest.mark.parametrize(
-    "moments",
-    [
-        (0, 1, 2, 3, 7.5, 8.5, 9.5),
-        (0, 1, 1.3, 2, 3, 4, 5, 6, 7),
-        (0, 0.95, 2, 2.95, 4, 4.95, 6),
-    ],
-    ids=["a silence", "one more at an input", "a clock that moves in steps"],
-)
+@pytest.mark.parametrize("moments", named_cases(__file__, "a_rate_is_kept_if_the_usual_interval_is_right"))
 def test_a_rate_is_kept_if_the_usual_interval_is_right(moments: Sequence[float]) -> None:
     assert rated(*moments)[0]
 

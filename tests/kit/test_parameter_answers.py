@@ -8,6 +8,7 @@ import pytest
 
 from autograder.kit.evidence import Event
 from autograder.kit.oracle.parameter_answers import described, parameter_in_words, received
+from tests.cases import cases
 
 ONE = {"type": 3, "floating_point_range": [{"from_value": 0.0, "to_value": 2.0}], "integer_range": []}
 TAKEN: dict[str, Any] = {"successful": True, "reason": ""}
@@ -19,29 +20,13 @@ def answered(service: str, **fields: object) -> list[Event]:
     return [other, Event(0.2, "answered", f"/limits/{service}", {"fields": fields}), other]
 
 
-@pytest.mark.parametrize(
-    ("descriptors", "words"),
-    [
-        ([ONE], "double from 0 to 2"),
-        ([], "not declared"),
-        ([ONE, ONE], "2 descriptions of one parameter"),
-        ([{**ONE, "type": 200}], "not declared"),
-        ([{**ONE, "floating_point_range": []}], "double without a range"),
-    ],
-)
+@pytest.mark.parametrize(("descriptors", "words"), cases(__file__, "a_description_is_noted_whatever_it_is"))
 def test_a_description_is_noted_whatever_it_is(descriptors: list[Any], words: str) -> None:
     assert parameter_in_words(described(answered("describe_parameters", descriptors=descriptors))) == words
 
 
 @pytest.mark.parametrize(
-    ("results", "words"),
-    [
-        ([TAKEN], "taken"),
-        ([{"successful": False, "reason": "too fast"}], "refused with a reason"),
-        ([{"successful": False, "reason": ""}], "refused without a reason"),
-        ([], "0 results for one value"),
-        ([TAKEN, TAKEN, TAKEN], "3 results for one value"),
-    ],
+    ("results", "words"), cases(__file__, "what_became_of_a_value_is_noted_whatever_it_is")
 )
 def test_what_became_of_a_value_is_noted_whatever_it_is(results: list[Any], words: str) -> None:
     assert parameter_in_words(received(answered("set_parameters", results=results))) == words

@@ -62,17 +62,7 @@ def part(robot: Robot, *said: str, name: str = "", at: float = 5.0, ending: str 
     return Part(name, vars(robot), [Event(0.2, "interface", "graph", {"nodes": ["/me"]}), *lines, *ends])
 
 
-@pytest.mark.parametrize(
-    "said",
-    [
-        (SAID,),
-        ("looking", "{this} is it:", SAID),
-        ('{"robot": "/mia", "topic": "/mia/go"}',),
-        ("{", '  "robot": "/mia",', '  "topic": "/mia/go"', "}"),
-        ("OrderedDict([('robot', 'mia'), ('topic', ['/mia/go'])])",),
-        ("{'robot': None, 'topic': '/mia/go'}", SAID),
-    ],
-)
+@pytest.mark.parametrize("said", cases(__file__, "a_dictionary_counts_however_it_is_printed"))
 def test_a_dictionary_counts_however_it_is_printed(said: tuple[str, ...]) -> None:
     search = Search(part(MIA, *said))
     assert search.has()

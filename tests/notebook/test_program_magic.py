@@ -13,6 +13,7 @@ from jupyter_client.manager import start_new_kernel
 from autograder.masters.code_cells import COPIED
 from autograder.notebook import program_magic
 from autograder.notebook.program_magic import NotRunError, NotWrittenError, with_definitions
+from tests.cases import named_cases
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -40,47 +41,7 @@ def test_other_cells_give_only_helpers(cell: str) -> None:
     assert with_definitions(PROGRAM, [cell, own]) == PROGRAM.replace(f"{COPIED}Talker", own)
 
 
-@pytest.mark.parametrize(
-    ("cells", "has"),
-    [
-        pytest.param(
-            ["import math\nclass Talker(Node):\n    pi = math.pi"],
-            "import math\nimport rclpy",
-            id="an import",
-        ),
-        pytest.param(
-            ["import numpy as np", "class Talker(Node):\n    pi = np.pi"],
-            "import numpy as np\nimport rclpy",
-            id="an import of another cell",
-        ),
-        pytest.param(
-            ["PERIOD = 0.5\nclass Talker(Node):\n    period = PERIOD"],
-            "PERIOD = 0.5\n\n\nclass",
-            id="a constant",
-        ),
-        pytest.param(
-            ["def a():\n    return b()\ndef b():\n    return 1\nclass Talker(Node):\n    one = a()"],
-            "def b():\n    return 1\n\n\ndef a():\n    return b()\n\n\nclass",
-            id="helpers of helpers",
-        ),
-        pytest.param(
-            ["class Chatter(Node):\n    n = LONG", "LONG = 10", "class Talker(Chatter):\n    pass"],
-            "LONG = 10\n\n\nclass Chatter(Node):\n    n = LONG\n\n\nclass Talker(Chatter)",
-            id="a base class in another cell, and what that uses",
-        ),
-        pytest.param(["@final\nclass Talker(Node):\n    pass"], "@final\nclass Talker", id="a decorator"),
-        pytest.param(
-            ["class Talker(Node):\n    node = Node"],
-            "from rclpy.node import Node\n\n\nclass",
-            id="nothing twice",
-        ),
-        pytest.param(
-            ["def talk():\n    talk()\nclass Talker(Node):\n    t = talk"], "def talk", id="recursion"
-        ),
-        pytest.param([OLD, "class Talker(Node:"], OLD, id="a cell that is not Python"),
-        pytest.param([OLD, "%%writefile a.py\nclass Talker: ..."], OLD, id="a cell with a magic"),
-    ],
-)
+@pytest.mark.parametrize(("cells", "has"), named_cases(__file__, "what_the_definition_uses_comes_along"))
 def test_what_the_definition_uses_comes_along(cells: list[str], has: str) -> None:
     text = with_definitions(PROGRAM, cells)
     assert has in text

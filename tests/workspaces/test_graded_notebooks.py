@@ -17,6 +17,7 @@ from autograder.grading.running import execution_backends
 sys.path.insert(0, str(Path(__file__).parent))
 from graded import gradable, graders_judge, judged_answer
 
+from tests.cases import cases
 from tests.tiers import asked_for
 
 if TYPE_CHECKING:
@@ -27,14 +28,7 @@ pytestmark = [pytest.mark.ros, pytest.mark.slow]
 needs_boxes = pytest.mark.skipif(bool(why_impossible()), reason=f"no boxes here: {why_impossible()}")
 NOTEBOOKS = ("lab_1_1", "lab_1_2", "lab_1_3", "exercise_1_1")
 HANDED_OUT = "lab_1_1"
-ANSWERS = (
-    "lab_1_1.hello/wrong/entry_point_module.workspace",
-    "lab_1_2.programs/right/the_labs_own.workspace",
-    "lab_1_2.programs/wrong/unknown_ignores_ctrl_c.workspace",
-    "exercise_1_1.remap/wrong/only_one_remapped_listener.launch.xml",
-    "exercise_1_1.package/right/without_programs.workspace",
-    "exercise_1_1.package/wrong/launch_elsewhere_outside_share.workspace",
-)
+ANSWERS = cases(__file__, "ANSWERS")
 
 
 @pytest.fixture(scope="module")

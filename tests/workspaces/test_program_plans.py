@@ -98,20 +98,7 @@ SHARE = f"share/{PACKAGE}"
 
 
 @pytest.mark.parametrize(
-    ("files", "missing", "launched"),
-    [
-        ((), "remap.launch", ""),
-        ((f"{SHARE}/launch/remap.launch.py",), "", f"{SHARE}/launch/remap.launch.py"),
-        ((f"{SHARE}/launch/remap.launch.yaml",), "", f"{SHARE}/launch/remap.launch.yaml"),
-        ((f"{SHARE}/remap.launch.xml",), "", f"{SHARE}/remap.launch.xml"),  # ros2 launch finds it there, too
-        ((f"{SHARE}/a.launch.py", f"{SHARE}/launch/remap_launch.py"), "remap.launch", ""),
-        (("launch/remap.launch.py", f"share/other/{PACKAGE}/remap.launch.py"), "remap.launch", ""),
-        (
-            (f"{SHARE}/launch/remap.launch.xml", f"{SHARE}/b/remap.launch.py"),
-            "",
-            f"{SHARE}/b/remap.launch.py",
-        ),
-    ],
+    ("files", "missing", "launched"), cases(__file__, "what_the_package_has_installed_is_launched")
 )
 def test_what_the_package_has_installed_is_launched(
     files: tuple[str, ...], missing: str, launched: str, tmp_path: Path

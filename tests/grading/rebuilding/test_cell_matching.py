@@ -16,6 +16,7 @@ from autograder.execution.executed_cells import CellType
 from autograder.grading.rebuilding.notebook_parsing import parse
 from autograder.grading.rebuilding.notebook_rebuilding import rebuild
 from autograder.grading.rebuilding.submitted_notebook import SubmittedCell
+from tests.cases import cases
 from tests.drawn import drawn
 
 if TYPE_CHECKING:
@@ -23,17 +24,7 @@ if TYPE_CHECKING:
 
 QUESTION = "Why can many nodes publish on one topic?"
 FILE = "ws/src/talker.py"
-CELLS = {
-    "given-setup": "class Node:\n    pass",
-    "Talker": 'class Talker(Node):\n    """Says hello."""\n\n    says = "nothing"\n    # TODO: say hello.',
-    "given-try": "Talker()",
-    "check-talker": 'seen["talker"] = Talker.says',
-    "hears": 'def hears() -> str:\n    return "nothing"\n    # TODO: return what was heard.',
-    "check-hears": 'seen["hears"] = hears()',
-    "rule": 'rule = "a:=a"\n# TODO: write another one.',
-    "talker_py": f"%%writefile {FILE}\nimport sys\n# TODO: copy your class.",
-    "check-files": 'seen["rule"], seen["file"] = rule, files.get("' + FILE + '", "").strip()',
-}
+CELLS = cases(__file__, "CELLS")
 ANSWERS = {
     "Talker": 'class Talker(Node):\n    says = "hello"',
     "hears": 'def hears():\n    return "hello"',

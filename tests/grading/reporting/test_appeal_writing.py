@@ -28,6 +28,7 @@ from autograder.judge import evidence_files
 from autograder.judge.verdicts import deciding
 from autograder.kit.evidence import Event, Evidence, Part
 from autograder.messages.judge_messages import Report
+from tests.cases import cases
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -122,14 +123,7 @@ def test_the_page_of_the_student_is_in_the_file(graded: TinyClass) -> None:
     assert files(write_appeal(graded.path, "ada", ID))["page.html"] == page.read_bytes()
 
 
-@pytest.mark.parametrize(
-    ("student", "exercise", "words"),
-    [
-        ("ada", "lab_1_2.talkr", "did you mean lab_1_2.talker"),
-        ("ben", ID, "No check of lab_1_2.talker by 'ben' was graded in this class"),
-        ("ada", "lab_1_2.listener", "The state in the table is: failed, wrong_text. It says something else."),
-    ],
-)
+@pytest.mark.parametrize(("student", "exercise", "words"), cases(__file__, "what_is_not_there_is_named"))
 def test_what_is_not_there_is_named(graded: TinyClass, student: str, exercise: str, words: str) -> None:
     done = CliRunner().invoke(cli, ["appeal", str(graded.path), student, exercise])
     assert done.exit_code == 2

@@ -8,6 +8,7 @@ import pytest
 from click.testing import CliRunner
 
 from autograder.cli import cli
+from tests.cases import cases
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -15,19 +16,7 @@ if TYPE_CHECKING:
     from tiny_class import FakeEngine, TinyClass
 
 
-@pytest.mark.parametrize(
-    ("command", "output", "said"),
-    [
-        (("export", "--to", "csv"), "file", "file is not a folder"),
-        (("export", "--to", "csv"), "file/below", "file is not a folder"),
-        (("export", "--to", "csv"), "with", "with/students.csv is a folder"),
-        (("report",), "folder", "folder is a folder"),
-        (("report",), "file/report.html", "file is not a folder"),
-        (("similar",), "folder", "folder is a folder"),
-        (("similar",), "file/similar.html", "file is not a folder"),
-        (("similar",), "x" * 300, "cannot be written"),
-    ],
-)
+@pytest.mark.parametrize(("command", "output", "said"), cases(__file__, "what_stands_in_the_way_is_named"))
 def test_what_stands_in_the_way_is_named(
     tiny: TinyClass, fake_engine: FakeEngine, tmp_path: Path, command: tuple[str, ...], output: str, said: str
 ) -> None:

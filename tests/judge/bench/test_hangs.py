@@ -9,6 +9,7 @@ import pytest
 from autograder.judge.bench.subject_time import Unanswered
 from autograder.kit.bench import Pace
 from autograder.kit.evidence import Reference
+from tests.cases import named_cases
 
 if TYPE_CHECKING:
     from conftest import BenchOf
@@ -29,14 +30,7 @@ REFERENCE = Reference("lab.listener", {"subscription": {"/chatter": "std_msgs/ms
 
 
 @pytest.mark.parametrize(
-    ("does", "spins", "unanswered"),
-    [
-        ("print(heard.data, flush=True)", "rclpy.spin(node)", False),
-        ("None", "rclpy.spin(node)", False),
-        ("None", "time.sleep(60)", True),
-        ("time.sleep(60)", "rclpy.spin(node)", True),
-    ],
-    ids=["works", "silent, and spun", "never spun", "hangs in its callback"],
+    ("does", "spins", "unanswered"), named_cases(__file__, "a_silent_subject_is_asked_at_the_end_of_its_run")
 )
 def test_a_silent_subject_is_asked_at_the_end_of_its_run(
     bench_of: BenchOf, does: str, spins: str, unanswered: bool

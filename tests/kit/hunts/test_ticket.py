@@ -10,6 +10,7 @@ import pytest
 from autograder.judge import evidence_files
 from autograder.kit.evidence import Event, Evidence
 from autograder.kit.hunts.ticket import question, repair
+from tests.cases import named_cases
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -61,15 +62,7 @@ def test_after_the_pass_the_card_tells_the_cause_how_to_see_it_sooner_and_where_
     assert [remark(Evidence([], reference)) for remark in remarks] == ["", "", ""]
 
 
-@pytest.mark.parametrize(
-    ("old", "new", "said"),
-    [
-        ('sooner = "The list of topics shows it."', "", "missing required field `sooner`"),
-        ("sooner", "later", "unknown field `later`"),
-        ("judged_by = ", "judged_by ", "Expected"),
-    ],
-    ids=["a missing field", "an unknown one", "no TOML"],
-)
+@pytest.mark.parametrize(("old", "new", "said"), named_cases(__file__, "a_ticket_of_another_form_is_refused"))
 def test_a_ticket_of_another_form_is_refused(lab: Path, old: str, new: str, said: str) -> None:
     file = lab / "silent.ticket.toml"
     file.write_text(file.read_text().replace(old, new))

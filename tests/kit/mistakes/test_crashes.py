@@ -16,67 +16,7 @@ if TYPE_CHECKING:
 
     from autograder.kit.model import Advice
 
-TRANSITION = "RCLError: Failed to update goal state: goal_handle attempted invalid transition from state"
-SAID = {
-    "SyntaxError: incomplete input": "Count the brackets",
-    "SyntaxError: invalid syntax": "just before it",
-    "SyntaxError: invalid character '“' (U+201C)": "quotation marks are",
-    "IndentationError: expected an indented block after 'if' statement on line 4": "begin in the same column",
-    "SyntaxError: 'return' outside function": "indent the lines that belong to it",
-    "ImportError: cannot import name 'Strng' from 'std_msgs.msg' (/opt/ros/x/__init__.py)": "does not contain Strng",
-    "AttributeError: module 'rclpy' has no attribute 'Node'": "`from rclpy.node import Node`",
-    "NameError: name 'time' is not defined": "Write import time",
-    "NameError: name 'std_msgs' is not defined": "String instead of std_msgs.msg.String",
-    "NameError: name 'self' is not defined": "such as node or client",
-    "NameError: name 'count' is not defined. Did you mean: 'self.count'?": "Write self.count",
-    "NameError: name 'comand' is not defined. Did you mean: 'command'?": "it knows command",
-    "NameError: name 'publisher' is not defined": "also in the line that sets it",
-    "NameError: name 'linear' is not defined": "A Twist has two parts",
-    "UnboundLocalError: local variable 'i' referenced before assignment": "write self.i",
-    "AttributeError: 'Talker' object has no attribute 'cuont'. Did you mean: 'count'?": "write count.",
-    "AttributeError: 'Talker' object has no attribute 'Counter'": "Talker has no Counter at this point",
-    "AttributeError: 'Talker' object has no attribute 'publisher'. Did you mean: 'publishers'?": "self.publisher = ...",
-    "AttributeError: 'Fibonacci_GetResult_Response' object has no attribute 'sequence'": "answer.result.sequence",
-    "rclpy._rclpy_pybind11.InvalidHandle: cannot use Destroyable because destruction was requested": "destroy_node()",
-    "AttributeError: 'Timer' object has no attribute 'publish'": "has the type Timer",
-    "AttributeError: 'NoneType' object has no attribute 'order'": "has run before this line",
-    "TypeError: 'NoneType' object is not iterable": "such as the append of a list",
-    "AttributeError: 'function' object has no attribute 'add_done_callback'": "a method that your code did not call",
-    "TypeError: 'method' object is not iterable": "Write parentheses after the method's name",
-    "AttributeError: type object 'GoalResponse' has no attribute 'Accept'": "written in capital letters",
-    'TypeError: can only concatenate str (not "NoneType") to str': "Put the value into an f-string",
-    "TypeError: unsupported operand type(s) for +: 'int' and 'str'": "convert the string to a number",
-    "TypeError: 'Fibonacci_Result' object is not iterable": "answer.result.sequence",
-    "TypeError: Talker is not a Node: write class Talker(Node)": "Write class Talker(Node):",
-    "TypeError: rclpy_logging_rcutils_log(): incompatible function arguments. The": "info(f'{message.data}')",
-    "TypeError: ask() missing 3 required positional arguments: 'a', 'b', and 'patience_sec'": "call of ask with its",
-    "TypeError: ActionServer.__init__() takes 5 positional arguments but 7 were given": "call of ActionServer with its",
-    "TypeError: spin() got an unexpected keyword argument 'nod'": "the same names before each =",
-    "rclpy.exceptions.InvalidTopicNameException: Invalid topic name": "or end with a slash",
-    "ValueError: Failed to create action client due to invalid topic name 'fibonacci/' : topic name must not contain "
-    "repeated '/'": "or end with a slash",
-    "IndexError: pop from empty list": "none is left",
-    "StopIteration": "none is left",
-    "ValueError: invalid literal for int() with base 10: '{five}'": "'{five}' is not a number",
-    "ValueError: could not convert string to float: 'five'": "'five' is not a number",
-    f"{TRANSITION} CANCELED with event SUCCEED, at goal_handle.c:100": "End each goal exactly once",
-    "LookupError: nothing": "Read the traceback from the bottom",
-    "TypeError: Node.__init__() missing 1 required positional argument: 'node_name'": "Write def __init__(self):",
-    "TypeError: descriptor '__init__' requires a 'super' object": "super().__init__('your_node_name') the first line",
-    "TypeError: Expected QoSProfile or int, but received <class 'str'>: 10": "do not put the 10 in quotation marks",
-    "TypeError: Expected <class 'std_msgs.msg._string.String'>, got <class 'std_msgs.msg._string.Metaclass_String'>": (
-        "not an object of the type String"
-    ),
-    "AttributeError: type object 'type' has no attribute '_TYPE_SUPPORT'": "Python's own str is not String",
-    "AssertionError: The 'linear' field must be a sub message of type 'Vector3'": "whole name: command.linear.x = 0.5",
-    "AssertionError: The 'data' field must be of type 'str'": "str(...)",
-    "SystemError: <built-in method publish of x> returned a result with an exception set": "or a number that is too",
-    "AttributeError: 'Fibonacci_Feedback' object attribute 'partial_sequence' is read-only": "Run All Cells",
-    "AttributeError: 'String' object has no attribute 'date'": "single field, `data`",
-    "AttributeError: 'AddTwoInts_Response' object has no attribute 'a'": "the request first and then the response",
-    "AttributeError: 'Fibonacci_Feedback' object has no attribute 'sequence'": "Fibonacci_Feedback has no field called",
-    "AttributeError: 'Fibonacci_FeedbackMessage' object has no attribute 'goal_handle'": "as in self.goal_handle",
-}
+SAID = cases(__file__, "SAID")
 
 
 @pytest.mark.parametrize("last", SAID)

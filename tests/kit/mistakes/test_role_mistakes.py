@@ -25,6 +25,7 @@ from autograder.kit.runners import (
     WorkspaceReport,
     workspace_report_line,
 )
+from tests.cases import named_cases
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -212,14 +213,7 @@ def test_two_servers_never_pass_by_the_luck_of_the_right_one() -> None:
 
 
 @pytest.mark.parametrize(
-    ("value", "words"),
-    [
-        (5e-324, "linear.x arrives as 4.94066e-324"),
-        (4e-323, "linear.x arrives as 3.95253e-323"),
-        (0.0, ""),
-        (1e-9, ""),
-    ],
-    ids=["an int, as CPython 3.11 writes it", "as 3.12 does", "standstill", "a tiny speed"],
+    ("value", "words"), named_cases(__file__, "a_whole_number_in_a_field_for_floats_is_named_as_that")
 )
 def test_a_whole_number_in_a_field_for_floats_is_named_as_that(value: float, words: str) -> None:
     reference = Reference("a.b", {"publisher": {"/cmd_vel": "geometry_msgs/msg/Twist"}})

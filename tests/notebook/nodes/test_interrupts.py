@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from tests.cases import cases
+
 if TYPE_CHECKING:
     from tests.notebook.conftest import Notebook
 
@@ -48,14 +50,7 @@ while not node.heard:
     rclpy.spin_once(node)
 print(rclpy.ok(), node.heard.pop().data)
 """
-WAITS = [
-    "rclpy.spin(node)",
-    "rclpy.spin_once(node)",
-    "rclpy.spin_until_future_complete(node, Future())",
-    "spin_in(SingleThreadedExecutor(), node)",
-    "spin_in(MultiThreadedExecutor(2), node)",
-    'wait_for_message(String, node, "other")',
-]
+WAITS = cases(__file__, "WAITS")
 
 
 @pytest.mark.parametrize("wait", WAITS)

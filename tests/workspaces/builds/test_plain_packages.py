@@ -21,6 +21,8 @@ from tests.tiers import BUILT
 sys.path.insert(0, str(Path(__file__).parent))
 from made_workspaces import interface_package, python_package
 
+from tests.cases import cases
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
@@ -131,30 +133,7 @@ READS = "version=open('tiny_pkg/__init__.py').read() or '0.0.0'"
 
 
 @pytest.mark.parametrize(
-    ("old", "new"),
-    [
-        ("version='0.0.0'", READS),
-        ("version='0.0.0'", "version=__import__('tiny_pkg').VERSION"),
-        ("version='0.0.0'", "version='{}.0'.format(0)"),
-        ("version='0.0.0'", "version='0.0.%d' % 0"),
-        ("version='0.0.0'", "version=f'{0}.0'"),
-        ("version='0.0.0'", "version='0.0.0', scripts=['tiny_pkg/hello.py']"),
-        ("version='0.0.0'", "version='0.0.0', package_data={'tiny_pkg': ['*.py']}"),
-        ("version='0.0.0'", "version='0.0.0', cmdclass={}"),
-        ("version='0.0.0'", "version='0.0.0', package_dir={'': '.'}"),
-        ("version='0.0.0'", "**{'version': '0.0.0'}"),
-        ("version='0.0.0'", "version='0.0.0' if setup else ''"),
-        ("\nsetup(", "\nprint('building')\nsetup("),
-        ("\nsetup(", "\nimport tiny_pkg\nsetup("),
-        ("\nsetup(", "\nfrom glob import glob\nsetup("),
-        ("\nsetup(", "\nfrom tiny_pkg import setup\nsetup("),
-        ("\nsetup(", "\nfrom setuptools import Command as setup\nsetup("),
-        ("\nsetup(", "\nsetup.x = 1\nsetup("),
-        ("\nsetup(", "\nfor _ in (): pass\nsetup("),
-        ("\nsetup(", "\nsetup("),
-        ("from setuptools", "# -*- coding: utf-7 -*-\n# +AAo-import tiny_pkg\nfrom setuptools"),
-        (")\n", ""),
-    ],
+    ("old", "new"), cases(__file__, "a_setup_that_might_do_something_else_is_built_in_full")
 )
 def test_a_setup_that_might_do_something_else_is_built_in_full(workspace: Path, old: str, new: str) -> None:
     file = workspace / "src" / "tiny_pkg" / "setup.py"
