@@ -89,9 +89,7 @@ RETURNED = Event(0.01, "subject", "returned", {"value": "None"})
         pytest.param([PATIENT, GREETS, RETURNED], "nothing_on_the_graph", id="is told how long to wait"),
         pytest.param([SEEN, GREETS, RETURNED], "gave_up_too_early", id="has a node"),
         pytest.param(
-            [GREETS, Event(0.0, "looked", "graph"), RETURNED],
-            "gave_up_too_early",
-            id="waits for a moment",
+            [GREETS, Event(0.0, "looked", "graph"), RETURNED], "gave_up_too_early", id="waits for a moment"
         ),
     ],
 )

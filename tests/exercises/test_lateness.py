@@ -188,11 +188,7 @@ def test_a_patient_client_of_an_action_is_started_again_with_less_to_wait_for(
 
 @pytest.mark.parametrize(
     ("runs", "met"),
-    [
-        ([DONE], [LATE]),
-        ([MISSED_BY_A_CLIENT_OF_IT] * 2, [LATE, SOONER]),
-        ([MISSED_ANSWER], [LATE]),
-    ],
+    [([DONE], [LATE]), ([MISSED_BY_A_CLIENT_OF_IT] * 2, [LATE, SOONER]), ([MISSED_ANSWER], [LATE])],
 )
 def test_what_a_client_missed_in_the_fast_look_is_tried_again_in_real_time(
     runs: list[list[Event]], met: list[tuple[float, float]]

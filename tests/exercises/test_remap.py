@@ -34,11 +34,7 @@ def _evidence(*started: int, talkers: dict[int, str], listener: int) -> Evidence
         1.0,
         "interface",
         "",
-        {
-            "publisher": dict.fromkeys(talkers.values(), STRING),
-            "subscription": {NEW: STRING},
-            "ends": ends,
-        },
+        {"publisher": dict.fromkeys(talkers.values(), STRING), "subscription": {NEW: STRING}, "ends": ends},
     )
     return Evidence([Part("launching", {"text": "status 1"}, [*launched, interface])], REFERENCE)
 

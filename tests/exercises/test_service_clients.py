@@ -378,8 +378,7 @@ def test_a_client_that_hangs_after_its_call_is_not_said_to_have_made_none() -> N
 
 
 @pytest.mark.parametrize(
-    ("kind", "made"),
-    [(TYPE, [LATE, BIASED, ABSENT]), ("example_interfaces/srv/AddTwoInts", [LATE, ABSENT])],
+    ("kind", "made"), [(TYPE, [LATE, BIASED, ABSENT]), ("example_interfaces/srv/AddTwoInts", [LATE, ABSENT])]
 )
 def test_a_client_of_another_type_is_given_the_service_once(
     kind: str, made: list[str], monkeypatch: pytest.MonkeyPatch

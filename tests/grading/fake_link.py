@@ -13,15 +13,7 @@ from tiny_class import FakeEngine, TinyClass
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.grading_task import Task
 from autograder.grading.running.task_dispatcher import Dispatcher
-from autograder.grading.running.worker_messages import (
-    Answered,
-    Command,
-    Give,
-    Joined,
-    News,
-    Offer,
-    Order,
-)
+from autograder.grading.running.worker_messages import Answered, Command, Give, Joined, News, Offer, Order
 from autograder.grading.tasks.task_making import task_of
 
 if TYPE_CHECKING:

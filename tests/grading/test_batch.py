@@ -13,11 +13,7 @@ from tiny_class import LISTENER, TALKER, FakeEngine, TinyClass
 from autograder.grading.classes import gradebook_writing
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.classes.gradebook_writing import NotebookEntry
-from autograder.grading.grading_errors import (
-    GradingError,
-    MasterUnusable,
-    NotAClass,
-)
+from autograder.grading.grading_errors import GradingError, MasterUnusable, NotAClass
 from autograder.grading.new_classes.new_class import release
 from autograder.safe_files import fresh_folder
 

@@ -53,12 +53,7 @@ def test_a_place_that_the_recipe_has_not_is_an_error() -> None:
 
 @pytest.mark.parametrize(
     ("found", "text"),
-    [
-        (True, "It is True in rolling."),
-        (7, "It is 7 in rolling."),
-        (0, None),
-        (None, None),
-    ],
+    [(True, "It is True in rolling."), (7, "It is 7 in rolling."), (0, None), (None, None)],
     ids=["true", "a value", "a value that is false", "nothing"],
 )
 def test_a_text_may_quote_what_was_found(found: object, text: str | None) -> None:

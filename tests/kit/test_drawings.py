@@ -11,15 +11,7 @@ import pytest
 
 from autograder import exercises
 from autograder.judge.evidence_files import parse_reference
-from autograder.kit.oracle.drawings import (
-    LADDER,
-    dealt,
-    drawn_until,
-    levels,
-    mixed,
-    scans,
-    shuffled,
-)
+from autograder.kit.oracle.drawings import LADDER, dealt, drawn_until, levels, mixed, scans, shuffled
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

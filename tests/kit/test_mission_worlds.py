@@ -26,10 +26,7 @@ SEEDS = range(8)
 ENDS: dict[str, dict[str, dict[str, str]]] = {
     "lab_2_0.explorer": {"publisher": {"/cmd_vel": TWIST}, "subscription": {"/scan": LASER}},
     "bugs_2._remote": {"publisher": {"/cmd_vel": TWIST}, "subscription": {"/remote": TWIST}},
-    "exercise_1_2.lamp": {
-        "client": {"/lamp": "std_srvs/srv/SetBool"},
-        "subscription": {"/odom": ODOMETRY},
-    },
+    "exercise_1_2.lamp": {"client": {"/lamp": "std_srvs/srv/SetBool"}, "subscription": {"/odom": ODOMETRY}},
     "exercise_1_3.wall": {
         "action_client": {"/walk_to": "small_robot_interfaces/action/WalkTo"},
         "subscription": {"/scan": LASER},

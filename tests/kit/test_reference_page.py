@@ -33,13 +33,7 @@ HEARS.says_text()
 HEARS.counts()
 RECIPES: dict[str, Recipe[Any]] = {
     "OwnScenario": OwnScenario(
-        lambda _: None,
-        "publisher",
-        "subscription",
-        "client",
-        "service",
-        "action_client",
-        "action_server",
+        lambda _: None, "publisher", "subscription", "client", "service", "action_client", "action_server"
     ),
     "Publisher": HEARS,
     "Subscriber": Subscriber(pace=0.5, paced_by="a timer"),

@@ -69,10 +69,7 @@ def test_answers_come_in_turn_and_the_last_one_again() -> None:
 
 @pytest.mark.parametrize(
     ("work", "told"),
-    [
-        (Work(takes=0.9, feedback=[{}, {}]), [0, 1, 2, 3]),
-        (Work(takes=inf, feedback=[{}, {}]), [0, 0, 0, 0]),
-    ],
+    [(Work(takes=0.9, feedback=[{}, {}]), [0, 1, 2, 3]), (Work(takes=inf, feedback=[{}, {}]), [0, 0, 0, 0])],
 )
 def test_feedback_is_spread_over_the_time(work: Work, told: list[int]) -> None:
     assert [work.told_after(seconds) for seconds in (0.1, 0.3, 0.6, 0.9)] == told

@@ -60,10 +60,7 @@ def test_a_second_run_of_the_cell_begins_anew_and_says_nothing_of_the_first(
 
 def test_shown_again_the_picture_above_rests(run: Callable[..., list[Any]]) -> None:
     above, below, third, _ = run(
-        "robot = start_robot()",
-        "robot.show(); drive(robot)",
-        "robot.show(); drive(robot)",
-        "robot.stop()",
+        "robot = start_robot()", "robot.show(); drive(robot)", "robot.show(); drive(robot)", "robot.stop()"
     )
     assert "x = 1.00 m" in words(above)
     assert "x = 1.00 m" not in words(below)

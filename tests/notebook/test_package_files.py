@@ -246,8 +246,7 @@ def test_corrected_data_files_replace_the_wrong_ones_and_no_others(workspace: Pa
 
 
 @pytest.mark.parametrize(
-    "pair",
-    ["launch", ("share/my_robot_pkg/launch", "launch/remap.launch.py"), ("share", [1]), ("share",), 3],
+    "pair", ["launch", ("share/my_robot_pkg/launch", "launch/remap.launch.py"), ("share", [1]), ("share",), 3]
 )
 def test_what_is_no_pair_of_a_folder_and_files_changes_nothing(workspace: Path, pair: object) -> None:
     before = (workspace / "src/my_robot_pkg/setup.py").read_text()

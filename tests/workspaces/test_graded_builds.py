@@ -76,9 +76,7 @@ def publish(packages: Path, root: Path, monkeypatch: pytest.MonkeyPatch) -> None
 
 @pytest.mark.parametrize("make", [python_package, interface_package])
 def test_the_same_sources_are_built_again_for_a_classmate_and_for_a_second_execution(
-    execution: Callable[[], tuple[GradedBuilds, FakeJobs]],
-    tmp_path: Path,
-    make: Callable[[Path], object],
+    execution: Callable[[], tuple[GradedBuilds, FakeJobs]], tmp_path: Path, make: Callable[[Path], object]
 ) -> None:
     make(tmp_path / "ros2_ws" / "src" / "my_robot_interfaces")
     for _ in range(3):

@@ -28,10 +28,7 @@ from autograder.grading.grading_errors import GradingError
 from autograder.grading.rebuilding import file_desk, submission_desk
 from autograder.grading.rebuilding.file_desk import READERS
 from autograder.grading.rebuilding.notebook_parsing import answer_to, parse
-from autograder.grading.rebuilding.submission_desk import (
-    LARGEST_DOCUMENT,
-    read_notebook,
-)
+from autograder.grading.rebuilding.submission_desk import LARGEST_DOCUMENT, read_notebook
 from autograder.grading.rebuilding.submitted_notebook import (
     MAX_CELL_CHARACTERS,
     ReadNotebook,
@@ -224,9 +221,7 @@ def test_a_lost_desk_is_no_file_s_fault(monkeypatch: pytest.MonkeyPatch) -> None
         read_notebook(notebook(""))
 
 
-def test_a_desk_that_cannot_read_a_sample_reads_no_student_s_file(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_a_desk_that_cannot_read_a_sample_reads_no_student_s_file(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(file_desk.desk, "_desk", None)
     ill = {"PYTHONPATH": str(ROOT), "ILL": "1"}
     monkeypatch.setattr(desk_of_boxes, "Desk", lambda readers: Desk(readers, HOSTILE, ill))

@@ -35,9 +35,7 @@ def test_names_that_are_no_text_break_no_json(
 
 
 def test_it_is_one_object_with_submissions_and_totals(
-    tiny: TinyClass,
-    fake_engine: FakeEngine,
-    monkeypatch: pytest.MonkeyPatch,
+    tiny: TinyClass, fake_engine: FakeEngine, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(execution_backends, "require_sandbox", lambda _: None)
     tiny.submit("ada", 10, 4)

@@ -34,13 +34,7 @@ def encoded(picture: bytes) -> str:
     return base64.b64encode(picture).decode()
 
 
-@pytest.mark.parametrize(
-    "picture",
-    [
-        png(),
-        *(jpeg(kind=kind) for kind in (0xC0, 0xC1, 0xC2)),
-    ],
-)
+@pytest.mark.parametrize("picture", [png(), *(jpeg(kind=kind) for kind in (0xC0, 0xC1, 0xC2))])
 def test_the_size_is_that_of_the_header(picture: bytes) -> None:
     assert pixels_of(encoded(picture)) == WIDTH * HEIGHT
 

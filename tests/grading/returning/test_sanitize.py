@@ -85,10 +85,7 @@ def test_no_lexer_and_no_parser_sees_a_students_text(
         return parse(self, text, *rest)
 
     text, given = (part * SIZE)[:SIZE], f"*given* {kind} {part.encode().hex()}"
-    cells = [
-        nbformat_nodes.cell(CellType.MARKDOWN, given, "0"),
-        nbformat_nodes.cell(kind, text, "1"),
-    ]
+    cells = [nbformat_nodes.cell(CellType.MARKDOWN, given, "0"), nbformat_nodes.cell(kind, text, "1")]
     notebook = make_harmless(nbformat_nodes.notebook(cells, PYTHON), {1})
     monkeypatch.setattr(pygments.lexer.RegexLexer, "get_tokens_unprocessed", lexes)
     monkeypatch.setattr(mistune.Markdown, "parse", parses)

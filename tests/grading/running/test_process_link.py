@@ -12,15 +12,7 @@ import pytest
 
 from autograder.grading.running import process_link
 from autograder.grading.running.process_link import ProcessLink
-from autograder.grading.running.worker_messages import (
-    ADDRESS,
-    Answered,
-    Broken,
-    Drop,
-    Give,
-    Joined,
-    Left,
-)
+from autograder.grading.running.worker_messages import ADDRESS, Answered, Broken, Drop, Give, Joined, Left
 from tests.cases import cases
 
 if TYPE_CHECKING:

@@ -213,10 +213,7 @@ def test_a_worker_that_falls_silent_is_turned_out(tasks: list[Task], monkeypatch
     ("offer", "words"),
     [
         (Offer("other", 2, obstacle=""), "the worker's version of the course is other, and here it is here"),
-        (
-            Offer("here", 2, obstacle="bubblewrap is missing"),
-            "no sandbox: bubblewrap is missing",
-        ),
+        (Offer("here", 2, obstacle="bubblewrap is missing"), "no sandbox: bubblewrap is missing"),
         (Offer("here", 0, obstacle=""), "it offers to execute 0 notebooks"),
     ],
 )

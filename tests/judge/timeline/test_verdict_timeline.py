@@ -43,10 +43,7 @@ def test_of_a_message_in_messages_the_numbers_that_are_not_zero_are_told() -> No
         0.1, "message", "/cmd_vel", {"fields": {"linear": {**zeros, "x": 0.5}, "angular": zeros}}
     )
     still = Event(0.2, "message", "/cmd_vel", {"fields": {"linear": zeros}})
-    assert [moment.label for moment in told(straight, still)] == [
-        "linear.x=0.5",
-        "all 0",
-    ]
+    assert [moment.label for moment in told(straight, still)] == ["linear.x=0.5", "all 0"]
 
 
 def test_what_arrived_late_stands_where_it_was_sent() -> None:

@@ -19,12 +19,7 @@ from autograder.kit.recipes.publisher import Publisher
 from autograder.kit.recipes.servers import Asks
 from autograder.kit.recipes.service_client import Calls
 from autograder.kit.recipes.subscriber import Subscriber
-from autograder.kit.runners import (
-    LaunchesFromPackage,
-    RunsProgram,
-    WorkspaceReport,
-    workspace_report_line,
-)
+from autograder.kit.runners import LaunchesFromPackage, RunsProgram, WorkspaceReport, workspace_report_line
 from tests.cases import named_cases
 
 if TYPE_CHECKING:
