@@ -52,6 +52,17 @@ def test_the_course_page_has_the_points_of_today() -> None:
     assert not missing("course-panel.png", f"10 of {points:g} points"), AGAIN
 
 
+def test_the_course_page_has_the_titles_and_minutes_of_today() -> None:
+    # The picture shows the first chapter; the second one is below its edge.
+    for lab in course.chapters(ROOT)[0].labs:
+        text = (lab / "lab.md").read_text(encoding="utf-8")
+        title, minutes = re.search(r"(?m)^# (.+)$", text), re.search(r"(?m)^\*(\d+) minutes ", text)
+        assert title
+        assert minutes
+        state = "begun" if lab.name == "lab_1_2" else "not begun"
+        assert not missing("course-panel.png", f"{title[1]} , {state} {minutes[1]} min"), AGAIN
+
+
 def test_the_page_about_a_class_has_the_headings_of_today() -> None:
     page = (ROOT / "autograder/grading/reporting/report.html.j2").read_text(encoding="utf-8")
     # The class of the demo has handed in once, and at no time that is known.
