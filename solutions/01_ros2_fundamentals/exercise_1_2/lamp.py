@@ -39,11 +39,10 @@ def places(random: Random) -> list[World | float]:
     return [step for x in order for step in (World(start=Pose(x, 2.0, 0.0)), STAYS)]
 
 
-def changes(now: Moment) -> list[bool]:
-    """Return how the lamp had to change so far: to on, or to off."""
-    told = [event.data["fields"] for event in now.part.of("sent", "/odom")]
-    due = [False, *(is_near(fields["pose"]["pose"]["position"]["x"]) for fields in told)]
-    return [new for old, new in pairwise(due) if new != old]
+def changes(now: Moment) -> list[float]:
+    """Return the x at which the lamp had to change so far: to on, to off, and so on."""
+    told = [event.data["fields"]["pose"]["pose"]["position"]["x"] for event in now.part.of("sent", "/odom")]
+    return [x for before, x in pairwise([DOOR + 2 * NEAR, *told]) if is_near(x) != is_near(before)]
 
 
 def calls(now: Moment) -> str:
@@ -54,9 +53,11 @@ def calls(now: Moment) -> str:
         if (event.kind, event.name) == ("request", "/lamp"):
             asked.append(bool(value(event)))
             before = replace(now, part=replace(now.part, events=now.part.events[:number]))
-            too_early |= asked != changes(before)
-    told, due = (", ".join("on" if one else "off" for one in ones) for ones in (asked, changes(now)))
-    if told != due:
+            too_early |= asked != [*map(is_near, changes(before))]
+    told = ", ".join("on" if one else "off" for one in asked)
+    places = changes(now)
+    if asked != [*map(is_near, places)]:
+        due = ", ".join(f"{'on' if is_near(x) else 'off'} at x = {x:.3g}" for x in places)
         return f"{told or 'no call'}; due were {due}"
     if too_early:
         return f"{told}, but the robot was elsewhere then"
