@@ -7,7 +7,7 @@
 * **Imports.** Each Python program with a node imports, through the generated messages, two things that it never uses:
   ``rosidl_generator_py``, of which a message wants one small function, imports the generator of Python code with its
   parser and its templates (48 ms of processor time); ``service_msgs/msg/ServiceEventInfo``, which every node has
-  through its type description service, imports numpy (65 ms) for a field that is set only where somebody makes such a
+  through its type description service, imports numpy (65 ms) for a field that is set only if a program makes such a
   message. Each program that reads a notebook, JupyterLab and nbgrader among them, imports jsonschema, and through it
   ``rfc3987_syntax``, which compiles 32 grammars of internationalised addresses (1 to 3 s of processor time) for a
   check that no notebook asks for. All are imported when they are asked for.
@@ -20,9 +20,9 @@
   not find the number, logs "Ignoring unexpected goal response", and the future is never done. The same happens to
   cancel requests and results. Upstream: https://github.com/ros2/rclpy/issues/1123. A lock per client lets no thread
   take answers while another one is sending.
-* **Fast DDS** can hang for ever in a node that ends while another one appears. Who deletes a participant waits for the
-  callback of discovery that is just running. It waits "for ever", with ``time_point::max()`` as its deadline. As the
-  wheels are built, this deadline is converted into time of day, where it overflows into the past:
+* **Fast DDS** can hang for ever in a node that ends while another one appears. A thread that deletes a participant
+  waits for the callback of discovery that is just running. It waits "for ever", with ``time_point::max()`` as its
+  deadline. As the wheels are built, this deadline is converted into time of day, and overflows into the past:
   ``pthread_cond_timedwait`` refuses it each time without releasing the mutex, the callback never gets the mutex, and
   the program keeps a core busy until it is killed. On Ubuntu's Jazzy nothing is converted. Upstream:
   https://github.com/eProsima/Fast-DDS/issues/6513. The two functions that ask for such a wait get a deadline in 68

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
         ("A box that is there.", "A running sandbox."),
         ("Its outcome.", "The outcome of this file."),
         ("Recognize the colour.", "Recognize the color."),
+        ("After a block of code: writes the table.", "After a block of code: `export` writes the table."),
     ],
 )
 def test_a_fault_is_found_and_its_plain_form_is_not(faulty: str, plain: str) -> None:
@@ -43,3 +44,17 @@ def test_prose_is_strings_and_comments(tmp_path: Path) -> None:
 
 def test_there_is_no_is_english() -> None:
     assert not faults_in("There is no reply, and the reply is no longer needed.")
+
+
+def test_a_paragraph_that_goes_on_with_the_sentence_of_a_block_is_found(tmp_path: Path) -> None:
+    page = tmp_path / "page.md"
+    page.write_text("Type\n\n```console\n$ ./course\nno page\n```\n\nmakes a class.\n\nIt is yours.\n")
+    assert [number for number, line in prose_of(page) if faults_in(line)] == [8]
+
+
+def test_the_texts_of_a_table_are_read_and_its_changes_are_not(tmp_path: Path) -> None:
+    table = tmp_path / "answers.toml"
+    texts = '["a.py"]\ncard = "It reads\\na text that is no JSON"\nchange = "+# this is no text"\nnext_step = "Stop."\n'
+    table.write_text(texts)
+    assert [line for _, line in prose_of(table) if faults_in(line)] == ["a text that is no JSON"]
+    assert dict(prose_of(table))[4] == "Stop."

@@ -42,8 +42,8 @@ def uncalled(lines: Sequence[OwnLine], methods: Sequence[str]) -> list[Event]:
 def _recognize(evidence: Evidence) -> Advice | None:
     for event in evidence.main.of(UNCALLED):
         return Advice(
-            f"Your code has a method {event.name}, which nobody calls. The task calls it {event.data['meant']}.",
-            f"Call it {event.data['meant']}, letter by letter: whoever calls it knows it by this name.",
+            f"Your code has a method {event.name}, which is never called. The task calls it {event.data['meant']}.",
+            f"Call it {event.data['meant']}, letter by letter: ROS or a base class calls it by this name.",
             uses=(f"{_DEF}{event.name}",),
         )
     return None

@@ -173,7 +173,7 @@ class SameAsSolution:
                 "only_if_new",
                 output.only_news,
                 f"On {output.name} a message comes only when something is new; the task asks for one every "
-                f"{output.period:g} s, also if nothing has changed.",
+                f"{output.period:g} s, even if nothing has changed.",
                 "Publish at each call of the timer's callback, whatever was published before.",
                 late=True,
             )

@@ -14,6 +14,6 @@ EXERCISE = SameAsSolution(
 ).exercise(
     text={
         "Publish the text `kitchen` once on `map_name`": "map_name",
-        "who subscribes later hears it too": "map_name",
+        "a node that subscribes later hears it too": "map_name",
     }
 )

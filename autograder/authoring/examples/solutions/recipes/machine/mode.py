@@ -16,9 +16,9 @@ EXERCISE = SameAsSolution(
     roles=("service", "publisher"),
 ).exercise(
     text={
-        "`success` is true where the mode changes": "set_mode",
+        "`success` is true if the mode changes": "set_mode",
         "`message` says why": "set_mode",
         "once at each change": "mode",
-        "who subscribes later hears the last one": "mode",
+        "a node that subscribes later hears the last one": "mode",
     }
 )

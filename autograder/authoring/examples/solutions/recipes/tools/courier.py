@@ -37,7 +37,7 @@ EXERCISE = ToolUser(
     roles=("publisher", "subscription", "client", "action_client"),
 ).exercise(
     text={
-        "What is no order sends nothing": "door walk_to said",
+        "A text that is not an order sends nothing": "door walk_to said",
         "The courier has the door opened": "door",
         "It walks only if the answer has `success`": "walk_to",
         "begins with `done`": "said",
