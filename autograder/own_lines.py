@@ -31,7 +31,7 @@ LONGEST_SOURCE = 200_000
 LONGEST_LINE = 120
 """The maximum length of a quoted line, in characters."""
 ENDLESS = ", whose condition stays true"
-"""What follows the quoted head of a loop that cannot end."""
+"""The words behind the quoted head of a loop that cannot end."""
 _LEAVES = ast.Break | ast.Return | ast.Raise | ast.Yield | ast.YieldFrom | ast.Await
 _ORDER = ast.Lt | ast.LtE | ast.Gt | ast.GtE
 

@@ -1,6 +1,6 @@
 """Finds the student who handed in a file, by its name, by students.csv, and by lists from the LMS.
 
-What decides is said, and nothing is guessed from likeness: ``--student``, the pattern of ``--names``, a row of
+An explicit statement decides, never likeness: ``--student``, the pattern of ``--names``, a row of
 ``systems.toml``, or else an id or a name that students.csv has. If two of them say different students, or none of them
 says one, the file waits, and the instructor writes the student's id into a cell.
 
@@ -224,7 +224,7 @@ class StudentOf:
         return any(map(self._is_of_one, files)) or len(files) < len(paths) > 1
 
     def _is_of_one(self, file: Path) -> bool:
-        """Return True for a file that is no zip, and for a zip whose own name says a student."""
+        """Return True for a file that is not a zip, and for a zip whose own name says a student."""
         owners = self.owners(Arrival("", (name_as_text(file.name),)))
         is_of_system = owners.facts is not None and owners.facts.identity.lms in NAME_FORMS
         return bool(file.suffix.lower() != ".zip" or owners.meant or owners.systems or is_of_system)
