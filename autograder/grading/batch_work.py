@@ -116,10 +116,10 @@ def find_work(
     result.refused.extend([*beside, *_unusable(directory, asked, released), *_unplaced(directory, asked)])
     submissions = [one for one in submissions if one.assignment in released.cells]
     check_known(asked.assignments, directory.assignments(), "assignment")
-    there = {submission.student for submission in submissions}
+    students = {submission.student for submission in submissions}
     # If the student's folder is refused, do not also report the student as unknown.
-    there |= {one.path.name for one in refused if one.path.parent == directory.path / "submitted"}
-    check_known(asked.students, sorted(there | roster.students.keys()), "student")
+    students |= {one.path.name for one in refused if one.path.parent == directory.path / "submitted"}
+    check_known(asked.students, sorted(students | roster.students.keys()), "student")
     names = {assignment: directory.notebooks(assignment) for assignment in released.cells}
     for submission in submissions:
         work = Work(submission, keys.of(submission), names[submission.assignment])

@@ -23,11 +23,11 @@ def learning_outcomes(root: Path) -> dict[str, tuple[str, ...]]:
 
     Each outcome completes the sentence "After this notebook you can". Without that page there are none.
     """
-    found: dict[str, tuple[str, ...]] = {}
+    outcomes_of: dict[str, tuple[str, ...]] = {}
     page = root / "docs" / "learning-outcomes.md"
     for outcome, lab in _OUTCOME.findall(page.read_text(encoding="utf-8")) if page.exists() else ():
-        found[lab] = (*found.get(lab, ()), outcome)
-    return found
+        outcomes_of[lab] = (*outcomes_of.get(lab, ()), outcome)
+    return outcomes_of
 
 
 def notebook_map(master: Path) -> str:

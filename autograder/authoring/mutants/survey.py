@@ -43,7 +43,7 @@ class Tried:
     Attributes:
         mutant: The mutant.
         runs: Its runs; empty if it crashed the process, or never ended.
-        why: Why it may pass: by a rule, or by the author's row; empty if nothing says so.
+        why: Why it may pass: a rule of ``equivalents.py``, or the author's row in ``[accepts]``; empty if it may not.
     """
 
     mutant: Mutant

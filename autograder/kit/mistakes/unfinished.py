@@ -32,7 +32,9 @@ def _what_main_does(evidence: Evidence) -> str:
     """Return in words what main() must do in this exercise: spin a node, make a request, or both."""
     roles = evidence.reference.interface.keys()
     clients = roles & {"client", "action_client"}
-    return " ".join([_SPINS] * (roles != clients or not roles) + [_CALLS] * bool(clients))
+    spins = "" if roles and roles == clients else _SPINS
+    calls = _CALLS if clients else ""
+    return f"{spins} {calls}".strip()
 
 
 def _main_guard(evidence: Evidence) -> Advice | None:

@@ -14,7 +14,11 @@ _ENDPOINTS = ("create_publisher", "create_subscription", "create_client", "creat
 
 
 def kept(code: Code) -> Iterator[Edit]:
-    """Something else than the newest value in an attribute."""
+    """A value different from the newest one in an attribute: the first, the largest, or the one before.
+
+    The mutant collects all values in a list of the object. ``append`` returns None, so the expression
+    ``X if seen.append(value) or True else 0`` adds the value and then is ``X``.
+    """
     for assign, name in _attributes(code):
         function = code.function_of(assign)
         # Of values that are all the same, the first is the newest.
