@@ -1,1 +1,1 @@
-"""What follows from evidence: the criteria's results, the diagnosis, and whose fault an exception is."""
+"""Decides from evidence: the criteria's results, the diagnosis, and whose fault an exception is."""

@@ -173,7 +173,7 @@ class Search:
 
     @property
     def astray_in_words(self) -> str:
-        """These names, and what the nodes of the graph do that have to do with them; empty if there are none."""
+        """The names that lead astray, and the nodes of the graph that use them; empty if there are none."""
         deeds = [
             f"{node} {verbs['/action/' in kind]} {end} ({kind})"
             for node, has in self.robot.nodes.items()
