@@ -94,7 +94,6 @@ NIGHTLY = (
     "tests/workspaces/builds/test_colcon.py::test_a_changed_byte_is_another_build",
     "tests/workspaces/builds/test_colcon.py::test_what_an_earlier_build_left_behind_has_no_part_in_it",
     "tests/workspaces/builds/test_colcon.py::test_a_merged_install_is_left_alone",
-    "tests/workspaces/builds/test_colcon.py::test_a_package_is_built_with_what_it_depends_on",
     "tests/workspaces/builds/test_colcon.py::test_packages_of_others_stay",
     "tests/workspaces/builds/test_colcon.py::test_what_is_half_done_beside_the_package_hurts_only_who_needs_it",
     "tests/workspaces/builds/test_colcon.py::test_what_a_package_depends_on_may_fail",

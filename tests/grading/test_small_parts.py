@@ -22,7 +22,6 @@ from autograder.grading.grading_task import Task, points
 from autograder.grading.new_classes.new_class import NewClass
 from autograder.grading.tasks.task_making import seed_for
 from autograder.safe_files import write_whole
-from autograder.standard_output import printable
 from autograder.verdict import State, Verdict
 
 CHECK = CellCheck("lab.one", "One", points=10, worth=4, limit=2)
@@ -108,10 +107,6 @@ def test_a_seed_is_a_secret_and_never_shared(tmp_path: Path) -> None:
 )
 def test_strange_names_have_a_reason(name: str) -> None:
     assert reason_against_name(name) or name == ""
-
-
-def test_no_text_can_forge_a_line_in_the_terminal() -> None:
-    assert printable("a\x1b[2Jb\nc\udcff") == "a\\x1b[2Jb\\nc\\udcff"
 
 
 def test_a_class_without_new_work_waits_for_no_import_of_nbgrader() -> None:

@@ -9,6 +9,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import pytest
+
 from autograder import exercises
 from autograder.judge import evidence_files, one_check
 from autograder.judge.bench.recorder import MAX_EVENTS
@@ -18,7 +20,7 @@ from autograder.kit.evidence import Event, Evidence, Part
 from autograder.verdict import State
 
 if TYPE_CHECKING:
-    import pytest
+    from collections.abc import Callable
 
     from autograder.kit.model import Exercise
 
@@ -41,16 +43,10 @@ def test_its_bytes_arrive_also_when_they_are_many() -> None:
     assert Child(lambda: b"x" * 3_000_000, limit=60.0).result().data == b"x" * 3_000_000
 
 
-def test_an_exception_is_no_verdict() -> None:
-    outcome = Child(_raises, limit=60.0).result()
-    assert outcome.data is None
-    assert "code 1" in outcome.trouble
-
-
-def test_a_killed_child_is_no_verdict() -> None:
-    outcome = Child(_dies, limit=60.0).result()
-    assert outcome.data is None
-    assert "signal 9" in outcome.trouble
+@pytest.mark.parametrize(("does", "words"), [(_raises, "code 1"), (_dies, "signal 9")])
+def test_a_child_that_comes_to_a_bad_end_has_no_verdict(does: Callable[[], bytes], words: str) -> None:
+    outcome = Child(does, limit=60.0).result()
+    assert (outcome.data, words in outcome.trouble) == (None, True)
 
 
 def test_a_hanging_child_is_killed_at_its_limit() -> None:

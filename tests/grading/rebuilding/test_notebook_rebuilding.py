@@ -136,13 +136,6 @@ def test_cells_that_changed_places_are_in_order_again_with_their_neighbours(mast
     assert "changed places" in " ".join(rebuilt.metadata.autograder.remarks)
 
 
-def test_a_helper_cell_stays_before_the_answer_that_needs_it(master: NotebookNode) -> None:
-    cells = as_submitted(master, **ANSWERS)
-    cells.insert(2, SubmittedCell(CellType.CODE, "def text(n): ..."))
-    found = sources(rebuild(master, cells))
-    assert found.index("import rclpy") < found.index("def text(n): ...") < found.index("class Talker: ...")
-
-
 @pytest.mark.parametrize("kind", [CellType.MARKDOWN, CellType.RAW])
 def test_a_retyped_answer_is_code_again(master: NotebookNode, kind: CellType) -> None:
     cells = as_submitted(master, **ANSWERS)

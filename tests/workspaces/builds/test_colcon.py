@@ -165,14 +165,6 @@ def test_what_is_half_done_beside_the_package_hurts_only_who_needs_it(workspace:
     assert build(workspace, only_tiny).reused
 
 
-def test_a_package_is_built_with_what_it_depends_on(workspace: Path) -> None:
-    python_package(workspace / "src", "other_pkg")
-    file = workspace / "src" / "tiny_pkg" / "package.xml"
-    file.write_text(file.read_text().replace("<license>", "<depend>other_pkg</depend>\n  <license>"))
-    made = build(workspace, only_tiny)
-    assert [prefix.name for prefix in made.prefixes] == ["other_pkg", "tiny_pkg"]
-
-
 @pytest.mark.ros
 @pytest.mark.slow
 def test_of_interfaces_all_is_built_that_a_node_needs(tmp_path: Path) -> None:
