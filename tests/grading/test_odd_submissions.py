@@ -15,19 +15,16 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from nbgrader.api import Gradebook
 from nbgrader.converters import NbGraderException
-from rich.console import Console
 from test_nbgrader_and_ours import nbgrader_autograde
-from tiny_class import LISTENER, TALKER, FakeEngine, TinyClass
+from tiny_class import LISTENER, TALKER, FakeEngine, TinyClass, shown
 
 from autograder.grading.rebuilding import submitted_notebook
 from autograder.grading.rebuilding.submission_desk import read_notebook
 from autograder.grading.rebuilding.submitted_notebook import UnreadableSubmission, read_bytes
-from autograder.grading.reporting.grade_report import show
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from autograder.grading.reporting.grade_report import GradeReport
 
 pytestmark = pytest.mark.usefixtures("fake_engine")
 NOTHING = {TALKER: 0, LISTENER: 0}
@@ -95,12 +92,6 @@ def in_place_of_the_notebook(tiny: TinyClass, kind: str, student: str = "eve") -
     return path
 
 
-def said(report: GradeReport) -> str:
-    console = Console(record=True, width=300, quiet=False, file=open(os.devnull, "w"))  # noqa: SIM115, PTH123
-    show(report, console)
-    return console.export_text()
-
-
 def test_what_is_no_file_is_named_once_and_earns_nothing(tiny: TinyClass, fake_engine: FakeEngine) -> None:
     tiny.submit("ada", 7, 8)
     students = {kind: f"eve-{place}" for place, kind in enumerate(ODD)}
@@ -109,7 +100,7 @@ def test_what_is_no_file_is_named_once_and_earns_nothing(tiny: TinyClass, fake_e
     assert fake_engine.ran == ["ada"]
     assert tiny.scores("ada") == {TALKER: 7, LISTENER: 8}
     assert report.exit_code == 2
-    lines, table = said(report).splitlines(), (tiny.path / "grades.csv").read_text()
+    lines, table = shown(report, 300).splitlines(), (tiny.path / "grades.csv").read_text()
     for kind, student in students.items():
         assert tiny.scores(student) == NOTHING
         (line,) = (line for line in lines if str(paths[kind]) in line)
@@ -228,7 +219,7 @@ def test_a_name_that_misleads_is_refused_in_one_line(tiny: TinyClass) -> None:
     assert sorted(refused.path.name for refused in report.refused) == sorted(MISLEADING)
     assert report.exit_code == 2
     assert tiny.scores("ada")[TALKER] == 10
-    lines = [line for line in said(report).splitlines() if line.startswith("refused")]
+    lines = [line for line in shown(report, 300).splitlines() if line.startswith("refused")]
     assert len(lines) == len(MISLEADING)
     assert all(line.isprintable() for line in lines)
 
@@ -329,7 +320,7 @@ def test_a_file_that_is_no_notebook_has_its_line(tiny: TinyClass) -> None:
     tiny.hand_in("eve", "hello")
     tiny.hand_in("mallory", "[" * 200_000)
     report = tiny.grade()
-    lines = [line for line in said(report).splitlines() if line.startswith("unreadable")]
+    lines = [line for line in shown(report, 300).splitlines() if line.startswith("unreadable")]
     assert [line.partition(":")[0].split()[1] for line in lines] == ["eve/lab_1_2", "mallory/lab_1_2"]
     assert "not JSON" in lines[0]
     assert "nested too deeply" in lines[1]

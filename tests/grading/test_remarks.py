@@ -2,29 +2,21 @@
 
 from __future__ import annotations
 
-import io
 from typing import TYPE_CHECKING
 
 import pytest
 from nbformat.v4 import new_code_cell
-from rich.console import Console
 from test_nbgrader_and_ours import nbgrader_autograde
+from tiny_class import shown
 
-from autograder.grading.reporting.grade_report import report_json, show
+from autograder.grading.reporting.grade_report import report_json
 from autograder.grading.reporting.report_page import write_report
 
 if TYPE_CHECKING:
     from tiny_class import TinyClass
 
-    from autograder.grading.reporting.grade_report import GradeReport
 
 pytestmark = pytest.mark.usefixtures("fake_engine")
-
-
-def printed(report: GradeReport) -> list[str]:
-    out = io.StringIO()
-    show(report, Console(file=out, width=200))
-    return out.getvalue().splitlines()
 
 
 def test_it_is_said_everywhere_also_when_nothing_has_changed_since(tiny: TinyClass) -> None:
@@ -37,7 +29,7 @@ def test_it_is_said_everywhere_also_when_nothing_has_changed_since(tiny: TinyCla
     tiny.hand_in("eve", notebook)
     words = "The cell `Talker` was missing. Another cell contains the answer, and that cell counts."
     for report in (tiny.grade(feedback=True), tiny.grade(feedback=True)):
-        assert [line for line in printed(report) if line.startswith("remark ")] == [
+        assert [line for line in shown(report).splitlines() if line.startswith("remark ")] == [
             f"remark       eve/lab_1_2: {words}"
         ]
         assert words in report_json(report).decode()
@@ -57,4 +49,4 @@ def test_nbgraders_own_command_says_it_too(tiny: TinyClass, caplog: pytest.LogCa
 
 def test_an_honest_notebook_has_no_line(tiny: TinyClass) -> None:
     tiny.submit("ada")
-    assert "remark " not in "\n".join(printed(tiny.grade()))
+    assert "remark " not in shown(tiny.grade())

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import io
 import sqlite3
 import sys
 from dataclasses import dataclass
@@ -19,6 +20,7 @@ from autograder.execution.executed_cells import CellRun, Execution
 from autograder.execution.verdicts_without_judge import grader_trouble, zero_points
 from autograder.grading.batch import grade
 from autograder.grading.new_classes.new_class import new_class
+from autograder.grading.reporting.grade_report import show
 from autograder.grading.running import execution_backends
 from autograder.grading.running.task_dispatcher import Done
 
@@ -131,6 +133,13 @@ def make_version_4(store: Path) -> None:
             PRAGMA user_version = 4;
             """
         )
+
+
+def shown(report: GradeReport, width: int = 200) -> str:
+    """What a report says in a terminal of that width."""
+    out = io.StringIO()
+    show(report, Console(file=out, width=width))
+    return out.getvalue()
 
 
 def make_tiny_class(folder: Path) -> Path:

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 from click.testing import CliRunner
 from instructor import by_person, due, penalty
 from own_assignment import EngineWithAsserts, hand_in, write_assignment
-from test_true_table import DUE, EARLY, LATE, shown, total
-from tiny_class import LISTENER, TALKER
+from test_true_table import DUE, EARLY, LATE, total
+from tiny_class import LISTENER, TALKER, shown
 
 from autograder.cli import cli
 from autograder.grading.class_store import ClassStore

@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
-import io
 import json
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import nbformat
 import pytest
-from rich.console import Console
-from tiny_class import COURSE, LISTENER, TALKER, FakeEngine, TinyClass
+from tiny_class import COURSE, LISTENER, TALKER, FakeEngine, TinyClass, shown
 
 from autograder.grading import course_version, result_writer
 from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.course_version import CourseFiles
-from autograder.grading.reporting.grade_report import report_json, show
+from autograder.grading.reporting.grade_report import report_json
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -78,9 +76,7 @@ def test_a_change_of_the_course(
     report = tiny.grade()
     assert (report.executed, report.run_again) == (sum(why.values()), why)
     assert json.loads(report_json(report))["run_again"] == why
-    console = Console(file=io.StringIO(), width=200)
-    show(report, console)
-    said = [line for line in console.file.getvalue().splitlines() if line.startswith("run again")]  # type: ignore[attr-defined]
+    said = [line for line in shown(report).splitlines() if line.startswith("run again")]
     assert said == [f"run again    2 notebooks: {words}" for words in why]
     assert tiny.scores("ada") == {TALKER: 4, LISTENER: 7}
     assert tiny.grade().executed == 0
@@ -126,9 +122,7 @@ def test_points_that_move_without_a_new_submission_are_listed(
 
 def first_words(report: GradeReport, word: str) -> list[str]:
     """The lines of a report that begin with this word; they stand above everything else."""
-    console = Console(file=io.StringIO(), width=500)
-    show(report, console)
-    lines = console.file.getvalue().splitlines()  # type: ignore[attr-defined]
+    lines = shown(report, 500).splitlines()
     found = [line for line in lines if line.startswith(word)]
     assert lines[: len(found)] == found
     return found

@@ -6,23 +6,19 @@ import csv
 import io
 import json
 from datetime import datetime, timedelta
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import pytest
 from instructor import add_question, book, by_person, due, penalty
 from nbgrader.apps.api import NbGraderAPI
 from nbgrader.coursedir import CourseDirectory
-from rich.console import Console
-from tiny_class import LISTENER, TALKER, TinyClass
+from tiny_class import LISTENER, TALKER, TinyClass, shown
 
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.grading_errors import GradingError
-from autograder.grading.reporting.grade_report import report_json, show
+from autograder.grading.reporting.grade_report import report_json
 from autograder.grading.returning.feedback_pages import FeedbackPages
 from autograder.grading.tasks import submission_times
-
-if TYPE_CHECKING:
-    from autograder.grading.reporting.grade_report import GradeReport
 
 pytestmark = pytest.mark.usefixtures("fake_engine")
 
@@ -44,12 +40,6 @@ def rows(tiny: TinyClass) -> list[dict[str, str]]:
 
 def total(tiny: TinyClass, student: str) -> float:
     return sum(float(row["score"] or 0) for row in rows(tiny) if row["student"] == student)
-
-
-def shown(report: GradeReport) -> str:
-    console = Console(file=io.StringIO(), width=140)
-    show(report, console)
-    return console.file.getvalue()  # type: ignore[attr-defined]
 
 
 def page(tiny: TinyClass, student: str) -> str:

@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING
 
 import pytest
 from rich.console import Console
+from tiny_class import shown
 
 from autograder.grading.classes.class_directory import RefusedFile
-from autograder.grading.reporting.grade_report import GradeReport, show, tables
+from autograder.grading.reporting.grade_report import GradeReport, tables
 from autograder.grading.table.rows import Row, columns
 
 if TYPE_CHECKING:
@@ -60,10 +61,9 @@ def test_diagnoses_stand_beside_the_points_where_there_is_room() -> None:
 
 
 def test_a_file_that_is_not_taken_writes_no_line_of_its_own(tiny: TinyClass) -> None:
-    out = io.StringIO()
     refused = RefusedFile(Path("eve.zip"), "nobody is called x\x1b[2J\u202e\nada: 10 of 10")
-    show(GradeReport(tiny.path, (), refused=(refused,)), Console(file=out, width=200))
-    (line,) = (line for line in out.getvalue().splitlines() if "eve.zip" in line)
+    said = shown(GradeReport(tiny.path, (), refused=(refused,)))
+    (line,) = (line for line in said.splitlines() if "eve.zip" in line)
     assert "ada: 10 of 10" in line
     assert "\x1b[2J" not in line
     assert "\u202e" not in line
@@ -74,6 +74,4 @@ def test_the_gradebook_is_the_one_of_the_configuration(tiny: TinyClass, fake_eng
     other = tiny.path / "other.db"
     shutil.copy(tiny.path / "gradebook.db", other)
     tiny.configure(f"c.CourseDirectory.db_url = 'sqlite:///{other}'")
-    out = io.StringIO()
-    show(tiny.grade(), Console(file=out, width=200))
-    assert f"gradebook  {other}" in out.getvalue()
+    assert f"gradebook  {other}" in shown(tiny.grade())
