@@ -519,13 +519,15 @@ def test_a_notebook_has_only_so_many_builds(sockets: ServiceSockets) -> None:
 @pytest.mark.parametrize(
     "garbage", [b"\xff\xff garbage\n", b"[" * 100_000 + b"\n", b'{"say": 1}\n', b"x" * 1_200_000]
 )
-def test_garbage_on_a_socket_hurts_nobody(judge: FakeJudge, sockets: ServiceSockets, garbage: bytes) -> None:
+def test_garbage_on_a_socket_hurts_nobody(sockets: ServiceSockets, lab: Path, garbage: bytes) -> None:
     assert sockets.notebook is not None
     for path in (sockets.notebook, sockets.judge):
         lines = Lines.to(path, 20.0)
         with contextlib.suppress(OSError):
             lines._socket.sendall(garbage)
         assert until_they_hang_up(lines) == []
+    judge = FakeJudge(sockets)
+    judge.check(lab)
     assert judge.run()[-1]["say"] == "exited"
 
 
