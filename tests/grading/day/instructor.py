@@ -37,8 +37,7 @@ def due(tiny: TinyClass, at: datetime | None) -> None:
 
 
 def penalty(tiny: TinyClass) -> None:
-    with (tiny.path / "nbgrader_config.py").open("a") as config:
-        config.write("c.LateSubmissionPlugin.penalty_method = 'zero'\n")
+    tiny.configure("c.LateSubmissionPlugin.penalty_method = 'zero'")
 
 
 def add_question(tiny: TinyClass) -> None:

@@ -154,11 +154,13 @@ def test_a_page_that_cannot_be_made_anew_is_a_problem_until_it_is(
 
 
 def test_a_policy_of_percent_a_day_with_grace_and_cut_off_is_data(tiny: TinyClass) -> None:
-    with (tiny.path / "nbgrader_config.py").open("a") as config:
-        config.write(
-            'c.AssignLatePenalties.plugin_class = "autograder.grading.table.late_policy.LatePolicy"\n'
-            "c.LatePolicy.percent_per_day = 10\nc.LatePolicy.grace_minutes = 15\nc.LatePolicy.cut_off_days = 3\n"
-        )
+    tiny.configure(
+        'c.AssignLatePenalties.plugin_class = "autograder.grading.table.late_policy.LatePolicy"',
+        *(
+            f"c.LatePolicy.{rule}"
+            for rule in ("percent_per_day = 10", "grace_minutes = 15", "cut_off_days = 3")
+        ),
+    )
     due(tiny, DUE)
     hours = {"ada": -1, "ben": 0.2, "eve": 1, "jo": 30, "zoe": 80}
     for student, late in hours.items():

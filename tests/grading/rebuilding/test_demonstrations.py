@@ -85,8 +85,7 @@ def test_a_class_says_whether_its_demonstrations_are_run(
     source.write_text(nbformat_nodes.text(notebook))
     release(ClassDirectory(tiny.path))
     if wanted:
-        with (tiny.path / "nbgrader_config.py").open("a") as config:
-            config.write("c.WireExecute.demonstrations = True\n")
+        tiny.configure("c.WireExecute.demonstrations = True")
     tiny.submit("ada")
     asked: list[str] = []
     fake_engine.before = lambda task: asked.extend(cell.source for cell in task.cells)

@@ -300,7 +300,7 @@ def test_a_class_reads_each_file_once(tiny: TinyClass, asked: list[bytes], fake_
     collect(tiny.path)
     tiny.submit("ada", 6)
     tiny.grade(again=True)
-    (tiny.path / "nbgrader_config.py").open("a").write("c.WireExecute.memory_bytes = 4_000_000_000\n")
+    tiny.configure("c.WireExecute.memory_bytes = 4_000_000_000")
     tiny.grade()
     find_similar(ClassDirectory(tiny.path))
     assert len(asked) == 3
