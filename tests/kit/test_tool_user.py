@@ -11,7 +11,7 @@ import pytest
 from autograder.kit.counterparts import Work
 from autograder.kit.evidence import Event
 from autograder.kit.oracle.outputs import Kind
-from autograder.kit.oracle.tool_user import ASKED, DONE, TOLD, Sent, Text, To, _answering
+from autograder.kit.oracle.tool_user import ASKED, CANCELED, DONE, TOLD, Sent, Text, To, _answering
 
 
 def event(kind: str, name: str, **fields: Any) -> Event:
@@ -26,6 +26,8 @@ EVENTS = [
     event("goal", "/walk_to", x=1.0, y=2.0),
     event("feedback", "/walk_to", distance=1.0),
     event("request", "/door", data=False),
+    Event(0.0, "cancel", "/walk_to", {"number": 1, "accepted": True}),
+    Event(0.0, "cancel", "/walk_to", {"number": 1, "accepted": False}),
 ]
 
 
@@ -35,6 +37,7 @@ EVENTS = [
         ("/lamp", ("data",), ASKED, [[True]]),
         ("/walk_to", ("x", "y"), DONE, [[1.0, 2.0]]),
         ("/said", ("data?",), TOLD, [[True]]),
+        ("/walk_to/cancel", ("number",), CANCELED, [[1]]),
         ("/lamp", ("data",), TOLD, []),
         ("/bell", ("data",), ASKED, []),
     ],

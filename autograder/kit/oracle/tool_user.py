@@ -29,13 +29,20 @@ Paths = str | tuple[str, ...] | Mapping[str, str | Read]
 """What is compared of an output: the path of a field or several, or by a name of its own a path or a function."""
 Answers = Sequence[Any] | Callable[[Mapping[str, Any]], Any]
 """The judge's answers in turn, or a function of the fields of a request or goal."""
-TOLD, ASKED, DONE = ("message", "answered"), ("request",), ("goal",)
-"""The kinds of events that show what a subject tells, asks of a service, and sends to an action."""
+TOLD, ASKED, DONE, CANCELED = ("message", "answered"), ("request",), ("goal",), ("cancel",)
+"""The kinds of events that show what a subject tells, asks of a service, sends to an action, and cancels there."""
+_DOES: Mapping[tuple[str, ...], str] = {
+    ASKED: "Calls",
+    DONE: "Sends goals to",
+    CANCELED: "Cancels goals of",
+}
+CANCEL = "/cancel"
+"""What the name of the output that shows canceled goals adds to the name of the action."""
 
 
 @dataclass(frozen=True)
 class Sent(Output):
-    """An output that the subject tells, asks of a service, or sends to an action.
+    """An output that the subject tells, asks of a service, sends to an action, or cancels there.
 
     Attributes:
         kinds: The kinds of events that show it.
@@ -50,11 +57,13 @@ class Sent(Output):
         """The line of the criterion on the card."""
         if self.kinds == TOLD:
             return super().title
-        return f"{'Calls' if self.kinds == ASKED else 'Sends goals to'} {self.name} when it has to, and only then"
+        return f"{_DOES[self.kinds]} {self.name.removesuffix(CANCEL)} when it has to, and only then"
 
     def values(self, events: Sequence[Event]) -> list[list[Any]]:
-        """Return what is compared, for each message, request or goal among the events."""
-        told = [e.data["fields"] for e in events if e.kind in self.kinds and e.name == self.name]
+        """Return what is compared, for each message, request, goal, or cancel request in time among the events."""
+        name = self.name.removesuffix(CANCEL)
+        sent = [e.data for e in events if e.kind in self.kinds and e.name == name]
+        told = [data.get("fields", data) for data in sent if data.get("accepted", True)]
         return [[self._read(fields, path) for path in self.paths] for fields in told]
 
     def _read(self, fields: Any, name: str) -> Any:
@@ -77,6 +86,8 @@ class ToolUser(SameAsSolution):
             fields: ``{"/said": {"the first word": lambda fields: fields["data"].split()[0]}}``.
         asks: The services that the subject calls, with the paths of the request's fields.
         does: The actions to which the subject sends goals, with the paths of the goal's fields.
+        cancels: Those of these actions of which is compared, too, which goals the subject cancels while they run. They
+            are counted from 1. The criterion of ``"/walk_to"`` is ``walk_to/cancel``.
         serves: Draws the judge's answers for each service and action: a list of responses, or of :class:`Work`. The
             first call gets the first one; after the last, it comes again and again. In place of the list, a function of
             the request's or goal's fields.
@@ -106,17 +117,19 @@ class ToolUser(SameAsSolution):
         tells: Mapping[str, Paths] = NOTHING,
         asks: Mapping[str, Paths] = NOTHING,
         does: Mapping[str, Paths] = NOTHING,
+        cancels: Sequence[str] = (),
         serves: Mapping[str, Callable[[Random], Answers]] = NOTHING,
         **more: Any,
     ) -> None:
         self._actions, self._answers = tuple(does), serves
+        canceled = {f"{name}{CANCEL}": {"goal": "number"} for name in cancels}
         self._sends = {
             name: (kinds, paths if isinstance(paths, Mapping) else {})
-            for kinds, outputs in ((TOLD, tells), (ASKED, asks), (DONE, does))
+            for kinds, outputs in ((TOLD, tells), (ASKED, asks), (DONE, does), (CANCELED, canceled))
             for name, paths in outputs.items()
         }
         every = more.pop("every", ())
-        told = {**tells, **asks, **does}
+        told = {**tells, **asks, **does, **canceled}
         super().__init__(
             exercise_id,
             title,
@@ -126,7 +139,7 @@ class ToolUser(SameAsSolution):
                 name: tuple(paths) if isinstance(paths, Mapping) else paths for name, paths in told.items()
             },
             serves=serves,  # type: ignore[arg-type]  # here each draws a list
-            every=True if every is True else (*every, *asks, *does),
+            every=True if every is True else (*every, *asks, *does, *canceled),
             **more,
         )
 
