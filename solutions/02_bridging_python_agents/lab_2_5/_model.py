@@ -60,8 +60,8 @@ def kind(*replies: str, takes: float = 0.05) -> str:
 
 def reply(request: Mapping[str, Any]) -> Work:
     """Return the reply to a context, and how long it takes. Its order says which, for each try."""
-    order, *errors = request["context"].encode("utf-8", "replace").decode().split("\n")
-    replies = _REPLIES.findall(order.split()[-1]) if order.strip() else []
+    order, *errors = lines(request)
+    replies = _REPLIES.findall(order.split()[-1]) if order else []
     if not replies:
         return Work(takes=0.0, result={"reply": "What shall I do?"})
     one, seconds = replies[min(len(errors), len(replies) - 1)]
@@ -71,8 +71,14 @@ def reply(request: Mapping[str, Any]) -> Work:
 
 def told(fields: Mapping[str, Any]) -> str:
     """Return what a model is told: the order, and the field of each error."""
-    order, *errors = [line.strip() for line in fields["context"].strip().split("\n")]
+    order, *errors = lines(fields)
     return "; ".join([order, *(field(error) for error in errors)])
+
+
+def lines(fields: Mapping[str, Any]) -> list[str]:
+    """Return the lines of a context. A line may end with a new line, too, so an empty one does not count."""
+    text = fields["context"].encode("utf-8", "replace").decode()
+    return [line.strip() for line in text.split("\n") if line.strip()] or [""]
 
 
 def field(error: str) -> str:

@@ -15,13 +15,14 @@ PAUSE = 0.75
 def steps(random: Random) -> list[Text | float]:
     """Return rows in drawn order. In each, a reply is in time, too late, replaced, or never comes."""
 
-    def asks(*replies: str, takes: float) -> Text:
-        return Text("/order", order(random, kind(*replies, takes=takes)))
+    def asks(*replies: str, takes: float, stands: float = 0.0) -> Text:
+        return Text("/order", order(random, kind(*replies, takes=takes)), stands=stands)
 
     # Each moment is a quarter of a second or more away from the two seconds, and from the end of its step.
     rows: list[list[Text | float]] = [
         [asks("good", takes=0.2)],
-        [asks("good", takes=1.5), 1.25],
+        # Meanwhile the robot's time stands still for longer than two seconds: they are seconds of the robot's clock.
+        [asks("good", takes=1.5, stands=2.2), 1.25],
         [asks("good", takes=2.8), 1.75, PAUSE],
         [asks(random.choice(("good", "nan")), takes=inf), 1.75, PAUSE],
         # Two tries of which each is in time, though both together are not.
@@ -53,7 +54,7 @@ EXERCISE = ToolUser(
 ).exercise(
     text={
         "A reply counts only if its future is `self.open`": "lamp walk_to said",
-        "gives up a question that has been open for more than 2 seconds": "said",
+        "gives up a question that has been open for more than 2 seconds": "said model",
         "goes on as before": "model",
     }
 )
