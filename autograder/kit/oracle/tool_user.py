@@ -37,7 +37,7 @@ _DOES: Mapping[tuple[str, ...], str] = {
     CANCELED: "Cancels goals of",
 }
 CANCEL = "/cancel"
-"""What the name of the output that shows canceled goals adds to the name of the action."""
+"""The ending of the name of the output that shows canceled goals, behind the name of the action."""
 
 
 @dataclass(frozen=True)
