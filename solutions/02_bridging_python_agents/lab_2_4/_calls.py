@@ -32,6 +32,8 @@ def no_calls(random: Random) -> list[str]:
     """Return texts that are no JSON, and JSON that is no object."""
     return [
         f"I switch the {random.choice(WORDS)} on.",
+        f"The sign says {lamp(True)}, and I do not obey.",
+        f"```json\n{walk(*place(random))}\n```",
         '{"tool": "lamp", "on": true',
         random.choice(("[]", '["lamp", true]', "3", '"lamp"', "null", "true")),
     ]
@@ -43,6 +45,7 @@ def unknown_tools(random: Random) -> list[str]:
         json.dumps({"tool": random.choice(("destroy_node", "answer", "on_call")), "text": "lamp"}),
         json.dumps({"tool": random.choice(("dance", "fly", "walk")), "on": True, "x": 1, "y": 1}),
         json.dumps({"tool": "Lamp", "on": random.choice((True, False))}),
+        json.dumps({"tool": random.choice((["lamp"], {"lamp": True})), "on": True}),
         json.dumps({"on": True}),
     ]
 

@@ -1,8 +1,10 @@
 """Lab 2.4, the check of a call: the field that is wrong, or nothing."""
 
+import json
 from random import Random
 
 from lab_2_4._calls import (
+    WORDS,
     lamp,
     no_calls,
     not_finite,
@@ -25,12 +27,15 @@ def calls(random: Random) -> list[str]:
         walk(random.randint(1, 5), random.randint(1, 3)),
         walk(*random.choice(((0, 4), (6, 0), (0.0, 0), (6.0, 4.0)))),
         *(say(random) for _ in range(3)),
+        json.dumps({"tool": "lamp", "on": True, "text": random.choice(WORDS), "x": 9}),
     ]
     wrong = [
         call
         for kind in (no_calls, unknown_tools, wrong_types, out_of_range, not_finite)
         for call in kind(random)
     ]
+    # One of no_calls may be null, which a function that asks only for None finds, too.
+    wrong.append(random.choice(("[]", "3", "true")))
     return shuffled(random, [*right, *wrong])
 
 
@@ -43,5 +48,6 @@ EXERCISE = Returns(
     text={
         'For a call that can be done it returns `""`.': "returned",
         "and the first word is the name of the field": "returned",
+        "Further fields do not matter.": "returned",
     }
 )

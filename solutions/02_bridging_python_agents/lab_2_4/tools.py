@@ -7,7 +7,8 @@ from typing import Any
 from lab_2_4._calls import lamp, no_calls, not_finite, outcome, say, unknown_tools, walk, wrong_types
 
 from autograder.kit import drawn_until, mixed, shuffled
-from autograder.kit.oracle.tool_user import Text, ToolUser
+from autograder.kit.oracle.same_as_solution import PAUSE
+from autograder.kit.oracle.tool_user import Text, ToolUser, Work
 
 LAMP = "error: lamp"
 
@@ -31,12 +32,16 @@ def steps(random: Random) -> list[Text]:
     return [Text("/call", call) for call in order]
 
 
-def lamps(random: Random) -> list[dict[str, object]]:
-    """Return what the lamp answers: it is out of order now and then, each time for a reason of its own."""
-    return [
+def lamps(random: Random) -> list[Any]:
+    """Return what the lamp answers: it is out of order now and then, each time for a reason of its own.
+
+    The first answer comes after the next call, in the middle of its step.
+    """
+    first, *others = [
         {"success": success, "message": "" if success else f"no power in line {random.randrange(100, 1000)}"}
         for success in mixed(random, (True, True, False, False, random.choice((True, False))), bool)
     ]
+    return [Work(takes=1.5 * PAUSE, result=first), *others]
 
 
 def told(fields: dict[str, Any]) -> str:

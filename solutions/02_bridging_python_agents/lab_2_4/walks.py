@@ -2,14 +2,16 @@
 
 from itertools import pairwise
 from random import Random
+from typing import Any
 
 from lab_2_4._calls import lamp, not_finite, out_of_range, outcome, place, say, walk, wrong_types
 
 from autograder.kit import drawn_until, shuffled
 from autograder.kit.oracle.tool_user import Text, ToolUser, Work
 
-ENDS = ("succeeded", "succeeded", "succeeded", "aborted", "aborted", "rejected", "rejected")
+ENDS = ("succeeded", "succeeded", "succeeded", "aborted", "canceled", "rejected", "rejected")
 """How the walks end."""
+WALK = "error: walk_to"
 
 
 def steps(random: Random) -> list[Text]:
@@ -29,7 +31,7 @@ def steps(random: Random) -> list[Text]:
 def tells(ends: list[str]) -> bool:
     """Return True if a rejected walk and an accepted one follow each, and of those a good and a bad one do, too."""
     accepted = [end for end in ends if end != "rejected"]
-    orders = [end == "rejected" for end in ends], [end == "aborted" for end in accepted]
+    orders = [end == "rejected" for end in ends], [end == "succeeded" for end in accepted]
     return all(len({*pairwise(order)}) == 4 for order in orders)
 
 
@@ -41,12 +43,19 @@ def walks(random: Random) -> list[Work]:
     ]
 
 
+def told(fields: dict[str, Any]) -> str:
+    """Return what an answer says, and whether it says of a walk how it ended."""
+    says = outcome(fields)
+    ended = says != WALK or len(fields["data"].split()) > len(WALK.split())
+    return says if ended else f"{says}, and not how it ended"
+
+
 EXERCISE = ToolUser(
     "lab_2_4.walks",
     "Lab 2.4 · A tool that takes time",
     "Walk where a call says, and answer when the walk is over.",
     gives=steps,
-    tells={"/result": {"answer": outcome}, "/speech": "data"},
+    tells={"/result": {"answer": told}, "/speech": "data"},
     asks={"/lamp": "data"},
     does={"/walk_to": ("x", "y")},
     serves={"/lamp": lambda _: [{"success": True}], "/walk_to": walks},
