@@ -16,7 +16,7 @@ WISHES = (
     "Show me the door",
     "I need you in the hall",
 )
-_REPLIES = re2.compile(r"(good|sign|fenced|chat|nan|infinite|far|unknown|text)-(\d(?:\.\d+)?)")
+_REPLIES = re2.compile(r"(good|sign|fenced|chat|nan|infinite|far|unknown|text)-(\d(?:\.\d+)?|inf)")
 """Matches the kind of a reply and its seconds. A subject may tell the model anything, also what no order says."""
 STRIPPED = ":,.'\"`"
 
