@@ -194,8 +194,7 @@ def wrong_ceilings(parts: dict[str, Counter[str]], data: dict[str, Any], decisio
     wrong += [f"{part} does not exist: remove its line" for part in data["ceilings"].keys() - parts.keys()]
     for part, size in sorted(parts.items()):
         for kind, words in WORDS.items():
-            raised = sum(one.get(kind, 0) for one in data.get("raised", ()) if one["part"] == part)
-            ceiling = data["ceilings"].get(part, {}).get(kind, 0) + raised
+            ceiling = data["ceilings"].get(part, {}).get(kind, 0) + _raised(data, part, kind)
             if size[kind] > ceiling:
                 wrong.append(f"{part} has {size[kind]} {words}, and {ceiling} are allowed")
             elif ceiling - size[kind] > max(TOO_HIGH[kind], ceiling / 100):
@@ -203,13 +202,19 @@ def wrong_ceilings(parts: dict[str, Counter[str]], data: dict[str, Any], decisio
     return wrong
 
 
+def _raised(data: dict[str, Any], part: str, kind: str) -> int:
+    return sum(one.get(kind, 0) for one in data.get("raised", ()) if one["part"] == part)
+
+
 def lowered(parts: dict[str, Counter[str]], data: dict[str, Any]) -> str:
-    """Return the text of the ceilings file with each ceiling at the present size, if that is lower."""
+    """Return the text of the ceilings file with each ceiling, as raised, at the present size, if that is lower."""
     lines = []
     for part, size in sorted(parts.items()):
         old = data["ceilings"].get(part, {}) if data["ceilings"] else size
-        numbers = ", ".join(f"{kind} = {min(size[kind], old.get(kind, 0))}" for kind in WORDS)
-        lines.append(f'"{part}" = {{ {numbers} }}')
+        numbers = (
+            f"{kind} = {min(size[kind] - _raised(data, part, kind), old.get(kind, 0))}" for kind in WORDS
+        )
+        lines.append(f'"{part}" = {{ {", ".join(numbers)} }}')
     for one in data.get("raised", ()):
         more = (f"{kind} = {one[kind]}" for kind in WORDS if kind in one)
         lines += ["", "[[raised]]", f'part = "{one["part"]}"', *more, f'entry = "{one["entry"]}"']

@@ -136,5 +136,5 @@ def test_a_ceiling_only_falls(logic: int, raised: dict[str, Any], said: str) -> 
     assert said in "".join(wrong)
     assert bool(wrong) == bool(said)
     kept = tomllib.loads(lowered({"kit": Counter(logic=logic, public=1)}, data))
-    assert kept["ceilings"]["kit"]["logic"] == min(logic, 100)
+    assert kept["ceilings"]["kit"]["logic"] == min(logic - raised.get("logic", 0), 100)
     assert kept.get("raised", []) == more
