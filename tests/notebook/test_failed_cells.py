@@ -88,7 +88,7 @@ def test_code_of_elsewhere_is_told_below_the_cell_and_by_the_check(said: Callabl
     shown, checked, old = said((tutorial,), (tutorial, CHECK), (RIGHT, ros1, CHECK))
     assert "No module named 'example_interfaces'" in shown
     for words in (shown, checked):
-        assert "my_robot_interfaces in place of example_interfaces" in words
+        assert "my_robot_interfaces instead of example_interfaces" in words
     assert "Write self.create_publisher(String, 'chatter', 10)" in old
     assert "The notebook still has an older Talker2. Correct that cell" in old
 
@@ -168,6 +168,6 @@ def test_a_known_error_of_a_cell_is_told_below_it_without_lines_of_ipython(
     )
     assert "Write %%bash --no-raise-error as the first line of the cell" in command
     assert "interactiveshell" not in command
-    assert "in place of `await your_future`" in awaits
+    assert "instead of `await your_future`" in awaits
     assert "Move %%writefile to the first line of the cell" in magic
     assert "takes your class or function itself, without quotation marks" in quoted

@@ -115,7 +115,7 @@ def test_what_nbgrader_refuses_leaves_the_class_as_it_was(tiny: TinyClass, cours
 
 
 def test_only_what_the_class_has_is_brought_up_to_date(tiny: TinyClass, course: Path) -> None:
-    with pytest.raises(GradingError, match="no assignment lab_9_9"):
+    with pytest.raises(GradingError, match="No assignment of the class is named lab_9_9"):
         renew(tiny.path, course, ["lab_9_9"])
 
 
