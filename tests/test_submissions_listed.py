@@ -124,8 +124,7 @@ def test_every_explained_diagnosis_is_one_that_a_card_can_have() -> None:
 
 
 def test_a_wrong_program_is_named_after_its_diagnosis() -> None:
-    # The course text's own solutions are named so instead.
-    wrong = [a for a in PROGRAMS if a.diagnoses and a.file.stem != "text_as_it_stands"]
+    wrong = [a for a in PROGRAMS if a.diagnoses]
     assert [a.name for a in wrong if not a.file.name.startswith(a.diagnoses[0])] == []
 
 
