@@ -104,9 +104,15 @@ def definitions(program: str, *also: type[ast.stmt]) -> str:
 
 
 def _is_constant(node: ast.stmt) -> bool:
-    return isinstance(node, ast.Assign) and all(
-        isinstance(target, ast.Name) and target.id.isupper() for target in node.targets
+    targets = (
+        node.targets
+        if isinstance(node, ast.Assign)
+        else [node.target]
+        if isinstance(node, ast.AnnAssign)
+        else []
     )
+    # A type's other name, such as Point, begins with a capital, too.
+    return bool(targets) and all(isinstance(one, ast.Name) and one.id[0].isupper() for one in targets)
 
 
 def wait_for(subject: Subject) -> Waited:
