@@ -128,7 +128,7 @@ def _of_mistakes(exercise: Exercise, listed: Sequence[Answer]) -> Iterator[str]:
         used = {mistake.key for mistake in exercise.mistakes}
         used |= {key for answer in listed for key in answer.diagnoses}
         # A recorded wrong answer says on the card itself what it is, and what a mutant does has keys of its own.
-        used -= {"variant", "mutant", *(key for answer in listed if answer.advice for key in answer.diagnoses)}
+        used -= {"variant", "mutant"} | {key for one in listed if one.advice for key in one.diagnoses}
         yield from (f"{_MISTAKES_PAGE}: no paragraph about `{key}` yet" for key in sorted(used - explained))
 
 
