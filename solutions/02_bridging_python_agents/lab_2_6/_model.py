@@ -6,6 +6,7 @@ from random import Random
 from typing import Any
 
 import re2
+from lab_2_5._model import field, lines
 
 from autograder.kit.oracle.tool_user import Text, Work
 
@@ -16,7 +17,6 @@ WISHES = (
     "Bring the letters in",
     "Wake the others",
 )
-STRIPPED = ":,.'\"`"
 WALKS = {
     "walk": Work("succeeded", 0.3, [{"distance": 1.0}], {"arrived": True}),
     "blocked": Work("aborted", 0.3, [{"distance": 1.0}]),
@@ -46,7 +46,7 @@ def order(random: Random, *kinds: str, takes: float = 0.05) -> Text:
 
 def reply(request: Mapping[str, Any]) -> Work:
     """Return the reply to a context, and how long it takes. Its order says which, for each line about a call."""
-    order, *calls = request["context"].split("\n")
+    order, *calls = lines(request)
     found = re2.search(r" ([a-z-]+)-([0-9]+\.[0-9]+)$", order)
     kinds, takes = (found[1].split("-"), float(found[2])) if found else (["done"], 0.05)
     kind = kinds[min(len(calls), len(kinds) - 1)]
@@ -86,8 +86,8 @@ def room(fields: Mapping[str, Any]) -> str:
 
 def told(fields: Mapping[str, Any]) -> str:
     """Return what a model is told: the order, and of each call the first words of what came of it."""
-    order, *lines = [line.strip() for line in fields["context"].strip().split("\n")]
-    return "; ".join([order, *map(_outcome, lines)])
+    order, *calls = lines(fields)
+    return "; ".join([order, *map(_outcome, calls)])
 
 
 def _numbered(works: Mapping[str, Work], number: str) -> Work:
@@ -98,5 +98,4 @@ def _numbered(works: Mapping[str, Work], number: str) -> Work:
 
 def _outcome(line: str) -> str:
     call, _, outcome = (part.strip() for part in line.partition("->"))
-    begins, colon, rest = outcome.partition(":")
-    return f"{call} -> {begins}{colon} {(rest.split() or [''])[0].strip(STRIPPED)}".rstrip()
+    return f"{call} -> {field(outcome) if ':' in outcome else outcome}".rstrip()
