@@ -140,9 +140,8 @@ def _next_step(judged: Exercise, evidence: Evidence) -> str:
 def _symptom(judged: Exercise, evidence: Evidence) -> Finding:
     """Return what a user notices of a node that does not work: what never came, or else the first failed criterion."""
     # Chance decides what the judge hears of a node that ends soon.
-    ended = next((part.traceback for part in evidence if part.ending is not None and part.traceback), "")
-    if ended:
-        return Finding(False, _ASKED, f"the program ended with an error: {what_and_where(ended)}")
+    if raised := next((part.traceback for part in evidence if part.ending and part.traceback), ""):
+        return Finding(False, _ASKED, f"the program ended with an error: {what_and_where(raised)}")
     for role, names in evidence.reference.interface.items():
         kind, words = _NOTHING_CAME.get(role, ("", ""))
         for name in names if kind else ():

@@ -12,6 +12,7 @@ from autograder.kit.outcomes import ABORTED, all_goals
 
 if TYPE_CHECKING:
     from autograder.kit.evidence import Evidence
+    from autograder.kit.outcomes import SentGoal
 
 
 def _result_missing(evidence: Evidence) -> Advice | None:
@@ -54,17 +55,21 @@ def _exception_in_execute(evidence: Evidence) -> Advice | None:
     return raised("The execute callback raised an exception, so rclpy aborted the goal", traceback)
 
 
+def _first_canceled(evidence: Evidence) -> SentGoal | None:
+    """Return the goal of the first cancel request that the server answered; None if it answered none."""
+    answered = (one for part in evidence for one in all_goals(part) if one.cancel_accepted is not None)
+    return next(answered, None)
+
+
 def _refuses_to_cancel(evidence: Evidence) -> bool:
     """Return True if the server refused the first cancel request that it answered, for a goal that had not ended."""
-    answered = (one for part in evidence for one in all_goals(part) if one.cancel_accepted is not None)
-    first = next(answered, None)
+    first = _first_canceled(evidence)
     return first is not None and not (first.cancel_accepted or first.cancelled_too_late or first.is_quick)
 
 
 def _reads_no_request(evidence: Evidence) -> bool:
     """Return True if the first cancel request that was answered waited until the goal's end, while feedback came."""
-    answered = (one for part in evidence for one in all_goals(part) if one.cancel_accepted is not None)
-    first = next(answered, None)
+    first = _first_canceled(evidence)
     if first is None or not first.cancelled_too_late or first.is_quick:
         return False
     return first.unread >= UNREAD and not first.sent_after(first.cancel_answered_at)

@@ -170,9 +170,8 @@ def student_traceback(error: BaseException) -> str:
     """
     try:
         return _student_traceback(error)
-    except (
-        BaseException
-    ):  # also what ends this thread: then the judge would wait for a constructor that has ended
+    # Also what ends this thread: else the judge would wait for a constructor that has ended.
+    except BaseException:
         trace = student_frames(vars(BaseException)["__traceback__"].__get__(error))
         return f"{''.join(traceback.format_tb(trace))}{UNREADABLE}"
 
