@@ -20,6 +20,8 @@ from autograder.authoring.answer_tables import (
     listed_answers,
     unpack_workspace,
 )
+from autograder.kit.model import UNKNOWN
+from autograder.kit.oracle.naming.drawn import EFFECT
 from autograder.safe_files import HeldFolder
 from autograder.standard_output import private_stdout
 from autograder.verdict import State, Verdict, from_json, to_json
@@ -47,7 +49,8 @@ class Answer:
         exercise: The exercise's id.
         file: The program; if it is stored as an edit, the path that the program would have.
         command: The command that runs the program, with placeholders ``{file}`` and ``{workspace}``.
-        diagnoses: The accepted diagnoses, as keys of mistakes; empty for a right answer.
+        diagnoses: The accepted diagnoses, as keys of mistakes; empty for a right answer. A mistake that the card may
+            leave unknown may have its effect told as well.
         base: The workspace of the answer, which a ``*.workspace`` edits and any other answer uses as it is; None if
             the answers to the exercise need no workspace.
         edit: The answer's entry in a table, if the answer is stored there as an edit.
@@ -139,7 +142,8 @@ class Answer:
             return f"a wrong answer is {verdict.state}"
         if verdict.score >= verdict.max_score:
             return "a wrong answer got full marks"
-        if key not in self.diagnoses:
+        # What an output lacks as a whole is true whatever the cause is, and the drawing decides whether it can be told.
+        if key not in (*self.diagnoses, *([EFFECT] if UNKNOWN in self.diagnoses else [])):
             return f"diagnosed as {key}, not as {' or '.join(self.diagnoses)} ({missed})"
         words = f"{verdict.diagnosis.text} {verdict.diagnosis.next_step}" if verdict.diagnosis else ""
         return "" if self.says in words else f"the card does not contain “{self.says}”, but: {words}"

@@ -1,15 +1,14 @@
-"""What comes to no verdict is judged once more, when nothing else is."""
+"""What comes to no verdict is judged once more, when nothing else is; which diagnosis is as expected."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from pathlib import Path
 
-from autograder.authoring.answer_bank import Turn, judge_all
-from autograder.verdict import State, Verdict, not_checked, to_json
+import pytest
 
-if TYPE_CHECKING:
-    from pathlib import Path
+from autograder.authoring.answer_bank import Answer, Turn, judge_all
+from autograder.verdict import Diagnosis, State, Verdict, not_checked, to_json
 
 AT_ONCE = 3
 
@@ -45,3 +44,21 @@ def test_what_could_not_be_checked_is_judged_again_one_at_a_time(tmp_path: Path)
     words = journal.read_text().split()
     assert len(words) == 2 * AT_ONCE * 2
     assert words[2 * AT_ONCE :] == ["begins", "ends"] * AT_ONCE
+
+
+@pytest.mark.parametrize(
+    ("expected", "told", "as_expected"),
+    [
+        ("unknown", "unknown", True),
+        ("unknown", "effect", True),  # which drawing it is decides whether an effect can be told
+        ("unknown", "mutant", False),
+        ("effect", "unknown", False),
+        ("crashed", "effect", False),
+    ],
+)
+def test_an_effect_may_be_told_where_the_cause_may_stay_unknown(
+    expected: str, told: str, as_expected: bool
+) -> None:
+    answer = Answer("lab_1_2.talker", Path("wrong/one.py"), (), (expected,))
+    verdict = Verdict("lab_1_2.talker", "", State.FAILED, 0, 10, diagnosis=Diagnosis(told, ""))
+    assert (answer.objection(verdict) == "") is as_expected
