@@ -49,8 +49,7 @@ class Answer:
         exercise: The exercise's id.
         file: The program; if it is stored as an edit, the path that the program would have.
         command: The command that runs the program, with placeholders ``{file}`` and ``{workspace}``.
-        diagnoses: The accepted diagnoses, as keys of mistakes; empty for a right answer. A mistake that the card may
-            leave unknown may have its effect told as well.
+        diagnoses: The accepted diagnoses, as keys of mistakes; empty for a right answer.
         base: The workspace of the answer, which a ``*.workspace`` edits and any other answer uses as it is; None if
             the answers to the exercise need no workspace.
         edit: The answer's entry in a table, if the answer is stored there as an edit.
@@ -142,8 +141,7 @@ class Answer:
             return f"a wrong answer is {verdict.state}"
         if verdict.score >= verdict.max_score:
             return "a wrong answer got full marks"
-        # What an output lacks as a whole is true whatever the cause is, and the drawing decides whether it can be told.
-        if key not in (*self.diagnoses, *([EFFECT] if UNKNOWN in self.diagnoses else [])):
+        if key not in self.diagnoses:
             return f"diagnosed as {key}, not as {' or '.join(self.diagnoses)} ({missed})"
         words = f"{verdict.diagnosis.text} {verdict.diagnosis.next_step}" if verdict.diagnosis else ""
         return "" if self.says in words else f"the card does not contain “{self.says}”, but: {words}"
@@ -166,6 +164,9 @@ def answers(of: Sequence[str] = ()) -> Iterator[Answer]:
             first, *rest = one.entry.command or usual.command
             command = (_PROGRAMS.get(first, first), *rest)
             diagnoses = (one.entry.diagnosis, *one.entry.also) if one.entry.diagnosis else ()
+            if UNKNOWN in diagnoses:
+                # An effect is true whatever the cause is, and the drawing decides whether it can be told.
+                diagnoses = (*diagnoses, EFFECT)
             base = folder / usual.base if usual.base else None
             edit = one if one.entry.change else None
             advice = (one.entry.card, one.entry.next_step) if one.entry.card else ()
