@@ -11,7 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from autograder.judge.timeline import verdict_timeline
+from autograder.judge.timeline import event_kinds, verdict_timeline
 from autograder.kit.evidence import Event
 from autograder.messages.judge_messages import OwnLine
 
@@ -134,9 +134,7 @@ def parting_point(evidence: Evidence) -> PartingPoint | None:
 
 def _turns(part: Part) -> Iterator[_Turn]:
     """Yield the turns of a part, lane by lane."""
-    shown = [
-        event for event in part.events if event.kind in verdict_timeline.KINDS and event.kind != "subject"
-    ]
+    shown = [event for event in part.events if event.kind in event_kinds.KINDS and event.kind != "subject"]
     turns: dict[str, list[list[Event]]] = {}
     for lane, event in zip(verdict_timeline.lane_names(shown), shown, strict=True):
         of_lane = turns.setdefault(lane, [])
@@ -144,7 +142,7 @@ def _turns(part: Part) -> Iterator[_Turn]:
             of_lane.append([])
         of_lane[-1].append(event)
     for events in (events for lists in turns.values() for events in lists):
-        question = verdict_timeline.label_of(events[0]) if events[0].kind in _QUESTIONS else ""
+        question = event_kinds.label_of(events[0]) if events[0].kind in _QUESTIONS else ""
         done = [event for event in events if event.kind in _DONE]
         if done or question:
             is_cut = any(event.kind in ("cancel_sent", "cancel") for event in events)
@@ -191,7 +189,7 @@ def _outcome(event: Event) -> object:
 
 
 def _words(event: Event) -> str:
-    label = verdict_timeline.label_of(event)
+    label = event_kinds.label_of(event)
     return _DONE[event.kind][1].format(label if len(label) <= _LONGEST else f"{label[:_LONGEST]}…")
 
 

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Callable, Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING
 
 import re2
 
+from autograder.judge.timeline.event_kinds import HEARD, KINDS, label_of
 from autograder.kit.evidence import spoken_by
-from autograder.kit.outcomes import STATUS
 from autograder.kit.runners import build_ended
 from autograder.verdict import Moment
 
@@ -26,9 +25,6 @@ MAX_MOMENTS = 80
 MOST_MOMENTS = 120
 """The maximum number of moments if more than :data:`MAX_MOMENTS` are important, as when a program sends goals forever.
 """
-
-MAX_LABEL = 200
-"""The maximum length of a moment's label, in characters."""
 
 EXPECTED = 5
 """The maximum number of missing messages that a failed card shows for each topic, beginning with the first."""
@@ -310,88 +306,13 @@ def _not_come(due: Sequence[_Said], came: Sequence[_Said], near: float, *, carri
     return missed
 
 
-def _fields(data: Mapping[str, Any]) -> str:
-    fields = data.get("fields", {})
-    inner = any(isinstance(value, Mapping) for value in fields.values())
-    if len(fields) == 1 and not inner:
-        return str(next(iter(fields.values())))
-    leaves = dict(_leaves(fields))
-    # Most fields of nested messages are zero, so only the other fields are shown.
-    told = [f"{name}={value}" for name, value in leaves.items() if value or not inner]
-    return ", ".join(told) or ("all 0" if inner else "")
-
-
-def _goal(data: Mapping[str, Any]) -> str:
-    """Return a goal's label, such as ``goal, order 5``: ``goal 5`` would look like the fifth goal."""
-    fields = data.get("fields", {})
-    name = next(iter(fields), "") if len(fields) == 1 else ""
-    return f"goal, {name} {_fields(data)}" if name else f"goal {_fields(data)}"
-
-
-def _leaves(fields: Mapping[str, Any], above: str = "") -> Iterator[tuple[str, Any]]:
-    for name, value in fields.items():
-        if isinstance(value, Mapping):
-            yield from _leaves(value, f"{above}{name}.")
-        else:
-            yield f"{above}{name}", value
-
-
-class _Kind(NamedTuple):
-    """A kind of event that the timeline shows.
-
-    Attributes:
-        direction: The direction of the message: from the subject, to the subject, or neither.
-        label: Returns the label of an event's dot.
-        key: True if such events are important and therefore always shown.
-        numbered: True if such events contain the number of a goal that the judge has sent.
-    """
-
-    direction: str
-    label: Callable[[Event], str] = lambda event: _fields(event.data)
-    key: bool = False
-    numbered: bool = False
-
-
-_HEARD, _SENT, _NOTE = "from_subject", "to_subject", "note"
-KINDS = {
-    "message": _Kind(_HEARD),
-    "sent": _Kind(_SENT),
-    "request": _Kind(_HEARD),
-    "response": _Kind(_SENT),
-    "goal": _Kind(_HEARD, lambda e: _goal(e.data), key=True),
-    "feedback": _Kind(_SENT),
-    "cancel": _Kind(_HEARD, lambda _: "cancel request", key=True),
-    "result_request": _Kind(_HEARD, lambda _: "asks for the result"),
-    "result": _Kind(_SENT, lambda e: f"{str(e.data['status']).upper()} {_fields(e.data)}".rstrip(), key=True),
-    "asked": _Kind(_SENT),
-    "answered": _Kind(_HEARD),
-    "goal_sent": _Kind(_SENT, lambda e: _goal(e.data), key=True, numbered=True),
-    "goal_answer": _Kind(_HEARD, lambda e: "accepted" if e.data["accepted"] else "rejected", numbered=True),
-    "feedback_heard": _Kind(_HEARD, numbered=True),
-    "cancel_sent": _Kind(_SENT, lambda _: "cancel request", key=True, numbered=True),
-    "cancel_answer": _Kind(
-        _HEARD, lambda e: "will cancel" if e.data["accepted"] else "will not cancel", numbered=True
-    ),
-    "result_heard": _Kind(
-        _HEARD,
-        lambda e: f"{STATUS.get(e.data['status'], e.data['status'])} {_fields(e.data)}",
-        key=True,
-        numbered=True,
-    ),
-    "log": _Kind(_HEARD, lambda e: str(e.data["text"])),
-    "output": _Kind(_HEARD, lambda e: spoken_by(e) or ""),
-    "mismatch": _Kind(_NOTE, lambda e: f"{e.data['policy']} does not fit", key=True),
-    "subject": _Kind(_NOTE, lambda e: e.name.replace("_", " ")),
-}
-
-
 _UNWRITTEN = "must return a LaunchDescription, not None"
 """What `ros2 launch` says of a launch file whose function returns nothing. Then each line is from the launch."""
 
 
 def shows_nothing(evidence: Evidence) -> bool:
     """Return True if the subject sent, said and returned nothing, raised no error, and made no unexpected endpoint."""
-    sent = {kind for kind, shown in KINDS.items() if shown.direction == _HEARD} - {"log", "output"}
+    sent = {kind for kind, shown in KINDS.items() if shown.direction == HEARD} - {"log", "output"}
     asked = evidence.reference.interface
     return not any(
         part.traceback
@@ -400,9 +321,3 @@ def shows_nothing(evidence: Evidence) -> bool:
         or any(part.endpoints(role).items() - asked.get(role, {}).items() for role in _ENDS)
         for part in evidence
     )
-
-
-def label_of(event: Event) -> str:
-    """Return the label of an event's dot, cut to :data:`MAX_LABEL` characters."""
-    text = KINDS[event.kind].label(event)
-    return text if len(text) <= MAX_LABEL else f"{text[: MAX_LABEL - 1]}…"
