@@ -33,6 +33,10 @@ LAB = "lab.md"
 """The name of the master in a lab's folder, from which the lab's notebook is made."""
 WHY = ".why.md"
 """The suffix of the file next to an exercise that explains the reference solution."""
+TICKET = ".ticket.toml"
+"""The suffix of the file with the words of a ticket, which is two exercises without code: a repair and a question."""
+CAUSE = "_why"
+"""The end of the name of the exercise that asks for the cause."""
 SOLUTION = ".solution.json"
 """The suffix of the file with an exercise's solution and explanation, which students see once they have full marks."""
 
@@ -67,11 +71,16 @@ class Chapter:
     interfaces: tuple[str, ...]
 
     def exercises_of(self, lab: Path) -> dict[str, Path]:
-        """Return the files of a lab's exercises by exercise id, in the order in which students do the exercises."""
+        """Return the files of a lab's exercises by exercise id, in the order in which students do the exercises.
+
+        An exercise of a ticket has no file; its path is the one that a file would have.
+        """
         wanted = self.exercises.get(lab.name, ())
-        files = sorted(lab.glob("[!_]*.py"))
-        files.sort(key=lambda file: wanted.index(file.stem) if file.stem in wanted else len(wanted))
-        return {f"{lab.name}.{file.stem}": file for file in files}
+        tickets = {file.name.removesuffix(TICKET) for file in lab.glob(f"*{TICKET}")}
+        written = {file.stem for file in lab.glob("[!_]*.py")}
+        names = written | {f"{name}{end}" for name in tickets for end in ("", CAUSE)}
+        in_order = [*(name for name in wanted if name in names), *sorted(names.difference(wanted))]
+        return {f"{lab.name}.{name}": lab / f"{name}.py" for name in in_order}
 
 
 def root() -> Path:

@@ -2,7 +2,8 @@
 
 The exercise ``lab_1_2.talker`` is the file ``talker.py`` in the folder ``lab_1_2`` of a chapter. Python can import it
 as the module ``lab_1_2.talker``, so the files of a lab can import each other. A file whose name begins with an
-underscore is not an exercise, but a part of other exercises. Only judges and graders import these modules; no student's
+underscore is not an exercise, but a part of other exercises. A ticket (``dark_door.ticket.toml``) is two exercises
+without files of their own. Only judges and graders import these modules; no student's
 sandbox contains the files.
 """
 
@@ -50,14 +51,23 @@ def get(exercise_id: str) -> Exercise:
 
     Raises:
         UnknownExercise: No exercise has this id.
-        BrokenExercise: The exercise's file cannot be imported, or does not define an exercise with this id.
+        BrokenExercise: The exercise's file cannot be imported, or does not define an exercise with this id; or its
+            ticket cannot be used.
     """
-    file = path(exercise_id)
+    return _loaded(exercise_id, path(exercise_id))
+
+
+# The results of this function and the next one are cached, because a judge cannot read the labs' folders any more when
+# it is in its sandbox.
+@functools.cache
+def _loaded(exercise_id: str, file: Path) -> Exercise:
+    from autograder.kit.hunts.ticket import exercise_of
+
     try:
-        module = importlib.import_module(exercise_id)
+        module = importlib.import_module(exercise_id) if file.exists() else None
+        exercise: Exercise | None = getattr(module, "EXERCISE", None) if module else exercise_of(file)
     except Exception as error:
         raise BrokenExercise(f"{file} cannot be imported: {_words(error)}") from error
-    exercise: Exercise | None = getattr(module, "EXERCISE", None)
     if exercise is None:
         raise BrokenExercise(
             f"{file} does not define EXERCISE: name the file _{file.name} if it is a part of other exercises"
@@ -127,7 +137,6 @@ def _files() -> dict[str, Path]:
     return _files_of(course.root())
 
 
-# The result is cached, because a judge cannot list the labs' folders any more when it is in its sandbox.
 @functools.cache
 def _files_of(root: Path) -> dict[str, Path]:
     return {

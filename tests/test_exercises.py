@@ -7,14 +7,12 @@ import os
 import socket
 import subprocess
 import sys
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import pytest
 
+from autograder import exercises
 from autograder.authoring.new_exercise import new_exercise
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 WHOLE, BROKEN = "lab_9_1.battery", "lab_9_2.battery"
 
@@ -54,6 +52,27 @@ def test_the_others_are_listed(root: Path) -> None:
     done = run(root, "check")
     assert [line.split()[0] for line in done.stdout.splitlines()] == [WHOLE]
     assert "cannot be imported" in done.stderr
+
+
+def test_a_ticket_is_two_exercises_and_one_that_cannot_be_read_is_named(tmp_path: Path) -> None:
+    new_exercise(tmp_path, "bugs_9.battery", "repair", chapter="01_first")
+    assert [line.split()[0] for line in run(tmp_path, "check").stdout.splitlines()] == [
+        "bugs_9.battery",
+        "bugs_9.battery_why",
+    ]
+    (tmp_path / "solutions/01_first/bugs_9/battery.ticket.toml").write_text('title = "Too short"\n')
+    done = run(tmp_path, "try-exercise", "bugs_9.battery")
+    assert done.returncode == 2, done.stdout + done.stderr
+    assert "battery.ticket.toml: Object missing required field `task`" in done.stderr
+    assert "Traceback" not in done.stderr
+
+
+def test_what_was_loaded_needs_no_file(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A judge loads all exercises, and enters its box, which sees none of their files."""
+    before = exercises.unbroken()
+    monkeypatch.setattr(Path, "exists", lambda _: False)
+    assert exercises.unbroken() == before
+    assert len(before) == len(exercises.all_ids())
 
 
 @pytest.mark.ros

@@ -188,7 +188,7 @@ def _of_linters(lab: Path) -> Iterator[str]:
         ("ruff", "format", "--check", "--quiet", f"--config={_SETTINGS}"),
         ("mypy", "--no-error-summary", f"--config-file={_SETTINGS}"),
     ):
-        if programs[name].is_file():
+        if files and programs[name].is_file():
             done = subprocess.run(
                 [programs[name], *words, *files],
                 cwd=_PACKAGE,

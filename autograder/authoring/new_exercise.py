@@ -90,7 +90,9 @@ def new_exercise(
     with HeldFolder("autograder-new-") as scratch:
         made = scratch.path / lab
         shutil.copytree(example, made, ignore=_GENERATED)
-        old_name = next(file.stem for file in sorted(example.glob("[!_]*.py")))
+        old_name = min(
+            file.name.removesuffix(exercises.REFERENCE) for file in example.glob(f"*{exercises.REFERENCE}")
+        )
         _rename(made, f"{example.name}.{old_name}", exercise_id)
         written = [
             *_described(folder.parent),

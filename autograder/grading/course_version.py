@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 
 from autograder import course
 from autograder.exercises import MUTANTS, REFERENCE
-from autograder.kit.hunts.ticket import TICKET
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -20,7 +19,11 @@ _MADE_BY_COLCON = frozenset({"build", "install", "log"})
 """The folders that colcon makes next to a workspace's ``src``. They are not hashed, because they are made from the
 files in ``src``, which are hashed.
 """
-_OF_CHAPTERS = (f"*/{course.CHAPTER}", "*/*/*.py", *(f"*/*/*{kind}" for kind in (REFERENCE, MUTANTS, TICKET)))
+_OF_CHAPTERS = (
+    f"*/{course.CHAPTER}",
+    "*/*/*.py",
+    *(f"*/*/*{kind}" for kind in (REFERENCE, MUTANTS, course.TICKET)),
+)
 """Patterns for the chapters' files that the hash covers: ``chapter.toml``, exercises, reference outputs, what mutants
 do, and tickets.
 """

@@ -4,8 +4,8 @@ Promises: an exercise reads like its specification; neither ROS nor the judge is
     without them.
 Names: ``model.Exercise``, ``bench.Bench``, ``evidence.Evidence``, ``draft.Draft``,
     ``oracle.same_as_solution.SameAsSolution``, ``mission.mission.Mission``, ``quests.quest.Quest``,
-    ``hunts.ticket.repair``
-Imports: ``known_errors``, ``messages``, ``packed_files``, ``robot``, ``verdict``.
+    ``hunts.ticket.Ticket``
+Imports: ``course``, ``known_errors``, ``messages``, ``packed_files``, ``robot``, ``verdict``.
 Takes: what an author declares: inputs, outputs, worlds, mistakes.
 Gives: an ``Exercise``: a scenario for the bench, and criteria and mistakes, which are functions of evidence.
 """
@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     from autograder.kit.counterparts import Qos
     from autograder.kit.draft import Draft
     from autograder.kit.evidence import Evidence, Part
-    from autograder.kit.hunts.ticket import question, repair
     from autograder.kit.mission.mission import Mission, Moment, Pose, Wall, World
     from autograder.kit.model import Advice, Criterion, Finding, Mistake, mistake, unless
     from autograder.kit.oracle.drawings import dealt, drawn_until, levels, mixed, scans, shuffled
@@ -40,7 +39,6 @@ _PLACES = {
     "counterparts": ("Qos",),
     "draft": ("Draft",),
     "evidence": ("Evidence", "Part"),
-    "hunts.ticket": ("question", "repair"),
     "mission.mission": ("Mission", "Moment", "Pose", "Wall", "World"),
     "model": ("Advice", "Criterion", "Finding", "Mistake", "mistake", "unless"),
     "oracle.drawings": ("dealt", "drawn_until", "levels", "mixed", "scans", "shuffled"),
@@ -94,8 +92,6 @@ __all__ = [
     "levels",
     "mistake",
     "mixed",
-    "question",
-    "repair",
     "scans",
     "shuffled",
     "unless",

@@ -18,7 +18,6 @@ from autograder import course
 from autograder.command_name import COMMAND
 from autograder.course import HANDED_OUT
 from autograder.exercises import MUTANTS, REFERENCE
-from autograder.kit.hunts.ticket import TICKET
 from autograder.masters.chapter_building import holds_work
 from autograder.masters.master_files import relinked
 from autograder.packed_files import packed
@@ -187,7 +186,7 @@ def _files(
         yield from ((path.relative_to(root).as_posix(), path) for path in _below(root / name, root))
     yield from _pages(root)
     names = {lab.name: chapter.folder.name for chapter in chapters for lab in chapter.labs}
-    to_pack = (TICKET,) if with_solutions else (TICKET, course.SOLUTION)
+    to_pack = (course.TICKET,) if with_solutions else (course.TICKET, course.SOLUTION)
     for chapter in chapters:
         for path in [chapter.folder / course.CHAPTER, *_judges_part(chapter, with_solutions=with_solutions)]:
             if path.is_file():
@@ -235,7 +234,7 @@ def _judges_part(chapter: course.Chapter, *, with_solutions: bool) -> Iterator[P
         yield from sorted(lab.glob("*.py"))
         yield from sorted(lab.glob(f"*{REFERENCE}"))
         yield from sorted(lab.glob(f"*{MUTANTS}"))
-        yield from (tickets := sorted(lab.glob(f"*{TICKET}")))
+        yield from (tickets := sorted(lab.glob(f"*{course.TICKET}")))
         # The card of a ticket shows our repair beside the student's.
         if with_solutions or tickets:
             yield from sorted(lab.glob(f"*{course.SOLUTION}"))

@@ -12,6 +12,7 @@ import pytest
 
 from autograder import course
 from autograder.authoring.new_exercise import EXAMPLES, CannotMake, new_exercise, recipes
+from autograder.exercises import REFERENCE
 from autograder.masters.source_notebooks import named_cells
 
 if TYPE_CHECKING:
@@ -105,10 +106,15 @@ def test_an_interface_that_cannot_be_leaves_nothing_behind(root: Path, name: str
     assert not [path for path in root.rglob("*") if path.is_file() and path.name != "chapter.toml"]
 
 
+def examples(recipe: str) -> list[str]:
+    """The names of a recipe's exercises: a ticket has no file of its own."""
+    return [path.name.removesuffix(REFERENCE) for path in recipes()[recipe].glob(f"*{REFERENCE}")]
+
+
 @pytest.mark.parametrize("recipe", recipes())
 def test_nothing_in_it_bears_the_name_of_the_example(root: Path, recipe: str) -> None:
     made = new_exercise(root, ID, recipe)
-    example = min(path.stem for path in (recipes()[recipe]).glob("[!_]*.py"))
+    example = min(examples(recipe))
     kept = [path for path in recipes()[recipe].iterdir() if path.suffix in (".py", ".toml")]
     files = {path.name.replace(example, "battery_of_mine") for path in kept}
     assert {path.name for path in made if path.parent.name == "lab_9_1"} == {"lab.md", *files}
@@ -210,7 +216,7 @@ def test_the_command_says_what_to_do_next_and_refuses_with_exit_code_2(root: Pat
 @pytest.mark.slow
 @pytest.mark.parametrize("recipe", recipes())
 def test_an_example_is_in_step_and_judged_as_its_author_expects(recipe: str) -> None:
-    for example in sorted(path.stem for path in recipes()[recipe].glob("[!_]*.py")):
+    for example in sorted(examples(recipe)):
         tried = autograder(EXAMPLES, "try-exercise", f"{recipe}.{example}")
         assert tried.returncode == 0, tried.stdout + tried.stderr
         assert "unchanged" in tried.stdout

@@ -28,7 +28,7 @@ from autograder.authoring.site_building import (
     course_of,
 )
 from autograder.course import SOLUTION
-from autograder.kit.hunts.ticket import TICKET, Ticket
+from autograder.kit.hunts.ticket import Ticket
 from autograder.masters.master_files import masters
 from autograder.masters.source_notebooks import SET_UP_CELL as SET_UP_CELL
 from autograder.masters.source_notebooks import service_links, source_notebook
@@ -148,7 +148,7 @@ def test_solutions_are_folded_or_absent(book: tuple[str, Path]) -> None:
 
 
 def test_a_bug_hunt_has_no_solution_and_no_cause_in_any_edition(book: tuple[str, Path]) -> None:
-    for file in sorted(ROOT.glob(f"solutions/*/*/*{TICKET}")):
+    for file in sorted(ROOT.glob(f"solutions/*/*/*{course.TICKET}")):
         ticket = msgspec.toml.decode(file.read_bytes(), type=Ticket)
         page = (book[1] / "chapters" / file.parents[1].name / f"{file.parent.name}.html").read_text(
             encoding="utf-8"

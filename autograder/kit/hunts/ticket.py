@@ -1,27 +1,24 @@
-"""A ticket of a bug hunt: a data file beside two exercises of one line each, the repair and the question on the cause.
+"""A ticket of a bug hunt: a data file for two exercises, the repair and the question on the cause.
 
-The file ``dark_display.ticket.toml`` contains all words of the ticket. The exercises ``dark_display`` and
-``dark_display_why`` read it, so that a new ticket needs no code.
+The file ``dark_display.ticket.toml`` contains all words of the exercises ``dark_display`` and ``dark_display_why``, so
+that a new ticket needs no code.
 """
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import msgspec
 
 from autograder import packed_files
+from autograder.course import CAUSE, TICKET
 from autograder.kit.hunts.question import Question
 from autograder.kit.hunts.repairs import Repairs
 
 if TYPE_CHECKING:
-    from autograder.kit.model import Exercise
+    from pathlib import Path
 
-TICKET = ".ticket.toml"
-"""The suffix of the file with the words of a ticket."""
-_WHY = "_why"
-"""The end of the name of the exercise that asks for the cause."""
+    from autograder.kit.model import Exercise
 
 
 class Ticket(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -50,53 +47,28 @@ class Ticket(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     choices: tuple[str, ...]
 
 
-def repair(file: str) -> Exercise:
-    """Return the exercise in which the broken program of a ticket is repaired.
+def exercise_of(file: Path) -> Exercise:
+    """Return an exercise of a ticket: the repair of its broken program or, for a name in ``_why``, the question.
 
     Args:
-        file: The path of the exercise's file, next to which the ticket is.
+        file: The path that the exercise's own file would have, next to the ticket.
 
     Raises:
-        ValueError: The ticket cannot be read, lacks a field, or has an unknown one.
-
-    Example::
-
-        EXERCISE = repair(__file__)
+        ValueError: The ticket cannot be read, lacks a field, or has an unknown one; or a choice is wrong.
     """
-    exercise_id, ticket = _ticket(file)
+    exercise_id, name = f"{file.parent.name}.{file.stem}", file.stem.removesuffix(CAUSE)
+    words = file.with_name(f"{name}{TICKET}")
+    try:
+        ticket = msgspec.toml.decode(packed_files.read(words), type=Ticket)
+    except (OSError, ValueError, EOFError) as error:
+        fields = ", ".join(Ticket.__struct_fields__)
+        raise ValueError(f"{words.name}: {error}. A ticket has the fields {fields}") from error
+    if name != file.stem:
+        title = f"{ticket.title} · Why"
+        return Question(exercise_id, title, ticket.question, ticket.right, ticket.choices).exercise()
     after = (
         f"The cause: {ticket.cause}",
         f"Sooner next time: {ticket.sooner}",
         f"In real projects: {ticket.seen}",
     )
     return Repairs(exercise_id, ticket.title, ticket.task, ticket.judged_by, after).exercise()
-
-
-def question(file: str) -> Exercise:
-    """Return the exercise that asks for the cause of a ticket. The name of its file ends in ``_why``.
-
-    Args:
-        file: The path of the exercise's file, next to which the ticket is.
-
-    Raises:
-        ValueError: The ticket cannot be read, lacks a field, or has an unknown one; or a choice is wrong.
-
-    Example::
-
-        EXERCISE = question(__file__)
-    """
-    exercise_id, ticket = _ticket(file)
-    title = f"{ticket.title} · Why"
-    return Question(exercise_id, title, ticket.question, ticket.right, ticket.choices).exercise()
-
-
-def _ticket(file: str) -> tuple[str, Ticket]:
-    """Return the id of the exercise in a file, and the ticket that it belongs to."""
-    exercise = Path(file)
-    words = exercise.with_name(f"{exercise.stem.removesuffix(_WHY)}{TICKET}")
-    try:
-        ticket = msgspec.toml.decode(packed_files.read(words), type=Ticket)
-    except (OSError, ValueError, EOFError) as error:
-        fields = ", ".join(Ticket.__struct_fields__)
-        raise ValueError(f"{words.name}: {error}. A ticket has the fields {fields}") from error
-    return f"{exercise.parent.name}.{exercise.stem}", ticket

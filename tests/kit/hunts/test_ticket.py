@@ -9,7 +9,7 @@ import pytest
 
 from autograder.judge import evidence_files
 from autograder.kit.evidence import Event, Evidence
-from autograder.kit.hunts.ticket import question, repair
+from autograder.kit.hunts.ticket import exercise_of
 from tests.cases import named_cases
 
 if TYPE_CHECKING:
@@ -38,7 +38,7 @@ def lab(tmp_path: Path) -> Path:
 
 
 def test_both_exercises_have_the_words_of_the_ticket(lab: Path) -> None:
-    repaired, asked = repair(str(lab / "silent.py")), question(str(lab / "silent_why.py"))
+    repaired, asked = exercise_of(lab / "silent.py"), exercise_of(lab / "silent_why.py")
     assert (repaired.id, asked.id) == ("bugs_9.silent", "bugs_9.silent_why")
     assert (repaired.title, asked.title) == ("Hunt · The silent talker", "Hunt · The silent talker · Why")
     assert repaired.text == {"The talker says hello.": "repaired"}
@@ -53,7 +53,7 @@ def test_after_the_pass_the_card_tells_the_cause_how_to_see_it_sooner_and_where_
     graph = Event(0.0, "interface", "graph", reference.interface)
     parts = [replace(part, events=[graph, *part.events]) for part in reference.parts]
     solved = Evidence(parts, reference)
-    remarks = repair(str(lab / "silent.py")).remarks
+    remarks = exercise_of(lab / "silent.py").remarks
     assert [remark(solved) for remark in remarks] == [
         "The cause: The topic was misspelt. ROS 2 does not report that.",
         "Sooner next time: The list of topics shows it.",
@@ -69,10 +69,10 @@ def test_a_ticket_of_another_form_is_refused(lab: Path, old: str, new: str, said
     with pytest.raises(
         ValueError, match=r"^silent\.ticket\.toml: .*A ticket has the fields title, task, "
     ) as error:
-        repair(str(lab / "silent.py"))
+        exercise_of(lab / "silent.py")
     assert said in str(error.value)
 
 
 def test_a_missing_ticket_is_named(lab: Path) -> None:
     with pytest.raises(ValueError, match=r"^other\.ticket\.toml: "):
-        question(str(lab / "other_why.py"))
+        exercise_of(lab / "other_why.py")

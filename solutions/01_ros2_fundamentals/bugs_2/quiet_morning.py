@@ -1,5 +1,0 @@
-"""A ticket of the bug hunt: its words are in quiet_morning.ticket.toml."""
-
-from autograder.kit import repair
-
-EXERCISE = repair(__file__)
