@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import functools
+import itertools
 import time
 from collections import Counter
 from dataclasses import replace
@@ -34,13 +35,13 @@ from autograder.grading.tasks.date_reading import read_class_dates
 from autograder.grading.tasks.fallen_points import FallenPoints, fallen, fits
 from autograder.grading.tasks.result_keys import ResultKeys
 from autograder.grading.tasks.source_points import check_release, read_released
+from autograder.grading.tasks.submission_work import Entered, Graded, MadeTask, Result
 
 # Some modules are imported inside functions, because they import nbgrader, which takes a second.
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Collection, Iterable, Iterator
 
-    from nbformat import NotebookNode
     from rich.console import Console
 
     from autograder.execution.executed_cells import Execution
@@ -52,7 +53,6 @@ if TYPE_CHECKING:
     from autograder.grading.reporting.class_table import Difference
     from autograder.grading.result_writer import Writer
     from autograder.grading.running.execution_backends import Execute
-    from autograder.grading.running.task_dispatcher import Done
     from autograder.grading.table.roster import Roster
     from autograder.grading.table.rows import Row
     from autograder.grading.tasks.class_drawings import Drawing
@@ -148,34 +148,44 @@ class Batch:
         return work.works
 
     def settle(self, works: list[Work]) -> list[Work]:
-        """Mark the submissions whose present files have their grades in the gradebook. The others have to be graded."""
+        """Return the submissions that have to be graded: the gradebook lacks the grades of their present files."""
         self._entries = gradebook_reading.read_entries(self._directory.gradebook_url)
         self._entered = self._store.entered()
-        for work in self._others:
-            self._settle(work)
-        unlisted = [work for work in self._others if self._asked.has(*work.key) and not work.written]
+        unlisted = [work for work in self._others if self._asked.has(*work.key) and not self._settled(work)]
         if unlisted:
-            names = ", ".join("/".join(work.key) for work in unlisted)
+            names = ", ".join(work.label for work in unlisted)
             self._notices.append(
                 f"students.csv does not list these students, so this work is not graded: {names}. To grade it anyway, "
-                f"add --student {unlisted[0].submission.student}"
+                f"add --student {unlisted[0].student}"
             )
-        for work in works if not self._asked.again else ():
-            if not (self._asked.lower == "yes" and self._fallen.has(*work.key)):
-                self._settle(work)
-        self._earlier = self._last_attempts(works)
+        settled = {work.key: None if self._is_asked_again(work) else self._settled(work) for work in works}
+        self._done = [entered for entered in settled.values() if entered]
+        self._reused += sum(len(one.work.notebooks) for one in self._done)
+        waiting = [work for work in works if settled[work.key] is None]
+        self._earlier = self._last_attempts(waiting)
         if self._asked.lower == "no":
             self._fallen.forget(self._asked.has)
-        return works
+        return waiting
+
+    def _is_asked_again(self, work: Work) -> bool:
+        return self._asked.again or (self._asked.lower == "yes" and self._fallen.has(*work.key))
+
+    def _settled(self, work: Work) -> Entered | None:
+        """Return a submission as entered if the gradebook contains the grades of its present files; otherwise None."""
+        entered, entry = self._entered.get(work.key), self._entries.get(work.key, SubmissionEntry())
+        if entered is None or entered.made_from != work.made_from or entered.missing_in(entry):
+            return None
+        if not self._directory.has_converted(work, entered.tasks):
+            return None
+        return Entered(work, entered.rows, entry, entered.shown)
 
     def _last_attempts(self, works: Iterable[Work]) -> dict[tuple[str, str], Attempt]:
-        """Return the newest attempt of each submission that has to be graded, if there is one."""
+        """Return the newest attempt of each submission, if there is one."""
         return {
             work.key: attempt
             for work in works
-            if not work.written
-            for attempt in self._store.attempts(work.submission.student)
-            if attempt.assignment == work.submission.assignment
+            for attempt in self._store.attempts(work.student)
+            if attempt.assignment == work.assignment
         }
 
     def _note_if_worse(self, work: Work, rows: Iterable[Row]) -> None:
@@ -184,7 +194,7 @@ class Batch:
         before = sum(row.score for row in last.rows) if last else 0.0
         if last and last.made_from.handed_in != work.made_from.handed_in and now < before:
             self._notices.append(
-                f"{'/'.join(work.key)}: the newer files have {now:g} points, those before had {before:g}. If they were "
+                f"{work.label}: the newer files have {now:g} points, those before had {before:g}. If they were "
                 "collected, yes under use in collected.csv has the earlier file graded"
             )
 
@@ -194,7 +204,7 @@ class Batch:
         Raises:
             GradingError: Nothing can be executed.
         """
-        if any(not work.written for work in works):
+        if works:
             self._execute = self._stack.enter_context(self._backend)
         return works
 
@@ -206,14 +216,13 @@ class Batch:
         Raises:
             GradingError: Nothing can be executed on this machine.
         """
-        waiting = [work for work in works if not work.written]
         exercises = {name: [cell.exercise for cell in cells] for name, cells in self._cells.items()}
-        count = Counter(work.submission.assignment for work in waiting)
+        count = Counter(work.assignment for work in works)
         needed: set[Drawing] = set()
-        for work in waiting:
-            drawings = all_drawings(exercises[work.submission.assignment])
-            if count[work.submission.assignment] < DRAWINGS and self._drawings.missing(drawings):
-                drawings = [one for task, _ in self._tasks_of(work) for one in drawings_of(task)]
+        for work in works:
+            drawings = all_drawings(exercises[work.assignment])
+            if count[work.assignment] < DRAWINGS and self._drawings.missing(drawings):
+                drawings = [one for made in self._tasks_of(work) for one in drawings_of(made.task)]
             needed.update(drawings)
         if missing := self._drawings.missing(needed):
             plain_line(self._console, f"running the solution with inputs of this class, {len(missing)} times")
@@ -226,107 +235,108 @@ class Batch:
         return works
 
     def take_back(self, works: list[Work]) -> list[Work]:
-        """Set to zero the grades of all submissions that still have to be graded."""
-        unsettled = [work.submission for work in works if not work.written]
-        if unsettled and not self._asked.dry_run:
-            self._writer.take_back(unsettled)
+        """Set to zero the grades of the submissions that have to be graded."""
+        if works and not self._asked.dry_run:
+            self._writer.take_back(works)
         return works
 
-    def make_tasks(self, works: list[Work]) -> Iterator[Task]:
-        """Yield the tasks to execute. Each task is made only when a worker is free, to save memory."""
+    def make_tasks(self, works: list[Work]) -> Iterator[MadeTask]:
+        """Yield the notebooks as tasks, first those with a stored result, which do not wait for the others.
+
+        Each task to execute is made only when a worker is free, to save memory.
+        """
+        stored = set()
         for work in works:
-            for task, rebuilt in self._tasks_of(work) if work.rows is None else ():
-                work.rebuilt[task.notebook] = rebuilt
-                if task.problem:
-                    work.results[task.notebook] = task, task.without_execution()
+            results = {} if self._is_asked_again(work) else self._store.results(*work.key)
+            for made in self._tasks_of(work) if results else ():
+                if (key := made.task.key()) in results:
+                    stored.add(made.task.label)
+                    yield made.with_result(results[key])
+        self._reused += len(stored)
+        self._missing = sum(len(work.notebooks) for work in works) - len(stored)
+        for work in works:
+            for made in self._tasks_of(work, stored):
+                problem = made.task.problem
+                yield made.with_result(made.task.without_execution()) if problem else made
+
+    def execute(self, made: Iterable[MadeTask]) -> Iterator[Result]:
+        """Execute the tasks without a result, and yield each result as soon as it is there."""
+        made = iter(made)
+        for one in made:
+            if not isinstance(one, Result):
+                yield from self._executed(itertools.chain([one], made))
+                return
+            yield one
+
+    def _executed(self, made: Iterable[MadeTask]) -> Iterator[Result]:
+        under_way: dict[str, MadeTask] = {}
+        unreadable: list[Result] = []
+
+        def tasks() -> Iterator[Task]:
+            for one in made:
+                if isinstance(one, Result):
+                    unreadable.append(one)
                 else:
-                    yield task
+                    under_way[one.task.label] = one
+                    yield one.task
 
-    def execute(self, tasks: Iterable[Task]) -> Iterator[Done]:
-        """Execute tasks, and yield each result as soon as it is there."""
-        waiting = [work for work in self._works if work.rows is None]
-        if not waiting or self._execute is None:
-            return
-        missing = sum(len(work.notebooks) - len(work.results) for work in waiting)
+        assert self._execute is not None, "find_workers ran"
         longest = limits_of(self._directory).longest
-        with BatchProgress(self._console, missing, longest=longest) as progress:
+        with BatchProgress(self._console, self._missing, longest=longest) as progress:
             self._timings.first_started = time.monotonic() - self._began
-            results = self._execute(tasks, on_start=lambda task: progress.started(task.label))
-            with contextlib.closing(results):
-                for done in results:
+            dones = self._execute(tasks(), on_start=lambda task: progress.started(task.label))
+            with contextlib.closing(dones):
+                for done in dones:
                     self._timings.last_ended = time.monotonic() - self._began
-                    yield done
+                    yield under_way.pop(done.task.label).with_result(done.execution, is_new=True)
                     progress.finished(done.task.label, failed=bool(done.execution.trouble))
+        yield from unreadable
 
-    def keep(self, results: Iterable[Done]) -> Iterator[Work]:
-        """Store each result, and yield each submission whose results are complete.
+    def keep(self, results: Iterable[Result]) -> Iterator[Graded]:
+        """Store each new result, and yield each submission whose results are complete."""
+        incomplete: dict[tuple[str, str], dict[str, Result]] = {}
+        for result in results:
+            work = result.work
+            of_work = incomplete.setdefault(work.key, {})
+            of_work[result.task.notebook] = self._kept(result) if result.is_new else result
+            if len(of_work) == len(work.notebooks):
+                del incomplete[work.key]
+                yield Graded(work, [of_work[notebook] for notebook in work.notebooks])
 
-        Submissions for which nothing has to be executed come first. They do not wait for the others, because the
-        execution starts only when the first result is asked for.
+    def enter(self, graded: Iterable[Graded]) -> Iterator[Entered]:
+        """Enter submissions into the gradebook and ``autograded``, and yield all chosen ones; in a dry run, enter none.
+
+        Those come first whose grades were in the gradebook already.
         """
-        for work in self._works:
-            if work.written:
-                self._reused += len(work.notebooks)
-            else:
-                self._take_stored_results(work)
-            if work.written or work.complete:
-                yield work
-        works = {work.key: work for work in self._works}
-        for done in results:
-            work, task = works[done.task.student, done.task.assignment], done.task
-            self._run_again[self._why_again(work)] += 1
-            self._timings.count(task.cells, done.execution)
-            execution = self._accepted(work, task, done.execution)
-            if execution.trouble:
-                self._problems.append(f"{task.label} could not be checked: {execution.trouble}")
-            work.results[task.notebook] = task, execution
-            if work.complete:
-                yield work
-        # No notebook of these had to be executed after all, because none could be read.
-        yield from [work for work in self._works if work.rows is None and work.complete]
+        for entered in self._done:
+            yield self._penalized(entered)
+        for one in graded:
+            rows = tuple(row for result in one.results for row in rows_of(result.task, result.execution))
+            yield Entered(one.work, rows, None) if self._asked.dry_run else self._write(one, rows)
 
-    def enter(self, works: Iterable[Work]) -> Iterator[tuple[Work, SubmissionEntry]]:
-        """Enter submissions into the gradebook and ``autograded``, and yield each with its entry in the gradebook.
-
-        In a dry run, enter and yield nothing.
-        """
-        for work in works:
-            if work.written:
-                if not self._asked.dry_run:
-                    yield work, self._penalized(work)
-                continue
-            rows = tuple(row for pair in work.pairs for row in rows_of(*pair))
-            if self._asked.dry_run:
-                work.rows = rows
-            elif self._write(work, rows):
-                yield work, gradebook_reading.read_entry(self._directory.gradebook_url, *work.key)
-            work.results.clear()
-            work.rebuilt.clear()
-
-    def show(self, entered: Iterable[tuple[Work, SubmissionEntry]]) -> Iterator[Work]:
+    def show(self, submissions: Iterable[Entered]) -> Iterator[Entered]:
         """Make the feedback pages of submissions, except of those whose pages show what the gradebook contains."""
-        for work, entry in entered:
-            is_shown = work.shown == entry.shown() and self._directory.has_pages(
-                work.submission, work.notebooks
-            )
-            if self._asked.feedback and not is_shown:
-                self._make_pages(work, entry)
-            yield work
+        for one in submissions:
+            if self._asked.feedback and one.entry is not None:
+                notebooks = one.work.notebooks
+                is_shown = one.shown == one.entry.shown()
+                if not (is_shown and self._directory.has_pages(one.work, notebooks)):
+                    self._make_pages(one.work, one.entry)
+            yield one
 
-    def report(self, works: Iterable[Work]) -> GradeReport:
+    def report(self, submissions: Iterable[Entered]) -> GradeReport:
         """Run the earlier steps on all submissions, return the report on them, and write ``grades.csv``.
 
         ``grades.csv`` contains the whole class.
         """
-        for _ in works:
-            pass
+        entered = {one.work.key: one for one in submissions}
         url = self._directory.gradebook_url
-        submissions = {work.key: work for work in (*self._works, *self._others)}
+        handed_in = {work.key for work in (*self._works, *self._others)}
         entries = gradebook_reading.read_entries(url)
         # For a submission that this run did not grade, use the diagnoses from the run that entered its points.
         judged = {key: one.rows for key, one in self._entered.items()}
-        judged |= {key: work.rows for key, work in submissions.items() if work.rows is not None}
-        for student, assignment in sorted((entries.keys() & self._entered.keys()) - submissions.keys()):
+        judged |= {key: one.rows for key, one in entered.items()}
+        for student, assignment in sorted((entries.keys() & self._entered.keys()) - handed_in):
             self._notices.append(
                 f"{student}/{assignment} is no longer in submitted; its points stay in the gradebook."
             )
@@ -335,14 +345,20 @@ class Batch:
             self._cells,
             judged,
             entries,
-            submissions,
+            handed_in,
             what_counts=self._what_counts,
             zone=self._directory.time_zone,
         )
         self._notices += self._roster.notices(self._directory.assignments(), entries, self._roster.students)
         changes: list[Difference] = []
         if self._asked.dry_run:
-            changes = would_change(self._directory, self._works, entries, self._cells, self._dates)
+            changes = would_change(
+                self._directory,
+                [entered[work.key] for work in self._works],
+                entries,
+                self._cells,
+                self._dates,
+            )
         else:
             write_csv(self._directory.path / "grades.csv", rows)
             self._store.keep_run(course_version(), rows)
@@ -368,21 +384,22 @@ class Batch:
             due=due_dates(self._directory, self._asked.assignments or self._cells),
         )
 
-    def _settle(self, work: Work) -> None:
-        """Mark a submission as written if the gradebook contains the grades of its present files."""
-        entered, entry = self._entered.get(work.key), self._entries.get(work.key, SubmissionEntry())
-        if entered is None or entered.made_from != work.made_from or not entered.is_in(entry):
-            return
-        if self._directory.has_converted(work.submission, entered.tasks):
-            work.rows, work.shown, work.written = entered.rows, entered.shown, True
-
     def _why_again(self, work: Work) -> str:
         """Return why a notebook of a submission is executed again; empty if it is executed for the first time."""
-        earlier = self._store.last_key(work.submission)
+        earlier = self._store.last_key(work)
         if earlier is None:
             return ""
         nothing = "--again was given" if self._asked.again else "its result was not kept"
         return work.made_from.changes_since(earlier) or nothing
+
+    def _kept(self, result: Result) -> Result:
+        """Store the result of an executed notebook, and return it without its evidence."""
+        self._run_again[self._why_again(result.work)] += 1
+        self._timings.count(result.task.cells, result.execution)
+        execution = self._accepted(result.work, result.task, result.execution)
+        if execution.trouble:
+            self._problems.append(f"{result.task.label} could not be checked: {execution.trouble}")
+        return replace(result, execution=execution)
 
     def _accepted(self, work: Work, task: Task, execution: Execution) -> Execution:
         """Store the result of a notebook, and return it; or the earlier one, if the points of the same files fell."""
@@ -399,65 +416,53 @@ class Batch:
         self._store.adopt(task, before)
         return kept
 
-    def _take_stored_results(self, work: Work) -> None:
-        is_new = self._asked.again or (self._asked.lower == "yes" and self._fallen.has(*work.key))
-        stored = {} if is_new else self._store.results(*work.key)
-        for task, rebuilt in self._tasks_of(work) if stored else ():
-            if (key := task.key()) in stored:
-                self._reused += 1
-                work.results[task.notebook] = task, stored[key]
-                work.rebuilt[task.notebook] = rebuilt
-
-    def _tasks_of(self, work: Work) -> Iterator[tuple[Task, NotebookNode]]:
-        """Yield a task for each notebook that has no result yet, with the rebuilt notebook."""
+    def _tasks_of(self, work: Work, without: Collection[str] = ()) -> Iterator[MadeTask]:
+        """Yield a task for each notebook of a submission, except those with the labels ``without``."""
         from autograder.grading.tasks.task_making import task_of
 
         for notebook in work.notebooks:
-            if notebook not in work.results:
+            if f"{work.label}/{notebook}" not in without:
                 with self._timings.measure("rebuild"):
-                    task, rebuilt = task_of(self._directory, work.submission, notebook)
-                    yield replace(task, drawings=self._drawings.of(task)), rebuilt
+                    task, rebuilt = task_of(self._directory, work, notebook)
+                    yield MadeTask(work, replace(task, drawings=self._drawings.of(task)), rebuilt)
 
-    def _write(self, work: Work, rows: tuple[Row, ...]) -> bool:
-        """Write the results of a submission. Return False if the gradebook now has zero points for it."""
+    def _write(self, graded: Graded, rows: tuple[Row, ...]) -> Entered:
+        """Write the results of a submission; if that fails, the gradebook has zero points for it."""
         from autograder.grading.result_writer import NotWritten
+        from autograder.grading.tasks.graded_notebooks import convert
 
+        work = graded.work
         try:
-            with self._timings.measure("gradebook"):
-                if self._keys.of(work.submission) != work.made_from:
+            with self._timings.measure("gradebook"), self._writer.all_or_nothing(work):
+                if self._keys.of(work) != work.made_from:
                     # The files changed during the run, so the tasks may have been made from other files.
-                    raise NotWritten(f"{'/'.join(work.key)} was changed while it was graded: grade it again")
-                self._writer.write(work, rows)
+                    raise NotWritten(f"{work.label} was changed while it was graded: grade it again")
+                entry = self._writer.write(convert(self._directory, graded, rows))
         except NotWritten as error:
             if is_disk_full(error):
                 raise
             self._problems.append(str(error))
-            work.rows = tuple(without_grade(row) for row in rows)
-        else:
-            self._note_if_worse(work, rows)
-            self._moved += moved_points(work, rows, self._entered.get(work.key))
-            if self._asked.lower == "yes":
-                self._fallen.forget(lambda *key: key == work.key)
-            work.rows = rows
-            work.written = True
-            self._written += 1
-        return work.written
+            return Entered(work, tuple(without_grade(row) for row in rows), None)
+        self._note_if_worse(work, rows)
+        self._moved += moved_points(work, rows, self._entered.get(work.key))
+        if self._asked.lower == "yes":
+            self._fallen.forget(lambda *key: key == work.key)
+        self._written += 1
+        return Entered(work, rows, entry)
 
-    def _penalized(self, work: Work) -> SubmissionEntry:
-        """Compute the late penalty of an entered submission again, and return its entry in the gradebook."""
-        entry = self._entries.get(work.key, SubmissionEntry())
-        if not (entry.is_late or entry.penalty):
-            return entry
+    def _penalized(self, entered: Entered) -> Entered:
+        """Compute the late penalty of an entered submission again, and return the submission with it."""
+        entry = entered.entry
+        if self._asked.dry_run or entry is None or not (entry.is_late or entry.penalty):
+            return entered
         with self._timings.measure("gradebook"):
-            self._writer.assign_penalties(work.submission)
-        return gradebook_reading.read_entry(self._directory.gradebook_url, *work.key)
+            return replace(entered, entry=self._writer.assign_penalties(entered.work))
 
     def _make_pages(self, work: Work, entry: SubmissionEntry) -> None:
-        submission = work.submission
         with self._timings.measure("feedback"):
-            is_made = self._writer.write_feedback(submission)
+            is_made = self._writer.write_feedback(work)
         if is_made:
-            self._store.note_shown(submission, entry.shown())
+            self._store.note_shown(work, entry.shown())
         else:
             log = self._directory.state / "nbgrader.log"
-            self._problems.append(f"feedback for {'/'.join(work.key)} could not be made (see {log})")
+            self._problems.append(f"feedback for {work.label} could not be made (see {log})")

@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from autograder.grading.table.roster import Roster
     from autograder.grading.tasks.result_keys import ResultKeys
     from autograder.grading.tasks.source_points import Released
+    from autograder.grading.tasks.submission_work import Entered
 
 
 @dataclass(frozen=True)
@@ -44,7 +45,7 @@ class AskedFor:
         assignments: The chosen assignments; all if empty.
         students: The chosen students; all if empty.
         again: True to execute every notebook again.
-        feedback: True to make feedback pages.
+        feedback: True to make feedback pages; False in a dry run.
         dry_run: True to leave the gradebook unchanged.
         lower: ``yes`` to take over points that fell although the same files were handed in, ``no`` to keep the earlier
             points, and empty to ask.
@@ -122,10 +123,10 @@ def find_work(
     check_known(asked.students, sorted(students | roster.students.keys()), "student")
     names = {assignment: directory.notebooks(assignment) for assignment in released.cells}
     for submission in submissions:
-        work = Work(submission, keys.of(submission), names[submission.assignment])
+        work = Work(*submission.key, submission.folder, keys.of(submission), names[submission.assignment])
         if is_not_believed(submission.folder):
             result.notices.append(
-                f"{submission.student}/{submission.assignment}: timestamp.txt is ignored, because "
+                f"{work.label}: timestamp.txt is ignored, because "
                 f"`{COMMAND} collect` did not write it. To set the time of handing in, first type "
                 f"{course_command('collect', directory.path)}. Then write the time into the column handed_in of "
                 f"this submission's line in {NAME}, and type the same command again."
@@ -165,7 +166,7 @@ def _unplaced(directory: ClassDirectory, asked: AskedFor) -> Iterator[RefusedFil
 
 def would_change(
     directory: ClassDirectory,
-    works: Iterable[Work],
+    submissions: Iterable[Entered],
     entries: Entries,
     cells: Mapping[str, Sequence[GradedCell]],
     dates: ClassDates,
@@ -173,16 +174,17 @@ def would_change(
     """Return the changes of points that a run would make, by new verdicts or a late penalty.
 
     Args:
-        works: The submissions, with the results of the dry run.
+        submissions: The submissions after the dry run. Those that it graded have no entry.
         cells: The cells with points, by assignment.
         dates: The due dates and extensions of ``class.toml``.
     """
     changes = []
     due = read_due_dates(directory.gradebook_url)
-    for work in works:
+    for one in submissions:
+        work, rows = one.work, one.rows if one.entry is None else ()
         entry = entries.get(work.key, SubmissionEntry())
-        by_exercise = {cell.exercise: cell for cell in cells[work.submission.assignment]}
-        for row in () if work.written else work.rows or ():
+        by_exercise = {cell.exercise: cell for cell in cells[work.assignment]}
+        for row in rows:
             cell = by_exercise[row.exercise]
             cell_entry = entry.cells.get(cell.notebook, {}).get(cell.name)
             before = cell_entry.judged if cell_entry else None
@@ -195,17 +197,17 @@ def would_change(
                 changes.append(
                     Difference(*work.key, row.exercise, before, row.score, "", row.diagnosis, note)
                 )
-        at = dates.of(*work.key, entry.due or due.get(work.submission.assignment))
-        then = _foreseen(work, entry, by_exercise, at)
+        at = dates.of(*work.key, entry.due or due.get(work.assignment))
+        then = _foreseen(work, rows, entry, by_exercise, at)
         if then.is_late or entry.penalty:
             from autograder.grading.table.late_policy import (
                 penalties,
             )  # imported here because the module imports nbgrader, which takes a second
 
-            costs = penalties(directory.config, work.submission.student, then)
+            costs = penalties(directory.config, work.student, then)
             then = replace(then, penalties={name: cost or 0.0 for name, cost in costs.items()})
             if then.taken_off != entry.taken_off:
-                before, after = (-one.taken_off if one.taken_off else None for one in (entry, then))
+                before, after = (-each.taken_off if each.taken_off else None for each in (entry, then))
                 changes.append(
                     Difference(*work.key, LATE, before, after, note=then.why_late(directory.time_zone))
                 )
@@ -229,17 +231,21 @@ def moved_points(work: Work, rows: Iterable[Row], earlier: Attempt | None) -> It
 
 
 def _foreseen(
-    work: Work, entry: SubmissionEntry, by_exercise: Mapping[str, GradedCell], due: datetime | None
+    work: Work,
+    rows: Iterable[Row],
+    entry: SubmissionEntry,
+    by_exercise: Mapping[str, GradedCell],
+    due: datetime | None,
 ) -> SubmissionEntry:
     """Return the gradebook entry that a run would make for a submission, but with the old late penalty."""
     cells = {notebook: dict(of_notebook) for notebook, of_notebook in entry.cells.items()}
-    for row in () if work.written else work.rows or ():
+    for row in rows:
         cell = by_exercise[row.exercise]
         of_notebook = cells.setdefault(cell.notebook, {})
         of_notebook[cell.name] = replace(of_notebook.get(cell.name, CellEntry(cell.worth)), judged=row.score)
     at = entry.handed_in
     with contextlib.suppress(ValueError):  # a run rejects the submission if its time is invalid
-        at = handed_in_at(work.submission.folder, believed=at) or at
+        at = handed_in_at(work.folder, believed=at) or at
     return replace(entry, handed_in=at, due=due, cells=cells)
 
 

@@ -100,13 +100,14 @@ class Attempt:
             f"[{why or 'nothing changed'}, course {self.course[:8]}]"
         )
 
-    def is_in(self, entry: SubmissionEntry) -> bool:
-        """Return True if a gradebook entry still contains the points that were entered."""
-        return all(
-            entry.judged(notebook, name) == score
-            for notebook, entered in self.scores.items()
-            for name, score in entered.items()
-        )
+    def missing_in(self, entry: SubmissionEntry) -> list[str]:
+        """Return the points that a gradebook entry does not contain, or no longer contains, each as words."""
+        return [
+            f"{score:g} points for {name} in {notebook}"
+            for notebook, scores in self.scores.items()
+            for name, score in scores.items()
+            if entry.judged(notebook, name) != score
+        ]
 
 
 @dataclass(frozen=True)

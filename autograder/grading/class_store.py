@@ -157,7 +157,7 @@ class ClassStore:
 
         If ``is_final`` is False, the next run grades the submission again.
         """
-        names = (submission.student, submission.assignment)
+        names = submission.key
         with self._step() as book:
             if is_final:
                 book.execute(_TAKE_BACK, names)
@@ -176,13 +176,13 @@ class ClassStore:
         with self._step() as book:
             book.execute(
                 "UPDATE attempt SET shown = ? WHERE (student, assignment) = (?, ?) AND entered",
-                (shown, submission.student, submission.assignment),
+                (shown, *submission.key),
             )
 
     def forget_entered(self, submissions: Iterable[Submission]) -> None:
         """Record that submissions have no grades. Call this before setting the grades in the gradebook to zero."""
         with self._step() as book:
-            book.executemany(_TAKE_BACK, ((one.student, one.assignment) for one in submissions))
+            book.executemany(_TAKE_BACK, (one.key for one in submissions))
 
     def entered(self) -> dict[tuple[str, str], Attempt]:
         """Return the attempts whose results are in the gradebook, by student and assignment."""
@@ -195,7 +195,7 @@ class ClassStore:
 
     def last_key(self, submission: Submission) -> ResultKey | None:
         """Return the key of the newest attempt of a submission; None if it was never graded."""
-        rows = self._rows(_QUERIES["last_key"], submission.student, submission.assignment)
+        rows = self._rows(_QUERIES["last_key"], *submission.key)
         return _decoded(rows[0][0], ResultKey) if rows else None
 
     def progress(self) -> list[AttemptProgress]:

@@ -11,7 +11,7 @@ from nbgrader.api import Gradebook
 from tiny_class import LISTENER, TALKER, FakeEngine, TinyClass
 
 from autograder.grading.classes import gradebook_writing
-from autograder.grading.classes.class_directory import ClassDirectory
+from autograder.grading.classes.class_directory import ClassDirectory, Submission
 from autograder.grading.classes.gradebook_writing import NotebookEntry
 from autograder.grading.grading_errors import GradingError, MasterUnusable, NotAClass
 from autograder.grading.new_classes.new_class import release
@@ -155,9 +155,9 @@ def test_a_gradebook_that_says_something_else_afterwards_is_not_believed(
 ) -> None:
     usual = gradebook_writing.enter
 
-    def generous(url: str, assignment: str, student: str, notebooks: Any, at: Any) -> bool:
+    def generous(url: str, submission: Submission, notebooks: Any, at: Any) -> bool:
         ten = {name: NotebookEntry({TALKER: 10}, {}) for name in notebooks}
-        return usual(url, assignment, student, ten, at)
+        return usual(url, submission, ten, at)
 
     monkeypatch.setattr(gradebook_writing, "enter", generous)
     tiny.submit("ada", 4)

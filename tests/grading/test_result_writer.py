@@ -17,14 +17,14 @@ from nbgrader.preprocessors import AssignLatePenalties, GetGrades, SaveAutoGrade
 from tiny_class import LISTENER, TALKER, FakeEngine, TinyClass
 
 from autograder.execution.executed_cells import CellCheck
-from autograder.grading import result_writer
 from autograder.grading.classes import gradebook_writing
-from autograder.grading.classes.class_directory import ClassDirectory
+from autograder.grading.classes.class_directory import ClassDirectory, Submission
 from autograder.grading.classes.gradebook_reading import read_entries
 from autograder.grading.grading_task import points
 from autograder.grading.returning.feedback_pages import mark_waiting
 from autograder.grading.returning.page_exporter import PageExporter
 from autograder.grading.returning.sanitize import make_harmless
+from autograder.grading.tasks import graded_notebooks
 from autograder.grading.tasks.submission_times import handed_in_at
 from autograder.verdict import State, Verdict
 
@@ -40,7 +40,7 @@ def test_points_are_written_with_all_their_digits(worth: int) -> None:
     check = CellCheck("lab.one", "One", points=3, worth=worth, limit=2)
     verdict = Verdict("lab.one", "One", State.FAILED, 1, 3)
     given = points(check, verdict)
-    *_, value = result_writer._graded_outputs(check, verdict, [])
+    *_, value = graded_notebooks._graded_outputs(check, verdict, [])
     assert float(value["data"]["text/plain"]) == given
 
 
@@ -161,9 +161,9 @@ def test_what_cannot_be_converted_leaves_zero_and_a_word(
     tiny.submit("ben", 9)
     usual = gradebook_writing.enter
 
-    def fail(url: str, assignment: str, student: str, *rest: Any) -> bool:
-        entered = usual(url, assignment, student, *rest)
-        if student == "ada":
+    def fail(url: str, submission: Submission, *rest: Any) -> bool:
+        entered = usual(url, submission, *rest)
+        if submission.student == "ada":
             raise RuntimeError("no more")
         return entered
 

@@ -58,6 +58,16 @@ class Submission:
     assignment: str
     folder: Path
 
+    @property
+    def key(self) -> tuple[str, str]:
+        """The student and the assignment, which together identify the submission in the gradebook."""
+        return self.student, self.assignment
+
+    @property
+    def label(self) -> str:
+        """The name of the submission in messages, such as ``ada/lab_1_2``."""
+        return f"{self.student}/{self.assignment}"
+
 
 @dataclass(frozen=True)
 class RefusedFile:
@@ -294,14 +304,18 @@ class ClassDirectory:
                     )
         return taken, refused
 
+    def folder(self, step: str, submission: Submission) -> Path:
+        """Return the folder of a submission in ``autograded`` or ``feedback``."""
+        return self.path / step / submission.student / submission.assignment
+
     def has_converted(self, submission: Submission, notebooks: Iterable[str]) -> bool:
         """Return True if ``autograded`` contains all of these notebooks of a submission."""
-        folder = self.path / "autograded" / submission.student / submission.assignment
+        folder = self.folder("autograded", submission)
         return all((folder / f"{notebook}{SUFFIX}").is_file() for notebook in notebooks)
 
     def has_pages(self, submission: Submission, notebooks: Iterable[str]) -> bool:
         """Return True if ``feedback`` contains a page for each of these notebooks of a submission."""
-        folder = self.path / "feedback" / submission.student / submission.assignment
+        folder = self.folder("feedback", submission)
         return all((folder / f"{notebook}.html").is_file() for notebook in notebooks)
 
     @contextlib.contextmanager

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from sqlalchemy import Connection
 
     from autograder.grading.classes.class_dates import ClassDates
+    from autograder.grading.classes.class_directory import Submission
 
 
 Scores = Mapping[str, float | None]
@@ -45,7 +46,7 @@ class NotebookEntry:
     unchecked: Collection[str] = ()
 
 
-def reset(url: str, submissions: Iterable[tuple[str, str]]) -> None:
+def reset(url: str, submissions: Iterable[Submission]) -> None:
     """Set the automatic points of submissions to zero and mark their cells for review, in one transaction.
 
     Use this before a grading run, so that a failure cannot leave old points in the gradebook. Points that an instructor
@@ -53,9 +54,8 @@ def reset(url: str, submissions: Iterable[tuple[str, str]]) -> None:
 
     Args:
         url: The address by which SQLAlchemy opens the gradebook.
-        submissions: Pairs of an assignment and a student.
     """
-    pairs = [{"assignment": assignment, "student": student} for assignment, student in submissions]
+    pairs = [{"assignment": one.assignment, "student": one.student} for one in submissions]
     with opened(url) as book:
         if pairs and has_tables(book):
             book.execute(
@@ -69,8 +69,7 @@ def reset(url: str, submissions: Iterable[tuple[str, str]]) -> None:
 
 def enter(
     url: str,
-    assignment: str,
-    student: str,
+    submission: Submission,
     notebooks: Mapping[str, NotebookEntry],
     timestamp: datetime | None,
 ) -> bool:
@@ -78,7 +77,7 @@ def enter(
 
     Args:
         url: The address by which SQLAlchemy opens the gradebook.
-        student: The student's id. An unknown student is added.
+        submission: The submission. An unknown student is added.
         notebooks: The results by notebook.
         timestamp: The submission time in UTC; None to keep the time that is in the gradebook.
 
@@ -88,7 +87,8 @@ def enter(
     Raises:
         LookupError: The gradebook does not contain the assignment or one of its notebooks.
     """
-    names: dict[str, object] = {"assignment": assignment, "student": student}
+    assignment = submission.assignment
+    names: dict[str, object] = {"assignment": assignment, "student": submission.student}
     with opened(url) as book:
         of_assignment = sql(
             "SELECT n.name, a.duedate FROM assignment a JOIN notebook n ON n.assignment_id = a.id"

@@ -285,7 +285,7 @@ class _Collecting:
                 outcomes.append(replace(one, when=one.when and one.when.astimezone(zone)))
         new = [one for one in counting if one.key in keys]
         here = {one.assignment for one in (new if keys else counting)}
-        settled = {(one.student, one.assignment) for one in self._directory.submissions()[0]}
+        settled = {one.key for one in self._directory.submissions()[0]}
         settled |= self._roster.excused
         waiting = [one for one in lines if one.state == LineState.NOT_PLACED]
         settled |= {(student, one.assignment) for one in waiting for student in one.students}

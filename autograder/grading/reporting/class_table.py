@@ -158,7 +158,7 @@ def read_table(directory: ClassDirectory, sections: Sequence[str] = ()) -> Class
         released = read_released(directory, store, keys)
     cells = released.cells
     entries = read_entries(directory.gradebook_url)
-    found = {(one.student, one.assignment): one for one in directory.submissions()[0]}
+    found = {one.key: one for one in directory.submissions()[0]}
     judged: dict[tuple[str, str], tuple[Row, ...]] = {}
     stale = []
     for key in sorted({*found, *entries}):

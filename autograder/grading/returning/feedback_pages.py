@@ -45,9 +45,8 @@ class FeedbackPages:
         Raises:
             OSError: A page could not be written.
         """
-        entry = read_entry(self._directory.gradebook_url, submission.student, submission.assignment)
-        graded = self._directory.path / "autograded" / submission.student / submission.assignment
-        folder = self._directory.path / "feedback" / submission.student / submission.assignment
+        entry = read_entry(self._directory.gradebook_url, *submission.key)
+        graded, folder = (self._directory.folder(step, submission) for step in ("autograded", "feedback"))
         for name in notebooks:
             page = self._page(graded / f"{name}{SUFFIX}", submission, entry)
             write_whole(folder / f"{name}.html", page.encode())

@@ -1,9 +1,11 @@
-"""Holds the state of a submission during a run: its tasks, until their results are in the gradebook."""
+"""Defines what the steps of a run hand on about a submission. Each step makes a new record; none is changed."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
+
+from autograder.grading.classes.class_directory import Submission
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -12,45 +14,69 @@ if TYPE_CHECKING:
 
     from autograder.execution.executed_cells import Execution
     from autograder.grading.class_records import ResultKey
-    from autograder.grading.classes.class_directory import Submission
+    from autograder.grading.classes.gradebook_reading import SubmissionEntry
     from autograder.grading.grading_task import Task
     from autograder.grading.table.rows import Row
 
 
-@dataclass
-class Work:
-    """The state of a submission during a run.
+@dataclass(frozen=True)
+class Work(Submission):
+    """A submission, as it was found at the beginning of a run.
 
     Attributes:
         made_from: The key that its result has if it is made from the files at the beginning of the run.
         notebooks: The names of the assignment's notebooks.
-        results: The results by notebook, until they are entered into the gradebook.
-        rebuilt: The rebuilt notebooks that are executed or have results, until the results are entered.
-        rows: The results as rows of the report; None if the submission has not been graded yet.
-        written: True if the gradebook contains these results.
+    """
+
+    made_from: ResultKey
+    notebooks: Sequence[str]
+
+
+@dataclass(frozen=True)
+class MadeTask:
+    """A notebook of a submission as a task, with the rebuilt notebook from which the task was made."""
+
+    work: Work
+    task: Task
+    rebuilt: NotebookNode
+
+    def with_result(self, execution: Execution, *, is_new: bool = False) -> Result:
+        """Return the task with its result."""
+        return Result(self.work, self.task, self.rebuilt, execution, is_new)
+
+
+@dataclass(frozen=True)
+class Result(MadeTask):
+    """A task with its result.
+
+    Attributes:
+        is_new: True if the notebook was executed in this run.
+    """
+
+    execution: Execution
+    is_new: bool = False
+
+
+@dataclass(frozen=True)
+class Graded:
+    """A submission with a result for each notebook, in the order of the notebooks."""
+
+    work: Work
+    results: Sequence[Result]
+
+
+@dataclass(frozen=True)
+class Entered:
+    """A submission, after its results were entered into the gradebook.
+
+    Attributes:
+        rows: The results as rows of the report.
+        entry: The submission's entry in the gradebook; None if the results are not in the gradebook: in a dry run, or
+            if they could not be entered.
         shown: The hash of the gradebook's entry from which the feedback pages were made; empty without pages.
     """
 
-    submission: Submission
-    made_from: ResultKey
-    notebooks: Sequence[str]
-    results: dict[str, tuple[Task, Execution]] = field(default_factory=dict)
-    rebuilt: dict[str, NotebookNode] = field(default_factory=dict)
-    rows: tuple[Row, ...] | None = None
-    written: bool = False
+    work: Work
+    rows: tuple[Row, ...]
+    entry: SubmissionEntry | None
     shown: str = ""
-
-    @property
-    def key(self) -> tuple[str, str]:
-        """The student and the assignment, which together identify the submission in the gradebook."""
-        return self.submission.student, self.submission.assignment
-
-    @property
-    def complete(self) -> bool:
-        """True if each notebook of the submission has a result."""
-        return len(self.results) == len(self.notebooks)
-
-    @property
-    def pairs(self) -> list[tuple[Task, Execution]]:
-        """The tasks with their results, in the order of the notebooks."""
-        return [self.results[notebook] for notebook in self.notebooks]

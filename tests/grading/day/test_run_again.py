@@ -10,11 +10,12 @@ import nbformat
 import pytest
 from tiny_class import COURSE, LISTENER, TALKER, FakeEngine, TinyClass, shown
 
-from autograder.grading import course_version, result_writer
+from autograder.grading import course_version
 from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.course_version import CourseFiles
 from autograder.grading.reporting.grade_report import report_json
+from autograder.grading.tasks import graded_notebooks
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -150,7 +151,7 @@ def test_a_corrected_sentence_on_a_card_makes_pages_again_and_executes_nothing(
     tiny.grade(feedback=True)
     page = tiny.path / "feedback" / "ada" / "lab_1_2" / "lab_1_2.html"
     assert "A corrected sentence." not in page.read_text()
-    monkeypatch.setattr(result_writer, "card_bundle", lambda _: {"text/plain": "A corrected sentence."})
+    monkeypatch.setattr(graded_notebooks, "card_bundle", lambda _: {"text/plain": "A corrected sentence."})
     course(CARDS)
     report = tiny.grade(feedback=True)
     assert (report.executed, report.reused, report.written) == (0, 1, 1)
