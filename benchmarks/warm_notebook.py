@@ -45,7 +45,7 @@ def main() -> None:
         __import__(name)
     from autograder.cards import html_rendering
 
-    html_rendering.prepare_templates()
+    html_rendering.templates()
     from autograder.judge import controlled_judge
 
     controlled_judge.import_judge()

@@ -1,4 +1,4 @@
-"""Renders HTML: the card of a verdict and the certificate of a chapter, which a notebook displays.
+"""Renders the card of a verdict as HTML, which a notebook displays.
 
 The HTML of a card contains no script, no id and no URL, so several cards can share a page and nothing is loaded. If a
 notebook is not trusted, JupyterLab's sanitizer removes ``<style>``, ``<svg>`` and ``aria-*`` from the card. The card
@@ -9,7 +9,6 @@ Other parts of the course take the templates of their pages from :func:`page_tem
 
 from __future__ import annotations
 
-import time
 from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
@@ -17,13 +16,13 @@ from typing import TYPE_CHECKING, Any, Unpack
 
 from autograder.cards import card_wording
 from autograder.cards.card_content import ON_A_PAGE, Card, Choices
-from autograder.cards.readable_text import one_line, wrap
+from autograder.cards.readable_text import one_line
 from autograder.cards.text_rendering import card_text
 from autograder.cards.timeline_layout import HALF_WIDTH, WIDTH, Picture, picture
 from autograder.verdict import State
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Mapping
 
     from jinja2 import Environment
 
@@ -57,13 +56,8 @@ def waiting_bundle(title: str, doing: str, *, over: bool = False) -> dict[str, s
         over: True if the check has ended. If False, JupyterLab changes the card as soon as the kernel ends.
     """
     title, doing = one_line(title, 160), one_line(doing, 600)
-    html = _templates().get_template("waiting.html.j2").render(title=title, doing=doing, over=over)
+    html = templates().get_template("waiting.html.j2").render(title=title, doing=doing, over=over)
     return {"text/html": html, "text/plain": f"{title}: {doing}"}
-
-
-def prepare_templates() -> None:
-    """Load the templates in advance, so that the first card appears about 40 ms sooner."""
-    _templates()
 
 
 def card_html(verdict: Verdict, *, buttons: bool = False, **choices: Unpack[Choices]) -> str:
@@ -75,7 +69,7 @@ def card_html(verdict: Verdict, *, buttons: bool = False, **choices: Unpack[Choi
     """
     card = Card.of(verdict, ON_A_PAGE, **choices)
     width = WIDTH if len(card.traffic.parts) <= 2 else HALF_WIDTH
-    template = _templates().get_template("card.html.j2")
+    template = templates().get_template("card.html.j2")
     return template.render(
         card=card,
         parts=[_Part.of(part, width) for part in card.traffic.parts],
@@ -121,8 +115,8 @@ class _Part:
 
 
 @cache
-def _templates() -> Environment:
-    """Return the templates of cards and certificates. They are read only once."""
+def templates() -> Environment:
+    """Return the templates of cards and certificates. They are read only once, which takes about 40 ms."""
     from markupsafe import Markup
 
     environment = page_templates("autograder.cards", trimmed=False)
@@ -160,59 +154,3 @@ def _breakable(text: str) -> Any:
     from markupsafe import Markup, escape
 
     return Markup("/<wbr/>").join(escape(part) for part in text.split("/"))
-
-
-CERTIFICATE_WORDS = "Made on your own machine, and checked by the judge there. It is not a grade."
-"""The line on each certificate that says what the certificate means."""
-_TITLE_WIDTH = 42
-"""The maximum length of a line of the title, in characters."""
-
-
-def certificate_svg(title: str, points: float, finished: float, helped: int = 0) -> str:
-    """Return the certificate as SVG, with all texts escaped.
-
-    Args:
-        finished: The Unix time in seconds at which the last point was reached.
-        helped: The number of tasks whose worked solution the student opened before solving them.
-    """
-    template = _templates().get_template("certificate.svg.j2")
-    return template.render(
-        label=certificate_text(title, points, finished, helped),
-        title=_lines(title),
-        points=_points(points),
-        helped=card_wording.with_solution(helped),
-        date=_date(finished),
-        words=CERTIFICATE_WORDS,
-    )
-
-
-def certificate_text(title: str, points: float, finished: float, helped: int = 0) -> str:
-    """Return the certificate in words. For the arguments see :func:`certificate_svg`."""
-    reached = ", ".join(filter(None, (_points(points), card_wording.with_solution(helped), _date(finished))))
-    return f"Chapter complete: {one_line(title, 160)}. {reached}. {CERTIFICATE_WORDS}"
-
-
-def certificate_bundle(title: str, points: float, finished: float, helped: int = 0) -> dict[str, str]:
-    """Return the certificate as ``display(..., raw=True)`` takes it. For the arguments see :func:`certificate_svg`."""
-    return {
-        "text/html": f'<div class="agc-certificate">{certificate_svg(title, points, finished, helped)}</div>',
-        "text/plain": certificate_text(title, points, finished, helped),
-    }
-
-
-def _points(points: float) -> str:
-    return f"All {card_wording.points(points)} points of all exercises"
-
-
-def _date(finished: float) -> str:
-    day = time.localtime(finished)
-    return f"{day.tm_mday} {time.strftime('%B %Y', day)}"
-
-
-def _lines(title: str) -> Sequence[str]:
-    """Return the lines of a certificate's title: at most two, and broken after the colon if there is one."""
-    title = one_line(title, 2 * _TITLE_WIDTH)
-    name, colon, rest = title.partition(": ")
-    if colon and len(title) > _TITLE_WIDTH and max(len(name), len(rest)) < _TITLE_WIDTH:
-        return [f"{name}:", rest]
-    return wrap(title, _TITLE_WIDTH)[:2]

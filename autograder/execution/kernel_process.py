@@ -42,7 +42,7 @@ _PRELOADED = (
     "autograder.cards.html_rendering",
 )
 _MAGIC = "autograder.notebook.program_magic"
-_PREPARED = (("autograder.cards.html_rendering", "prepare_templates"),)
+_PREPARED = (("autograder.cards.html_rendering", "templates"),)
 """For a module, the function of it that is called as soon as the module is imported."""
 
 

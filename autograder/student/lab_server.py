@@ -25,7 +25,6 @@ from nbgrader.server_extensions.validate_assignment.handlers import ValidateAssi
 from tornado import web
 
 from autograder import check_journal, course, exercises
-from autograder.cards.html_rendering import certificate_svg
 from autograder.check_journal import JournalEntry
 from autograder.student.lab import COURSE_PAGE
 from autograder.student.notebook_reset import CannotReset, reset
@@ -140,12 +139,10 @@ class _Certificate(_CourseHandler):
         """Send the certificate."""
         found = await asyncio.to_thread(self._standing)
         for chapter in found.chapters:
-            if chapter.name == name and chapter.finished is not None:
+            if chapter.name == name and chapter.certificate is not None:
                 self.set_header("Content-Type", "image/svg+xml")
                 self.set_header("Content-Disposition", f'attachment; filename="certificate-{name}.svg"')
-                self.finish(
-                    certificate_svg(chapter.title, chapter.possible, chapter.finished, chapter.helped)
-                )
+                self.finish(chapter.certificate.svg())
                 return
         raise web.HTTPError(404, reason="this certificate does not exist yet")
 

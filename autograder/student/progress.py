@@ -16,7 +16,7 @@ import msgspec
 
 from autograder import check_journal, course, exercises
 from autograder.cards.card_wording import points, points_of, with_solution
-from autograder.cards.html_rendering import certificate_svg, certificate_text
+from autograder.cards.certificate import Certificate
 from autograder.command_name import COMMAND
 from autograder.student.lab import COURSE_PAGE
 
@@ -128,6 +128,13 @@ class ChapterStanding:
     def helped(self) -> int:
         """The number of exercises whose points were reached with the worked solution."""
         return sum(one.helped for one in self.notebooks)
+
+    @property
+    def certificate(self) -> Certificate | None:
+        """The certificate; None if points are missing."""
+        if self.finished is None:
+            return None
+        return Certificate(self.title, self.possible, self.finished, self.helped)
 
     @property
     def done(self) -> int:
@@ -299,14 +306,7 @@ def _environment() -> Environment:
     def own_file(name: str) -> Markup:
         return Markup(files("autograder.student").joinpath(name).read_text(encoding="utf-8"))
 
-    def drawn(chapter: ChapterStanding) -> Markup:
-        return Markup(
-            certificate_svg(chapter.title, chapter.possible, chapter.finished or 0.0, chapter.helped)
-        )
-
     helpers: dict[str, Any] = {
-        "certificate": drawn,
-        "certificate_text": certificate_text,
         "hours": hours,
         "own_file": own_file,
         "page_name": COURSE_PAGE,
@@ -341,8 +341,8 @@ def _chapter_text(chapter: ChapterStanding) -> list[str]:
         reached = ", ".join(filter(None, (reached, with_solution(one.helped))))
         minutes = f"{one.minutes} min" if one.minutes else ""
         lines.append(f"  {MARKS[one.state]} {one.title:<{width}}  {minutes:>7}  {reached}".rstrip())
-    if chapter.finished is not None:
-        lines += ["", certificate_text(chapter.title, chapter.possible, chapter.finished, chapter.helped)]
+    if chapter.certificate is not None:
+        lines += ["", chapter.certificate.text()]
     elif chapter.minutes_left:
         lines += ["", f"About {hours(chapter.minutes_left)} to go."]
     return lines

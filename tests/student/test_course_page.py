@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from click.testing import CliRunner
 
 from autograder import check_journal, course, exercises
-from autograder.cards.html_rendering import CERTIFICATE_WORDS, certificate_svg
+from autograder.cards.certificate import WORDS, Certificate
 from autograder.check_journal import JournalEntry
 from autograder.cli import cli
 from autograder.student.progress import hours, page_html, standing, standing_text, trouble_html
@@ -48,9 +48,9 @@ def test_a_course_that_cannot_be_read_still_has_a_way_to_the_notebooks() -> None
 
 def test_a_certificate_comes_with_the_last_point_and_says_what_it_is_worth() -> None:
     everything = [JournalEntry("check", exercise, 86_400, 10, 10) for exercise in exercises.all_ids()]
-    assert CERTIFICATE_WORDS not in page(*everything[1:]).partition("</h2>")[2].partition("</section>")[0]
-    assert CERTIFICATE_WORDS in page(*everything)
-    svg = certificate_svg("Nodes & <Topics>", 130, 86_400)
+    assert WORDS not in page(*everything[1:]).partition("</h2>")[2].partition("</section>")[0]
+    assert WORDS in page(*everything)
+    svg = Certificate("Nodes & <Topics>", 130, 86_400).svg()
     assert "Nodes &amp; &lt;Topics&gt;" in svg
     assert ("All 130 points" in svg, "1970" in svg, "not a grade" in svg) == (True, True, True)
 

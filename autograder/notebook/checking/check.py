@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from autograder import check_journal, course
 from autograder.cards import html_rendering
+from autograder.cards.certificate import Certificate
 from autograder.messages import judge_messages as messages
 from autograder.messages import run_messages
 from autograder.notebook.cell_output import notebook_shell, say
@@ -138,7 +139,7 @@ def converse(link: JudgeLink, exercise: str, subject: Any, progress: Progress) -
     """
     link.say(messages.Check(exercise, kind=_kind(subject)))
     if is_live():
-        html_rendering.prepare_templates()  # prepare the card while the judge makes its node
+        html_rendering.templates()  # prepare the card while the judge makes its node
     first = link.hear()
     if isinstance(first, messages.Collect):
         # A grader builds and runs workspaces and launch files itself, so only their sources are sent.
@@ -217,15 +218,11 @@ def recorded(verdict: Verdict, subject: Any) -> Iterator[None]:
             ended = _chapter_ended_by(verdict, code_digest(subject))
     yield
     if ended is not None and is_live():
-        _show_certificate(*ended)
+        _show_certificate(ended)
 
 
-def _chapter_ended_by(verdict: Verdict, code: str) -> tuple[str, float, float, int] | None:
-    """Return what the certificate says of the chapter that this check completed; None if it completed none.
-
-    Returns:
-        The title, the points, the completion time, and the number of tasks with the worked solution.
-    """
+def _chapter_ended_by(verdict: Verdict, code: str) -> Certificate | None:
+    """Return the certificate of the chapter that this check completed; None if it completed none."""
     journal = check_journal.session_journal_path()
     before = check_journal.best(check_journal.entries(journal))
     if not check_journal.note_check(verdict, journal, code=code) and journal is not None:
@@ -238,15 +235,14 @@ def _chapter_ended_by(verdict: Verdict, code: str) -> tuple[str, float, float, i
         if finished is not None and check_journal.finished(chapter, before) is None:
             tasks = [after[name] for lab in chapter.labs for name in chapter.exercises_of(lab)]
             points, helped = sum(task.possible for task in tasks), sum(task.helped for task in tasks)
-            return chapter.title, points, finished, helped
+            return Certificate(chapter.title, points, finished, helped)
     return None
 
 
-def _show_certificate(title: str, points: float, finished: float, helped: int) -> None:
+def _show_certificate(certificate: Certificate) -> None:
     from IPython.display import display
 
-    bundle = html_rendering.certificate_bundle(title, points, finished, helped)
-    display(bundle, raw=True)  # type: ignore[no-untyped-call]
+    display(certificate.bundle(), raw=True)  # type: ignore[no-untyped-call]
 
 
 def _kind(subject: Any) -> str:

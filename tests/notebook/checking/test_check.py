@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from autograder import check_journal, course, exercises
+from autograder.cards.certificate import Certificate
 from autograder.check_journal import JournalEntry
 from autograder.messages.judge_messages import SOCKET_VARIABLE
 from autograder.notebook.checking import check as check_cell
@@ -40,7 +41,7 @@ def shown(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
     monkeypatch.delenv(SOCKET_VARIABLE, raising=False)
     monkeypatch.setattr(check_cell, "notebook_shell", lambda: "a notebook")
     monkeypatch.setattr(check_cell, "is_live", lambda: True)
-    monkeypatch.setattr(check_cell, "_show_certificate", lambda *words: found.append(words))
+    monkeypatch.setattr(check_cell, "_show_certificate", found.append)
     return found
 
 
@@ -60,8 +61,8 @@ def test_the_check_that_ends_the_chapter_shows_the_certificate_once(shown: list[
     assert shown == []
     record(passed(last))
     record(passed(last))
-    (words,) = shown
-    assert (*words[:2], words[3]) == (chapter.title, 10.0 * (len(others) + 1), 1)
+    (one,) = shown
+    assert (one.title, one.points, one.helped) == (chapter.title, 10.0 * (len(others) + 1), 1)
     assert len(check_journal.entries(kept)) == len(others) + 3
 
 
@@ -69,7 +70,7 @@ def test_the_certificate_is_a_card_of_its_own(monkeypatch: pytest.MonkeyPatch) -
     display = importlib.import_module("IPython.display")
     cards: list[dict[str, str]] = []
     monkeypatch.setattr(display, "display", lambda card, raw: cards.append(card))
-    check_cell._show_certificate("Nodes", 130.0, 0.0, 2)
+    check_cell._show_certificate(Certificate("Nodes", 130.0, 0.0, 2))
     assert "<svg" in cards[0]["text/html"]
     assert cards[0]["text/plain"].startswith("Chapter complete: Nodes.")
     assert "2 tasks with the worked solution" in cards[0]["text/html"].rpartition("<text")[0]
