@@ -184,7 +184,7 @@ def test_nothing_in_grading_imports_what_is_above_it() -> None:
 
 
 def test_what_was_handed_in_is_parsed_by_a_desk_alone() -> None:
-    of_the_class = {"rebuilding/cell_matching.py", "collecting/file_to_grade.py"}  # its own sources
+    of_the_class = {"rebuilding/named_cells.py", "collecting/file_to_grade.py"}  # its own sources
     users = {
         path.relative_to(PACKAGE / "grading").as_posix()
         for path, _, name in imports(PACKAGE)

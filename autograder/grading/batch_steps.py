@@ -162,7 +162,11 @@ class Batch:
         self._done = [entered for entered in settled.values() if entered]
         self._reused += sum(len(one.work.notebooks) for one in self._done)
         waiting = [work for work in works if settled[work.key] is None]
-        self._earlier = self._last_attempts(waiting)
+        self._earlier = {
+            (work.student, attempt.assignment): attempt  # the newest one, which comes last
+            for work in waiting
+            for attempt in self._store.attempts(work.student)
+        }
         if self._asked.lower == "no":
             self._fallen.forget(self._asked.has)
         return waiting
@@ -178,15 +182,6 @@ class Batch:
         if not self._directory.has_converted(work, entered.tasks):
             return None
         return Entered(work, entered.rows, entry, entered.shown)
-
-    def _last_attempts(self, works: Iterable[Work]) -> dict[tuple[str, str], Attempt]:
-        """Return the newest attempt of each submission, if there is one."""
-        return {
-            work.key: attempt
-            for work in works
-            for attempt in self._store.attempts(work.student)
-            if attempt.assignment == work.assignment
-        }
 
     def _note_if_worse(self, work: Work, rows: Iterable[Row]) -> None:
         """Note that a newer hand-in has fewer points than the one before."""
@@ -263,10 +258,10 @@ class Batch:
         """Execute the tasks without a result, and yield each result as soon as it is there."""
         made = iter(made)
         for one in made:
-            if not isinstance(one, Result):
+            if isinstance(one, Result):
+                yield one
+            else:
                 yield from self._executed(itertools.chain([one], made))
-                return
-            yield one
 
     def _executed(self, made: Iterable[MadeTask]) -> Iterator[Result]:
         under_way: dict[str, MadeTask] = {}
@@ -318,9 +313,8 @@ class Batch:
         """Make the feedback pages of submissions, except of those whose pages show what the gradebook contains."""
         for one in submissions:
             if self._asked.feedback and one.entry is not None:
-                notebooks = one.work.notebooks
-                is_shown = one.shown == one.entry.shown()
-                if not (is_shown and self._directory.has_pages(one.work, notebooks)):
+                has_pages = self._directory.has_pages(one.work, one.work.notebooks)
+                if not (has_pages and one.shown == one.entry.shown()):
                     self._make_pages(one.work, one.entry)
             yield one
 

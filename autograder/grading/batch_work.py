@@ -181,10 +181,10 @@ def would_change(
     changes = []
     due = read_due_dates(directory.gradebook_url)
     for one in submissions:
-        work, rows = one.work, one.rows if one.entry is None else ()
+        work = one.work
         entry = entries.get(work.key, SubmissionEntry())
         by_exercise = {cell.exercise: cell for cell in cells[work.assignment]}
-        for row in rows:
+        for row in one.rows_to_enter:
             cell = by_exercise[row.exercise]
             cell_entry = entry.cells.get(cell.notebook, {}).get(cell.name)
             before = cell_entry.judged if cell_entry else None
@@ -198,7 +198,7 @@ def would_change(
                     Difference(*work.key, row.exercise, before, row.score, "", row.diagnosis, note)
                 )
         at = dates.of(*work.key, entry.due or due.get(work.assignment))
-        then = _foreseen(work, rows, entry, by_exercise, at)
+        then = _foreseen(one, entry, by_exercise, at)
         if then.is_late or entry.penalty:
             from autograder.grading.table.late_policy import (
                 penalties,
@@ -231,21 +231,17 @@ def moved_points(work: Work, rows: Iterable[Row], earlier: Attempt | None) -> It
 
 
 def _foreseen(
-    work: Work,
-    rows: Iterable[Row],
-    entry: SubmissionEntry,
-    by_exercise: Mapping[str, GradedCell],
-    due: datetime | None,
+    one: Entered, entry: SubmissionEntry, by_exercise: Mapping[str, GradedCell], due: datetime | None
 ) -> SubmissionEntry:
     """Return the gradebook entry that a run would make for a submission, but with the old late penalty."""
     cells = {notebook: dict(of_notebook) for notebook, of_notebook in entry.cells.items()}
-    for row in rows:
+    for row in one.rows_to_enter:
         cell = by_exercise[row.exercise]
         of_notebook = cells.setdefault(cell.notebook, {})
         of_notebook[cell.name] = replace(of_notebook.get(cell.name, CellEntry(cell.worth)), judged=row.score)
     at = entry.handed_in
     with contextlib.suppress(ValueError):  # a run rejects the submission if its time is invalid
-        at = handed_in_at(work.folder, believed=at) or at
+        at = handed_in_at(one.work.folder, believed=at) or at
     return replace(entry, handed_in=at, due=due, cells=cells)
 
 

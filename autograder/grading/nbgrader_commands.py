@@ -115,7 +115,7 @@ class _OurFeedback(_Ours, GenerateFeedback):
         with directory.lock(), ClassStore(directory) as store:
             writer = Writer(directory, store)
             for submission in self._submissions(directory, chosen):
-                name = f"{submission.student}/{submission.assignment}"
+                name = submission.label
                 if reason := reason_against_name(submission.student):
                     problems.append(f"{name}: {reason}; rename the folder")
                     continue

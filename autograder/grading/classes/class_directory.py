@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from nbformat import NotebookNode
     from traitlets.config import Config
 
-    from autograder.grading.rebuilding.cell_matching import NamedCells
+    from autograder.grading.rebuilding.named_cells import NamedCells
 
 
 CONFIG_NAME = known_classes.CONFIG_NAME
@@ -258,7 +258,7 @@ class ClassDirectory:
     @functools.cached_property
     def named_cells(self) -> NamedCells:
         """The names of the cells in all source notebooks of the class."""
-        from autograder.grading.rebuilding.cell_matching import NamedCells
+        from autograder.grading.rebuilding.named_cells import NamedCells
 
         return NamedCells(
             {

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
     from autograder.grading.classes.class_directory import ClassDirectory
     from autograder.grading.collecting.collected_files import Arrival, Delivery, Inbox
-    from autograder.grading.rebuilding.cell_matching import Target
+    from autograder.grading.rebuilding.named_cells import Target
     from autograder.grading.rebuilding.submitted_notebook import SubmittedCell
     from autograder.grading.table.roster import Roster
 

@@ -131,6 +131,7 @@ class Submitted:
                 if line:
                     yield place, LineState.NOT_PLACED, str(error)
                 continue
+            # A file that a person put here gets a record only when `collect` knows more of it than its place.
             if line and (known or not line.is_by_hand or line.when or line.use):
                 now[notebook] = line
             is_ours = content in old.written(notebook) or (place, content) in refused
@@ -141,9 +142,9 @@ class Submitted:
         history = History(now)
         # Write the record before the files, so that the next `collect` knows that these files are its own even if this
         # command is interrupted.
-        passing = {place[2]: content for place, _, content in changes if content}
+        replaced = {place[2]: content for place, _, content in changes if content}
         if changes:
-            self._records.put(assignment, student, replace(history, replaced=passing))
+            self._records.put(assignment, student, replace(history, replaced=replaced))
         for place, line, content in changes:
             if line is None:
                 self._path(place).unlink()
@@ -230,9 +231,9 @@ def misplaced_files(directory: ClassDirectory) -> tuple[list[RefusedFile], list[
                 f"{others[0].relative_to(submitted)} is not graded{more}: the notebook in the same folder is graded"
             )
             continue
-        what_to_do = f"move the file into {submitted}/STUDENT/ASSIGNMENT"
-        what_to_do = f"rename the notebook to grade to {missing}" if missing else what_to_do
-        why = f"the file is not graded in this place{more}: {what_to_do}, or give the file to `{COMMAND} collect`"
+        move = f"move the file into {submitted}/STUDENT/ASSIGNMENT"
+        mend = f"rename the notebook to grade to {missing}" if missing else move
+        why = f"the file is not graded in this place{more}: {mend}, or give the file to `{COMMAND} collect`"
         refused.append(RefusedFile(others[0], why))
     return refused, notices
 

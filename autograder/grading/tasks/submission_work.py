@@ -80,3 +80,8 @@ class Entered:
     rows: tuple[Row, ...]
     entry: SubmissionEntry | None
     shown: str = ""
+
+    @property
+    def rows_to_enter(self) -> tuple[Row, ...]:
+        """The results that are not in the gradebook."""
+        return self.rows if self.entry is None else ()
