@@ -110,9 +110,7 @@ def grade(
         execution_backends.remove_leftovers(directory)
         roster = read_roster(directory)
         in_sections = roster.of_sections(sections) if sections else ()
-        asked = AskedFor(
-            assignments, [*students, *in_sections], again, feedback and not dry_run, dry_run, lower
-        )
+        asked = AskedFor(assignments, [*students, *in_sections], again, feedback, dry_run, lower)
         store = stack.enter_context(ClassStore(directory))
         batch = Batch(directory, store, console, roster, asked, backend, here, stack)
         batch.note(roster.left_out(sections))

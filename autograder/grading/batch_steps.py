@@ -35,12 +35,12 @@ from autograder.grading.tasks.date_reading import read_class_dates
 from autograder.grading.tasks.fallen_points import FallenPoints, fallen, fits
 from autograder.grading.tasks.result_keys import ResultKeys
 from autograder.grading.tasks.source_points import check_release, read_released
-from autograder.grading.tasks.submission_work import Entered, Graded, MadeTask, Result
+from autograder.grading.tasks.submission_work import Entered, MadeTask, Result
 
 # Some modules are imported inside functions, because they import nbgrader, which takes a second.
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterable, Iterator
+    from collections.abc import Collection, Iterable, Iterator, Sequence
 
     from rich.console import Console
 
@@ -88,7 +88,6 @@ class Batch:
     ) -> None:
         self._began = time.monotonic()
         self._backend, self._here, self._stack = backend, here, stack
-        self._execute: Execute | None = None
         self._drawings = ClassDrawings(directory)
         self._directory, self._store, self._console = directory, store, console
         self._roster, self._asked = roster, asked
@@ -200,7 +199,7 @@ class Batch:
             GradingError: Nothing can be executed.
         """
         if works:
-            self._execute = self._stack.enter_context(self._backend)
+            self._execute: Execute = self._stack.enter_context(self._backend)
         return works
 
     def draw(self, works: list[Work]) -> list[Work]:
@@ -223,7 +222,7 @@ class Batch:
             plain_line(self._console, f"running the solution with inputs of this class, {len(missing)} times")
             # On a cluster, this machine executes nothing else, so it is prepared only now.
             own = self._execute if self._backend is self._here else self._stack.enter_context(self._here)
-            for exercise, why in self._drawings.record(missing, own).items() if own else ():
+            for exercise, why in self._drawings.record(missing, own).items():
                 self._problems.append(
                     f"{exercise} cannot be checked, because its solution was not recorded: {why}"
                 )
@@ -246,13 +245,13 @@ class Batch:
             for made in self._tasks_of(work) if results else ():
                 if (key := made.task.key()) in results:
                     stored.add(made.task.label)
-                    yield made.with_result(results[key])
+                    yield Result(work, made.task, made.rebuilt, results[key])
         self._reused += len(stored)
         self._missing = sum(len(work.notebooks) for work in works) - len(stored)
         for work in works:
             for made in self._tasks_of(work, stored):
-                problem = made.task.problem
-                yield made.with_result(made.task.without_execution()) if problem else made
+                task = made.task
+                yield Result(work, task, made.rebuilt, task.without_execution()) if task.problem else made
 
     def execute(self, made: Iterable[MadeTask]) -> Iterator[Result]:
         """Execute the tasks without a result, and yield each result as soon as it is there."""
@@ -275,7 +274,6 @@ class Batch:
                     under_way[one.task.label] = one
                     yield one.task
 
-        assert self._execute is not None, "find_workers ran"
         longest = limits_of(self._directory).longest
         with BatchProgress(self._console, self._missing, longest=longest) as progress:
             self._timings.first_started = time.monotonic() - self._began
@@ -283,12 +281,13 @@ class Batch:
             with contextlib.closing(dones):
                 for done in dones:
                     self._timings.last_ended = time.monotonic() - self._began
-                    yield under_way.pop(done.task.label).with_result(done.execution, is_new=True)
+                    made_of = under_way.pop(done.task.label)
+                    yield Result(made_of.work, done.task, made_of.rebuilt, done.execution, is_new=True)
                     progress.finished(done.task.label, failed=bool(done.execution.trouble))
         yield from unreadable
 
-    def keep(self, results: Iterable[Result]) -> Iterator[Graded]:
-        """Store each new result, and yield each submission whose results are complete."""
+    def keep(self, results: Iterable[Result]) -> Iterator[list[Result]]:
+        """Store each new result, and yield the results of each submission that has all, by notebook in their order."""
         incomplete: dict[tuple[str, str], dict[str, Result]] = {}
         for result in results:
             work = result.work
@@ -296,23 +295,24 @@ class Batch:
             of_work[result.task.notebook] = self._kept(result) if result.is_new else result
             if len(of_work) == len(work.notebooks):
                 del incomplete[work.key]
-                yield Graded(work, [of_work[notebook] for notebook in work.notebooks])
+                yield [of_work[notebook] for notebook in work.notebooks]
 
-    def enter(self, graded: Iterable[Graded]) -> Iterator[Entered]:
+    def enter(self, graded: Iterable[Sequence[Result]]) -> Iterator[Entered]:
         """Enter submissions into the gradebook and ``autograded``, and yield all chosen ones; in a dry run, enter none.
 
         Those come first whose grades were in the gradebook already.
         """
         for entered in self._done:
             yield self._penalized(entered)
-        for one in graded:
-            rows = tuple(row for result in one.results for row in rows_of(result.task, result.execution))
-            yield Entered(one.work, rows, None) if self._asked.dry_run else self._write(one, rows)
+        for results in graded:
+            rows = tuple(row for result in results for row in rows_of(result.task, result.execution))
+            work = results[0].work
+            yield Entered(work, rows, None) if self._asked.dry_run else self._write(work, results, rows)
 
     def show(self, submissions: Iterable[Entered]) -> Iterator[Entered]:
         """Make the feedback pages of submissions, except of those whose pages show what the gradebook contains."""
         for one in submissions:
-            if self._asked.feedback and one.entry is not None:
+            if self._asked.feedback and not self._asked.dry_run and one.entry is not None:
                 has_pages = self._directory.has_pages(one.work, one.work.notebooks)
                 if not (has_pages and one.shown == one.entry.shown()):
                     self._make_pages(one.work, one.entry)
@@ -346,13 +346,8 @@ class Batch:
         self._notices += self._roster.notices(self._directory.assignments(), entries, self._roster.students)
         changes: list[Difference] = []
         if self._asked.dry_run:
-            changes = would_change(
-                self._directory,
-                [entered[work.key] for work in self._works],
-                entries,
-                self._cells,
-                self._dates,
-            )
+            in_order = [entered[work.key] for work in self._works]
+            changes = would_change(self._directory, in_order, entries, self._cells, self._dates)
         else:
             write_csv(self._directory.path / "grades.csv", rows)
             self._store.keep_run(course_version(), rows)
@@ -420,18 +415,17 @@ class Batch:
                     task, rebuilt = task_of(self._directory, work, notebook)
                     yield MadeTask(work, replace(task, drawings=self._drawings.of(task)), rebuilt)
 
-    def _write(self, graded: Graded, rows: tuple[Row, ...]) -> Entered:
+    def _write(self, work: Work, results: Sequence[Result], rows: tuple[Row, ...]) -> Entered:
         """Write the results of a submission; if that fails, the gradebook has zero points for it."""
         from autograder.grading.result_writer import NotWritten
         from autograder.grading.tasks.graded_notebooks import convert
 
-        work = graded.work
         try:
             with self._timings.measure("gradebook"), self._writer.all_or_nothing(work):
                 if self._keys.of(work) != work.made_from:
                     # The files changed during the run, so the tasks may have been made from other files.
                     raise NotWritten(f"{work.label} was changed while it was graded: grade it again")
-                entry = self._writer.write(convert(self._directory, graded, rows))
+                entry = self._writer.write(convert(self._directory, results, rows))
         except NotWritten as error:
             if is_disk_full(error):
                 raise

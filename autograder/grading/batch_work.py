@@ -45,7 +45,7 @@ class AskedFor:
         assignments: The chosen assignments; all if empty.
         students: The chosen students; all if empty.
         again: True to execute every notebook again.
-        feedback: True to make feedback pages; False in a dry run.
+        feedback: True to make feedback pages.
         dry_run: True to leave the gradebook unchanged.
         lower: ``yes`` to take over points that fell although the same files were handed in, ``no`` to keep the earlier
             points, and empty to ask.
@@ -184,7 +184,7 @@ def would_change(
         work = one.work
         entry = entries.get(work.key, SubmissionEntry())
         by_exercise = {cell.exercise: cell for cell in cells[work.assignment]}
-        for row in one.rows_to_enter:
+        for row in one.rows if one.entry is None else ():
             cell = by_exercise[row.exercise]
             cell_entry = entry.cells.get(cell.notebook, {}).get(cell.name)
             before = cell_entry.judged if cell_entry else None
@@ -235,7 +235,7 @@ def _foreseen(
 ) -> SubmissionEntry:
     """Return the gradebook entry that a run would make for a submission, but with the old late penalty."""
     cells = {notebook: dict(of_notebook) for notebook, of_notebook in entry.cells.items()}
-    for row in one.rows_to_enter:
+    for row in one.rows if one.entry is None else ():
         cell = by_exercise[row.exercise]
         of_notebook = cells.setdefault(cell.notebook, {})
         of_notebook[cell.name] = replace(of_notebook.get(cell.name, CellEntry(cell.worth)), judged=row.score)

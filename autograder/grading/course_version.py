@@ -19,11 +19,7 @@ _MADE_BY_COLCON = frozenset({"build", "install", "log"})
 """The folders that colcon makes next to a workspace's ``src``. They are not hashed, because they are made from the
 files in ``src``, which are hashed.
 """
-_OF_CHAPTERS = (
-    f"*/{course.CHAPTER}",
-    "*/*/*.py",
-    *(f"*/*/*{kind}" for kind in (REFERENCE, MUTANTS, course.TICKET)),
-)
+_OF_CHAPTERS = (f"*/{course.CHAPTER}", *(f"*/*/*{end}" for end in (".py", REFERENCE, MUTANTS, course.TICKET)))
 """Patterns for the chapters' files that the hash covers: ``chapter.toml``, exercises, reference outputs, what mutants
 do, and tickets.
 """

@@ -23,7 +23,7 @@ from autograder.grading.tasks.submission_times import companions
 from autograder.safe_files import write_whole
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Iterator, Sequence
     from pathlib import Path
 
     from autograder.grading.class_store import ClassStore
@@ -86,7 +86,11 @@ class Writer:
             OSError: The disk is full.
         """
         submission, attempt, url = converted.submission, converted.attempt, self._directory.gradebook_url
-        self._write_files("autograded", submission, converted.files)
+        folder = self._directory.folder("autograded", submission)
+        _remove(folder)
+        folder.mkdir(parents=True)
+        for name, data in converted.files.items():
+            _write_read_only(folder / name, data)
         has_due_date = gradebook_writing.enter(url, submission, converted.entries, converted.handed_in)
         gradebook_writing.enter_dates(url, self._dates, submission.student)
         # Read the points back, because a wrong grade is worse than none.
@@ -95,13 +99,6 @@ class Writer:
             raise NotWritten(f"{submission.label}: the gradebook does not have {missing[0]}")
         self._store.enter(submission, attempt, is_final=converted.is_final)
         return entry
-
-    def _write_files(self, step: str, submission: Submission, files: Mapping[str, bytes]) -> None:
-        folder = self._directory.folder(step, submission)
-        _remove(folder)
-        folder.mkdir(parents=True)
-        for name, data in files.items():
-            _write_read_only(folder / name, data)
 
     def assign_penalties(self, submission: Submission) -> SubmissionEntry:
         """Enter the late penalty of a submission into the gradebook, and return the submission's entry there."""

@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from autograder.grading.classes.class_directory import ClassDirectory, Submission
     from autograder.grading.grading_task import Task
     from autograder.grading.table.rows import Row
-    from autograder.grading.tasks.submission_work import Graded
+    from autograder.grading.tasks.submission_work import Result
     from autograder.verdict import Verdict
 
 
@@ -60,19 +60,20 @@ class Converted:
     is_final: bool
 
 
-def convert(directory: ClassDirectory, graded: Graded, rows: tuple[Row, ...]) -> Converted:
+def convert(directory: ClassDirectory, results: Sequence[Result], rows: tuple[Row, ...]) -> Converted:
     """Convert a submission. The rebuilt notebooks of its results are changed.
 
     Args:
+        results: The results of all its notebooks.
         rows: The results as rows of the report.
 
     Raises:
         ValueError: The submission time is not a time, or is impossible.
     """
-    work = graded.work
+    work, course = results[0].work, results[0].task.course
     files = directory.files(work.assignment) | companions(work.folder)
     entries, tasks, scores = {}, {}, {}
-    for result in graded.results:
+    for result in results:
         task, execution = result.task, result.execution
         notebook = _with_results(result.rebuilt, task, execution)
         # Before the entry is made, because nbgrader, too, cuts outputs before it computes points from them.
@@ -81,11 +82,10 @@ def convert(directory: ClassDirectory, graded: Graded, rows: tuple[Row, ...]) ->
         files[f"{task.notebook}{SUFFIX}"] = _notebook_text(notebook)
         tasks[task.notebook] = task.key()
         scores[task.notebook] = scores_of(task, execution)
-    course = graded.results[0].task.course
     attempt = Attempt(
         datetime.now(tz=UTC), work.assignment, work.made_from, course, rows, tasks=tasks, scores=scores
     )
-    is_final = not any(result.execution.trouble for result in graded.results)
+    is_final = not any(result.execution.trouble for result in results)
     return Converted(work, files, entries, handed_in_at(work.folder), attempt, is_final)
 
 

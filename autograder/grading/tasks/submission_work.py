@@ -40,10 +40,6 @@ class MadeTask:
     task: Task
     rebuilt: NotebookNode
 
-    def with_result(self, execution: Execution, *, is_new: bool = False) -> Result:
-        """Return the task with its result."""
-        return Result(self.work, self.task, self.rebuilt, execution, is_new)
-
 
 @dataclass(frozen=True)
 class Result(MadeTask):
@@ -55,14 +51,6 @@ class Result(MadeTask):
 
     execution: Execution
     is_new: bool = False
-
-
-@dataclass(frozen=True)
-class Graded:
-    """A submission with a result for each notebook, in the order of the notebooks."""
-
-    work: Work
-    results: Sequence[Result]
 
 
 @dataclass(frozen=True)
@@ -80,8 +68,3 @@ class Entered:
     rows: tuple[Row, ...]
     entry: SubmissionEntry | None
     shown: str = ""
-
-    @property
-    def rows_to_enter(self) -> tuple[Row, ...]:
-        """The results that are not in the gradebook."""
-        return self.rows if self.entry is None else ()
