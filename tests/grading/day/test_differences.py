@@ -39,6 +39,7 @@ def test_a_dry_run_enters_nothing_and_says_who_would_get_other_points(
     by_person(tiny, "eve", TALKER, 9)
     tiny.submit("ben", 10, 7)
     tiny.submit("eve", 10, 7)
+    (tiny.path / "feedback" / "ada" / "lab_1_2" / "lab_1_2.html").unlink()  # a run makes this page again
     before = files(tiny)
     fake_engine.ran.clear()
     report = tiny.grade(dry_run=True, feedback=True)
