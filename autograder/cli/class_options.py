@@ -34,23 +34,11 @@ only_sections = click.option(
     multiple=True,
     help="Use only students with this value in the column section of students.csv.",
 )
-
-
-def known_zone(_context: click.Context, _option: click.Parameter, name: str) -> ZoneInfo | None:
-    """Return the time zone with this name; None if the option was not given."""
-    try:
-        return ZoneInfo(name) if name else None
-    except (ValueError, OSError, LookupError):
-        fail(f"The time zone {name!r} does not exist. A name looks like Europe/Berlin.")
-
-
 one_assignment = click.option(
     "--assignment",
     default="",
     help="The assignment to which all files belong. The default is the one that cells and file names show.",
 )
-
-
 from_option = click.option(
     "--from",
     "form",
@@ -71,6 +59,14 @@ names_option = click.option(
     help="The pattern of file names, with id, email, login, number, name, first, last, assignment, time, file, any, or "
     "a column of students.csv.",
 )
+
+
+def known_zone(_context: click.Context, _option: click.Parameter, name: str) -> ZoneInfo | None:
+    """Return the time zone with this name; None if the option was not given."""
+    try:
+        return ZoneInfo(name) if name else None
+    except (ValueError, OSError, LookupError):
+        fail(f"The time zone {name!r} does not exist. A name looks like Europe/Berlin.")
 
 
 def _columns(_context: click.Context, _option: click.Parameter, values: tuple[str, ...]) -> dict[str, str]:

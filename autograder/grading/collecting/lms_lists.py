@@ -51,7 +51,7 @@ _SAMPLES = {
 def rehearse() -> None:
     """Load everything that :func:`read` needs, because a desk itself cannot open files."""
     for name, data in _SAMPLES.items():
-        msgspec.json.encode(parse_list(name, data))
+        msgspec.json.encode(_parse_list(name, data))
 
 
 def read(file: IO[bytes], name: str) -> Iterator[bytes]:
@@ -61,10 +61,10 @@ def read(file: IO[bytes], name: str) -> Iterator[bytes]:
         file: The list.
         name: The name of the file.
     """
-    yield msgspec.json.encode(parse_list(name, file.read()))
+    yield msgspec.json.encode(_parse_list(name, file.read()))
 
 
-def parse_list(name: str, data: bytes) -> list[ListEntry] | None:
+def _parse_list(name: str, data: bytes) -> list[ListEntry] | None:
     """Parse a list; return None if its form is unknown. Call this only in a desk, because the file is not trusted.
 
     Args:

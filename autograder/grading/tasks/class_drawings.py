@@ -41,7 +41,7 @@ class Drawing(NamedTuple):
     number: int
 
 
-class KeptDrawing(msgspec.Struct, frozen=True):
+class _KeptDrawing(msgspec.Struct, frozen=True):
     """The content of a file.
 
     Attributes:
@@ -94,7 +94,7 @@ class ClassDrawings:
             if recorded and not execution.trouble:
                 file = self._file(Drawing(task.assignment, int(task.notebook)))
                 file.parent.mkdir(mode=0o700, exist_ok=True)
-                write_whole(file, msgspec.json.encode(KeptDrawing(task.seed, recorded)), mode=0o600)
+                write_whole(file, msgspec.json.encode(_KeptDrawing(task.seed, recorded)), mode=0o600)
             else:
                 diagnosis = execution.verdicts[len(task.cells) - 1].diagnosis
                 reasons[task.assignment] = execution.trouble or (
@@ -137,7 +137,7 @@ class ClassDrawings:
 
     def _read(self, drawing: Drawing) -> str:
         try:
-            kept = msgspec.json.decode(self._file(drawing).read_bytes(), type=KeptDrawing)
+            kept = msgspec.json.decode(self._file(drawing).read_bytes(), type=_KeptDrawing)
         except (OSError, msgspec.MsgspecError):
             return ""
         return kept.recorded if kept.made_from == self._made_from(drawing) else ""
