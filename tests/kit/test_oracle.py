@@ -179,7 +179,7 @@ def test_messages_of_a_list_before_the_judge_stepped_the_clock_are_not_too_many(
 
 def rated(*moments: float, simulated: bool = True) -> tuple[bool, str]:
     """Return whether beats at these moments keep a rate of one in a second, and what the card says came."""
-    exercise = SameAsSolution("a.b", "A", "B", gives=lambda _: [], rates={"/beat": 1.0}).exercise()
+    exercise = SameAsSolution("a.b", "A", "B", gives=lambda _: [2.25], rates={"/beat": 1.0}).exercise()
     beats = [Event(at, "message", "/beat", {}, at if simulated else None) for at in moments]
     evidence = Evidence([Part("drawing 0", {}, beats)], Reference("a.b", INTERFACE, [Part("drawing 0")]))
     (criterion,) = exercise.criteria
@@ -187,6 +187,12 @@ def rated(*moments: float, simulated: bool = True) -> tuple[bool, str]:
     finding = criterion.judge(evidence)
     assert (mistake.recognize(evidence) is None) == (finding.passed or len(moments) < 3)
     return finding.passed, finding.seen
+
+
+def test_a_rate_needs_three_periods_without_an_input() -> None:
+    """With fewer it depends on chance whether two messages come between two inputs, and a right node may fail."""
+    with pytest.raises(ValueError, match=r"3 s have to pass without an input, and it is 2\.75 s at most"):
+        SameAsSolution("a.b", "A", "B", gives=lambda _: [2.0, To("/scan", 1), 2.0], rates={"/beat": 1.0})
 
 
 EVERY_SECOND = range(10)

@@ -50,6 +50,9 @@ DRAWING = "drawing "
 """The beginning of a drawing's name. The rest is the seed: a number for practice, a secret one for a class."""
 PAUSE = 0.75
 """Seconds of the subject's time after each input. Whatever the input changes must be published by then."""
+PERIODS = 3
+"""The number of periods in a row without an input that show a rate: an interval in which an input comes does not count.
+"""
 MANY = 100
 """The most feedback messages of a goal that are expected if the feedback is not compared."""
 TOLERANCE = 1e-3
@@ -86,8 +89,9 @@ class SameAsSolution:
         every: The topics of which all messages of a step are compared, not only the last one, because the task asks for
             one message for each input; True for all of ``tells``.
         rates: The topics for which the task asks for a period, with this period in seconds. A node that publishes more
-            often or less often fails; it may be silent for some time, or publish once more at an input. On other
-            topics, the period is the student's.
+            often or less often fails; it may be silent for some time, or publish once more at an input. So only
+            intervals without an input show a period, and ``gives`` needs three periods in a row without one. On
+            other topics, the period is the student's.
         pause: Seconds of the subject's time after each input.
         tolerance: The absolute or relative tolerance for numbers.
         roles: The roles of the subject's endpoints, the most telling first.
@@ -149,6 +153,7 @@ class SameAsSolution:
         # A clock that stands still tells which clock a node asks. Then no other clock makes it right.
         stands = any(isinstance(step, To) and step.stands for step in steps)
         is_timed = not stands and any(isinstance(step, (int, float)) for step in steps)
+        self._check_rates(rates, steps)
         drawn = self._drawn = Drawn(self._scenario, self._outputs, roles, is_timed=is_timed)
         self._draft = Draft(exercise_id, title, task, drawn, points=points)
         if late_after:
@@ -183,6 +188,19 @@ class SameAsSolution:
             self._draft.knows("wrong_rate", output.another_rate, says, KEEP_THE_PERIOD, late=True)
         for output in self._outputs:
             self._draft.criterion(output.key, output.title.replace("?", ""))(partial(_by_one_server, output))
+
+    def _check_rates(self, rates: Mapping[str, float], steps: Sequence[Step]) -> None:
+        """Raise ``ValueError`` if it would depend on chance whether two messages come without an input in between."""
+        quiet = longest = self._pause
+        for step in steps:
+            quiet = quiet + step if isinstance(step, (int, float)) else self._pause
+            longest = max(longest, quiet)
+        for topic, period in rates.items():
+            if longest < PERIODS * period:
+                raise ValueError(
+                    f"rates: to show a period of {period:g} s on {topic}, {PERIODS * period:g} s have to pass "
+                    f"without an input, and it is {longest:g} s at most: add seconds at the end of gives"
+                )
 
     def _output(self, name: str, paths: tuple[str, ...], kind: Kind) -> Output:
         """Return an output that is compared."""

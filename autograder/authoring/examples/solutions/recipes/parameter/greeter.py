@@ -6,7 +6,7 @@ EXERCISE = SameAsSolution(
     "parameter.greeter",
     "A parameter · The greeter",
     "Publish the text of a parameter, which may change at any time.",
-    gives=lambda random: [Sets("text", f"Ahoy {random.randint(1000, 9999)}") for _ in range(2)],
+    gives=lambda random: [*(Sets("text", f"Ahoy {random.randint(1000, 9999)}") for _ in range(2)), 2.0],
     tells={"/greeting": "data"},
     rates={"/greeting": 0.5},
     parameters=("text",),
