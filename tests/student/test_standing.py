@@ -51,6 +51,8 @@ def test_points_make_a_notebook_done_and_a_mark_one_that_is_only_read() -> None:
     assert (states["lab_1_2"].state, states["lab_1_2"].points) == ("done", states["lab_1_2"].possible)
     states = {one.name: one for one in after(lines[0]).chapters[0].notebooks}
     assert states["lab_1_2"].state == "begun"
+    new, begun, done = (after(*lines[:count]).chapters[0].minutes_left for count in (0, 1, len(lines)))
+    assert new == begun == done + states["lab_1_2"].minutes
     marks = [JournalEntry("read", "lab_1_2", 3), JournalEntry("unread", "lab_1_2", 4)]
     marked = [after(*marks[:count]).chapters[0].notebooks for count in range(3)]
     read = [next(replace(one, exercises=()) for one in each if one.name == "lab_1_2") for each in marked]

@@ -162,7 +162,7 @@ def test_a_policy_of_percent_a_day_with_grace_and_cut_off_is_data(tiny: TinyClas
         ),
     )
     due(tiny, DUE)
-    hours = {"ada": -1, "ben": 0.2, "eve": 1, "jo": 30, "zoe": 80}
+    hours = {"ada": -1, "ben": 0.25, "eve": 0.251, "jo": 30, "zoe": 80}
     for student, late in hours.items():
         stamp = tiny.submit(student, 10, 10).with_name("timestamp.txt")
         stamp.write_text(f"{DUE + timedelta(hours=late):%Y-%m-%d %H:%M:%S.%f} UTC")

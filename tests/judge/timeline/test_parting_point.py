@@ -109,10 +109,10 @@ def test_the_students_line_that_causes_the_first_difference_is_quoted(
     assert own_lines_in_words(Evidence([Part("x", {}, claimed(point.causes, own))], REFERENCE)) == says
 
 
-def test_a_claimed_line_is_cut_and_cannot_end_its_quotation() -> None:
+def test_of_claimed_lines_two_are_quoted_each_cut_and_within_its_quotation() -> None:
     line = OwnLine("publish", "`your cell`", 7, "`" + "x" * 1000)
-    (event,) = claimed([["publish"]], [line])
-    assert event.data == {"place": "'your cell'", "number": 7, "text": "'" + "x" * (LONGEST_LINE - 1)}
+    quoted = {"place": "'your cell'", "number": 7, "text": "'" + "x" * (LONGEST_LINE - 1)}
+    assert [event.data for event in claimed([["publish"]], [line] * 3)] == [quoted] * 2
 
 
 def _talking(texts: list[str]) -> Part:
