@@ -37,6 +37,7 @@ from server_of_a_test import jupyter_server
 from tiny_class import QUIET, TALKER, TinyClass, make_tiny_class
 from workbook import rows_of
 
+from autograder import exercises
 from autograder.cli import cli
 from autograder.grading.running import execution_backends
 
@@ -252,7 +253,8 @@ def check_pages(tiny: TinyClass, class_: list[Pupil], truth: Truth, comments: di
     assert table
     names = [cell.get_text() for cell in table.find_all("th")][1:-1]
     keys = [(assignment, name) for assignment, cells in truth.most.items() for name in cells]
-    assert sorted(names) == sorted(name for _, name in keys)
+    titles = {name: exercises.get(name).title if name.startswith(f"{LAB}.") else name for _, name in keys}
+    assert sorted(names) == sorted(titles.values())
     lines = [[cell.get_text(strip=True) for cell in line.find_all("td")] for line in table.find_all("tr")[1:]]
     by_id = {line[0].rpartition("(")[2].rstrip(")"): line[1:] for line in lines}
     assert by_id.keys() == set(truth.students)
@@ -263,7 +265,7 @@ def check_pages(tiny: TinyClass, class_: list[Pupil], truth: Truth, comments: di
             is_by_hand = cell and (cell.by_hand is not None or cell.extra)
             mark = "?" if cell and cell.waits else "*" if is_by_hand else ""
             none = "excused" if student in EXCUSED and assignment == LAB else "–"
-            assert shown[names.index(name)] == (f"{cell.score:g}{mark}" if cell else none)
+            assert shown[names.index(titles[name])] == (f"{cell.score:g}{mark}" if cell else none)
 
 
 def check_exports(tiny: TinyClass, class_: list[Pupil], truth: Truth) -> None:
