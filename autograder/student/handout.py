@@ -56,7 +56,7 @@ README = """\
 
 Notebooks about ROS 2 in which a judge checks your nodes: it is a ROS node itself, and looks at what yours do.
 
-You need Linux on x86-64 and Python 3.11 or newer (or Windows with WSL 2, which was not tried). Then, in this folder:
+You need Linux on x86-64 and Python 3.11 to 3.14 (or Windows with WSL 2, which was not tried). Then, in this folder:
 
 {begin}
 
