@@ -6,6 +6,7 @@ solution and its mutants run like this, never a student's program: executors, st
 
 from __future__ import annotations
 
+import asyncio
 import threading
 import time
 from functools import partial
@@ -26,6 +27,7 @@ from autograder.authoring.paper.endpoints import (
     Subscription,
     profile_of,
 )
+from autograder.authoring.paper.loops import PaperLoops
 from autograder.authoring.paper.network import SECOND, Hangs, Network, UnknownOnPaper
 
 
@@ -253,7 +255,7 @@ def _sleep(seconds: float) -> None:
 
 
 def replace_rclpy() -> None:
-    """Put nodes, clocks and threads on paper into the places of the real ones, in this process for good.
+    """Put nodes, clocks, threads and loops on paper into the places of the real ones, in this process for good.
 
     Call it in a process that was made for one program.
     """
@@ -261,6 +263,7 @@ def replace_rclpy() -> None:
     rclpy.node.Node = PaperNode  # type: ignore[misc]
     rclpy.clock.Clock = ComputerClock  # type: ignore[assignment,misc]
     threading.Thread = _Thread  # type: ignore[misc]
+    asyncio.set_event_loop_policy(PaperLoops())
     time.time = time.monotonic = time.perf_counter = _computers_seconds
     time.time_ns = time.monotonic_ns = lambda: Network.now_running.wall
     time.sleep = _sleep  # type: ignore[assignment]
