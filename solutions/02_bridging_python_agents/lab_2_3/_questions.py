@@ -22,7 +22,9 @@ def place(random: Random) -> dict[str, object]:
     return {"success": True, "message": f"{random.choice(PLACES)}, {random.randrange(100)} m"}
 
 
-def row(random: Random, topic: str, numbers: list[int], steps: tuple[int, ...]) -> list[To | float]:
+def row(
+    random: Random, topic: str, numbers: list[int], steps: tuple[int, ...], pause: float = PAUSE
+) -> list[To | float]:
     """Return inputs one after the other, and steps without an input until all are answered.
 
     Args:
@@ -31,14 +33,15 @@ def row(random: Random, topic: str, numbers: list[int], steps: tuple[int, ...]) 
         numbers: The inputs.
         steps: For each input, the number of the step in which it is answered, counted from 0. They differ: of two
             answers that come close to one another, the heart of a right program may say either first.
+        pause: Seconds of the subject's time after each input.
     """
     answered = [
-        round((step - asked) * PAUSE + offset, 2)
+        round((step - asked) * pause + offset, 2)
         for asked, (step, offset) in enumerate(zip(steps, random.sample(OFFSETS, len(steps)), strict=True))
     ]
     return [
         *(To(topic, n, answered=late) for n, late in zip(numbers, answered, strict=True)),
-        *[PAUSE] * WAITS,
+        *[pause] * WAITS,
     ]
 
 
