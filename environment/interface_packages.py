@@ -67,9 +67,9 @@ def interface_packages(root: Path) -> tuple[Path, ...]:
     )
 
 
-def only_python_needs(packages: Sequence[Path]) -> bool:
-    """Return True if interfaces for Python are enough, because no package has a message that others use in C++."""
-    return not any(True for package in packages for _ in package.glob("msg/*.msg"))
+def only_python_needs(package: Path) -> bool:
+    """Return True if interfaces for Python are enough, because a package has no message that others use in C++."""
+    return not any(package.glob("msg/*.msg"))
 
 
 def build_command(

@@ -79,12 +79,6 @@ class Setup:
         ros = repr(replace(self.ros, notice=""))
         kind = (str(place.root), str(place.base_python), sys.version, ros)
         repairs = (place.environment / "wheel_repairs.py",)
-        interfaces = (
-            *repairs,
-            place.environment / "interface_packages.py",
-            place.environment / "only_python.cmake",
-            *(file for package in place.interfaces for file in files_below(package)),
-        )
         start = (place.environment / "course_process.py", place.environment / "place.py")
         ros2 = (place.environment / "ros2_command" / "install.py",)
         jupyter = (place.environment / "jupyter_files.py",)
@@ -96,9 +90,7 @@ class Setup:
             Step("packages", self._what_is_installed(), tuple(locks), lambda: self._install_packages(locks)),
             Step("sources", "repairing imports and parameters", repairs, self._repair_sources),
             Step("fast_dds", "repairing how a node ends", repairs, lambda: repair_fast_dds(place.prefix)),
-            Step(
-                "interfaces", f"building {self._interfaces()} with colcon", interfaces, self._build_interfaces
-            ),
+            *map(self._interfaces, place.interfaces),
             Step("start", "teaching its Python to find ROS", start, self._install_start),
             Step("ros2", "adding the ros2 command", ros2, lambda: install_ros2_command(place.prefix)),
             Step("jupyter", "configuring JupyterLab", jupyter, self._configure_jupyter),
@@ -113,6 +105,19 @@ class Setup:
         else:
             steps += [self._extra(name, f"installing what the extra {name} needs", [name]) for name in extras]
         return steps
+
+    def _interfaces(self, package: Path) -> Step:
+        """Return the step that builds a package of interfaces. No such package needs another one of the course."""
+        environment = self.place.environment
+        makers = ("wheel_repairs.py", "interface_packages.py", "only_python.cmake")
+        inputs = (*(environment / name for name in makers), *files_below(package))
+        return Step(
+            f"interfaces_{package.name}",
+            f"building {package.name} with colcon",
+            inputs,
+            lambda: self._build_interfaces(package),
+            stands_alone=True,
+        )
 
     def _extra(self, name: str, doing: str, extras: Collection[str]) -> Step:
         locks = tuple(map(self.place.lock, extras))
@@ -241,23 +246,18 @@ class Setup:
             # For a user who may read this environment but not write to it.
             self._run("compiling what was changed", [self.place.python, "-m", "compileall", "-q", *changed])
 
-    def _build_interfaces(self) -> None:
+    def _build_interfaces(self, package: Path) -> None:
         place = self.place
         if not self.ros.is_sourced:
             self._run("repairing the wheels", [place.python, "-m", "environment.wheel_repairs"])
         # Merged into the environment itself: its lib folder and its site-packages are searched already.
         # With a ROS that was sourced, programs in C++ may use them.
-        light = not self.ros.is_sourced and only_python_needs(place.interfaces)
+        light = not self.ros.is_sourced and only_python_needs(package)
         colcon = place.prefix / "bin/colcon"
         # Only this user can read the folder, and no box sees it.
         with tempfile.TemporaryDirectory(prefix="course-setup-", ignore_cleanup_errors=True) as scratch:
-            command = build_command(
-                colcon, place.python, place.interfaces, place.prefix, Path(scratch), light=light
-            )
-            self._run(f"building {self._interfaces()}", command)
-
-    def _interfaces(self) -> str:
-        return ", ".join(package.name for package in self.place.interfaces)
+            command = build_command(colcon, place.python, [package], place.prefix, Path(scratch), light=light)
+            self._run(f"building {package.name}", command)
 
     def _install_start(self) -> None:
         """Install the code that every Python of the environment runs at its start; see course_process.py."""
@@ -276,7 +276,8 @@ class Setup:
         names = [name for name in course_process.READ_AT_START if name in wanted]
         exports = "".join(f"export {name}={shlex.quote(wanted[name])}\n" for name in names)
         (self.place.notes / "libraries.sh").write_text(exports, encoding="utf-8")
-        check = f"import rclpy, {INTERFACES}.action, {INTERFACES}.srv, {self._interfaces()}"
+        built = ", ".join(package.name for package in self.place.interfaces)
+        check = f"import rclpy, {INTERFACES}.action, {INTERFACES}.srv, {built}"
         self._run("importing rclpy and the interfaces", [self.place.python, "-c", check])
 
     def _configure_jupyter(self) -> None:

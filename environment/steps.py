@@ -1,7 +1,7 @@
 """Runs steps only once: each leaves a stamp of its inputs, and is skipped as long as the inputs are the same.
 
-A step is also repeated if an earlier one was. The stamp is removed before the step runs and written after it has
-succeeded, so an interrupted set-up continues with the step that was interrupted.
+A step is also repeated if an earlier one was, unless that one stands alone. The stamp is removed before the step runs
+and written after it has succeeded, so an interrupted set-up continues with the step that was interrupted.
 """
 
 from __future__ import annotations
@@ -30,12 +30,14 @@ class Step:
         doing: The text that the user sees while the step runs.
         inputs: The texts and files from which the result is made. If any of them changes, the step is repeated.
         run: Carries out the step. After an exception the step counts as not done.
+        stands_alone: True if no later step builds on the result, so none is repeated because of this one.
     """
 
     name: str
     doing: str
     inputs: tuple[str | Path, ...]
     run: Callable[[], object]
+    stands_alone: bool = False
 
 
 def files_below(folder: Path) -> tuple[Path, ...]:
@@ -74,9 +76,10 @@ def run_steps(steps: Sequence[Step], stamps: Path, root: Path, say: Callable[[st
     done = []
     chain = ""
     for step in steps:
-        chain = digest([chain, step.name, *step.inputs], root)
+        made_from = digest([chain, step.name, *step.inputs], root)
+        chain = chain if step.stands_alone else made_from
         stamp = stamps / step.name
-        if _stamped(stamp) == chain:
+        if _stamped(stamp) == made_from:
             continue
         stamp.unlink(missing_ok=True)
         started = time.monotonic()
@@ -85,7 +88,7 @@ def run_steps(steps: Sequence[Step], stamps: Path, root: Path, say: Callable[[st
             step.run()
         # This comes after the run, because the step that makes the environment empties the folder of the stamps.
         stamps.mkdir(parents=True, exist_ok=True)
-        stamp.write_text(chain, encoding="ascii")  # a stamp that is only partly written equals no digest
+        stamp.write_text(made_from, encoding="ascii")  # a stamp that is only partly written equals no digest
         say(f"  {time.monotonic() - started:.1f} s")
         done.append(step.name)
     return done

@@ -38,8 +38,13 @@ def made_from(step: Step) -> str:
 
 def test_the_order() -> None:
     assert list(steps(with_tests=True)) == [
-        *("environment", "uv", "packages", "sources", "fast_dds", "interfaces", "start", "ros2", "jupyter"),
-        *("project", "dev"),
+        *("environment", "uv", "packages", "sources", "fast_dds"),
+        *(
+            "interfaces_my_robot_interfaces",
+            "interfaces_small_robot_interfaces",
+            "interfaces_agent_interfaces",
+        ),
+        *("start", "ros2", "jupyter", "project", "dev"),
     ]
 
 
@@ -85,28 +90,31 @@ def test_the_ros_wheels_are_left_out_where_a_ros_is_sourced() -> None:
 
 
 def test_the_interfaces_are_made_from_every_file_of_their_package() -> None:
-    names = {path.name for path in steps()["interfaces"].inputs if isinstance(path, Path)}
+    names = {path.name for path in steps()["interfaces_my_robot_interfaces"].inputs if isinstance(path, Path)}
     assert {
         "AddTwoInts.srv",
-        "Trigger.srv",
-        "Ask.srv",
         "Fibonacci.action",
-        "WalkTo.action",
         "interface_packages.py",
         "wheel_repairs.py",
         "only_python.cmake",
     } == names
 
 
-def test_a_package_in_a_chapters_folder_is_one_of_them(tmp_path: Path) -> None:
-    usual = steps(Place(tmp_path, PLACE.base_python))["interfaces"]
+def test_a_package_in_a_chapters_folder_is_built_alone(tmp_path: Path) -> None:
+    shutil.copytree(ROOT / "environment", tmp_path / "environment")
+    usual = steps(place := Place(tmp_path, PLACE.base_python))
     package = tmp_path / "solutions/02_power/interfaces/power_interfaces"
     (package / "srv").mkdir(parents=True)
     (package / "srv/SetLevel.srv").touch()
     (tmp_path / "solutions/02_power/lab_2_1").mkdir()
-    step = steps(Place(tmp_path, PLACE.base_python))["interfaces"]
+    with_it = steps(place)
+    step = with_it.pop("interfaces_power_interfaces")
     assert step.doing == "building power_interfaces with colcon"
-    assert set(step.inputs) - set(usual.inputs) == {package / "srv/SetLevel.srv"}
+    assert package / "srv/SetLevel.srv" in step.inputs
+    assert step.stands_alone
+    assert {name: one.inputs for name, one in with_it.items()} == {
+        name: one.inputs for name, one in usual.items()
+    }
 
 
 def test_a_sourced_ros_comes_after_the_environment_in_every_search_path(tmp_path: Path) -> None:
@@ -171,7 +179,7 @@ def test_a_build_keeps_no_variable_of_the_user_and_no_file(
         colcon, builds = place.prefix / "bin/colcon", tmp_path / "builds"
         colcon.write_text(f"#!/bin/sh\nenv >{builds}; stat -c 'mode %a' {tmp_path}/temporary/*\n")
         colcon.chmod(0o755)
-        setup._build_interfaces()
+        setup._build_interfaces(place.interfaces[0])
     assert "mode 700" in (tmp_path / "log.txt").read_text()
     assert "planted-4711" not in builds.read_text()
     assert str(workspace) not in builds.read_text()

@@ -22,13 +22,13 @@ class Recorder:
         self.ran: list[str] = []
         self.failing = ""
 
-    def step(self, name: str, *inputs: str | Path) -> Step:
+    def step(self, name: str, *inputs: str | Path, stands_alone: bool = False) -> Step:
         def run() -> None:
             self.ran.append(name)
             if name == self.failing:
                 raise RuntimeError(name)
 
-        return Step(name, f"doing {name}", inputs, run)
+        return Step(name, f"doing {name}", inputs, run, stands_alone)
 
     def run(self, *steps: Step) -> list[str]:
         """Run the steps and return the names of those that ran."""
@@ -52,6 +52,23 @@ def test_a_changed_input_does_its_step_and_the_later_ones_again(recorder: Record
     recorder.run(recorder.step("one", "a"), recorder.step("two", "b"), recorder.step("three", "c"))
     again = recorder.run(recorder.step("one", "a"), recorder.step("two", "B"), recorder.step("three", "c"))
     assert again == ["two", "three"]
+
+
+def test_a_step_that_stands_alone_repeats_no_other_and_is_repeated_after_an_earlier_one(
+    recorder: Recorder,
+) -> None:
+    def steps(first: str, package: str) -> list[Step]:
+        return [
+            recorder.step("first", first),
+            recorder.step("package", package, stands_alone=True),
+            recorder.step("other", "", stands_alone=True),
+            recorder.step("last", ""),
+        ]
+
+    recorder.run(*steps("a", "a"))
+    assert recorder.run(*steps("a", "b")) == ["package"]
+    assert recorder.run(*steps("a", "b")[:1], *steps("a", "b")[2:]) == []
+    assert recorder.run(*steps("b", "b")) == ["first", "package", "other", "last"]
 
 
 def test_an_interrupted_run_goes_on_where_it_stopped(recorder: Recorder) -> None:
