@@ -25,6 +25,10 @@ WALKS = {
     "stuck": Work("succeeded", 2.0, [{"distance": distance} for distance in (2.25, 1.5, 1.5, 1.5)]),
     "away": Work("succeeded", 2.0, [{"distance": distance} for distance in (2.25, 1.5, 1.75, 1.25)]),
     "long": Work("succeeded", 6.5, [{"distance": 5.0 - 0.25 * number} for number in range(12)]),
+    # If it is left running, it tells nothing beside a newer walk.
+    "quiet": Work("succeeded", 6.5),
+    # Farther than any walk before it: a node that remembers the distance of another walk cancels it.
+    "far": Work("succeeded", 1.5, [{"distance": distance} for distance in (5.0, 4.5, 4.0)]),
 }
 """What comes of a walk. The last digit of its place says which: of ``x``, in centimeters."""
 ANSWERS = {

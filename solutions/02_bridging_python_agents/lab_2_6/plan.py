@@ -8,7 +8,7 @@ from autograder.kit import drawn_until, shuffled
 from autograder.kit.oracle.tool_user import Text, ToolUser
 
 PAUSE = 3.0
-"""Seconds of the subject's time after each input. All but the long walk and the slow reply are over by then."""
+"""Seconds of the subject's time after each input. All but the quiet walk and the slow reply are over by then."""
 
 
 def steps(random: Random) -> list[Text]:
@@ -17,14 +17,14 @@ def steps(random: Random) -> list[Text]:
     newer = [order(random, *kinds) for kinds in shuffled(random, after)]
     rows = [
         [order(random, "lamp", "done")],
-        [order(random, "walk", "lamp", "walk", "done")],
+        [order(random, "walk", "lamp", "far", "done")],
         [order(random, random.choice(("blocked", "refused")), "walk", "done")],
         [order(random, random.choice(("nan", "fly")), "walk", "done")],
         [order(random, "stuck", "walk", "done")],
         [order(random, "walk", "away", "done")],
         used_up := [order(random, *shuffled(random, ("walk", "blocked", "lamp", "fly")), "lamp", "done")],
-        [order(random, "long", "done"), newer[0]],
-        [order(random, "lamp", "long", "done"), newer[1]],
+        [order(random, "quiet", "done"), newer[0]],
+        [order(random, "lamp", "quiet", "done"), newer[1]],
         [order(random, "walk", takes=3.6), newer[2]],
     ]
     # A node that has given up once begins a plan as before.
