@@ -7,6 +7,7 @@ The code is only read, never run, and only in a process of the student: a notebo
 from __future__ import annotations
 
 import ast
+import functools
 import sys
 from collections import defaultdict
 from contextlib import suppress
@@ -30,8 +31,8 @@ LONGEST_SOURCE = 200_000
 """The maximum length of a source, in characters. Longer code is not read."""
 LONGEST_LINE = 120
 """The maximum length of a quoted line, in characters."""
-ENDLESS = ", whose condition stays true"
-"""The words behind the quoted head of a loop that cannot end."""
+ENDLESS, UNLEFT = ", whose condition stays true", ", which no line leaves"
+"""The words behind the quoted head of a loop that cannot end. A `while True` may be all that a program does."""
 _LEAVES = ast.Break | ast.Return | ast.Raise | ast.Yield | ast.YieldFrom | ast.Await
 _ORDER = ast.Lt | ast.LtE | ast.Gt | ast.GtE
 
@@ -85,14 +86,18 @@ def _uses(tree: ast.AST, text: str) -> Iterator[tuple[str, tuple[int, str]]]:
             yield name, (statement.lineno, quote)
 
 
-def loop_around(text: str, line: int) -> str:
+@functools.lru_cache(
+    maxsize=64
+)  # a recursion has hundreds of calls at one line, and so has each of its threads
+def loop_around(text: str, line: int, fixed: frozenset[str] = frozenset()) -> str:
     """Return the line number and the quoted head of the innermost loop around a line; empty if there is none.
 
-    ``ENDLESS`` follows if the loop cannot end.
+    ``ENDLESS`` or ``UNLEFT`` follows if the loop cannot end.
 
     Args:
         text: The source.
         line: The number of a line in it, counted from 1.
+        fixed: The attributes that no other function of their object's class sets, such as ``self.left``.
     """
     tree = _parsed(text)
     statements = [one for one in ast.walk(tree) if isinstance(one, ast.stmt)]
@@ -102,26 +107,30 @@ def loop_around(text: str, line: int) -> str:
         return ""
     inner = max(loops, key=lambda one: one.lineno)
     function = next((one for one in reversed(around) if isinstance(one, ast.FunctionDef)), tree)
-    endless = isinstance(inner, ast.While) and _is_endless(inner, function)
-    return f"{inner.lineno}: {_quote(text.splitlines()[inner.lineno - 1 :][:1])}{ENDLESS if endless else ''}"
+    ends = _never_ends(inner, function, fixed) if isinstance(inner, ast.While) else ""
+    return f"{inner.lineno}: {_quote(text.splitlines()[inner.lineno - 1 :][:1])}{ends}"
 
 
-def _is_endless(loop: ast.While, function: ast.AST) -> bool:
-    """Return True if no line of a loop leaves it, or changes a local variable that its condition compares."""
+def _never_ends(loop: ast.While, function: ast.AST, fixed: frozenset[str]) -> str:
+    """Return words if no line of a loop leaves it, or changes a variable that its condition compares; else nothing."""
+    if any(isinstance(node, _LEAVES) for node in ast.walk(loop)):
+        return ""
+    if isinstance(loop.test, ast.Constant):
+        return UNLEFT if loop.test.value else ""
     conditions = loop.test.values if isinstance(loop.test, ast.BoolOp) else [loop.test]
     compares = [one for one in conditions if isinstance(one, ast.Compare) and isinstance(one.ops[0], _ORDER)]
     sides = [side for one in compares for side in (one.left, *one.comparators)]
-    names = {getattr(side, "id", "") for side in sides if not isinstance(side, ast.Constant)}
-    leaves = any(isinstance(node, _LEAVES) for node in ast.walk(loop))
+    names = {ast.unparse(side) for side in sides if not isinstance(side, ast.Constant)}
     shares = any(isinstance(node, ast.Global | ast.Nonlocal) for node in ast.walk(function))
-    own = _set_in(function) | {one.arg for one in ast.walk(function) if isinstance(one, ast.arg)}
-    is_plain = compares == conditions and not (leaves or shares)
-    return is_plain and bool(names) and names <= own - _set_in(loop)
+    own = {one for one in _set_in(function) if one.isidentifier()}
+    own |= {one.arg for one in ast.walk(function) if isinstance(one, ast.arg)} | fixed
+    is_endless = compares == conditions and not shares and bool(names) and names <= own - _set_in(loop)
+    return ENDLESS if is_endless else ""
 
 
 def _set_in(node: ast.AST) -> set[str]:
-    names = (one for one in ast.walk(node) if isinstance(one, ast.Name))
-    return {one.id for one in names if not isinstance(one.ctx, ast.Load)}
+    names = (one for one in ast.walk(node) if isinstance(one, ast.Name | ast.Attribute))
+    return {ast.unparse(one) for one in names if not isinstance(one.ctx, ast.Load)}
 
 
 def _quote(lines: Sequence[str]) -> str:

@@ -9,7 +9,15 @@ import msgspec
 import pytest
 
 from autograder.messages.judge_messages import OwnLines
-from autograder.own_lines import ENDLESS, LONGEST_LINE, MOST_NAMES, MOST_OF_A_NAME, loop_around, own_lines
+from autograder.own_lines import (
+    ENDLESS,
+    LONGEST_LINE,
+    MOST_NAMES,
+    MOST_OF_A_NAME,
+    UNLEFT,
+    loop_around,
+    own_lines,
+)
 from environment.python_child import python_child
 
 if TYPE_CHECKING:
@@ -120,6 +128,23 @@ def test_a_loop_is_endless_only_if_no_line_ends_it(old: str, new: str, endless: 
     text = "def dock():\n    def drive(left, goal):\n        n = 1\n        while left > 0.0:\n            pass\n"
     assert old in text
     assert loop_around(text.replace(old, new), 5).endswith(ENDLESS) is endless
+
+
+@pytest.mark.parametrize(
+    ("text", "ends"),
+    [
+        ("while self.left > 0.0:\n    self.forward()", ENDLESS),
+        ("while self.left > 0.0:\n    self.left -= 0.25", ""),
+        ("while self.other > 0.0:\n    self.forward()", ""),
+        ("while True:\n    self.forward()", UNLEFT),
+        ("while 1:\n    self.left -= 0.25", UNLEFT),
+        ("while 0:\n    pass", ""),
+        ("while True:\n    if self.left < 0.0:\n        break", ""),
+    ],
+)
+def test_a_loop_over_attributes_is_endless_only_if_no_other_function_sets_them(text: str, ends: str) -> None:
+    quoted = loop_around(text, 2, frozenset({"self.left"}))
+    assert quoted == f"1: {text.splitlines()[0]}{ends}"
 
 
 def test_code_that_cannot_be_read_has_no_loop() -> None:

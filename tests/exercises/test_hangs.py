@@ -7,6 +7,7 @@ import pytest
 from autograder.kit.evidence import Event, Evidence, Part, Reference
 from autograder.kit.mistakes.hangs import ENDLESS, ENDLESS_LOOP, HANGS, LOOPS
 from autograder.own_lines import ENDLESS as ENDLESS_LOOPS
+from autograder.own_lines import UNLEFT
 
 RCLPY = "/venv/lib/python3.11/site-packages/rclpy"
 WAIT = '  File "/usr/lib/python3.11/threading.py", line 320 in wait'
@@ -115,3 +116,17 @@ def test_a_goal_with_far_too_much_feedback_is_in_a_loop() -> None:
         "Your callback work() does not come to an end: to one goal it has sent 19 feedback messages"
         in advice.text
     )
+
+
+@pytest.mark.parametrize(
+    ("goal", "beside", "proven"), [(True, False, True), (False, False, False), (True, True, False)]
+)
+def test_a_loop_that_no_line_leaves_is_a_mistake_only_while_it_executes_a_goal(
+    goal: bool, beside: bool, proven: bool
+) -> None:
+    execute = (f"{RCLPY}/action/server.py", "_execute_goal")
+    text = _stack(OWN, CALLS_BACK, *([execute] if goal else []), SPIN)
+    looping = _stack(OWN) if beside else text
+    looping = looping.replace("7f (", f"7f in the loop of line 12: while True:{UNLEFT} (")
+    shown = f"{text}\n{looping}" if beside else looping
+    assert (ENDLESS_LOOP.recognize(_shown(shown, 0.0)) is not None) is proven

@@ -25,8 +25,8 @@ LOOPS = 2.0
 ENDLESS = "endless"
 """The name of the noted event about a goal for which the subject has sent far too much feedback."""
 _LOOP = re2.compile(
-    r" in the loop of line (?P<line>\d+): (?P<head>.*?)(?P<endless>, whose condition stays true)?"
-    r" \(most recent call first"
+    r" in the loop of line (?P<line>\d+): (?P<head>.*?)"
+    r"(?P<never>(?P<endless>, whose condition stays true)|, which no line leaves)? \(most recent call first"
 )
 _FRAME = re2.compile(r'^\s*File "(?P<file>[^"]*)", line (?P<line>\d+),? in (?P<function>\S+)')
 _BLOCKING = {
@@ -144,7 +144,7 @@ def _loop_in(texts: Sequence[str]) -> str:
     """Return a sentence that quotes the loop in the texts of stacks; empty if there is none."""
     loops = filter(None, map(_LOOP.search, texts))
     found = (
-        f" It is in the loop of line {one['line']}: `{one['head']}`{one['endless'] or ''}." for one in loops
+        f" It is in the loop of line {one['line']}: `{one['head']}`{one['never'] or ''}." for one in loops
     )
     return next(found, "")
 
@@ -259,6 +259,17 @@ def _mistake(key: str, fits: Recognize, text: str, next_step: str) -> Mistake:
     return Mistake(key, recognize, certain=key in WAITS_FOR_ITSELF)
 
 
+def _never_leaves(thread: str) -> bool:
+    """Return True if a thread is in a loop without an end.
+
+    A `while True` may be all that a node does, in its main thread or in a timer's callback. But a goal has to end.
+    """
+    loop = _LOOP.search(thread)
+    if loop is None or not loop["never"]:
+        return False
+    return bool(loop["endless"]) or any(map(_executes_a_goal, _stacks_in(thread)))
+
+
 def _endless_loop(evidence: Evidence) -> Advice | None:
     told = [event.data for part in evidence for event in part.of("noted", ENDLESS)]
     shown = [event.data for part in evidence for event in part.of("stack")]
@@ -266,15 +277,16 @@ def _endless_loop(evidence: Evidence) -> Advice | None:
     texts = [data["text"] for data in busy or shown]
     how = [f"to one goal it has sent {data['feedback']} feedback messages, and goes on" for data in told]
     how += [f"it has used the processor for {data['busy']:.0f} seconds, and goes on" for data in busy]
-    how += ["nothing in its loop ends it" for loop in map(_LOOP.search, texts) if loop and loop["endless"]]
+    threads = [thread for text in texts for thread in text.split("\nThread ")]
+    how += ["nothing in its loop ends it" for _ in filter(_never_leaves, threads)]
     if not how:
         return None
     callback = _stuck_callback([stack for text in texts for stack in _stacks_in(text)])
     what = f"Your callback {callback}()" if callback else "Your code"
     return Advice(
         f"{what} does not come to an end: {how[0]}.{_loop_in(texts)}",
-        "Something in the loop has to make its condition false. Look at each name in the condition, and at the line "
-        "that changes it in each round.",
+        "Something in the loop has to end it: a line that makes its condition false, a break or a return. Look at each "
+        "name in the condition, and at the line that changes it in each round.",
     )
 
 

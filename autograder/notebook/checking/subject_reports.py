@@ -22,6 +22,7 @@ import threading
 import traceback
 from contextlib import suppress
 from pathlib import Path
+from types import CodeType, FrameType, FunctionType
 from typing import TYPE_CHECKING, Any, Self
 
 from rclpy.action import ActionClient
@@ -41,6 +42,8 @@ if TYPE_CHECKING:
 
 _COURSE = f"{Path(__file__).parents[2]}/"
 """The folder of this package. The stacks leave its calls out, because no student wrote them."""
+MOST_CALLS = 50
+"""The maximum number of innermost calls of a thread that its stack shows, and of outermost ones behind them."""
 
 
 class CapturedOutput:
@@ -104,15 +107,21 @@ class CapturedOutput:
                 continue
             calls = [
                 call
-                for call in reversed(traceback.extract_stack(frames[thread.ident]))
-                if not call.filename.startswith(_COURSE)
+                for call in traceback.walk_stack(frames[thread.ident])
+                if not call[0].f_code.co_filename.startswith(_COURSE)
             ]
-            own = [call for call in calls if is_students(call.filename)]
+            calls = [*calls[:MOST_CALLS], *calls[MOST_CALLS:][-MOST_CALLS:]]
+            # A recursion has hundreds of calls at one line.
+            own = {
+                (call[0].f_code, call[1]): call for call in calls if is_students(call[0].f_code.co_filename)
+            }
             times += [_processor_time(thread)] if own else []
-            loops = (loop_around("".join(linecache.getlines(c.filename)), c.lineno or 0) for c in own)
-            loop = f" in the loop of line {found}" if (found := next(filter(None, loops), "")) else ""
+            loop = next(filter(None, map(_loop_in, own.values())), "")
             lines.append(f"Thread {thread.ident:#x}{loop} (most recent call first):")
-            lines += [f'  File "{call.filename}", line {call.lineno} in {call.name}' for call in calls]
+            lines += [
+                f'  File "{frame.f_code.co_filename}", line {line} in {frame.f_code.co_name}'
+                for frame, line in calls
+            ]
         return "\n".join(lines), max(times)
 
     def is_captured(self) -> bool:
@@ -127,6 +136,35 @@ class CapturedOutput:
             self._descriptors.append((descriptor, os.dup(descriptor)))
             os.dup2(nowhere, descriptor)
         os.close(nowhere)
+
+
+def _loop_in(call: tuple[FrameType, int]) -> str:
+    """Return words that quote the innermost loop of a call; empty if there is none."""
+    frame, line = call
+    text = "".join(linecache.getlines(frame.f_code.co_filename))
+    found = loop_around(text, line, _fixed(frame))
+    return f" in the loop of line {found}" if found else ""
+
+
+def _fixed(frame: FrameType) -> frozenset[str]:
+    """Return the attributes of a method's object that no other function of its class names, such as ``self.left``."""
+    code = frame.f_code
+    owner = next(iter(code.co_varnames[: code.co_argcount]), "")
+    members = [one for kind in type(frame.f_locals.get(owner)).__mro__ for one in vars(kind).items()]
+    methods = {
+        member.__code__ for name, member in members if isinstance(member, FunctionType) and name != "__init__"
+    }
+    if code not in methods:
+        return frozenset()
+    named = {name for name, _ in members}.union(*map(_named_in, [*methods - {code}, *code.co_consts]))
+    return frozenset(f"{owner}.{name}" for name in {*code.co_names} - named)
+
+
+def _named_in(code: object) -> set[str]:
+    """Return the names of variables and attributes in a function's code, and in functions inside of it."""
+    if not isinstance(code, CodeType):
+        return set()
+    return set(code.co_names).union(*map(_named_in, code.co_consts))
 
 
 def _processor_time(thread: threading.Thread) -> float:

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import ast
 import io
 import logging
 import sys
 import threading
+from contextlib import suppress
 from functools import partial
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
@@ -15,8 +17,9 @@ from rclpy.logging import get_logger
 from rclpy.node import Node
 from std_msgs.msg import String
 
+from autograder import own_lines
 from autograder.notebook.checking import subject_reports
-from autograder.notebook.checking.subject_reports import CapturedOutput
+from autograder.notebook.checking.subject_reports import MOST_CALLS, CapturedOutput
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -234,3 +237,95 @@ def test_a_stack_quotes_the_loop_of_the_student_and_counts_its_processor_time(tm
     assert f"Thread {thread.ident:#x} in the loop of line 2: while not over.is_set(): (most recent" in told[0]
     assert f"Thread {waiting.ident:#x} (most recent" in told[0]
     assert "autograder" not in told[0]
+
+
+DEEP = """def deep(left, over):
+    if left:
+        return deep(left - 1, over)
+    while not over.wait(0.1):
+        pass
+"""
+
+
+def test_a_deep_stack_shows_both_ends_and_each_line_is_looked_up_once(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    parsed: list[str] = []
+
+    def parse(text: str) -> ast.Module:
+        parsed.append(text)
+        return ast.parse(text)
+
+    monkeypatch.setattr(own_lines, "_parsed", parse)
+    file, names, over = tmp_path / "cell.py", dict[str, Any](), threading.Event()
+    file.write_text(DEEP)
+    exec(compile(DEEP, str(file), "exec"), names)
+    captured = CapturedOutput(lambda *_: None)
+    threads = [threading.Thread(target=names["deep"], args=(700, over), daemon=True) for _ in range(20)]
+    for thread in threads:
+        thread.start()
+    try:
+        while "in wait" not in (text := captured.stacks()[0]):
+            pass
+    finally:
+        over.set()
+    stacks = text.split("Thread ")[1:]
+    assert all(stack.count("\n") <= 2 * MOST_CALLS + 1 for stack in stacks)
+    assert all("in wait\n" in stack and "in run\n" in stack for stack in stacks)
+    assert 1 <= len(parsed) <= len(DEEP.splitlines())
+
+
+WAITS = """class Base:
+    end = 3.0
+    def __init__(self, over):
+        self.left, self.ahead, self.rest, self.wait = 1.0, 1.0, 1.0, over.wait
+    def look(self):
+        def done(): self.ahead = 0.0
+        return done
+class Dock(Base):
+    @property
+    def way(self): return self.rest
+    def done(self): self.rest = 0.0
+    def dock(self):
+        self.left = 2.0
+        while {condition}:
+            self.wait(0.05)
+"""
+
+
+@pytest.mark.parametrize(
+    ("condition", "ends"),
+    [
+        ("self.left > 0.0", True),
+        ("self.rest > 0.0", False),
+        ("self.ahead > 0.0", False),
+        ("self.way > 0.0", False),
+        ("self.end > 0.0", False),
+    ],
+)
+def test_an_attribute_that_another_method_sets_may_end_a_loop(
+    condition: str, ends: bool, tmp_path: Path
+) -> None:
+    text = WAITS.replace("{condition}", condition)
+    file, names, over = tmp_path / "cell.py", dict[str, Any](), threading.Event()
+    file.write_text(text)
+    exec(compile(text, str(file), "exec"), names)
+
+    def wait(seconds: float) -> None:
+        if over.wait(seconds):
+            raise SystemExit
+
+    captured = CapturedOutput(lambda *_: None)
+    dock = names["Dock"](SimpleNamespace(wait=wait))
+
+    def run() -> None:
+        with suppress(SystemExit):
+            dock.dock()
+
+    threading.Thread(target=run, daemon=True).start()
+    try:
+        while "loop of line" not in (told := captured.stacks()[0]):
+            pass
+    finally:
+        over.set()
+    assert f"line 14: while {condition}:{own_lines.ENDLESS if ends else ''} (most" in told
