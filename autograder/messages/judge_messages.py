@@ -87,7 +87,7 @@ class Sources(Message, frozen=True):
 
 
 class Started(RunMessage, frozen=True):
-    """The function was called. ``accepted`` lists the options of :class:`Start` for which it has a parameter."""
+    """The class or function was called. ``accepted`` lists the options of :class:`Start` that a function takes."""
 
     accepted: list[str]
 

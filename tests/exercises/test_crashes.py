@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from autograder.kit.evidence import Event, Evidence, Part, Reference
+from autograder.kit.mistakes import unfinished
 from autograder.kit.mistakes.crashes import CRASHES, OTHER_CRASHES, meant, traceback_of
 from autograder.verdict import ASKS_FOR_INPUT
 from tests.cases import cases
@@ -180,3 +181,16 @@ def test_a_program_that_python_does_not_find_is_named() -> None:
     evidence = Evidence([Part("part", {}, events)], Reference("x", {}))
     advice = next(filter(None, (mistake.recognize(evidence) for mistake in CRASHES)))
     assert advice.text.startswith("Python does not find the program /home/me/talkr.py")
+
+
+@pytest.mark.parametrize(("begun", "key"), [(False, "cut_off"), (True, "never_ended")])
+def test_a_notebook_that_does_not_answer_is_told_from_a_constructor_that_never_returns(
+    begun: bool, key: str
+) -> None:
+    started = [Event(0.0, "subject", "started", {"accepted": []})] if begun else []
+    part = Part("part", {}, [*started, Event(10.0, "subject", "never_constructed", {})])
+    evidence = Evidence(
+        [Part("earlier", {}, [Event(0.5, "subject", "constructed", {})]), part], Reference("x", {})
+    )
+    ladder = (*CRASHES, unfinished.NEVER_CONSTRUCTED)
+    assert [mistake.key for mistake in ladder if mistake.recognize(evidence)][:1] == [key]

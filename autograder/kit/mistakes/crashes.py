@@ -144,7 +144,18 @@ def _was_spun(evidence: Evidence) -> bool:
     return any(p.first("subject", "constructed") for p in evidence if p.ending and p.ending.name == "raised")
 
 
+def _is_mute(part: Part) -> bool:
+    """Return True if a notebook did not even begin to make the node: it no longer answers the judge."""
+    return bool(part.first("subject", "never_constructed") and not part.first("subject", "started"))
+
+
 def _cut_off(evidence: Evidence) -> Advice | None:
+    if any(map(_is_mute, evidence)):
+        return Advice(
+            "Your notebook no longer answered the judge: one call in your code keeps Python busy and lets no other "
+            "thread run, as 9**9**9, sum(range(10**10)) and a search for a difficult pattern do.",
+            "Make that work smaller. Restart the kernel if ■ does not end the cell.",
+        )
     gone = next((event for part in evidence for event in part.of("subject", "gone")), None)
     if gone is None:
         return None

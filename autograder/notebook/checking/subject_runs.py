@@ -94,6 +94,7 @@ class SubjectRun:
         others = set(threading.enumerate())
         try:
             if inspect.isclass(self._subject):
+                self._tell(Started(self._number, []))
                 self._spin(self._made(), others)
                 return
             accepted = _accepted(self._subject, self._options)
