@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 from autograder.kit.evidence import Event, Part
@@ -39,6 +40,27 @@ def test_the_input_and_only_what_differs_are_named() -> None:
         "The task says: “say far or near”."
     )
     assert "angular" not in told(run(["far", "near", "far"], [0.5, 0.2, 0.5]))
+
+
+def test_the_earliest_step_is_named_whatever_the_order_of_the_outputs_is() -> None:
+    assert "on /moved: angular.z" not in told(run(["far", "near", "nothing"], [0.5, 0.0, 0.2]))
+    assert told(run(["far", "near", "nothing"], [0.5, 0.2, 0.5])).startswith(
+        "After /scan with ranges = [0.2, 2, 2, …], your code says on /moved: linear.x = 0.2"
+    )
+
+
+def test_where_only_time_has_passed_the_last_input_is_named() -> None:
+    wait = Event(0.0, "noted", "/said", {"step": 4, "given": "0.5 s without an input", "values": [["late"]]})
+    more = Event(
+        0.0, "noted", "/said", {"step": 5, "given": "0.25 s without an input", "values": [["nothing"]]}
+    )
+    due = replace(more, data={**more.data, "values": [["far"]]})
+    seen, asked = (replace(DUE, events=[*DUE.events, wait, last]) for last in (more, due))
+    advice = located([SAID], seen, asked, LAW)
+    assert advice is not None
+    assert advice.text.startswith(
+        "After /scan with ranges = [0.3, 2, 2, …], then 0.75 s without an input, your code says on /said: “nothing”"
+    )
 
 
 def test_of_several_sentences_the_likely_one_is_quoted() -> None:

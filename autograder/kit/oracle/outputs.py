@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 
 NUMBER = "number of the message"
 """The path of the number of a message, counted from 1: it shows what was published before the judge listened."""
+NOTHING = "nothing"
+"""The word for no message at all."""
 ONE_MISSING_IN = 4
 """One more or one fewer of this many messages may come, because each node asks and tells at its own moments."""
 
@@ -72,6 +74,12 @@ class Output:
         # Every message of std_msgs has only a field named data, so this name alone says nothing on a card.
         what = "value" if told == ["data"] else " and ".join(told)
         return f"Says the right {what} on {self.name}"
+
+    def deed(self, came: str) -> str:
+        """Return in words that the subject said, or returned, what came."""
+        if self.kind is Kind.RETURNED:
+            return f"returns {came}"
+        return f"says nothing on {self.name}" if came == NOTHING else f"says on {self.name}: {came}"
 
     def values(self, events: Sequence[Event]) -> list[list[Any]]:
         """Return the fields that are compared, for each message or answer among the events."""
@@ -210,7 +218,7 @@ class Output:
             for values, other in zip(listed, [*others, *listed[len(others) :]], strict=False)
         ]
         same_again = [(text, len([*group])) for text, group in groupby(told)]
-        return "; ".join(text if n == 1 else f"{text}, {n} times" for text, n in same_again) or "nothing"
+        return "; ".join(text if n == 1 else f"{text}, {n} times" for text, n in same_again) or NOTHING
 
     def _field_in_words(self, path: str, value: Any, other: Any) -> str:
         if path.endswith("?"):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from itertools import takewhile
 from typing import TYPE_CHECKING, Any
 
 from autograder.kit.rules import in_words
@@ -14,6 +15,8 @@ if TYPE_CHECKING:
 
 FIELDS = 3
 """The maximum number of fields of an input that a card names."""
+WAITED = " s without an input"
+"""The words that the judge notes behind the seconds for which it only lets time pass."""
 FIRST = 3
 """The number of items of a long list that a card shows."""
 
@@ -29,15 +32,24 @@ def when(noted: Event, earlier: Sequence[Event], part: Part) -> str:
     given = str(noted.data["given"])
     if not noted.data["step"]:
         return "at the start"
+    waits = [*takewhile(_is_wait, [noted, *reversed(earlier)])]
+    before = earlier[: 1 + len(earlier) - len(waits)] if waits else []
+    if before and before[-1].data["step"]:
+        seconds = sum(float(wait.data["given"].removesuffix(WAITED)) for wait in waits)
+        return f"{when(before[-1], before[:-1], part)}, then {seconds:g}{WAITED}"
     name, _, rest = given.partition(", then ")
     sent = [event for event in part.events if event.kind in ("sent", "asked") and event.name == name]
-    before = sum(str(event.data["given"]).partition(", then ")[0] == name for event in earlier)
-    if before >= len(sent):
+    number = sum(str(event.data["given"]).partition(", then ")[0] == name for event in earlier)
+    if number >= len(sent):
         return f"after {given}" if given else "at the start"
-    fields = list(_named(sent[before].data["fields"]))
+    fields = list(_named(sent[number].data["fields"]))
     told = ", ".join(f"{path} = {value}" if path != "data" else value for path, value in fields[:FIELDS])
     later = f", then {rest}" if rest else ""
     return f"after {name} with {told}{', …' * (len(fields) > FIELDS)}{later}" if told else f"after {given}"
+
+
+def _is_wait(noted: Event) -> bool:
+    return bool(noted.data["step"]) and str(noted.data["given"]).endswith(WAITED)
 
 
 def _named(fields: Any, path: str = "") -> Iterator[tuple[str, str]]:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from autograder.kit.bench import STEP, Pace
 from autograder.kit.counterparts import SOON, Work
+from autograder.kit.oracle.outputs import NOTHING as NO_OUTPUT
 from autograder.kit.oracle.outputs import Kind, Output
 from autograder.kit.oracle.same_as_solution import NOTHING, SameAsSolution
 from autograder.kit.oracle.steps import Goal, Sets, Text, To, pick
@@ -36,6 +37,11 @@ _DOES: Mapping[tuple[str, ...], str] = {
     DONE: "Sends goals to",
     CANCELED: "Cancels goals of",
 }
+_DOES_NOT: Mapping[tuple[str, ...], str] = {
+    ASKED: "does not call",
+    DONE: "sends no goal to",
+    CANCELED: "cancels no goal of",
+}
 CANCEL = "/cancel"
 """The ending of the name of the output that shows canceled goals, behind the name of the action."""
 
@@ -58,6 +64,15 @@ class Sent(Output):
         if self.kinds == TOLD:
             return super().title
         return f"{_DOES[self.kinds]} {self.name.removesuffix(CANCEL)} when it has to, and only then"
+
+    def deed(self, came: str) -> str:
+        """Return in words what the subject told, asked, sent or canceled."""
+        if self.kinds == TOLD:
+            return super().deed(came)
+        name = self.name.removesuffix(CANCEL)
+        if came == NO_OUTPUT:
+            return f"{_DOES_NOT[self.kinds]} {name}"
+        return f"{_DOES[self.kinds].lower()} {name}: {came}"
 
     def values(self, events: Sequence[Event]) -> list[list[Any]]:
         """Return what is compared, for each message, request, goal, or cancel request in time among the events."""

@@ -19,7 +19,7 @@ from autograder.kit.model import UNKNOWN, Advice, Mistake
 from autograder.kit.oracle.naming import mutant_words
 from autograder.kit.oracle.naming.deltas import differences, meanings_of, rows
 from autograder.kit.oracle.naming.effects import effect
-from autograder.kit.oracle.naming.located import likely_sentence, located
+from autograder.kit.oracle.naming.located import first_apart, likely_sentence, located
 from autograder.kit.oracle.outputs import Kind
 from autograder.kit.oracle.standing_clock import KEY, on_another_clock
 from autograder.kit.recipes.own_scenario import ENDPOINTS, OwnScenario
@@ -182,7 +182,8 @@ class Drawn(OwnScenario):
                 continue
             # One level of a ladder may be all that tells another number. But a busy machine may lose one step, too.
             if told and (apart.tells or (mutant_words.is_one_limit(found) and not surely)):
-                return told
+                where = first_apart(self._outputs, run, due)
+                return replace(told, text=f"{told.text} {where}".rstrip())
         return None
 
     def _is_silent(self, run: Part, due: Part) -> bool:

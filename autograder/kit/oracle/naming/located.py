@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import inf
 from typing import TYPE_CHECKING
 
 from autograder.kit.model import Advice
@@ -24,7 +25,7 @@ GO_THROUGH = "Go through your code with this input, step by step, and compare it
 def located(
     outputs: Sequence[Output], run: Part, due: Part, law: Mapping[str, str], near: str = ""
 ) -> Advice | None:
-    """Return the advice about the first output that is not the solution's; None if all are.
+    """Return the advice about the output that is the first to leave the solution's; None if all are the same.
 
     Args:
         outputs: The outputs that are compared.
@@ -33,26 +34,43 @@ def located(
         law: The sentences of the task, each with the names of the criteria that judge it.
         near: The sentence that is most likely about it; empty if none is.
     """
-    failed = [output for output in outputs if not output.compared(run, due).passed]
+    failed = _failed(outputs, run, due)
     wholes = {output: effect(output, rows(output, run), rows(output, due)) for output in failed}
     for output in sorted(failed, key=lambda one: not wholes[one]):
         finding, whole = output.compared(run, due), wholes[output]
         judged = [sentence for sentence, names in law.items() if output.key in names.split()]
         sentence = near if near in judged else judged[0] if len(judged) == 1 else ""
         says = f"The task says: “{sentence.rstrip('.')}”." if sentence else ""
-        if parting := output.parting_words(run, due):
-            when, came, asked = parting
-            does = _SAYS[output.kind].format(output.name, came)
-            what = f"{_capital(when)}, your code {does}; the task asks for {asked}."
-        else:
-            what = f"“{output.title}” is not met: {finding.seen}. Asked: {finding.expected}."
+        not_met = f"“{output.title}” is not met: {finding.seen}. Asked: {finding.expected}."
+        what = _where_apart(output, run, due) or not_met
         # Of several lines that publish, the card could not say which one it is.
         uses = ("publish",) if [one.kind for one in outputs] in ([Kind.STEPS], [Kind.LIST]) else ()
         return Advice(" ".join(filter(None, (whole, what, says))), GO_THROUGH, uses=uses)
     return None
 
 
-_SAYS = {Kind.STEPS: "says on {0}: {1}", Kind.RETURNED: "returns {1}"}
+def first_apart(outputs: Sequence[Output], run: Part, due: Part) -> str:
+    """Return in a sentence the input after which the run first leaves the solution's; empty if no step shows it."""
+    told = (_where_apart(output, run, due) for output in _failed(outputs, run, due))
+    return next(filter(None, told), "")
+
+
+def _failed(outputs: Sequence[Output], run: Part, due: Part) -> list[Output]:
+    """Return the outputs that are not the solution's. The one that is the first to leave it comes first."""
+
+    def step(output: Output) -> float:
+        first = output.parts_at(run, due)
+        return first.data["step"] if first else inf
+
+    return sorted((output for output in outputs if not output.compared(run, due).passed), key=step)
+
+
+def _where_apart(output: Output, run: Part, due: Part) -> str:
+    parting = output.parting_words(run, due)
+    if parting is None:
+        return ""
+    when, came, asked = parting
+    return f"{_capital(when)}, your code {output.deed(came)}; the task asks for {asked}."
 
 
 def _capital(text: str) -> str:
