@@ -81,13 +81,16 @@ class PartingPoint:
 
 
 def claimed(causes: Sequence[Sequence[str]], lines: Sequence[OwnLine]) -> list[Event]:
-    """Return the lines of the student's code that use the causes, as events; one with number 0 if no line does."""
+    """Return the lines of the student's code that use the causes, as events; one with number 0 if no line does.
+
+    If more lines than a card shows use a cause, there is no event: the card cannot say which of them it is.
+    """
     places = {line.place for line in lines}
     where = places.pop() if len(places) == 1 else "your code"
     return [
         Event(0.0, OWN_LINE, names[-1], _quoted(line))
         for names in causes
-        for line in _lines_of(names, lines) or _absent(names[-1], where)
+        for line in _few(_lines_of(names, lines) or _absent(names[-1], where))
     ]
 
 
@@ -98,7 +101,11 @@ def _absent(name: str, where: str) -> list[OwnLine]:
 
 def _lines_of(names: Sequence[str], lines: Sequence[OwnLine]) -> list[OwnLine]:
     using = ([line for line in lines if line.name == name] for name in names)
-    return next(filter(None, using), [])[:SHOWN_LINES]
+    return next(filter(None, using), [])
+
+
+def _few(lines: list[OwnLine]) -> list[OwnLine]:
+    return lines if len(lines) <= SHOWN_LINES else []
 
 
 def _quoted(line: OwnLine) -> dict[str, Any]:

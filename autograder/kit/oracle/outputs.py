@@ -207,7 +207,7 @@ class Output:
         if self.kind is Kind.LIST:
             return [(values, "") for event in noted for values in event.data["values"]]
         if self.kind is Kind.RETURNED:
-            return [(event.data["values"], f"for {event.data['given']}") for event in noted]
+            return [(e.data["values"], f"for item {e.data['step']}, {e.data['given']}") for e in noted]
         return [(event.data["values"], when(event, noted[:n], part)) for n, event in enumerate(noted)]
 
     def _in_words(self, listed: Sequence[Sequence[Any]], others: Sequence[Sequence[Any]] = ()) -> str:

@@ -215,7 +215,8 @@ class Calls:
                 "wrong_arguments",
                 self._wrong_numbers,
                 f"A call has wrong numbers ({{}}); the task asks for {self._wanted}.",
-                "Use the numbers that your code was given, with their minus signs. On a command line, they begin "
+                "The first call has the first two numbers, each later one the answer before and the next number. Use "
+                "the numbers that your code was given, with their minus signs. On a command line, they begin "
                 "with sys.argv[1]; sys.argv[0] is the program's name. If you use the same request object twice, set "
                 "both fields again.",
                 certain=True,

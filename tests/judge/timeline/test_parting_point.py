@@ -115,6 +115,12 @@ def test_of_claimed_lines_two_are_quoted_each_cut_and_within_its_quotation() -> 
     assert [event.data for event in claimed([["publish"]], [line] * 3)] == [quoted] * 2
 
 
+@pytest.mark.parametrize(("uses", "shown"), [(1, 1), (2, 2), (3, 0)])
+def test_of_more_lines_than_a_card_shows_none_is_quoted(uses: int, shown: int) -> None:
+    lines = [OwnLine("publish", "your cell", number, "it.publish()") for number in range(1, uses + 1)]
+    assert len(claimed([["publish"]], lines)) == shown
+
+
 def _talking(texts: list[str]) -> Part:
     events = [
         Event(0.5 * n, "message", "/chatter", {"fields": {"data": text}}, sim=0.5 * n)

@@ -37,7 +37,7 @@ def effect(output: Output, mine: Mapping[int, Any], theirs: Mapping[int, Any]) -
         return ""
     name = "" if output.kind is Kind.RETURNED else f" on {output.name}"
     if told := _twice(name, [mine[step] for step in apart], [theirs[step] for step in apart], output):
-        return told
+        return told if len(apart) == sum(bool(theirs[step]) for step in steps) else ""
     if any(len(mine[step]) != len(theirs[step]) for step in steps):
         return ""
     for what, pairs in _fields(output, name, [(mine[step], theirs[step]) for step in steps]):
