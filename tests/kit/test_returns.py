@@ -44,6 +44,12 @@ class Plain:
         )
         self.parts[-1].events.append(shown)  # type: ignore[attr-defined]
 
+    def await_end(self, _: float) -> bool:
+        return True
+
+    def again(self) -> None:
+        self.parts[-1] = Part(self.parts[-1].name, {}, [])
+
     def seen(self) -> Part:
         return self.parts[-1]
 
@@ -130,3 +136,13 @@ def test_the_tolerance_is_the_authors() -> None:
     near = lambda numbers: [2 * number + 0.3 for number in numbers]  # noqa: E731
     assert judged(near, tolerance=0.5) == (True, "")
     assert judged(near) == (False, "")
+
+
+def test_what_the_first_call_keeps_shows_in_the_second() -> None:
+    kept: list[list[int]] = []
+
+    def of_the_first_list(numbers: Sequence[int]) -> list[int]:
+        kept.append(right(numbers))
+        return kept[0]
+
+    assert judged(of_the_first_list) == (False, "")

@@ -26,7 +26,7 @@ RETURNED = "returned"
 class Returns(SameAsSolution):
     """An exercise about a function without ROS, which gets a list and returns a list or a tuple that is as long.
 
-    It is called twice with the same list, so what the first call leaves behind shows in the second.
+    It is called with another list before, so what a call leaves behind shows in the next one.
 
     The solution is the rule, as in :class:`SameAsSolution`: what it returns for four drawings of the list is recorded,
     and compared one by one.
@@ -79,9 +79,9 @@ class Returns(SameAsSolution):
             certain=True,
         )
 
-    def _gives_to(self, bench: Bench, part: str, steps: Sequence[Any], _: Random) -> None:
+    def _gives_to(self, bench: Bench, part: str, steps: Sequence[Any], drawn: Random) -> None:
         bench.part(part)
-        bench.start(steps)
+        bench.start(self._gives(drawn))
         ended = bench.await_end(ANSWERED[bench.pace])
         if ended:
             bench.again()
