@@ -132,6 +132,7 @@ NOA_SAID = "{'robot': 'noa', 'topic': '/noa/drive'}"
         ([SAID], [NOA_SAID], 10, ""),
         ([SAID], None, 0, ""),
         ([SAID], [SAID], 0, "invented_answer"),
+        ([SAID], [NOA_SAID.replace("'noa'", "'/mia'")], 5, "invented_answer"),
         ([SAID], [NOA_SAID.replace("'noa'", "'/rosout'")], 5, ""),
         ([SAID], [NOA_SAID.replace("'topic'", "'name'")], 5, "no_answer"),
         ([], [], 0, "not_written"),

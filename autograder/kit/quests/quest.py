@@ -6,7 +6,7 @@ subject that looks once, without a limit, or that says nothing is noticed.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict, replace
 from random import Random
 from types import MappingProxyType
@@ -85,7 +85,7 @@ _TEXTS = {
         "Look again and again, with a short pause, until it is there or patience_sec seconds have passed.",
     ),
     "invented_answer": (
-        "Your answer is the same each time, but each time there is another robot.",
+        "Your answer{0[0]} is the same each time, but each time there is another robot.",
         "Look the answer up on the graph. If your function has arguments, they say what to look up.",
     ),
     "waits_forever": (
@@ -385,11 +385,22 @@ def _not_returned(seen: Searches) -> Search | None:
     return next((search for search in seen.values() if search.has() and not search.returned), None)
 
 
-def _invented(seen: Searches) -> bool:
+def _invented(seen: Searches) -> tuple[str] | None:
+    """Return in words of which key the value is the same each time; empty words for the whole answer."""
     # With several keys, a subject has no answer if there is nothing to find.
-    has_keys = any(len(search.robot.answer) > 1 for search in seen.values())
-    first, *others = [search.given for search in seen.values() if search.robot.answer or not has_keys]
-    return bool(first) and bool(others) and all(given == first for given in others)
+    keys = dict.fromkeys(key for search in seen.values() for key in search.robot.answer)
+    searches = [search for search in seen.values() if search.robot.answer or len(keys) < 2]
+    first, *others = [search.given for search in searches]
+    if first and others and all(given == first for given in others):
+        return ("",)
+    one = (key for key in keys if _is_one(s.given.get(key) for s in searches))
+    wrong = (key for key in one if not _is_one(s.robot.answer.get(key) for s in searches))
+    return next(((f" for {key}",) for key in wrong if len(keys) > 1), None)
+
+
+def _is_one(values: Iterable[object]) -> bool:
+    """Return True if all values are the same, and there is one."""
+    return len(different := {*values}) == 1 and None not in different
 
 
 def _gave_up(seen: Searches) -> object:
