@@ -2,7 +2,7 @@
 
 from random import Random
 
-from autograder.kit import SameAsSolution, To, shuffled
+from autograder.kit import SameAsSolution, To, drawn_until, shuffled
 
 WIDTH, HEIGHT, WALLS = 6, 4, 6
 INSIDE = (0.2, 0.8, 0.4, 0.7, 0.3, 0.9)
@@ -11,7 +11,9 @@ INSIDE = (0.2, 0.8, 0.4, 0.7, 0.3, 0.9)
 
 def walls(random: Random) -> list[To]:
     """Return points in different cells, and at the end one of them again. The first comes before the judge listens."""
-    cells = random.sample([(x, y) for x in range(WIDTH) for y in range(HEIGHT)], WALLS)
+    inside = [(x, y) for x in range(WIDTH) for y in range(HEIGHT)]
+    # A program that exchanges x and y leaves its list at the last columns, which are more than there are rows.
+    cells = drawn_until(lambda: random.sample(inside, WALLS), lambda met: any(x >= HEIGHT for x, _ in met))
     places = zip(cells, shuffled(random, INSIDE), shuffled(random, INSIDE), strict=True)
     met = [To("/wall", {"x": x + right, "y": y + up}) for (x, y), right, up in places]
     return [*met, random.choice(met)]
