@@ -13,8 +13,8 @@ import re2
 
 from autograder import course
 from autograder.command_name import COMMAND
-from environment.installation import PACKAGE, installing
-from environment.python_child import SAFE_PATH
+from course_runtime.installation import PACKAGE, installing
+from course_runtime.python_child import SAFE_PATH
 
 TERMINATED = 143
 """The exit code that a shell reports for a program that SIGTERM ended: 128 plus the signal's number."""

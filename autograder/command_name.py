@@ -5,6 +5,6 @@ The other parts of the package take the name from here, so that only this part d
 
 from __future__ import annotations
 
-from environment.installation import COMMAND
+from course_runtime.installation import COMMAND
 
 __all__ = ["COMMAND"]

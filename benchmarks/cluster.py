@@ -29,7 +29,7 @@ from benchmarks.classes import make_class
 from benchmarks.machine import Machine, Watch, machine
 from benchmarks.ours import AUTOGRADER
 from benchmarks.results import replace_between
-from environment.python_child import installed_program
+from course_runtime.python_child import installed_program
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -12,7 +12,7 @@ import msgspec
 from autograder import exercises
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.tasks.task_making import task_of
-from environment.python_child import python_child
+from course_runtime.python_child import python_child
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -13,7 +13,7 @@ import msgspec
 from benchmarks.machine import Usage, Watch
 from benchmarks.memory import MemorySample, MemoryWatch
 from benchmarks.stock import Points, points_in
-from environment.python_child import python_child
+from course_runtime.python_child import python_child
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

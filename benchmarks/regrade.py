@@ -21,7 +21,7 @@ from autograder.grading.running import execution_backends
 from autograder.grading.running.task_dispatcher import Done
 from autograder.verdict import State, Verdict
 from benchmarks.ours import GRADE
-from environment.python_child import python_child
+from course_runtime.python_child import python_child
 
 _MORE_TURNS = 2
 """If the course is edited meanwhile, the class is graded once more and is unchanged again after that."""

@@ -29,7 +29,7 @@ from autograder.masters.master_files import chapter_path, lab_name, masters
 from autograder.masters.source_notebooks import source_notebook
 from autograder.safe_files import HeldFolder
 from autograder.student.lab import join_domain
-from environment.python_child import installed_program
+from course_runtime.python_child import installed_program
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence

@@ -22,7 +22,7 @@ from autograder.boxes.run_limits import Limits
 from autograder.grading.classes.class_directory import CONFIG_NAME
 from autograder.judge.ros_setup import lease_domain
 from benchmarks.machine import Usage, Watch
-from environment.python_child import python_child
+from course_runtime.python_child import python_child
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence

@@ -1,1 +1,1 @@
-"""The stand-in for /opt/ros/jazzy: pinned wheels, the interface package, the set-up and the doctor."""
+"""Sets up a clone, as a stand-in for /opt/ros/jazzy: pinned wheels, their repair, the interfaces. No wheel has it."""

@@ -16,11 +16,11 @@ from collections import deque
 from pathlib import Path
 from typing import IO, TYPE_CHECKING
 
-from environment import ros_flavour, system_packages
+from course_runtime import ros_flavour, system_packages
+from course_runtime.place import Place, may_write, owner
+from course_runtime.python_child import INTERPRETER
+from course_runtime.ros_flavour import Machine, NoRosError, Ros
 from environment.lock import EXTRAS
-from environment.place import Place, may_write, owner
-from environment.python_child import INTERPRETER
-from environment.ros_flavour import Machine, NoRosError, Ros
 from environment.setup_steps import Setup, SetupError
 from environment.steps import run_steps
 

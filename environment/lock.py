@@ -29,7 +29,7 @@ import tomllib
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from environment.python_child import INTERPRETER
+from course_runtime.python_child import INTERPRETER
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

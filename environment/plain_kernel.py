@@ -100,7 +100,7 @@ def join(root: Path) -> None:
     _import_from(site_packages, root)
     import course_process  # the one in site-packages, which knows the paths of this machine
 
-    from environment.jupyter_files import KERNEL_VARIABLES
+    from course_runtime.jupyter_files import KERNEL_VARIABLES
 
     course_process.join()
     os.environ.update(KERNEL_VARIABLES)

@@ -16,21 +16,21 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import IO, TYPE_CHECKING
 
-from environment import course_process, ros_flavour
-from environment.interface_packages import build_command, only_python_needs
-from environment.jupyter_files import kernel_install_options, write_jupyter_files
+from course_runtime import course_process, ros_flavour
+from course_runtime.interface_packages import build_command, only_python_needs
+from course_runtime.jupyter_files import kernel_install_options, write_jupyter_files
+from course_runtime.place import INTERFACES, Place, environment_paths, environment_values
+from course_runtime.python_child import SEARCH_PATHS, listed_environment
+from course_runtime.ros2_command.install import install as install_ros2_command
 from environment.lock import EXTRAS, split_blocks
 from environment.pip_settings import as_uv_has_them
-from environment.place import INTERFACES, Place, environment_paths, environment_values
-from environment.python_child import SEARCH_PATHS, listed_environment
-from environment.ros2_command.install import install as install_ros2_command
 from environment.steps import Step, files_below
 from environment.wheel_repairs import repair_fast_dds, repair_sources
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Mapping, Sequence
 
-    from environment.ros_flavour import Ros
+    from course_runtime.ros_flavour import Ros
 
     # A program and its arguments.
     Command = Sequence[str | Path]
@@ -47,6 +47,7 @@ _OF_BUILDS = (
     "LDFLAGS",
     "CMAKE_BUILD_PARALLEL_LEVEL",
 )
+_COMPILED = ("autograder", "course_runtime", "environment")
 
 
 class SetupError(Exception):
@@ -78,10 +79,10 @@ class Setup:
         # The notice is only for the user. It must not cause a new environment.
         ros = repr(replace(self.ros, notice=""))
         kind = (str(place.root), str(place.base_python), sys.version, ros)
-        repairs = (place.environment / "wheel_repairs.py",)
-        start = (place.environment / "course_process.py", place.environment / "place.py")
-        ros2 = (place.environment / "ros2_command" / "install.py",)
-        jupyter = (place.environment / "jupyter_files.py",)
+        repairs = (place.root / "environment" / "wheel_repairs.py",)
+        start = (place.runtime / "course_process.py", place.runtime / "place.py")
+        ros2 = (place.runtime / "ros2_command" / "install.py",)
+        jupyter = (place.runtime / "jupyter_files.py",)
         project = (place.root / "pyproject.toml",)
         python = f"Python {sys.version.split()[0]}"
         steps = [
@@ -108,9 +109,12 @@ class Setup:
 
     def _interfaces(self, package: Path) -> Step:
         """Return the step that builds a package of interfaces. No such package needs another one of the course."""
-        environment = self.place.environment
-        makers = ("wheel_repairs.py", "interface_packages.py", "only_python.cmake")
-        inputs = (*(environment / name for name in makers), *files_below(package))
+        makers = (
+            "environment/wheel_repairs.py",
+            "course_runtime/interface_packages.py",
+            "course_runtime/only_python.cmake",
+        )
+        inputs = (*(self.place.root / name for name in makers), *files_below(package))
         return Step(
             f"interfaces_{package.name}",
             f"building {package.name} with colcon",
@@ -263,7 +267,7 @@ class Setup:
         """Install the code that every Python of the environment runs at its start; see course_process.py."""
         site_packages = self.place.site_packages
         paths, values = environment_paths(self.place, self.ros), environment_values(self.place)
-        shutil.copyfile(self.place.environment / "course_process.py", site_packages / "course_process.py")
+        shutil.copyfile(self.place.runtime / "course_process.py", site_packages / "course_process.py")
         written = '"""Written by the set-up of the course."""\n'
         (site_packages / "course_paths.py").write_text(
             f"{written}\nPATHS = {paths!r}\nVALUES = {values!r}\n", "utf-8"
@@ -294,7 +298,7 @@ class Setup:
         """
         root = self.place.root
         labs = [file for name in ("solutions", "exercises") for file in sorted(root.glob(f"{name}/*/*/*.py"))]
-        command: Command = [self.place.python, "-m", "compileall", "-q", "autograder", "environment", *labs]
+        command: Command = [self.place.python, "-m", "compileall", "-q", *_COMPILED, *labs]
         with contextlib.suppress(SetupError):
             self._run("compiling the course's modules", command)
 

@@ -22,9 +22,9 @@ import pytest
 from traitlets import import_item
 
 from autograder.cli import cli
-from environment.python_child import installed_program
-from environment.ros2_command.commands import COMMANDS, ELSEWHERE
-from environment.ros2_command.completion import parser_for
+from course_runtime.python_child import installed_program
+from course_runtime.ros2_command.commands import COMMANDS, ELSEWHERE
+from course_runtime.ros2_command.completion import parser_for
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
 ROOT = Path(__file__).resolve().parents[1]
-CODE = ("autograder", "environment")
+CODE = ("autograder", "course_runtime", "environment")
 TEXTS = {
     *("about", "card", "cause", "choices", "do", "means", "next", "next_step", "purpose"),
     *("question", "right", "seen", "sooner", "task", "text", "title"),

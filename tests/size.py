@@ -31,7 +31,7 @@ from typing import Any
 ROOT = Path(__file__).resolve().parents[1]
 CEILINGS = ROOT / "tests" / "size_ceilings.toml"
 DECISIONS = ROOT / "docs" / "decisions.md"
-COUNTED = ("autograder", "environment", "solutions")
+COUNTED = ("autograder", "course_runtime", "environment", "solutions")
 WORDS = {"logic": "logic lines", "public": "public names"}
 TOO_HIGH = {"logic": 10, "public": 3}
 """By how much a ceiling may be above the size before it has to be lowered, or one percent, if that is more."""
@@ -109,7 +109,7 @@ def _is_data(node: ast.AST) -> bool:
 
 
 def part_of(path: Path) -> str:
-    """Return the part of a file: a folder of ``autograder`` or ``environment``, or the files beside the folders."""
+    """Return the part of a file: a folder of ``autograder`` or ``course_runtime``, or the files beside the folders."""
     return "/".join(path.parts[: 1 if path.parts[0] == "solutions" else 2][: len(path.parts) - 1])
 
 

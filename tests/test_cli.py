@@ -19,7 +19,7 @@ from autograder.cli.student_commands import show
 from autograder.kit.reported_texts import AT_PACE
 from autograder.student.lab import NOTEBOOKS_VARIABLE
 from autograder.verdict import not_checked
-from environment.python_child import SAFE_PATH, TYPED_PYTHONPATH, installed_program
+from course_runtime.python_child import SAFE_PATH, TYPED_PYTHONPATH, installed_program
 from tests.measure.bank import answer_named
 
 TALKER = answers_folder("lab_1_2.talker")

@@ -11,7 +11,7 @@ import pytest
 
 from autograder import exercises
 from autograder.masters.readme_address import _badges_and_clone_line
-from environment.ros2_command.commands import COMMANDS, ELSEWHERE
+from course_runtime.ros2_command.commands import COMMANDS, ELSEWHERE
 from tests.cases import cases
 from tests.documented_commands import (
     COURSE,

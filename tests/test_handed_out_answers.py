@@ -143,6 +143,7 @@ def test_no_other_file_offers_what_a_solution_offers(handed_out: Path) -> None:
         (exercise, given.file.name)
         for folder in (
             handed_out / "autograder",
+            handed_out / "course_runtime",
             handed_out / "environment",
             handed_out / "exercises",
             *installed.glob("*demo*"),

@@ -140,7 +140,7 @@ def test_some_parts_never_meet(part: str) -> None:
 
 def test_one_part_knows_that_a_wheel_has_another_command_than_a_clone() -> None:
     asking = {
-        part_of(path) for path, _, name in imports(PACKAGE) if name == "environment.installation.COMMAND"
+        part_of(path) for path, _, name in imports(PACKAGE) if name == "course_runtime.installation.COMMAND"
     }
     assert asking == {"command_name"}
 
@@ -296,13 +296,22 @@ def test_the_package_names_in_full_what_it_imports() -> None:
     assert not wrong
 
 
-def test_the_environment_never_imports_the_package() -> None:
+ABOVE = {
+    "course_runtime": ("autograder", "environment"),
+    "environment": ("autograder",),
+    "autograder": ("environment",),
+}
+"""What each folder must not import: the runtime is below the package and the set-up, which never meet."""
+
+
+@pytest.mark.parametrize("folder", ABOVE)
+def test_the_runtime_is_below_the_package_and_the_set_up(folder: str) -> None:
     wrong = [
-        f"{path}:{line}"
-        for path, line, name in imports(ROOT / "environment")
-        if name.startswith("autograder")
+        f"{path}:{line} imports {name}"
+        for path, line, name in imports(ROOT / folder)
+        if name.partition(".")[0] in ABOVE[folder]
     ]
-    assert not wrong
+    assert not wrong, "\n".join(wrong)
 
 
 def circles(folder: Path, *, types: bool = False) -> list[list[str]]:
@@ -344,7 +353,9 @@ def _reached(module: str, graph: dict[str, set[str]]) -> set[str]:
     return reached
 
 
-@pytest.mark.parametrize("folder", ["autograder", "environment", "environment/launch_front/launch"])
+@pytest.mark.parametrize(
+    "folder", ["autograder", "course_runtime", "environment", "course_runtime/launch_front/launch"]
+)
 def test_no_modules_import_each_other_in_a_circle(folder: str) -> None:
     assert not circles(ROOT / folder)
 

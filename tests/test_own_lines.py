@@ -18,7 +18,7 @@ from autograder.own_lines import (
     loop_around,
     own_lines,
 )
-from environment.python_child import python_child
+from course_runtime.python_child import python_child
 
 if TYPE_CHECKING:
     from pathlib import Path

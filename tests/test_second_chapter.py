@@ -20,7 +20,7 @@ from autograder.authoring.new_exercise import new_exercise
 from autograder.boxes.sandbox import why_impossible
 from autograder.student.handout import hand_out
 from autograder.workspaces.builds.install_folder import with_prefixes
-from environment.interface_packages import build_command, interface_packages
+from course_runtime.interface_packages import build_command, interface_packages
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping

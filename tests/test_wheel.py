@@ -156,10 +156,17 @@ def test_an_exercise_is_made_tried_checked_and_a_class_of_two_is_graded(installe
 
 def test_the_wheel_has_each_file_of_the_package(wheel: Path) -> None:
     """A folder with a dot in its name was missing, so ``autograder lab`` had no course page."""
-    package = ROOT / "autograder"
-    files = [path for path in package.rglob("*") if path.is_file() and "__pycache__" not in path.parts]
+    packages = (ROOT / "autograder", ROOT / "course_runtime")
+    found = (path for package in packages for path in package.rglob("*"))
+    files = [path for path in found if path.is_file() and "__pycache__" not in path.parts]
     names = set(zipfile.ZipFile(wheel).namelist())
     assert not [str(path) for path in files if str(path.relative_to(ROOT)) not in names]
+
+
+def test_the_wheel_installs_two_packages_which_nobody_else_has(wheel: Path) -> None:
+    """The set-up of a clone stayed behind: `environment` is a name that other projects have, too."""
+    tops = {name.partition("/")[0] for name in zipfile.ZipFile(wheel).namelist()}
+    assert {top for top in tops if not top.endswith(".dist-info")} == {"autograder", "course_runtime"}
 
 
 def test_a_folder_of_a_student_is_no_course_to_a_command_for_a_class(tmp_path: Path) -> None:
@@ -188,7 +195,7 @@ WRITTEN_FOR_A_CLONE = ("student/handout.py", "masters/source_notebooks.py")
 
 
 def test_no_message_names_what_only_a_clone_has() -> None:
-    """``environment/installation.py`` decides what a message tells people to type."""
+    """``course_runtime/installation.py`` decides what a message tells people to type."""
     package = ROOT / "autograder"
     found = []
     for path in sorted(package.rglob("*.py")):

@@ -25,7 +25,7 @@ from autograder.kit.oracle.naming.drawn import EFFECT
 from autograder.safe_files import HeldFolder
 from autograder.standard_output import private_stdout
 from autograder.verdict import State, Verdict, from_json, to_json
-from environment.python_child import installed_program
+from course_runtime.python_child import installed_program
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Sequence

@@ -21,8 +21,8 @@ from autograder.kit.evidence import Event, Evidence
 from autograder.masters.code_cells import find_region
 from autograder.masters.master_cells import COPY_LINE, CellRole, parse_master
 from autograder.masters.source_notebooks import named_cells
-from environment.installation import installing
-from environment.python_child import installed_program
+from course_runtime.installation import installing
+from course_runtime.python_child import installed_program
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence

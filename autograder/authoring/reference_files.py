@@ -26,7 +26,7 @@ from autograder.masters.master_files import MasterError
 from autograder.masters.reference_solutions import ReferenceSolution, reference_source
 from autograder.messages.judge_messages import SOCKET_VARIABLE, Report
 from autograder.safe_files import HeldFolder
-from environment.python_child import installed_program
+from course_runtime.python_child import installed_program
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable

@@ -34,7 +34,7 @@ from autograder.boxes.run_limits import raise_own
 from autograder.boxes.visible_host import base_environment
 from autograder.process_trees import end_soon
 from autograder.safe_files import HeldFolder
-from environment.python_child import python_child
+from course_runtime.python_child import python_child
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence

@@ -17,8 +17,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from environment import ros_flavour
-from environment.python_child import SEARCH_PATHS, listed_environment
+from course_runtime import ros_flavour
+from course_runtime.python_child import SEARCH_PATHS, listed_environment
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -215,7 +215,7 @@ def _installation(variables: Mapping[str, str]) -> tuple[Path, ...]:
     wanted = {_PACKAGE, *_ros_prefixes(variables)}
     for prefix in _python_prefixes():
         wanted.update(path for pattern in _PARTS for path in prefix.glob(pattern))
-    helper = _PACKAGE.parent / "environment"
+    helper = _PACKAGE.parent / "course_runtime"
     if (helper / "ros2_command").is_dir():
         wanted.add(helper)
     return _outermost(path for path in wanted if path.exists() and not any(map(path.is_relative_to, SYSTEM)))

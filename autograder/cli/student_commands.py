@@ -222,7 +222,7 @@ def _notebooks_and_journal(root: Path, folder: Path | None) -> tuple[Path, Path 
 @as_json_option
 def doctor(as_json: bool) -> None:
     """Show what is installed, what is missing and how to install it."""
-    from environment import doctor as probes
+    from course_runtime import doctor as probes
 
     sys.exit(probes.main(["--json"] if as_json else []))
 

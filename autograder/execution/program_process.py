@@ -1,7 +1,7 @@
 """A process, forked by a fork server, that runs `ros2 run` and a student's program after their slow imports.
 
 Most of a program's start-up time is spent on imports that all programs share. This process is forked from one that has
-already made these imports. It runs the course's own `ros2` (``environment.ros2_command``), so it finds programs as
+already made these imports. It runs the course's own `ros2` (``course_runtime.ros2_command``), so it finds programs as
 usual, and prints the usual messages. Only one thing differs: a Python script for this interpreter becomes another fork,
 not a new process. That fork has its own arguments, path, standard streams, ``__main__`` and exit, like a new process.
 
@@ -26,14 +26,14 @@ from types import ModuleType
 from typing import TYPE_CHECKING, Any, NoReturn
 
 from autograder.boxes.fork_server import INTERFACES, RCLPY, preload, preload_ros
-from environment.python_child import INTERPRETER
-from environment.ros2_command import main as ros2
-from environment.ros2_command import run as ros2_run
+from course_runtime.python_child import INTERPRETER
+from course_runtime.ros2_command import main as ros2
+from course_runtime.ros2_command import run as ros2_run
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-_OF_SCRIPTS = ("environment.ros2_command.pkg", "ament_index_python.packages", "importlib.metadata", "re")
+_OF_SCRIPTS = ("course_runtime.ros2_command.pkg", "ament_index_python.packages", "importlib.metadata", "re")
 """Modules that are imported by `ros2 run` and by the scripts that setuptools makes."""
 _AT_START = ("sitecustomize", "usercustomize")
 """The modules that Python imports by itself when it starts (documentation of ``site``)."""

@@ -93,10 +93,10 @@ def course_version() -> str:
 
     All machines of a cluster must have the same hash, because otherwise they could give different grades.
 
-    The hash covers the files of the folders ``autograder`` and ``environment``, even files that seem to influence no
-    grade. Of ``solutions/``, it covers the exercises, their reference outputs, the chapters' interfaces and the
-    workspace. It does not cover the masters, because a class is graded by its own copies in ``source/``, whose changes
-    are found separately.
+    The hash covers the files of the folders ``autograder``, ``course_runtime`` and ``environment``, even those that
+    seem to influence no grade. Of ``solutions/``, it covers the exercises, their reference outputs, the chapters'
+    interfaces and the workspace. It does not cover the masters, because a class is graded by its own copies in
+    ``source/``, whose changes are found separately.
     """
     return course_files().version()
 
@@ -119,8 +119,8 @@ def counted_files() -> Iterator[tuple[str, Path]]:
     root, package = course.root(), Path(course.__file__).parent
     solutions = root / "solutions"
     of_chapters = (*solutions.glob("*ws"), *solutions.glob(f"*/{course.INTERFACES}"))
-    for folder in (package, root / "environment", *sorted(of_chapters)):
-        above = package.parent if folder == package else root
+    for folder in (package, package.with_name("course_runtime"), root / "environment", *sorted(of_chapters)):
+        above = package.parent if folder.parent == package.parent else root
         for path in _files(folder):
             yield path.relative_to(above).as_posix(), path
     for pattern in _OF_CHAPTERS:

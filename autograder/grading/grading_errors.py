@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from autograder.command_name import COMMAND
 from autograder.safe_files import write_whole
-from environment.installation import IS_CLONE, ROOT, installing
+from course_runtime.installation import IS_CLONE, ROOT, installing
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator

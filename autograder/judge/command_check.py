@@ -20,7 +20,7 @@ from autograder.kit.runners import Launches, runner_as_word
 from autograder.messages.judge_messages import Report
 from autograder.verdict import Verdict, not_checked
 from autograder.workspaces.sources import full_disk
-from environment.python_child import python_child
+from course_runtime.python_child import python_child
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -24,7 +24,7 @@ from autograder.judge import evidence_files, ros_setup
 from autograder.messages.json_lines import Hangup, Lines, Silent, listen
 from autograder.messages.judge_messages import Close, Open, Report
 from autograder.process_trees import signal_group
-from environment.python_child import python_child
+from course_runtime.python_child import python_child
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

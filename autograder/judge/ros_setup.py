@@ -23,7 +23,7 @@ from typing import TYPE_CHECKING
 
 from autograder.dds_discovery import FREE_TO_PICK, NoFreeDomainError, claim_free_domain
 from autograder.safe_files import HeldFolder
-from environment.python_child import TYPED_PYTHONPATH
+from course_runtime.python_child import TYPED_PYTHONPATH
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

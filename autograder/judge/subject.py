@@ -25,7 +25,7 @@ from autograder.process_trees import (
     signal_group,
 )
 from autograder.standard_output import short_lines
-from environment.python_child import python_child
+from course_runtime.python_child import python_child
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence

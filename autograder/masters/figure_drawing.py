@@ -17,7 +17,7 @@ import numpy
 from autograder.course import SOLUTIONS
 from autograder.masters.master_cells import DIGEST_KEYWORD, figure_digest
 from autograder.masters.master_files import MasterError, find_root
-from environment.system_packages import CHROMIUM_NAMES, find_program
+from course_runtime.system_packages import CHROMIUM_NAMES, find_program
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -22,13 +22,22 @@ from autograder.masters.chapter_building import holds_work
 from autograder.masters.master_files import relinked
 from autograder.packed_files import packed
 from autograder.safe_files import write_whole
-from environment.installation import PACKAGE
+from course_runtime.installation import PACKAGE
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Mapping, Sequence
 
 
-WHOLE = ("course", "pyproject.toml", "LICENSE", "environment", "autograder", ".devcontainer", ".dockerignore")
+WHOLE = (
+    "course",
+    "pyproject.toml",
+    "LICENSE",
+    "course_runtime",
+    "environment",
+    "autograder",
+    ".devcontainer",
+    ".dockerignore",
+)
 """Files and folders that are handed out unchanged, except for those in :data:`KEPT_BACK`."""
 KEPT_BACK = (
     "autograder/authoring",

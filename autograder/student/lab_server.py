@@ -29,7 +29,7 @@ from autograder.check_journal import JournalEntry
 from autograder.student.lab import COURSE_PAGE
 from autograder.student.notebook_reset import CannotReset, reset
 from autograder.student.progress import Standing, page_html, standing, trouble_html
-from environment.python_child import python_child
+from course_runtime.python_child import python_child
 
 if TYPE_CHECKING:
     from jupyter_server.serverapp import ServerApp

@@ -18,7 +18,7 @@ from autograder.safe_files import fresh_folder
 from autograder.workspaces.builds import build_artifacts, build_cache
 from autograder.workspaces.jobs import BUILD_SECONDS, MAX_ARCHIVE_BYTES, MAX_LOG_BYTES, BuildOutcome
 from autograder.workspaces.program_plans import ros2
-from environment.python_child import python_child
+from course_runtime.python_child import python_child
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence

@@ -24,7 +24,7 @@ from autograder.kit.runners import (
 from autograder.workspaces.builds.install_folder import files_of_interfaces, has_service, is_indexed
 from autograder.workspaces.packages import LAUNCH_LANGUAGES, WORKSPACE, launch_files
 from autograder.workspaces.sources import ByteBudget
-from environment.python_child import installed_program, python_child
+from course_runtime.python_child import installed_program, python_child
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Self
 
 from autograder import process_trees
 from autograder.kit.runners import Process, process_line
-from environment.python_child import python_child
+from course_runtime.python_child import python_child
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 from PIL import Image
 from playwright.sync_api import expect, sync_playwright
 
-from environment.system_packages import CHROMIUM_NAMES, find_program
+from course_runtime.system_packages import CHROMIUM_NAMES, find_program
 from tests.browser.open_notebook import OpenNotebook
 from tests.browser.server_of_a_test import jupyter_server
 

@@ -21,8 +21,8 @@ from playwright.sync_api import sync_playwright
 
 from autograder.grading.new_classes.sample_class import DATA, sample_data
 from autograder.safe_files import HeldFolder
-from environment.python_child import python_child
-from environment.system_packages import CHROMIUM_NAMES, find_program
+from course_runtime.python_child import python_child
+from course_runtime.system_packages import CHROMIUM_NAMES, find_program
 
 HERE = Path(__file__).resolve().parent
 TESTS = ("tests/browser/test_lab_1_2.py", "tests/browser/test_course_page.py")

@@ -14,7 +14,7 @@ import pytest
 from autograder.appeals import appeal_file
 from autograder.appeals.appeal_file import AppealedCell, AppealedCheck
 from autograder.judge import evidence_files
-from environment.python_child import python_child
+from course_runtime.python_child import python_child
 
 if TYPE_CHECKING:
     from collections.abc import Callable

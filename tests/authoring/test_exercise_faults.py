@@ -13,7 +13,7 @@ from autograder.authoring.answer_bank import answers
 from autograder.authoring.exercise_faults import still_to_do, unasked_outputs
 from autograder.authoring.new_exercise import EXAMPLES, new_exercise, recipes
 from autograder.judge import evidence_files
-from environment import python_child
+from course_runtime import python_child
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -32,7 +32,7 @@ from autograder.kit.hunts.ticket import Ticket
 from autograder.masters.master_files import masters
 from autograder.masters.source_notebooks import SET_UP_CELL as SET_UP_CELL
 from autograder.masters.source_notebooks import service_links, source_notebook
-from environment.python_child import python_child
+from course_runtime.python_child import python_child
 from tests.cases import cases
 
 pytest.importorskip("sphinx_book_theme")

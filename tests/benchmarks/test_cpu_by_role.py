@@ -8,7 +8,7 @@ import pytest
 
 from benchmarks.cpu_by_role import ROLES, Accounts, role_of, table
 from benchmarks.machine import CpuGroup
-from environment.python_child import python_child
+from course_runtime.python_child import python_child
 
 SERVER = "python -P -m autograder.boxes.fork_server"
 

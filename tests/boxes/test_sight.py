@@ -24,9 +24,9 @@ from autograder.execution.notebook_processes import BoxedProcesses, NotebookSett
 from autograder.execution.notebook_runner import run_notebook
 from autograder.messages.judge_messages import SOCKET_VARIABLE
 from autograder.safe_files import scratch_folder
-from environment import ros_flavour
-from environment.place import Place
-from environment.ros_flavour import Ros
+from course_runtime import ros_flavour
+from course_runtime.place import Place
+from course_runtime.ros_flavour import Ros
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from environment.system_packages import CHROMIUM_NAMES, find_program
+from course_runtime.system_packages import CHROMIUM_NAMES, find_program
 
 sys.path.insert(0, str(Path(__file__).parent))
 from open_notebook import LIMIT, opened_page

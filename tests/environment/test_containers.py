@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from environment.system_packages import TABLE
+from course_runtime.system_packages import TABLE
 
 ROOT = Path(__file__).resolve().parents[2]
 DEV_CONTAINER = ROOT / ".devcontainer" / "devcontainer.json"

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from environment.course_process import variables
+from course_runtime.course_process import variables
 
 OURS = {
     "PATH": ["/course/.venv/bin"],

@@ -59,7 +59,7 @@ def course(tmp_path: Path) -> Course:
     root = tmp_path / "the course"
     (root / "environment/requirements").mkdir(parents=True)
     (root / "environment/interfaces/own_interfaces/srv").mkdir(parents=True)
-    (root / "environment/ros2_command").mkdir()
+    (root / "course_runtime/ros2_command").mkdir(parents=True)
     (root / "chapters").mkdir()
     (root / "tests").mkdir()
     shutil.copy(ROOT / "course", root / "course")
@@ -68,7 +68,8 @@ def course(tmp_path: Path) -> Course:
     (root / "pyproject.toml").write_text("[project]\n")
     (root / "environment/__init__.py").write_text("")
     (root / "environment/bootstrap.py").write_text(SET_UP)
-    (root / "environment/ros2_command/install.py").write_text("")
+    (root / "course_runtime/place.py").write_text("")
+    (root / "course_runtime/ros2_command/install.py").write_text("")
     (root / "environment/requirements/course.lock").write_text("six==1.17.0\n")
     (root / "environment/interfaces/own_interfaces/srv/A.srv").write_text("---\n")
     made = Course(root)
@@ -97,7 +98,8 @@ def test_a_command_sets_up_once_and_then_is_only_run(course: Course) -> None:
     [
         "pyproject.toml",
         "environment/bootstrap.py",
-        "environment/ros2_command/install.py",
+        "course_runtime/place.py",
+        "course_runtime/ros2_command/install.py",
         "environment/requirements/course.lock",
         "environment/interfaces/own_interfaces/srv/A.srv",
         "solutions/02_power/interfaces/power_interfaces/srv/B.srv",
@@ -197,7 +199,7 @@ def test_test_runs_every_check_and_the_tests_last(course: Course, tmp_path: Path
     ran = course.ran()
     ran.remove("mypy")  # beside the others
     pages = ("README.md", "CONTRIBUTING.md", "CHANGELOG.md")
-    spelled = ("autograder", "benchmarks", "docs", "environment", "solutions", *pages)
+    spelled = ("autograder", "benchmarks", "course_runtime", "docs", "environment", "solutions", *pages)
     assert ran == [
         "set-up --token --tests",
         "ruff [check] [.]",

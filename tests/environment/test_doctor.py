@@ -10,15 +10,16 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from environment import bootstrap, doctor, jupyter_files, loopback, ros_flavour
-from environment.doctor import Finding, as_text, exit_code
-from environment.place import Place
-from environment.ros_flavour import Ros
-from environment.ros_report import INTERFACE_FIELDS, rclpy_version
+from course_runtime import doctor, jupyter_files, loopback, ros_flavour
+from course_runtime.doctor import Finding, as_text, exit_code
+from course_runtime.place import Place
+from course_runtime.ros_flavour import Ros
+from course_runtime.ros_report import INTERFACE_FIELDS, rclpy_version
+from environment import bootstrap
 from environment.setup_steps import SetupError
 
 if TYPE_CHECKING:
-    from environment.doctor import State
+    from course_runtime.doctor import State
 
 HEALTHY = {"version": "7.1.5", "prefix": "/env", "rmw": "rmw_fastrtps_cpp", "fields": INTERFACE_FIELDS}
 
@@ -153,7 +154,7 @@ def test_room_in_a_folder(tmp_path: Path) -> None:
 
 
 def test_a_folder_that_is_somebody_elses_is_no_matter_of_room(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("environment.doctor.may_write", lambda _: False)
+    monkeypatch.setattr("course_runtime.doctor.may_write", lambda _: False)
     found = doctor.space()[0]
     assert found.state == "missing"
     assert "Make room" not in found.remedy

@@ -8,7 +8,7 @@ import sys
 
 import pytest
 
-from environment.ros_report import INTERFACE_FIELDS, interface_fields
+from course_runtime.ros_report import INTERFACE_FIELDS, interface_fields
 from tests.cases import cases
 
 pytestmark = pytest.mark.ros

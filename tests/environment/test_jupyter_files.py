@@ -10,7 +10,7 @@ from jupyter_client.kernelspec import KernelSpecManager
 from jupyter_server.serverapp import ServerApp
 from jupyterlab_server.settings_utils import get_settings
 
-from environment.jupyter_files import (
+from course_runtime.jupyter_files import (
     KERNEL_NAME,
     KERNEL_VARIABLES,
     lab_settings,

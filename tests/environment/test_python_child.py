@@ -7,7 +7,7 @@ import subprocess
 import sys
 from typing import TYPE_CHECKING
 
-from environment.python_child import clean_environment, installed_program, python_child
+from course_runtime.python_child import clean_environment, installed_program, python_child
 
 if TYPE_CHECKING:
     from pathlib import Path

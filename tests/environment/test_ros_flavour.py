@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from environment.ros_flavour import (
+from course_runtime.ros_flavour import (
     Machine,
     NoRosError,
     Ros,

@@ -13,9 +13,10 @@ from pathlib import Path
 
 import pytest
 
-from environment import bootstrap, system_packages
-from environment.place import Place, environment_paths
-from environment.ros_flavour import Ros
+from course_runtime import system_packages
+from course_runtime.place import Place, environment_paths
+from course_runtime.ros_flavour import Ros
+from environment import bootstrap
 from environment.setup_steps import Setup, SetupError
 from environment.steps import Step, digest
 
@@ -217,7 +218,13 @@ def test_modules_are_compiled_also_for_a_python_that_keeps_no_bytecode(tmp_path:
     place.python.parent.mkdir(parents=True)
     place.python.symlink_to(sys.executable)
     lab = "solutions/a_chapter/a_lab"
-    files = {"autograder/engine.py", "environment/steps.py", f"{lab}/talker.py", f"{lab}/unfinished.py"}
+    files = {
+        "autograder/engine.py",
+        "course_runtime/place.py",
+        "environment/steps.py",
+        f"{lab}/talker.py",
+        f"{lab}/unfinished.py",
+    }
     for name in files | {f"{lab}/talker.answers/wrong/answer.py"}:
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).write_text("def (" if "unfinished" in name else "x = 1")
@@ -225,7 +232,7 @@ def test_modules_are_compiled_also_for_a_python_that_keeps_no_bytecode(tmp_path:
     with log.open("w") as output:
         Setup(place, Ros("wheels"), {"PYTHONDONTWRITEBYTECODE": "1"}, output).compile_modules()
     compiled = {path.name.partition(".")[0] for path in tmp_path.rglob("*.pyc")}
-    assert compiled == {"engine", "steps", "talker"}, log.read_text()
+    assert compiled == {"engine", "place", "steps", "talker"}, log.read_text()
 
 
 @pytest.fixture

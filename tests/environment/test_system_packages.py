@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from environment import system_packages
-from environment.system_packages import (
+from course_runtime import system_packages
+from course_runtime.system_packages import (
     TABLE,
     Apt,
     MissingPackagesError,

@@ -32,7 +32,7 @@ PLACES = cases(__file__, "PLACES")
 @pytest.fixture
 def copy(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A copy of the course whose files a test may change."""
-    for name in ("autograder", "environment", "solutions"):
+    for name in ("autograder", "course_runtime", "environment", "solutions"):
         ignored = shutil.ignore_patterns("__pycache__", "build", "install", "log")
         shutil.copytree(ROOT / name, tmp_path / name, ignore=ignored)
     monkeypatch.setenv("AUTOGRADER_COURSE", str(tmp_path))

@@ -17,7 +17,7 @@ from click.testing import CliRunner
 from autograder.cli import cli
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.student.known_classes import CONFIG_NAME, reason_against
-from environment.python_child import installed_program
+from course_runtime.python_child import installed_program
 from tests.cases import cases
 
 if TYPE_CHECKING:
@@ -41,7 +41,13 @@ class Hostile:
         self.path.mkdir()
         self._marks = folder / "marks"
         code = f"open({str(self._marks)!r}, 'a').write(__name__ + ' ' + __file__ + '\\n')\n"
-        modules = {*sys.stdlib_module_names, *packages_distributions(), "autograder", "environment"}
+        modules = {
+            *sys.stdlib_module_names,
+            *packages_distributions(),
+            "autograder",
+            "course_runtime",
+            "environment",
+        }
         for name in (*(f"{module}.py" for module in modules if "/" not in module), *SETTINGS):
             (self.path / name).write_text(code)
         (self.path / "mallory.pth").write_text(f"import os; {code}")
@@ -82,7 +88,7 @@ def course(tmp_path: Path) -> Path:
     root = tmp_path / "course"
     for name in (
         "environment/requirements",
-        "environment/ros2_command",
+        "course_runtime/ros2_command",
         "environment/interfaces",
         ".venv/bin",
     ):
@@ -91,7 +97,7 @@ def course(tmp_path: Path) -> Path:
     for name in (
         "pyproject.toml",
         "environment/requirements/course.lock",
-        "environment/ros2_command/install.py",
+        "course_runtime/ros2_command/install.py",
     ):
         (root / name).touch()
     bootstrap = "import os, shutil, sys\nos.makedirs('.venv/course', exist_ok=True)\n"

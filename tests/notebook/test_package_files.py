@@ -13,8 +13,8 @@ from autograder.notebook.package_files import (
     add_dependencies,
     add_entry_points,
 )
-from environment.ros2_command import pkg_templates
-from environment.ros2_command.pkg_templates import Package
+from course_runtime.ros2_command import pkg_templates
+from course_runtime.ros2_command.pkg_templates import Package
 from tests.cases import cases
 
 if TYPE_CHECKING:

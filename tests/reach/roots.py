@@ -55,7 +55,7 @@ def read_files(root: Path, paths: Iterable[str]) -> Files:
             sources[path] = read((root / path).read_text(encoding="utf-8"))
         else:
             names_modules = PurePosixPath(path).suffix in NAMING and path.startswith(
-                ("autograder/", "environment/")
+                ("autograder/", "course_runtime/", "environment/")
             )
             data[path] = (root / path).read_text(encoding="utf-8") if names_modules else ""
     return Files(sources, data, {module_name(path): path for path in sources})

@@ -38,7 +38,7 @@ from autograder.grading.rebuilding import nbformat_nodes
 from autograder.grading.result_writer import quiet
 from autograder.masters.master_files import MasterError, lab_name, masters, relinked
 from autograder.masters.source_notebooks import source_notebook
-from environment.installation import IS_CLONE, ROOT
+from course_runtime.installation import IS_CLONE, ROOT
 
 if TYPE_CHECKING:
     from collections.abc import Container, Iterator, Sequence

@@ -22,7 +22,7 @@ from autograder.grading.running.process_link import ProcessLink
 from autograder.grading.running.task_dispatcher import Dispatcher
 from autograder.grading.running.worker_messages import JUDGE
 from autograder.safe_files import HeldFolder, sweep
-from environment.installation import installing
+from course_runtime.installation import installing
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator, Iterable, Iterator, Sequence

@@ -20,7 +20,7 @@ from autograder.grading.running.worker_messages import ADDRESS, Broken, Command,
 from autograder.messages.json_lines import Hangup, Lines, Silent
 from autograder.process_trees import end_processes_in, end_soon
 from autograder.safe_files import unnamed_file
-from environment.python_child import python_child
+from course_runtime.python_child import python_child
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -33,7 +33,7 @@ from autograder.workspaces.builds import build_cache, students_builds
 from autograder.workspaces.graded_builds import build_ahead
 from autograder.workspaces.grading_service import ServiceSockets, WorkspaceService
 from autograder.workspaces.jobs import PlainJobs
-from environment.python_child import python_child
+from course_runtime.python_child import python_child
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence

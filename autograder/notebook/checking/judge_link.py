@@ -31,7 +31,7 @@ from autograder.messages.json_lines import Hangup, Lines, NotUnderstood
 from autograder.messages.judge_messages import SOCKET_VARIABLE, FromJudge
 from autograder.notebook.nodes.background_nodes import destroy_nodes_on
 from autograder.safe_files import HeldFolder
-from environment.python_child import python_child
+from course_runtime.python_child import python_child
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

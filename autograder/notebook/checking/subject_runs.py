@@ -35,7 +35,7 @@ from autograder.workspaces.jobs import output_lines
 from autograder.workspaces.packages import workspace_of
 from autograder.workspaces.program_processes import OwnSession
 from autograder.workspaces.sources import BadSources, collect_launch, collect_workspace
-from environment.python_child import python_child
+from course_runtime.python_child import python_child
 
 if TYPE_CHECKING:
     from rclpy.context import Context

@@ -29,7 +29,7 @@ from rclpy.utilities import get_default_context, ok, try_shutdown
 
 from autograder.dds_discovery import DOMAIN_VARIABLE, DomainClaim, claim_free_domain, domain_from_environment
 from autograder.notebook.nodes.interrupts import end_waits_from_now_on
-from environment.python_child import python_child
+from course_runtime.python_child import python_child
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -31,7 +31,7 @@ from autograder.workspaces.builds.plain_packages import put_texts, split
 from autograder.workspaces.jobs import BuildJob
 from autograder.workspaces.packages import WORKSPACE, sources_of
 from autograder.workspaces.sources import BadSources
-from environment.interface_packages import ONLY_PYTHON, ONLY_PYTHON_FILE
+from course_runtime.interface_packages import ONLY_PYTHON, ONLY_PYTHON_FILE
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

@@ -22,7 +22,7 @@ from autograder.workspaces.builds.install_folder import (
     rename_paths,
 )
 from autograder.workspaces.packages import find_packages, launch_files, needed
-from environment.python_child import INTERPRETER, python_child
+from course_runtime.python_child import INTERPRETER, python_child
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -48,7 +48,7 @@ from autograder.workspaces.builds.install_folder import (
 from autograder.workspaces.jobs import PlainJobs
 from autograder.workspaces.packages import DEFINITIONS, WORKSPACE, launch_files, needed
 from autograder.workspaces.sources import BadSources, ByteBudget, collect_workspace, is_source
-from environment.python_child import python_child
+from course_runtime.python_child import python_child
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Sequence

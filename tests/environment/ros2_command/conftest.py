@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from autograder.judge.ros_setup import lease_domain
-from environment.ros2_command.install import LAUNCH_FRONT
+from course_runtime.ros2_command.install import LAUNCH_FRONT
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -140,7 +140,7 @@ def ros2(env: dict[str, str], tmp_path: Path) -> Callable[..., subprocess.Comple
 
     def call(*words: str, stdin: str | None = None, **variables: str) -> subprocess.CompletedProcess[str]:
         return subprocess.run(
-            [sys.executable, "-m", "environment.ros2_command", *words],
+            [sys.executable, "-m", "course_runtime.ros2_command", *words],
             env=env | variables,
             cwd=tmp_path,
             input=stdin,
@@ -165,7 +165,7 @@ def start(env: dict[str, str], tmp_path: Path) -> Iterator[Callable[..., Running
         elif code:
             command = [sys.executable, "-c", code, *words]
         else:
-            command = [sys.executable, "-m", "environment.ros2_command", *words]
+            command = [sys.executable, "-m", "course_runtime.ros2_command", *words]
         running = Running(command, env | variables, tmp_path)
         started.append(running)
         return running

@@ -8,7 +8,7 @@ import rclpy
 from rclpy.context import Context
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[3]))
-from environment.ros2_command.discovery import look
+from course_runtime.ros2_command.discovery import look
 
 theirs, ours = Context(), Context()
 for context in (theirs, ours):

@@ -18,7 +18,7 @@ pytest.importorskip("argcomplete")
 # As argcomplete's function for bash asks: the answer is on descriptor 8.
 ASK = (
     'COMP_LINE="$1" COMP_POINT=${#1} COMP_TYPE=9 _ARGCOMPLETE=1 _ARGCOMPLETE_SHELL=bash "$0" '
-    "-m environment.ros2_command 8>&1 9>&2 1>/dev/null"
+    "-m course_runtime.ros2_command 8>&1 9>&2 1>/dev/null"
 )
 
 

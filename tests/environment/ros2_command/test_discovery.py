@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, cast
 
 import pytest
 
-from environment.ros2_command.discovery import Graph, wait_until_settled
-from environment.ros2_command.ports import Ports
+from course_runtime.ros2_command.discovery import Graph, wait_until_settled
+from course_runtime.ros2_command.ports import Ports
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from environment.ros2_command.roll_call import RollCall
+    from course_runtime.ros2_command.roll_call import RollCall
 
 OWN, TALKER, LISTENER = b"own", b"talker", b"listener"
 

@@ -8,11 +8,11 @@ from pathlib import Path
 
 import pytest
 
-from environment.ros2_command.commands import TERMINATED
+from course_runtime.ros2_command.commands import TERMINATED
 
 NEVER_WOKEN = """
 import threading
-from environment.ros2_command.graph_node import graph_node
+from course_runtime.ros2_command.graph_node import graph_node
 with graph_node():
     print("waits", flush=True)
     threading.Event().wait()

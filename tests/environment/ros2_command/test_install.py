@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from environment.ros2_command.install import LAUNCH_FRONT, install
-from environment.ros2_command.real_installation import find_real_command
+from course_runtime.ros2_command.install import LAUNCH_FRONT, install
+from course_runtime.ros2_command.real_installation import find_real_command
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -45,7 +45,7 @@ def site_packages(folder: Path) -> Path:
 
 def test_launch_can_be_imported(fresh: Path) -> None:
     code = "from launch import LaunchDescription; import launch; print(launch.__file__)"
-    assert python(fresh, code).endswith("environment/launch_front/launch/__init__.py")
+    assert python(fresh, code).endswith("course_runtime/launch_front/launch/__init__.py")
     assert python(fresh, "from launch_ros.actions import Node; print(Node.__name__)") == "Node"
 
 
@@ -54,7 +54,7 @@ def test_ctrl_c_while_the_command_is_loaded_ends_it_without_a_word(fresh: Path, 
         "import os, signal, sys\n"
         "class Interrupting:\n"
         "    def find_spec(self, name, *_):\n"
-        "        if name == 'environment.ros2_command.main':\n"
+        "        if name == 'course_runtime.ros2_command.main':\n"
         "            os.kill(os.getpid(), signal.SIGINT)\n"
         "sys.meta_path.insert(0, Interrupting())\n"
     )

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from environment.ros2_command.interface_show import nested_type, without_comment
+from course_runtime.ros2_command.interface_show import nested_type, without_comment
 
 if TYPE_CHECKING:
     import subprocess

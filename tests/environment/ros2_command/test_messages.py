@@ -11,7 +11,7 @@ from geometry_msgs.msg import PolygonStamped, PoseStamped, PoseWithCovariance
 from my_robot_interfaces.action import Fibonacci
 from std_msgs.msg import Bool, Float64, Int8MultiArray, String
 
-from environment.ros2_command.messages import (
+from course_runtime.ros2_command.messages import (
     Shortening,
     fill,
     parse_values,

@@ -175,7 +175,7 @@ def test_colcon_builds_what_was_created(ros2: Ros2, env: dict[str, str], tmp_pat
         check=False,
     )
     assert built.returncode == 0, built.stdout + built.stderr
-    script = ". install/setup.sh && exec python -m environment.ros2_command run py_pkg simple_node"
+    script = ". install/setup.sh && exec python -m course_runtime.ros2_command run py_pkg simple_node"
     hello = subprocess.run(
         ["/bin/sh", "-c", script],
         cwd=tmp_path,

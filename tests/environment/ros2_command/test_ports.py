@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from environment.ros2_command import ports
-from environment.ros2_command.ports import Ports, domain_id, ports_in_use
+from course_runtime.ros2_command import ports
+from course_runtime.ros2_command.ports import Ports, domain_id, ports_in_use
 
 if TYPE_CHECKING:
     from pathlib import Path

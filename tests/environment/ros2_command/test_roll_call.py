@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from environment.ros2_command.ports import ports_in_use
-from environment.ros2_command.roll_call import LOOPBACK, RollCall
+from course_runtime.ros2_command.ports import ports_in_use
+from course_runtime.ros2_command.roll_call import LOOPBACK, RollCall
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator

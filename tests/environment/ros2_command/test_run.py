@@ -65,7 +65,7 @@ def test_sigterm_ends_the_program_too(start: Callable[..., Running]) -> None:
 
 CTRL_C_AT_THE_START = """
 import os, signal, subprocess, sys
-from environment.ros2_command import main, run
+from course_runtime.ros2_command import main, run
 
 def start(command):
     process = subprocess.Popen(command)

@@ -7,8 +7,8 @@ import sys
 
 import pytest
 
-from environment.ros2_command.commands import COMMANDS, ELSEWHERE
-from environment.ros2_command.main import run
+from course_runtime.ros2_command.commands import COMMANDS, ELSEWHERE
+from course_runtime.ros2_command.main import run
 
 VERBS = [(command, verb) for command in COMMANDS for verb in COMMANDS[command].verbs]
 ALONE = [command for command in COMMANDS if COMMANDS[command].itself]
@@ -16,7 +16,7 @@ ALONE = [command for command in COMMANDS if COMMANDS[command].itself]
 
 @pytest.fixture(autouse=True)
 def keep_stdout_as_it_is(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("environment.ros2_command.main._line_buffered", lambda: None)
+    monkeypatch.setattr("course_runtime.ros2_command.main._line_buffered", lambda: None)
 
 
 def exit_code(*words: str) -> int:
@@ -136,5 +136,5 @@ def test_ctrl_c_ends_with_exit_code_2(monkeypatch: pytest.MonkeyPatch) -> None:
     def interrupted(_argv: list[str]) -> int:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("environment.ros2_command.main._dispatch", interrupted)
+    monkeypatch.setattr("course_runtime.ros2_command.main._dispatch", interrupted)
     assert run(["topic", "echo"]) == 2

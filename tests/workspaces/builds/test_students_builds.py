@@ -16,7 +16,7 @@ from autograder.workspaces.builds.install_folder import LIBRARY
 from autograder.workspaces.builds.students_builds import OwnBuilds, StudentsBuilds, changed_since, is_current
 from autograder.workspaces.graded_builds import GradedBuilds
 from autograder.workspaces.jobs import PlainJobs
-from environment.python_child import python_child
+from course_runtime.python_child import python_child
 
 sys.path.insert(0, str(Path(__file__).parent))
 from made_workspaces import interface_package, python_package
