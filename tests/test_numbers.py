@@ -54,10 +54,12 @@ def blind() -> str:
     """What the blind answers came to; those that were wrong after all are no right answers."""
     right = found(r"Of the (\d+) right ones (\w+) lost points: (\w+) were wrong after all", ACCURACY)
     wrong = found(r"None of the (\d+) wrong ones passed", ACCURACY)
+    later = found(r"On (\S+) (\d+) more wrong answers were written.*?(\d+) of them passed", ACCURACY)
     written, lost, mistaken = map(number, right.groups())
     return (
         f"Of {written - mistaken} right answers written blind, from the tasks alone, {IN_WORDS[lost - mistaken]} lost "
-        f"points (their causes are fixed since); none of {wrong[1]} wrong ones passed."
+        f"points (mended since); none of {wrong[1]} wrong ones passed, and {later[3]} of {later[2]} on "
+        f"{later[1]}."
     )
 
 

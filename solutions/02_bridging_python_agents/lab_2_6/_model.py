@@ -39,6 +39,7 @@ ANSWERS = {
     "promises": Work(takes=0.2, result={"reply": "yes, as soon as I am there"}),
     "late": Work(takes=3.2, result={"reply": "yes"}),
     "never": Work(takes=float("inf"), result={"reply": "yes"}),
+    "shouts": Work(takes=0.2, result={"reply": "Yes"}),
 }
 """What a person answers who is asked about a door. The last digit of the room says which."""
 

@@ -6,21 +6,25 @@ from random import Random
 from lab_2_6._model import answer, order, reply, room, told, walk
 
 from autograder.kit import drawn_until, shuffled
-from autograder.kit.oracle.tool_user import Text, ToolUser
+from autograder.kit.oracle.tool_user import Text, ToolUser, Work
 
 PAUSE = 1.25
 """Seconds of the subject's time after each input."""
+OPENS = 1.25
+"""Seconds until a door is open."""
 
 
 def steps(random: Random) -> list[Text | float]:
     """Return rows in drawn order. In each a person says yes or no, or nothing, or a newer order comes first."""
     no, late, never = "no", "late", "never"
     # What a person says comes a quarter of a second or more away from the two seconds, and from the end of a step.
+    # So does the answer of the door: a node that reports at once, reports in the step before.
     rows: list[list[Text | float]] = [
         [order(random, "yes", "done"), PAUSE],
-        [order(random, "lamp", "slowly", "done"), 1.75],
+        [order(random, "lamp", "slowly", "done"), 2.25],
         [order(random, no, "lamp", "done"), PAUSE],
         [order(random, "perhaps", "done"), PAUSE],
+        [order(random, "shouts", "done"), PAUSE],
         [order(random, never, random.choice(("lamp", "walk")), "done"), 1.75, PAUSE],
         [order(random, late, "done"), 1.75, PAUSE],
         # The budget ends with a door that nobody has confirmed, and then the person says yes.
@@ -53,7 +57,7 @@ EXERCISE = ToolUser(
         "/model": lambda _: reply,
         "/lamp": lambda _: [{"success": True}],
         "/confirm": lambda _: answer,
-        "/door": lambda _: [{"reply": "open"}],
+        "/door": lambda _: [Work(takes=OPENS, result={"reply": "open"})],
         "/walk_to": lambda _: walk,
     },
     every=True,
