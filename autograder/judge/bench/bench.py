@@ -365,16 +365,11 @@ class TestBench:
         step: float = STEP,
     ) -> bool:
         def until_then() -> bool:
-            self._answer_due()
+            for server in self._servers:
+                server.answer_due()
             return until is not None and until()
 
         return self._time.run(seconds, until=until_then, quiet=quiet, step=step)
-
-    def _answer_due(self) -> bool:
-        """Send the answers of the judge's services that are due now. Return False: this is no reason to stop."""
-        for server in self._servers:
-            server.answer_due()
-        return False
 
     def pass_time(self, seconds: float, role: str, name: str) -> None:
         self._time.lend(seconds, role, self._real(name))
@@ -446,7 +441,7 @@ class TestBench:
             passed = time.monotonic() - last
             if paced and self._time.is_simulated and passed >= PACED_STEP:
                 last += passed
-                self._time.run(min(passed, PACED_STEP), until=self._answer_due, paced=True)
+                self.run_time(min(passed, PACED_STEP))
             return self._evidence()
 
         return self._wait_for(condition, look, within, quiet=quiet, poll=poll)

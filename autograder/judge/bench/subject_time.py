@@ -232,17 +232,11 @@ class SimulatedClock(NodeClock):
         self._recorder.wait(lambda: not silent(), STANDSTILL)
         return silent()
 
-    def run(
-        self, seconds: float, until: Callable[[], bool], step: float = STEP, *, paced: bool = False
-    ) -> bool:
+    def run(self, seconds: float, until: Callable[[], bool], step: float = STEP) -> bool:
         """Let ``seconds`` of simulated time pass in steps of ``step`` seconds; stop earlier if ``until`` holds.
 
-        Args:
-            paced: True if as much wall time has passed as will pass now. Then a callback that sleeps gains nothing, and
-                an answer that comes late, or not before the callback's end, is no reason for doubt.
-
         Returns:
-            True if the subject's executor answered after each step, or may be late.
+            True if the subject's executor answered after each step.
         """
         # Round the end as each step is rounded. Otherwise the end, a floating-point sum, could be slightly later than
         # the last step, and the loop would make one step too many.
@@ -251,10 +245,10 @@ class SimulatedClock(NodeClock):
             began = time.monotonic()
             self._now = round(min(self._now + step, end), 6)
             self._recorder.simulated_now = self._now
-            if not self.show(self._now) and not paced:
+            if not self.show(self._now):
                 self.doubtful = True
                 return False
-            slow = not paced and time.monotonic() - began > SLOW_STEP
+            slow = time.monotonic() - began > SLOW_STEP
             # If another node moves the clock as well, simulated time proves nothing about the subject's rate.
             is_rivaled = self._wire.node.count_publishers("/clock") > 1
             self.doubtful = self.doubtful or slow or is_rivaled
@@ -294,12 +288,10 @@ class SubjectTime:
         until: Callable[[], bool] | None = None,
         quiet: float | None = None,
         step: float = STEP,
-        paced: bool = False,
     ) -> bool:
         """Let ``seconds`` pass for the subject; stop earlier if ``until`` holds or the subject has ended.
 
-        In real time, also stop if nothing was recorded for ``quiet`` seconds. For ``paced``, see
-        :meth:`SimulatedClock.run`.
+        In real time, also stop if nothing was recorded for ``quiet`` seconds.
 
         Returns:
             False if simulated time could not go on because the subject's executor no longer answers.
@@ -309,7 +301,7 @@ class SubjectTime:
             return False
         if self._pace is Pace.FAST and self._follow_clock():
             assert self._clock is not None
-            turns = self._clock.run(seconds, lambda: over() or self._subject.ended, step, paced=paced)
+            turns = self._clock.run(seconds, lambda: over() or self._subject.ended, step)
             if self._clock.doubtful:
                 self._doubt()
             self.is_lost = not turns

@@ -234,26 +234,6 @@ def test_a_callback_that_sleeps_has_to_be_confirmed_in_real_time(bench_of: Bench
         bench.stop()
 
 
-def test_a_callback_that_sleeps_while_wall_time_passes_needs_no_other_look(bench_of: BenchOf) -> None:
-    text = "std_msgs/msg/String"
-    reference = Reference("a test", {"publisher": {"/told": text}, "subscription": {"/ask": text}})
-    with bench_of(SLEEPER.replace("0.4", "0.9"), reference, Pace.FAST) as bench:
-        bench.part("only")
-        bench.listen("/told", text)
-        asks = bench.speak("/ask", text)
-        bench.start()
-        bench.await_endpoint("subscription", "/ask")
-        bench.await_attention()
-        assert bench.run_time(0.1)
-        bench.doubtful = False
-        asks.send(data="a question")
-        # It sleeps for longer than an executor may be silent where time passes faster.
-        assert bench.wait_until(lambda evidence: bool(evidence.main.of("message", "/told")), 5.0, paced=True)
-        assert not bench.doubtful
-        assert bench.run_time(0.1)
-        bench.stop()
-
-
 def seconds(node: Node) -> float:
     """The time of a node."""
     return node.get_clock().now().nanoseconds / 1e9
