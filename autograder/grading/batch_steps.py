@@ -300,7 +300,7 @@ class Batch:
     def enter(self, graded: Iterable[Sequence[Result]]) -> Iterator[Entered]:
         """Enter submissions into the gradebook and ``autograded``, and yield all chosen ones; in a dry run, enter none.
 
-        Those come first whose grades were in the gradebook already.
+        Submissions whose grades were in the gradebook already come first.
         """
         for entered in self._done:
             yield self._penalized(entered)

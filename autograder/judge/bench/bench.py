@@ -405,7 +405,7 @@ class TestBench:
         self._ask(nodes)
 
     def _ask(self, nodes: Iterable[discovery.NodeName]) -> None:
-        """Record which of the nodes do not answer, and where the subject hangs."""
+        """Record which of the nodes do not answer, and the lines at which the subject hangs."""
         mute = [] if self._subject.ended else silent(self._wire, self._recorder, list(nodes))
         for node in mute:
             self._recorder.record("unanswered", node.full)

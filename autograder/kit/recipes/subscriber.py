@@ -304,7 +304,7 @@ def says_nothing_else(evidence: Evidence) -> Finding:
     elif again:
         seen = "“{}” {} times".format(*_most_often(again))
     elif anew:
-        seen = f"with each string also all earlier strings: “{anew}”"
+        seen = f"each string together with all earlier strings: “{anew}”"
     else:
         seen = "only what was sent" if heard_any else "none of the strings"
     return Finding(
