@@ -11,7 +11,7 @@ BELOW, ABOVE = [factor for factor in LADDER if factor < 1], [factor for factor i
 
 def command(forward: float, turn: float) -> To:
     """Return a command of an agent."""
-    return To("/agent_vel", {"linear": {"x": forward, "y": 0.7}, "angular": {"z": turn}})
+    return To("/agent_vel", {"linear": {"x": forward}, "angular": {"z": turn}})
 
 
 def commands(random: Random, limits: dict[str, float]) -> list[To]:
@@ -56,7 +56,7 @@ EXERCISE = SameAsSolution(
     "Lab 2.2 · Limits",
     "Hand each command on, within limits that are parameters.",
     gives=steps,
-    tells={"/cmd_vel": ("linear.x", "angular.z", "linear.y")},
+    tells={"/cmd_vel": ("linear.x", "angular.z")},
     every=True,
     parameters=["max_forward", "max_turn"],
 ).exercise(
@@ -64,6 +64,5 @@ EXERCISE = SameAsSolution(
         "`max_forward`, by default 0.5, from 0.0 to 1.0": "max_forward cmd_vel",
         "`max_turn`, by default 1.0, from 0.0 to 2.0": "max_turn cmd_vel",
         "between `-max_forward` and `max_forward`": "cmd_vel",
-        "Its other numbers stay 0.": "cmd_vel",
     }
 )
