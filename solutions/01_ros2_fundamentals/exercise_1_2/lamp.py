@@ -142,24 +142,28 @@ EXERCISE = Mission(
             never_off,
             "Your node never switches the lamp off.",
             "Call when the lamp has to change, in both directions: data of the request says whether it has to be on.",
+            {"late": True},  # a node that hangs in its first call does the same
         ),
         (
             "other_way_round",
             other_way_round,
             "Your lamp is off at the door, and on elsewhere.",
             "Look at the comparison, and at what data of the request says.",
+            {"late": True},
         ),
         (
             "one_side",
             one_side,
             "Your node knows only one side of the door: the robot may be near it on both.",
             "abs(x - 4.0) is how far the robot is from the door, on either side.",
+            {"late": True},
         ),
         (
             "other_number",
             other_distance,
             "It is as if another number stood in the place of 1 meter (yours: between {0[0]:g} and {0[1]:g}).",
             "Compare the numbers in your code with the task.",
+            {"late": True},
         ),
     ],
     within=30.0,

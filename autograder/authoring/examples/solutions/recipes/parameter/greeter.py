@@ -14,6 +14,6 @@ EXERCISE = SameAsSolution(
 ).exercise(
     text={
         "Publish a greeting on `greeting` every 0.5 s.": "greeting greeting_rate",
-        "The text of a greeting is the parameter `text`": "greeting text",
+        "Its text is the parameter `text`": "greeting text",
     }
 )
