@@ -58,7 +58,7 @@ def blind() -> str:
     written, lost, mistaken = map(number, right.groups())
     return (
         f"Of {written - mistaken} right answers written blind, from the tasks alone, {IN_WORDS[lost - mistaken]} lost "
-        f"points (mended since); none of {wrong[1]} wrong ones passed, and {later[3]} of {later[2]} on "
+        f"points (fixed since); none of {wrong[1]} wrong ones passed, and {later[3]} of {later[2]} on "
         f"{later[1]}."
     )
 

@@ -31,7 +31,7 @@ class _PaperLoop(asyncio.SelectorEventLoop):
         return handle
 
     def wait(self, select: Callable[[float | None], list[Any]], timeout: float | None) -> list[Any]:
-        """Return what has come. If nothing has, let the others go on until something comes."""
+        """Return the events that have come. If there is none, let the other threads go on until one comes."""
         with self._changing:
             events = select(0)
             if events or timeout == 0:

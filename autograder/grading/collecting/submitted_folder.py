@@ -232,8 +232,8 @@ def misplaced_files(directory: ClassDirectory) -> tuple[list[RefusedFile], list[
             )
             continue
         move = f"move the file into {submitted}/STUDENT/ASSIGNMENT"
-        mend = f"rename the notebook to grade to {missing}" if missing else move
-        why = f"the file is not graded in this place{more}: {mend}, or give the file to `{COMMAND} collect`"
+        step = f"rename the notebook to grade to {missing}" if missing else move
+        why = f"the file is not graded in this place{more}: {step}, or give the file to `{COMMAND} collect`"
         refused.append(RefusedFile(others[0], why))
     return refused, notices
 

@@ -1,6 +1,6 @@
 """Converts a graded submission: its notebooks with cards and points, and their entries for the gradebook.
 
-The notebooks and the entries are the same as those of ``nbgrader autograde``.
+``nbgrader autograde`` makes the same notebooks and entries.
 """
 
 from __future__ import annotations

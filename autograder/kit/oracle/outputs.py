@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 NUMBER = "number of the message"
 """The path of the number of a message, counted from 1: it shows what was published before the judge listened."""
-NOTHING = "nothing"
+NO_OUTPUT = "nothing"
 """The word for no message at all."""
 ONE_MISSING_IN = 4
 """One more or one fewer of this many messages may come, because each node asks and tells at its own moments."""
@@ -79,7 +79,7 @@ class Output:
         """Return in words that the subject said, or returned, what came."""
         if self.kind is Kind.RETURNED:
             return f"returns {came}"
-        return f"says nothing on {self.name}" if came == NOTHING else f"says on {self.name}: {came}"
+        return f"says nothing on {self.name}" if came == NO_OUTPUT else f"says on {self.name}: {came}"
 
     def values(self, events: Sequence[Event]) -> list[list[Any]]:
         """Return the fields that are compared, for each message or answer among the events."""
@@ -218,7 +218,7 @@ class Output:
             for values, other in zip(listed, [*others, *listed[len(others) :]], strict=False)
         ]
         same_again = [(text, len([*group])) for text, group in groupby(told)]
-        return "; ".join(text if n == 1 else f"{text}, {n} times" for text, n in same_again) or NOTHING
+        return "; ".join(text if n == 1 else f"{text}, {n} times" for text, n in same_again) or NO_OUTPUT
 
     def _field_in_words(self, path: str, value: Any, other: Any) -> str:
         if path.endswith("?"):

@@ -51,7 +51,7 @@ DRAWING = "drawing "
 PAUSE = 0.75
 """Seconds of the subject's time after each input. Whatever the input changes must be published by then."""
 PERIODS = 3
-"""The number of periods in a row without an input that show a rate: an interval in which an input comes does not count.
+"""The number of periods in a row without an input that show a rate: an interval in which an input comes is left out.
 """
 MANY = 100
 """The most feedback messages of a goal that are expected if the feedback is not compared."""

@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from autograder.kit.bench import STEP, Pace
 from autograder.kit.counterparts import SOON, Work
-from autograder.kit.oracle.outputs import NOTHING as NO_OUTPUT
-from autograder.kit.oracle.outputs import Kind, Output
+from autograder.kit.oracle.outputs import NO_OUTPUT, Kind, Output
 from autograder.kit.oracle.same_as_solution import NOTHING, SameAsSolution
 from autograder.kit.oracle.steps import Goal, Sets, Text, To, pick
 

@@ -298,17 +298,17 @@ def says_nothing_else(evidence: Evidence) -> Finding:
     sent = _sent_texts(evidence)
     heard_any = any(is_said(text, evidence.main) for text in sent)
     made_up, again = invented(evidence.main, sent), repeated(evidence.main, sent)
-    anew = retold(evidence.main, sent)
+    older = retold(evidence.main, sent)
     if made_up:
         seen = f"“{made_up[0]}”"
     elif again:
         seen = "“{}” {} times".format(*_most_often(again))
-    elif anew:
-        seen = f"each string together with all earlier strings: “{anew}”"
+    elif older:
+        seen = f"each string together with all earlier strings: “{older}”"
     else:
         seen = "only what was sent" if heard_any else "none of the strings"
     return Finding(
-        heard_any and not (made_up or again or anew), "only what was sent, and each string only once", seen
+        heard_any and not (made_up or again or older), "only what was sent, and each string only once", seen
     )
 
 

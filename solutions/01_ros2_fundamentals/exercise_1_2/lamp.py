@@ -61,7 +61,7 @@ def due(now: Moment, on: Callable[[float], bool] = is_near) -> list[Call]:
 
 
 def at_calls(now: Moment) -> list[tuple[Moment, bool]]:
-    """Return what was known before each call of the node, and whether the lamp was asked to be on."""
+    """Return the moment before each call of the node, and whether the call asked for the lamp to be on."""
     return [
         (replace(now, part=replace(now.part, events=now.part.events[:number])), bool(value(event)))
         for number, event in enumerate(now.part.events)
