@@ -12,9 +12,9 @@ from __future__ import annotations
 import contextlib
 import difflib
 import functools
-import importlib
 import sys
 import traceback
+from importlib import import_module
 from importlib.machinery import ModuleSpec
 from typing import TYPE_CHECKING
 
@@ -54,18 +54,9 @@ def get(exercise_id: str) -> Exercise:
         BrokenExercise: The exercise's file cannot be imported, or does not define an exercise with this id; or its
             ticket cannot be used.
     """
-    return _loaded(exercise_id, path(exercise_id))
-
-
-# The results of this function and the next one are cached, because a judge cannot read the labs' folders any more when
-# it is in its sandbox.
-@functools.cache
-def _loaded(exercise_id: str, file: Path) -> Exercise:
-    from autograder.kit.hunts.ticket import exercise_of
-
+    file = path(exercise_id)
     try:
-        module = importlib.import_module(exercise_id) if file.exists() else None
-        exercise: Exercise | None = getattr(module, "EXERCISE", None) if module else exercise_of(file)
+        exercise: Exercise | None = _of_ticket(file) or getattr(import_module(exercise_id), "EXERCISE", None)
     except Exception as error:
         raise BrokenExercise(f"{file} cannot be imported: {_words(error)}") from error
     if exercise is None:
@@ -75,6 +66,16 @@ def _loaded(exercise_id: str, file: Path) -> Exercise:
     if exercise.id != exercise_id:
         raise BrokenExercise(f"{file} defines the exercise {exercise.id!r}: its id has to be {exercise_id!r}")
     return exercise
+
+
+# The results of this function and of `_files_of` are cached, because a judge cannot read the labs' folders any more
+# when it is in its sandbox. Python itself keeps the modules.
+@functools.cache
+def _of_ticket(file: Path) -> Exercise | None:
+    """Return the exercise of a ticket; None if an exercise has a file of its own."""
+    from autograder.kit.hunts.ticket import exercise_of
+
+    return None if file.exists() else exercise_of(file)
 
 
 def unbroken() -> tuple[Exercise, ...]:
