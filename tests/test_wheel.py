@@ -15,6 +15,8 @@ from typing import Any
 import nbformat
 import pytest
 
+from tests.copies import copied
+
 ROOT = Path(__file__).resolve().parents[1]
 LINK = re.compile(r"\]\(([^)]+)\)")
 UV = Path(sys.prefix) / "bin" / "uv"
@@ -40,9 +42,7 @@ def printed_json(text: str) -> Any:
 def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The wheel, built from a copy, so that nothing is left in the clone."""
     copy = tmp_path_factory.mktemp("copy") / "course"
-    shutil.copytree(
-        ROOT, copy, ignore=shutil.ignore_patterns(".git", ".venv", "tests", "__pycache__", "*.egg-info")
-    )
+    copied(ROOT, copy, "tests")
     command = [sys.executable, "-m", "pip", "wheel", "--no-deps", "--no-build-isolation", "-w", "dist", "."]
     subprocess.run(command, cwd=copy, check=True, capture_output=True)
     return next((copy / "dist").glob("*.whl"))

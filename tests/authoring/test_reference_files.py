@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -15,6 +14,7 @@ from autograder import exercises
 from autograder.authoring import reference_files
 from autograder.kit.recipes.own_scenario import Met
 from autograder.verdict import CriterionResult
+from tests.copies import copied
 from tests.measure import evidence
 from tests.tiers import due
 
@@ -59,7 +59,7 @@ def test_recording_again_gives_the_same_file(exercise_id: str) -> None:
 def test_inputs_that_were_changed_and_not_recorded_again_are_noticed(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    shutil.copytree(ROOT / "solutions", tmp_path / "solutions")
+    copied(ROOT / "solutions", tmp_path / "solutions")
     exercise = tmp_path / "solutions" / "01_ros2_fundamentals" / "lab_1_3" / "server.py"
     text = exercise.read_text(encoding="utf-8")
     assert text.count(INPUTS) == 1
@@ -74,7 +74,7 @@ def test_inputs_that_were_changed_and_not_recorded_again_are_noticed(
 def test_a_changed_reference_solution_changes_what_is_expected(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    shutil.copytree(ROOT / "solutions", tmp_path / "solutions")
+    copied(ROOT / "solutions", tmp_path / "solutions")
     master = tmp_path / "solutions" / "01_ros2_fundamentals" / "lab_1_2" / "lab.md"
     text = master.read_text(encoding="utf-8")
     assert '"chatter"' in text
@@ -92,7 +92,7 @@ def test_a_changed_reference_solution_changes_what_is_expected(
 
 
 def test_a_master_that_cannot_be_used_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    shutil.copytree(ROOT / "solutions", tmp_path / "solutions")
+    copied(ROOT / "solutions", tmp_path / "solutions")
     master = tmp_path / "solutions" / "01_ros2_fundamentals" / "lab_1_2" / "lab.md"
     master.write_text(master.read_text(encoding="utf-8").replace("### END SOLUTION", ""), encoding="utf-8")
     monkeypatch.setenv("AUTOGRADER_COURSE", str(tmp_path))

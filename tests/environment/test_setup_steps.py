@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import io
 import os
-import shutil
 import subprocess
 import sys
 import tempfile
@@ -19,6 +18,7 @@ from course_runtime.ros_flavour import Ros
 from environment import bootstrap
 from environment.setup_steps import Setup, SetupError
 from environment.steps import Step, digest
+from tests.copies import copied
 
 ROOT = Path(__file__).resolve().parents[2]
 PLACE = Place(ROOT, Path("/usr/bin/python3.11"))
@@ -102,7 +102,7 @@ def test_the_interfaces_are_made_from_every_file_of_their_package() -> None:
 
 
 def test_a_package_in_a_chapters_folder_is_built_alone(tmp_path: Path) -> None:
-    shutil.copytree(ROOT / "environment", tmp_path / "environment")
+    copied(ROOT / "environment", tmp_path / "environment")
     usual = steps(place := Place(tmp_path, PLACE.base_python))
     package = tmp_path / "solutions/02_power/interfaces/power_interfaces"
     (package / "srv").mkdir(parents=True)
@@ -168,7 +168,7 @@ LEFT = (
 def test_a_build_keeps_no_variable_of_the_user_and_no_file(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    shutil.copytree(ROOT / "environment/interfaces", tmp_path / "environment/interfaces")
+    copied(ROOT / "environment/interfaces", tmp_path / "environment/interfaces")
     (tmp_path / ".venv/bin").mkdir(parents=True)
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "temporary"))
     (tmp_path / "temporary").mkdir()

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
 import subprocess
 from pathlib import Path
 
@@ -22,6 +21,7 @@ from autograder.grading.course_version import (
 )
 from autograder.grading.running import task_dispatcher
 from tests.cases import cases
+from tests.copies import copied
 from tests.reach.imports import imports_of
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -33,8 +33,7 @@ PLACES = cases(__file__, "PLACES")
 def copy(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A copy of the course whose files a test may change."""
     for name in ("autograder", "course_runtime", "environment", "solutions"):
-        ignored = shutil.ignore_patterns("__pycache__", "build", "install", "log")
-        shutil.copytree(ROOT / name, tmp_path / name, ignore=ignored)
+        copied(ROOT / name, tmp_path / name)
     monkeypatch.setenv("AUTOGRADER_COURSE", str(tmp_path))
     monkeypatch.setattr(course, "__file__", str(tmp_path / "autograder" / "course.py"))
     return tmp_path

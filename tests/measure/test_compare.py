@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import shutil
 import subprocess
 from typing import TYPE_CHECKING
 
 import pytest
 
 from autograder.verdict import CriterionResult, Diagnosis, State, Verdict
+from tests.copies import copied
 from tests.measure import __main__ as measure
 from tests.measure import compare
 
@@ -63,8 +63,7 @@ def test_two_commits_are_judged_each_by_its_own_judge(
 ) -> None:
     course = tmp_path / "course"
     for folder in ("autograder", "solutions"):
-        unneeded = shutil.ignore_patterns("__pycache__")
-        shutil.copytree(compare.ROOT / folder, course / folder, ignore=unneeded)
+        copied(compare.ROOT / folder, course / folder)
 
     def commit(words: str) -> None:
         git = ["git", "-c", "user.name=x", "-c", "user.email=x", "-c", "core.hooksPath=/dev/null"]

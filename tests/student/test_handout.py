@@ -18,6 +18,7 @@ from autograder import course, exercises, packed_files
 from autograder.masters.master_files import lab_name, masters
 from autograder.student import handout
 from autograder.student.handout import CannotHandOut, hand_out
+from tests.copies import copied
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -207,7 +208,7 @@ def test_a_course_without_a_notebook_has_nothing_to_hand_out(tmp_path: Path) -> 
 def test_nothing_that_somebody_has_written_in_the_chapters_is_in_it(tmp_path: Path) -> None:
     course = tmp_path / "course"
     for name in ("chapters", "solutions"):
-        shutil.copytree(ROOT / name, course / name)
+        copied(ROOT / name, course / name)
     chapter = course / "chapters/01_ros2_fundamentals"
     (chapter / "ros2_ws/src").mkdir(parents=True)
     (chapter / "ros2_ws/src/talker.py").write_text("my own solution")

@@ -18,6 +18,7 @@ from autograder.judge import command_check
 from autograder.kit.evidence import Event, Part
 from autograder.kit.runners import WorkspaceReport, failed_line, runner_trouble, workspace_report_line
 from autograder.workspaces.__main__ import main
+from tests.copies import copied
 from tests.measure.bank import answer_named
 
 pytestmark = [
@@ -40,8 +41,7 @@ def checked(folder: Path, exercise: str, *command: str) -> tuple[int, str, float
     ("exercise", "package"), [("lab_1_1.hello", "ros2_ws"), ("lab_1_2.programs", "ros2_ws")]
 )
 def test_a_right_workspace_has_all_points(tmp_path: Path, exercise: str, package: str) -> None:
-    beside = shutil.ignore_patterns("build", "install", "log")
-    shutil.copytree(course.root() / "solutions" / package, tmp_path / "my ws", ignore=beside)
+    copied(course.root() / "solutions" / package, tmp_path / "my ws")
     assert checked(tmp_path, exercise, "my ws") == (0, "passed", exercises.get(exercise).points)
 
 

@@ -97,7 +97,7 @@ class ToolUser(SameAsSolution):
         task: One sentence that states the task.
         gives: Draws the steps. :class:`Text` is an input as JSON.
         tells: As for :class:`SameAsSolution`. A dictionary names what is compared, by a path or by a function of the
-            fields: ``{"/said": {"the first word": lambda fields: fields["data"].split()[0]}}``.
+            fields: ``{"/said": {"the first word": lambda fields: fields["data"].partition(":")[0]}}``.
         asks: The services that the subject calls, with the paths of the request's fields.
         does: The actions to which the subject sends goals, with the paths of the goal's fields.
         cancels: Those of these actions of which is compared, too, which goals the subject cancels while they run. They

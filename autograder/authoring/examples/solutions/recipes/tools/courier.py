@@ -1,12 +1,21 @@
 """Tools: a node that reads orders, asks a service, and sends goals to an action; the judge plays all three."""
 
 from random import Random
+from typing import Any
 
 from autograder.kit import mixed, shuffled
 from autograder.kit.oracle.tool_user import Text, ToolUser, Work
 
 OPEN, LOCKED = {"success": True}, {"success": False, "message": "locked"}
 LOST = Work("aborted", feedback=[{"distance": 1.0}], result={"x": 2.0})
+
+WORDS = ("refused", "locked", "done", "lost")
+
+
+def said(fields: dict[str, Any]) -> str:
+    """Return the word that a text begins with, or the text."""
+    text = str(fields["data"])
+    return next((word for word in WORDS if text.startswith(word)), text)
 
 
 def orders(random: Random) -> list[Text]:
@@ -22,7 +31,7 @@ EXERCISE = ToolUser(
     "Tools · The courier",
     "Have the door opened, and walk.",
     gives=orders,
-    tells={"/said": {"first word": lambda fields: fields["data"].split()[0]}},
+    tells={"/said": {"first word": said}},
     asks={"/door": "data"},
     does={"/walk_to": ("x", "y")},
     serves={
