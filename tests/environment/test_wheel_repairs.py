@@ -1,4 +1,4 @@
-"""The repairs of the wheels: of CMake files, of imports that are left out until somebody asks, and of Fast DDS."""
+"""The repairs of the wheels: CMake files, imports, an executor with several threads, action clients, Fast DDS."""
 
 from __future__ import annotations
 
@@ -9,8 +9,10 @@ import stat
 import subprocess
 import sys
 import threading
+from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
+from unittest import mock
 
 import pytest
 
@@ -26,6 +28,9 @@ from environment.wheel_repairs import (
     repaired_cmake,
     repaired_fast_dds,
 )
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 EXPORT = """\
 add_library(std_msgs::std_msgs__rosidl_generator_py SHARED IMPORTED)
@@ -66,6 +71,17 @@ class Node:
         modified_parameter_list = self._call_pre_set_parameters_callback(parameter_list)
         return modified_parameter_list
 """
+EXECUTOR = """\
+class MultiThreadedExecutor:
+    def __init__(self, pool):
+        self._futures = []
+        self._executor = pool
+
+    def spin_once(self, handler):
+        if handler:
+            self._executor.submit(handler)
+            self._futures.append(handler)
+"""
 CLIENT = """\
 import threading
 
@@ -89,6 +105,7 @@ class ActionClient:
 MENDED_CLIENT = CLIENT.replace(
     "        sequence_number", "        with self._lock:\n            sequence_number"
 )
+TEXTS = (GENERATOR, MESSAGE, GRAMMARS, PARAMETERS, EXECUTOR, CLIENT)
 
 INSTALLED = Path(sys.prefix) / "lib/libfastrtps.so"
 SET_LISTENER = "_ZN8eprosima7fastdds3dds17DomainParticipant12set_listenerEPNS1_25DomainParticipantListenerE"
@@ -167,9 +184,9 @@ def test_this_environment_is_repaired_cmake() -> None:
 
 @pytest.fixture
 def wheels(tmp_path: Path) -> Path:
-    for module, text in zip(SOURCE_REPAIRS, (GENERATOR, MESSAGE, GRAMMARS, PARAMETERS, CLIENT), strict=True):
+    for module, text in zip(SOURCE_REPAIRS, TEXTS, strict=True):
         file = tmp_path / module.file
-        file.parent.mkdir(parents=True)
+        file.parent.mkdir(parents=True, exist_ok=True)
         file.write_text(text, encoding="utf-8")
         file.chmod(0o644)
     (tmp_path / "rosidl_generator_py/import_type_support_impl.py").write_text("import_type_support = 1\n")
@@ -198,7 +215,7 @@ def run(program: str, first: Path | None = None) -> Any:
 
 
 def test_what_is_not_needed_is_imported_where_it_is_used(wheels: Path) -> None:
-    changed = ["__init__.py", "_service_event_info.py", "__init__.py", "node.py", "client.py"]
+    changed = ["__init__.py", "_service_event_info.py", "__init__.py", "node.py", "executors.py", "client.py"]
     assert [path.name for path in repair_sources(wheels)] == changed
     program = """
 import sys
@@ -220,6 +237,42 @@ def test_sources_are_repaired_once(wheels: Path) -> None:
     assert [path.read_bytes() for path in changed] == texts
     assert {path.stat().st_mode & 0o777 for path in changed} == {0o644}
     assert not list(wheels.rglob("*.new"))
+
+
+class Pool(ThreadPoolExecutor):
+    """A pool with one thread, which keeps what it was given."""
+
+    def __init__(self) -> None:
+        super().__init__(1)
+        self.given: list[Callable[[], object]] = []
+
+    def submit(self, work: Callable[[], Any], /, *_: object, **__: object) -> Future[Any]:
+        self.given.append(work)
+        return super().submit(work)
+
+
+def test_a_callback_that_waits_for_a_thread_is_not_queued_again(wheels: Path) -> None:
+    file = wheels / SOURCE_REPAIRS[-2].file
+    repair_sources(wheels)
+    module: dict[str, Any] = {}
+    exec(compile(file.read_text(), file, "exec"), module)
+    with Pool() as pool:
+        executor, free = module["MultiThreadedExecutor"](pool), threading.Event()
+        pool.submit(free.wait)
+        callback, awaits = mock.Mock(), mock.Mock()
+        callback.done.return_value = awaits.done.return_value = False
+        for _ in range(3):
+            executor.spin_once(callback)
+            executor.spin_once(awaits)
+        assert pool.given == [free.wait, callback, awaits]
+        free.set()
+        pool.submit(int).result()
+        callback.done.return_value = True
+        executor.spin_once(awaits)
+        # What awaits something has returned, and is not done: it goes on where the executor runs it again.
+        assert pool.given[4:] == [awaits]
+        assert executor._futures == [callback, awaits]
+        assert list(executor._queued) == [awaits]
 
 
 def test_an_action_client_takes_no_answer_while_it_sends(wheels: Path) -> None:

@@ -43,6 +43,8 @@ _RELEASE_EVERY = 0.05
 _LAST_GRACE = 1.0
 """Seconds for a callback to end after it was interrupted."""
 _ATTEMPTS = 3
+_TURN = 0.001
+"""Maximum number of seconds for a thread to return from a callback before the next callback is handed out."""
 _LONG_WAIT = 1.0
 """When a node is stopped, a service call that has waited for its answer longer than this, in seconds, counts as hung.
 """
@@ -126,7 +128,8 @@ class SpinThreads:
         self._finish_lock = threading.RLock()
         self._finished = False
         self._to_workers: queue.SimpleQueue[_Work | None] = queue.SimpleQueue()
-        self._queued: set[Task] = set()
+        self._queued: dict[Task, threading.Event] = {}
+        """The tasks that no thread has begun, each with an event that is set when its callback has returned."""
         self._running: dict[int, _BusyThread] = {}
         # A single thread runs the callbacks itself, as a SingleThreadedExecutor does.
         self._workers = threads if threads > 1 else 0
@@ -297,17 +300,23 @@ class SpinThreads:
     def _hand_out(self, work: _Work) -> None:
         if not self._workers:
             self._run(work)
-        elif work.task not in self._queued:
-            self._queued.add(work.task)
+            return
+        returned = self._queued.get(work.task)
+        if returned is None:
+            returned = self._queued[work.task] = threading.Event()
             self._to_workers.put(work)
+        # rclpy offers a task until it runs, and the wait set wakes until its data is taken: without this wait, the loop
+        # would hold the interpreter's lock, and the thread that is to take the data would get it each 5 ms.
+        returned.wait(_TURN)
 
     def _run_queued_work(self) -> None:
         while (work := self._to_workers.get()) is not None:
             # Remove the task before it runs: if its callback awaits something, rclpy offers the task again, and it
             # must then be queued again.
-            self._queued.discard(work.task)
+            returned = self._queued.pop(work.task)
             if not self._stop.is_set():
                 self._run(work)
+            returned.set()
 
     def _run(self, work: _Work) -> None:
         ident = threading.get_ident()

@@ -16,7 +16,9 @@ from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.executors import MultiThreadedExecutor, SingleThreadedExecutor
 from rclpy.node import Node
 
+from autograder.notebook.nodes import spin_threads
 from autograder.notebook.nodes.background_nodes import Interrupted, spinning
+from autograder.notebook.nodes.spin_threads import SpinThreads
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -39,6 +41,25 @@ def test_callbacks_run_while_the_body_runs(nodes: Any, threads: int) -> None:
         ticker.wait_for_ticks(5)
         first = int(listener.heard.get(timeout=180))
         assert listener.heard.get(timeout=180) == str(first + 1), "each tick is heard once"
+
+
+def test_the_next_callback_is_handed_out_when_one_has_returned(
+    nodes: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Or has taken longer than a turn. A loop that goes on at once lets no other thread have the interpreter."""
+    returned: list[bool] = []
+    hand_out = SpinThreads._hand_out
+
+    def watched(threads: SpinThreads, work: Any) -> None:
+        hand_out(threads, work)
+        returned.append(work.task.done())
+
+    monkeypatch.setattr(SpinThreads, "_hand_out", watched)
+    monkeypatch.setattr(spin_threads, "_TURN", 180.0)
+    with spinning(nodes.Ticker(), threads=2) as ticker:
+        ticker.wait_for_ticks(5)
+        assert len(returned) > 3
+        assert all(returned)
 
 
 @pytest.mark.parametrize("threads", [1, 3])
