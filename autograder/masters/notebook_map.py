@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 
-_OUTCOME = re2.compile(r"(?m)^\| ([^|]+) \| [^|]+ \| .*/([\w-]+)\.ipynb\) \|$")
+_OUTCOME = re2.compile(r"(?m)^\| ([^|]+) \| .*/([\w-]+)\.ipynb\) \|$")
 _TITLE = re2.compile(r"(?m)^#\s+(.*?)\s*$")
 
 

@@ -13,7 +13,7 @@ from autograder import exercises
 ROOT = Path(__file__).resolve().parents[2]
 PAGE = ROOT / "docs" / "learning-outcomes.md"
 ROWS = re.findall(
-    r"^\| (.+) \| `([\w.]+)` \| \[[^\]]+\]\(\.\./(chapters/\S+\.ipynb)\) \|$",
+    r"^\| (.+) \| \[`([\w.]+)`\]\(\.\./(chapters/\S+\.ipynb)\) \|$",
     PAGE.read_text(encoding="utf-8"),
     flags=re.MULTILINE,
 )

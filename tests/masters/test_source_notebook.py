@@ -133,7 +133,7 @@ def test_the_last_cell_links_to_the_neighbours_and_at_the_ends_of_a_chapter_to_a
     (course / "docs").mkdir()
     (course / "docs/learning-outcomes.md").write_text(
         "".join(
-            f"| {can} | a task | [Lab](../chapters/x/{lab}.ipynb) |\n"
+            f"| {can} | [a task](../chapters/x/{lab}.ipynb) |\n"
             for can, lab in (("add", "lab_9_1"), ("double", "lab_9_1"))
         )
     )
