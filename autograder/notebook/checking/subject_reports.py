@@ -97,7 +97,8 @@ class CapturedOutput:
     def stacks(self) -> tuple[str, float]:
         """Return the stacks of the subject's threads, innermost call first, in the form of Python's faulthandler.
 
-        The head of a thread also names the innermost loop of the student's code. The second value is the processor time
+        A thread of the course that is between two callbacks is left out: it seems to run no callbacks at all. The head
+        of a thread also names the innermost loop of the student's code. The second value is the processor time
         in seconds that the busiest thread in the student's code has used; 0.0 if there is no such thread.
         """
         frames = sys._current_frames()
@@ -105,16 +106,16 @@ class CapturedOutput:
         for thread in threading.enumerate():
             if thread.ident in self._others or thread.ident not in frames:
                 continue
-            calls = [
-                call
-                for call in traceback.walk_stack(frames[thread.ident])
-                if not call[0].f_code.co_filename.startswith(_COURSE)
-            ]
+            every = list(traceback.walk_stack(frames[thread.ident]))
+            calls = [call for call in every if not call[0].f_code.co_filename.startswith(_COURSE)]
+            is_ours = len(calls) < len(every)
             calls = [*calls[:MOST_CALLS], *calls[MOST_CALLS:][-MOST_CALLS:]]
             # A recursion has hundreds of calls at one line.
             own = {
                 (call[0].f_code, call[1]): call for call in calls if is_students(call[0].f_code.co_filename)
             }
+            if is_ours and not own and not any("/rclpy/" in call[0].f_code.co_filename for call in calls):
+                continue  # between two callbacks
             times += [_processor_time(thread)] if own else []
             loop = next(filter(None, map(_loop_in, own.values())), "")
             lines.append(f"Thread {thread.ident:#x}{loop} (most recent call first):")

@@ -16,6 +16,7 @@ from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.executors import MultiThreadedExecutor, SingleThreadedExecutor
 from rclpy.node import Node
 
+from autograder.notebook.checking.subject_reports import CapturedOutput
 from autograder.notebook.nodes import spin_threads
 from autograder.notebook.nodes.background_nodes import Interrupted, spinning
 from autograder.notebook.nodes.spin_threads import SpinThreads
@@ -60,6 +61,24 @@ def test_the_next_callback_is_handed_out_when_one_has_returned(
         ticker.wait_for_ticks(5)
         assert len(returned) > 3
         assert all(returned)
+
+
+def test_the_stacks_leave_out_a_thread_between_two_callbacks(
+    nodes: Any, until: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It has no call of rclpy, as if nothing spun the node."""
+    begins = threading.Event()
+    monkeypatch.setattr(SpinThreads, "_run_queued_work", begins.wait)
+    monkeypatch.setattr(spin_threads, "_TURN", 180.0)
+    captured = CapturedOutput(lambda *_: None)
+    spun = SpinThreads([nodes.Ticker()], threads=2, on_failure=lambda _: None, on_end=lambda _: None)
+    spun.start()
+    until(lambda: spun._queued)
+    assert captured.stacks() == ("", 0.0)
+    begins.set()
+    for returned in spun._queued.values():
+        returned.set()
+    spun.stop()
 
 
 @pytest.mark.parametrize("threads", [1, 3])
