@@ -226,15 +226,13 @@ def __getattr__(name):
         + _MARK
         + """a callback that waits for a thread is not queued again.
             from concurrent.futures import wait
-            queued = self.__dict__.setdefault('_queued', {})
-            for callback in [callback for callback in queued if callback.done()]:
-                del queued[callback]
-            if handler not in queued:
+            turn = getattr(handler, '_turn', None)
+            if turn is None:
                 self._futures.append(handler)
-            if handler not in queued or queued[handler].done():
-                queued[handler] = self._executor.submit(handler)
+            if turn is None or turn.done():
+                turn = handler._turn = self._executor.submit(handler)
             # Without this wait, the loop would hold the interpreter's lock, and no thread would take the data.
-            wait([queued[handler]], timeout=0.001)""",
+            wait([turn], timeout=0.001)""",
     ),
     SourceRepair(
         "rclpy/action/client.py",

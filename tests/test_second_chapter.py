@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import json
 import os
-import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -21,6 +20,7 @@ from autograder.boxes.sandbox import why_impossible
 from autograder.student.handout import hand_out
 from autograder.workspaces.builds.install_folder import with_prefixes
 from course_runtime.interface_packages import build_command, interface_packages
+from tests.copies import copied
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -38,7 +38,7 @@ def root(tmp_path_factory: pytest.TempPathFactory) -> Path:
     root = tmp_path_factory.mktemp("course")
     (root / "solutions").mkdir()
     new_exercise(root, FIRST, "publisher", chapter="01_first")
-    shutil.copytree(CHAPTER, root / "solutions" / CHAPTER.name, ignore=shutil.ignore_patterns("__pycache__"))
+    copied(CHAPTER, root / "solutions" / CHAPTER.name)
     return root
 
 
