@@ -21,6 +21,7 @@ from tiny_class import LISTENER, TALKER, FakeEngine, TinyClass, shown
 from autograder.grading.rebuilding import submitted_notebook
 from autograder.grading.rebuilding.submission_desk import read_notebook
 from autograder.grading.rebuilding.submitted_notebook import UnreadableSubmission, read_bytes
+from tests.hard_links import hard_link
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -70,7 +71,7 @@ def a_link_to_nothing(path: Path, _: TinyClass) -> None:
 def a_second_name_of_a_neighbours(path: Path, tiny: TinyClass) -> None:
     copy = tiny.path / "submitted" / "copy.ipynb"
     shutil.copy(tiny.path / "submitted" / "ada" / "lab_1_2" / path.name, copy)
-    path.hardlink_to(copy)
+    hard_link(path, copy)
 
 
 ODD: dict[str, tuple[Callable[[Path, TinyClass], None], str]] = {

@@ -7,9 +7,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from tests.hard_links import hard_link
+
 if TYPE_CHECKING:
     from pathlib import Path
 
 
 def hand_in(folder: Path, notebook: Any) -> None:
-    (folder / "lab_1_2.ipynb").hardlink_to(folder.parents[1] / "honest_ada" / "lab_1_2" / "lab_1_2.ipynb")
+    hard_link(folder / "lab_1_2.ipynb", folder.parents[1] / "honest_ada" / "lab_1_2" / "lab_1_2.ipynb")

@@ -8,6 +8,7 @@ import pytest
 from autograder.execution.executed_cells import CellType
 from autograder.grading.rebuilding.notebook_parsing import parse
 from autograder.grading.rebuilding.submitted_notebook import SubmittedCell, UnreadableSubmission, read_bytes
+from tests.hard_links import hard_link
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -99,7 +100,7 @@ def a_notebook_with_two_names(tmp_path: Path, first: str, second: str) -> tuple[
     for name in (theirs, mine):
         name.parent.mkdir(parents=True, exist_ok=True)
     theirs.write_text("{}")
-    mine.hardlink_to(theirs)
+    hard_link(mine, theirs)
     return theirs, mine
 
 
