@@ -23,7 +23,8 @@ STILL = To("/agent_vel", {"linear": {"x": 0.0}})
 
 def steps(random: Random) -> list[To | float]:
     """Return three rounds in drawn order: commands, the press, what happens until the release, and what comes after."""
-    held = shuffled(random, [command(random), STILL, command(random)])
+    # The first is a command that moves: after a release that should not be, it tells what released.
+    held = [command(random), *shuffled(random, [STILL, command(random)])]
     long: list[To | float] = [command(random), button(True), *held, 3.2, command(random), button(False), 0.9]
     silent: list[To | float] = [
         command(random),
