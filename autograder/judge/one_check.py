@@ -63,7 +63,8 @@ class Seen:
 
     Attributes:
         evidence: The recorded events.
-        doubtful: True if even a pass must be confirmed in real time.
+        doubtful: True if even a pass must be confirmed in real time; of a look in real time, True if a busy machine may
+            be why it confirms the first one.
         unmet: True if a run began before the subject's participant had discovered the judge's endpoints.
         confirms: True if this look in real time went as the first one, whose evidence decides.
     """
@@ -187,10 +188,9 @@ def _looks(
             card.words = _so_far(last)
         with Crowding() as crowding:
             seen = look_at(reference, Pace.REAL_TIME, before=last.evidence, names=last.names)
-        if seen.confirms:
-            last = replace(last, seen=seen)
-        else:
-            last = replace(decided(seen, last.evidence, last.names), crowded=crowding.too_busy)
+        last = last if seen.confirms else decided(seen, last.evidence, last.names)
+        # No load makes so much go alike that a look confirms the first one without a doubt.
+        last = replace(last, seen=seen, crowded=crowding.too_busy and (seen.doubtful or not seen.confirms))
         yield last
     tells = practice and practice.knows_wrong_answers and not last.verdict.passed
     if practice and tells and not is_certain(exercise, last.evidence):

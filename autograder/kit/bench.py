@@ -212,7 +212,10 @@ class Bench(Protocol):
         """End the look in real time: it goes as the first one went, whose evidence decides."""
 
     def doubt(self) -> None:
-        """Require a second look in real time to confirm this look."""
+        """Require a second look in real time to confirm this look.
+
+        Before :meth:`confirm`, it says that a busy machine may be why the look went as the first one.
+        """
 
     def settle(self) -> None:
         """Wait until the subject's executors, if they still spin, have processed everything that was sent to them.

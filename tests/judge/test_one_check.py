@@ -97,10 +97,11 @@ def test_the_last_look_that_is_needed_decides(
     assert (checked.evidence.before is not None) is (len(looks) == 2)
 
 
-@pytest.mark.parametrize(("first", "doubtful"), [("bad", False), ("good", True)])
+@pytest.mark.parametrize(("first", "doubtful"), [("bad", False), ("bad", True), ("good", True)])
 def test_a_look_that_goes_as_the_first_one_leaves_its_verdict(
     monkeypatch: pytest.MonkeyPatch, first: str, doubtful: bool
 ) -> None:
+    """Only if it was in doubt may it be a busy machine that fails twice."""
     stored = evidence_files.load_reference(USUAL.id)
     looks = iter([(first, False), ("cut short", True)])
 
@@ -111,9 +112,10 @@ def test_a_look_that_goes_as_the_first_one_leaves_its_verdict(
     monkeypatch.setattr(one_check, "look", look)
     monkeypatch.setattr(Crowding, "too_busy", True)
     subject: Any = Anybody()
-    checked = one_check.check(exercise(), subject, stored, seed="s", domain_id=0)
+    checked = one_check.check(exercise(), subject, stored, seed="s", domain_id=0, marks_crowded=True)
     assert (checked.evidence.main.name, checked.evidence.before) == (first, None)
     assert checked.verdict.passed is (first == "good")
+    assert checked.crowded is (first == "bad" and doubtful)
     assert next(looks, None) is None
 
 

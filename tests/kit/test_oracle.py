@@ -310,7 +310,7 @@ class _Bench:
 
     def __init__(self, reference: Reference) -> None:
         self.reference, self.made = reference, list[tuple[str, Qos]]()
-        self.random, self.parts = Random(1), list[str]()
+        self.random, self.parts, self.before = Random(1), list[str](), None
 
     def part(self, name: str) -> None:
         self.parts.append(name)

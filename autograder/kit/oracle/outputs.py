@@ -160,7 +160,11 @@ class Output:
 
     def parts_at(self, seen: Part, expected: Part) -> Event | None:
         """Return what was noted in the first step in which the subject's outputs are others; None if there is none."""
-        if self.kind is not Kind.STEPS:
+        return self.noted_at(seen, expected) if self.kind is Kind.STEPS else None
+
+    def noted_at(self, seen: Part, expected: Part) -> Event | None:
+        """Return the same, also for the description of a parameter, which is noted as step 0."""
+        if self.kind not in (Kind.STEPS, Kind.PARAMETER):
             return None
         noted = seen.of("noted", self.name)
         return next(iter(noted[self._parting(self._rows(seen), self._rows(expected)) :]), None)

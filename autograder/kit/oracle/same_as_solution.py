@@ -21,6 +21,7 @@ from autograder.kit.draft import POINTS, Draft
 from autograder.kit.mistakes.common_mistakes import KEEP_THE_PERIOD, NOT_LATCHED, is_not_latched
 from autograder.kit.model import Finding
 from autograder.kit.oracle.goal_sender import GoalSender
+from autograder.kit.oracle.mistakes_again import MistakesAgain
 from autograder.kit.oracle.naming.drawn import Drawn
 from autograder.kit.oracle.outputs import NUMBER, Kind, Output
 from autograder.kit.oracle.parameter_answers import (
@@ -39,7 +40,7 @@ if TYPE_CHECKING:
     from collections.abc import Container
 
     from autograder.kit.bench import Bench
-    from autograder.kit.evidence import Part, Reference
+    from autograder.kit.evidence import Event, Part, Reference
     from autograder.kit.model import Exercise
 
 __all__ = ["Goal", "SameAsSolution", "Sets", "To"]
@@ -250,9 +251,13 @@ class SameAsSolution:
                 bench.listen(topic, kind, qos=Qos.LATCHED)
             bench.wait_until(lambda e: bool(e.main.of("mismatch") or e.main.of("message")), QUIET[bench.pace])
         turns: list[Turn] = []
+        again = MistakesAgain(bench, self._outputs)
         went_through = self._describe(bench) and all(
             self._takes(
-                met, Turn(number, step, 0 if number == 0 else len(bench.seen().events), bench.moment), turns
+                met,
+                Turn(number, step, 0 if number == 0 else len(bench.seen().events), bench.moment),
+                turns,
+                again,
             )
             for number, step in enumerate([self._pause, *steps])
         )
@@ -267,7 +272,7 @@ class SameAsSolution:
         # In real time nothing has proved so far that the subject's executor is alive.
         return went_through and bench.pace is Pace.FAST
 
-    def _takes(self, met: Met, turn: Turn, turns: list[Turn]) -> bool:
+    def _takes(self, met: Met, turn: Turn, turns: list[Turn], again: MistakesAgain) -> bool:
         """Give the subject one step, and note its outputs. Return False if the subject does not answer."""
         bench, step = met.bench, turn.step
         if turn.number == 0:
@@ -292,6 +297,9 @@ class SameAsSolution:
         if bench.pace is Pace.FAST:
             bench.settle()
             self._notes(bench, turn)
+        again.end_look(
+            len(turns), lambda output, number: self._values(bench, output, *turns[number : number + 2])
+        )
         return went_through
 
     def _notes(self, bench: Bench, turn: Turn, following: Turn | None = None) -> None:
@@ -300,24 +308,37 @@ class SameAsSolution:
         In real time this comes after the last step: to settle in between would take the longer, the busier the machine.
         A message then belongs to the step in which it was sent.
         """
-        seen, step = bench.seen(), turn.step
-        events = turn.events(seen, following, by_time=bench.pace is Pace.REAL_TIME)
+        step = turn.step
         given = f"{step:g} s without an input" if isinstance(step, (int, float)) else str(step)
         stood = {"stood": step.stands} if isinstance(step, To) and step.stands else {}
         if isinstance(step, Sets):
             given = f"{step.parameter} = {step.value}"
-            bench.note(step.parameter, step=turn.number, given=given, values=[received(events)])
+            values = [received(self._events(bench, turn, following))]
+            bench.note(step.parameter, step=turn.number, given=given, values=values)
         for output in self._of(Kind.STEPS):
-            values = output.values(events)
-            if isinstance(step, Goal) and output.name == step.name:
-                until = following.first if following else None
-                values = step.outcomes(replace(seen, events=seen.events[:until]), output.paths)
-            elif output.name not in self._every or (self._late_after and turn.number == 0):
-                # A publisher may keep more than its last message for late subscribers.
-                values = values[-1:]
-            if stood and bench.before:
-                values = noted_before(bench.before.part(seen.name), output.name, turn.number, values)
+            values = self._values(bench, output, turn, following)
             bench.note(output.name, step=turn.number, given=given, values=values, **stood)
+
+    def _values(self, bench: Bench, output: Output, turn: Turn, following: Turn | None = None) -> list[Any]:
+        """Return the values of an output in a step."""
+        seen, step = bench.seen(), turn.step
+        if output.kind is Kind.PARAMETER:
+            described = next(event.data["values"] for event in seen.of("noted", output.name))
+            return [received(self._events(bench, turn, following))] if turn.number else described
+        if isinstance(step, Goal) and output.name == step.name:
+            until = following.first if following else None
+            return step.outcomes(replace(seen, events=seen.events[:until]), output.paths)
+        values = output.values(self._events(bench, turn, following))
+        if output.name not in self._every or (self._late_after and turn.number == 0):
+            # A publisher may keep more than its last message for late subscribers.
+            values = values[-1:]
+        if isinstance(step, To) and step.stands and bench.before:
+            values = noted_before(bench.before.part(seen.name), output.name, turn.number, values)
+        return values
+
+    @staticmethod
+    def _events(bench: Bench, turn: Turn, following: Turn | None) -> list[Event]:
+        return turn.events(bench.seen(), following, by_time=bench.pace is Pace.REAL_TIME)
 
     def _given(self, met: Met, step: To | Sets | Goal) -> bool:
         """Give the subject an input. Return False if it should answer and does not."""
