@@ -18,6 +18,7 @@ from autograder.kit.evidence import Event, Evidence, Part, Reference
 from autograder.kit.mission.course import NOTHING_REACHED
 from autograder.kit.mission.mission import Goal, Mission, Moment, Pose, To, Wall, Walls, World
 from autograder.kit.mission.track import ways
+from autograder.kit.runners import Process, process_line
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -170,6 +171,28 @@ def test_only_a_mission_about_the_commands_compares_them_with_the_recorded_ones(
 
     assert inputs(drives=("Drives ahead",)) == [{}, {}]
     assert inputs() == [{}, {"goes": "its own way"}]
+
+
+def test_the_programs_of_a_launch_have_met_before_their_time_passes() -> None:
+    """They are on the graph before they have discovered each other, and a call that is answered late would be over."""
+    waited: list[bool] = []
+
+    class Launched(Ros):
+        def wait_until(self, met: Callable[[Evidence], bool], *_: Any) -> bool:
+            for come in (False, True):
+                if come:
+                    self.command(0.0)
+                waited.append(met(Evidence([self.seen()], self.reference)))
+            assert self.moment == 100.0
+            return True
+
+    bench = Launched(brakes(0.8), BRAKE)
+    mission().scenario(bench)  # type: ignore[arg-type]
+    assert not waited  # one program is all of the subject
+    bench = Launched(brakes(0.8), BRAKE)
+    bench.record("output", "stdout", text=process_line(Process(1, 0, ("act",))))
+    mission().scenario(bench)  # type: ignore[arg-type]
+    assert waited == [False, True]
 
 
 def test_a_subject_that_hangs_ends_the_mission_and_keeps_what_it_has_reached() -> None:

@@ -181,6 +181,10 @@ class Mission:
         bench.release()
         if any(there):
             bench.await_attention()
+            if processes(bench.seen()):
+                # A command shows that the programs of a launch have discovered each other: it came through all of them.
+                commands = driving.drive_topic(ends)
+                bench.wait_until(lambda seen: bool(seen.main.of("message", commands)), QUIET[bench.pace])
             answered = course.run(journey, steps, self._until)
             # A subject that hangs shows nothing but that it hangs.
             if not (course.note(self._knows if answered else ()) and answered):
