@@ -348,3 +348,20 @@ def test_a_busy_thread_that_reads_no_second_goal_costs_the_points_of_two_at_once
     unread = [event for event in events if event.kind != "cancel_answer"]
     seen = evidence([*goal(ALONE, 5), *unread, *goal(BESIDE, 4)[:1]])
     assert failed(seen) == {"two", "cancel"}
+
+
+def test_a_goal_that_has_feedback_only_the_first_time_finds_what_an_earlier_one_stored() -> None:
+    """In the second look all goals find it, if it is stored outside of the class."""
+
+    def told(seen: Evidence) -> str:
+        found = (one.recognize(seen) for one in lab_1_4_server.EXERCISE.mistakes)
+        return next((advice.text for advice in found if advice), "")
+
+    stored = "what one goal stored is still there for the next one"
+    silent = evidence(
+        [*goal(ALONE, 4, feedback=[]), *goal(BESIDE, 4), *goal(AGAIN, 4, feedback=[]), *canceled([])]
+    )
+    assert stored in told(silent)
+    in_the_module = evidence([*goal(ALONE, 5, feedback=[]), *goal(AGAIN, 5, feedback=[]), *canceled([])])
+    assert stored not in told(in_the_module)
+    assert stored in told(replace(in_the_module, before=evidence(RIGHT)))

@@ -63,6 +63,22 @@ class Goals(GoalsSeen):
         return self.takes_no_time and not goal.feedback
 
     @property
+    def silent_again(self) -> SentGoal | None:
+        """A goal without feedback although an equal one before it had some, if need be in the first look."""
+        looks = (*(self.evidence.before or ()), *self.evidence)
+        right = [one for part in looks for one in all_goals(part) if one.status == SUCCEEDED]
+        for number, one in enumerate(right):
+            equal = [
+                other
+                for other in right[:number]
+                if (other.request, other.result) == (one.request, one.result)
+            ]
+            # Of a server that never pauses, a busy judge may lose feedback.
+            if not (one.feedback or self.takes_no_time) and any(other.feedback for other in equal):
+                return one
+        return None
+
+    @property
     def went_on(self) -> str:
         """What the server did for more than a round after it had agreed to cancel a goal, in words."""
         goal = self.canceled[0]

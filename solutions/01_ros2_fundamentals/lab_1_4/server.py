@@ -114,6 +114,15 @@ def _wrong_feedback(seen: Goals, _: Goals) -> str:
 
 server.knows(
     "wrong_feedback",
+    lambda seen, _: seen.silent_again,
+    "Your server sent feedback for a goal of {}, and none when such a goal came again: what one goal stored is still "
+    "there for the next one.",
+    "Begin with a new list in each goal: make it in the execute callback. What is stored outside of the callback, in "
+    "self or in the module, belongs to all goals.",
+    before="done_at_once",
+)
+server.knows(
+    "wrong_feedback",
     _wrong_feedback,
     "The feedback is not one more number each time, up to the last number of the sequence ({}).",
     "Publish in each turn of the loop, right after you have appended a number: all numbers found so far, in "
