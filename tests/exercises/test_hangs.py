@@ -130,3 +130,11 @@ def test_a_loop_that_no_line_leaves_is_a_mistake_only_while_it_executes_a_goal(
     looping = looping.replace("7f (", f"7f in the loop of line 12: while True:{UNLEFT} (")
     shown = f"{text}\n{looping}" if beside else looping
     assert (ENDLESS_LOOP.recognize(_shown(shown, 0.0)) is not None) is proven
+
+
+@pytest.mark.parametrize("kind", ["answered", "goal_answer", "cancel_answer"])
+def test_a_node_whose_callback_was_called_is_spun_whatever_its_threads_do(kind: str) -> None:
+    hung = Event(9.0, "stack", "subject", {"text": _stack(OWN)})
+    for before, key in (([], "never_spun"), ([Event(1.0, kind, "/dock", {"accepted": True})], "")):
+        evidence = Evidence([Part("part", {}, [*before, hung])], Reference("x", {}))
+        assert next((one.key for one in HANGS if one.recognize(evidence)), "") == key

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import re2
 
 from autograder.kit.counterparts import Qos
-from autograder.kit.mistakes.hangs import something_spins
+from autograder.kit.mistakes.hangs import UNSPUN, answered, something_spins
 from autograder.kit.model import Advice, Mistake, mistake
 from autograder.kit.reported_texts import said_first_after
 from autograder.kit.runners import processes
@@ -253,7 +253,7 @@ def _repeats(texts: Sequence[str]) -> bool:
 def never_spun(role: str) -> Mistake:
     """Return the mistake "never spun": the endpoint exists, but its node never ran a callback and does not answer."""
     return mistake(
-        "never_spun",
+        UNSPUN,
         lambda evidence: _silent_node(evidence, role) and not _was_spun(evidence.main, role),
         "The node is on the graph, but none of its callbacks is ever called: nothing spins it.",
         "In a program, call rclpy.spin(your_node) at the end of main(). In a notebook, write "
@@ -326,7 +326,7 @@ def _silent_node(evidence: Evidence, role: str) -> bool:
 
 def worked(part: Part, role: str) -> bool:
     """Return True if the subject did something that a node can do only if it is spun."""
-    if part.of("message") or part.of("answered") or part.of("goal_answer"):
+    if part.of("message") or answered(part):
         return True
     sent = part.first("sent")
     return role == "subscription" and sent is not None and bool(part.said(after=sent))

@@ -160,7 +160,14 @@ def _executes_a_goal(stack: Stack) -> bool:
     return bool(_stuck_callback([stack])) and any(frame.rclpy == "action/server.py" for frame in stack)
 
 
+def answered(part: Part) -> bool:
+    """Return True if the subject answered a request or a goal, which only a callback of a node that is spun does."""
+    return any(map(part.of, ("answered", "goal_answer", "cancel_answer")))
+
+
 Recognize = Callable[[list[Stack]], bool]
+UNSPUN = "never_spun"
+"""The key of a node whose callbacks are never called."""
 WAITS_FOR_ITSELF = ("nested_spin", "call_in_same_group")
 """Hangs that no time can end. In the others, the subject may be busy with something that comes to an end."""
 
@@ -227,7 +234,7 @@ _HANGS: tuple[tuple[str, Recognize, str, str], ...] = (
         "spin the node in a background thread while you use {call}().",
     ),
     (
-        "never_spun",
+        UNSPUN,
         lambda found: bool(found) and not any(frame.rclpy for stack in found for frame in stack),
         "All threads of your program are busy with your own code, such as a loop.{stays} Nothing spins the node, so "
         "none of its callbacks is ever called.",
@@ -241,7 +248,7 @@ _HANGS: tuple[tuple[str, Recognize, str, str], ...] = (
 def _mistake(key: str, fits: Recognize, text: str, next_step: str) -> Mistake:
     def recognize(evidence: Evidence) -> Advice | None:
         found = [stack for part in evidence for stack in _stacks(part)]
-        if not found or not fits(found):
+        if not found or not fits(found) or (key == UNSPUN and any(map(answered, evidence))):
             return None
         texts = [str(event.data["text"]) for part in evidence for event in part.of("stack")]
         blocked = _that(found, _blocks)
