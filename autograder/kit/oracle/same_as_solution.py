@@ -20,6 +20,7 @@ from autograder.kit.counterparts import Qos
 from autograder.kit.draft import POINTS, Draft
 from autograder.kit.mistakes.common_mistakes import KEEP_THE_PERIOD, NOT_LATCHED, is_not_latched
 from autograder.kit.model import Finding
+from autograder.kit.oracle.calls_in_turn import IN_TURN, called_in_turn
 from autograder.kit.oracle.goal_sender import GoalSender
 from autograder.kit.oracle.mistakes_again import MistakesAgain
 from autograder.kit.oracle.naming.drawn import Drawn
@@ -159,6 +160,9 @@ class SameAsSolution:
         self._draft = Draft(exercise_id, title, task, drawn, points=points)
         if late_after:
             self._draft.knows("not_latched", is_not_latched, *NOT_LATCHED, certain=True)
+        if asks := {step.name for step in steps if isinstance(step, To) and step.answered is not None}:
+            in_turn = partial(called_in_turn, serves, asks)
+            self._draft.knows("one_at_a_time", in_turn, *IN_TURN, late=True)
         for output in self._of(Kind.PARAMETER):
             self._draft.knows(
                 "parameter_not_declared",
