@@ -8,7 +8,7 @@ from typing import Any
 from autograder.kit.evidence import Event, Part
 from autograder.kit.oracle.naming.deltas import Differences, Meaning, MutantClass, Mutants
 from autograder.kit.oracle.naming.located import likely_sentence, located
-from autograder.kit.oracle.outputs import Kind, Output
+from autograder.kit.oracle.outputs import NUMBER, Kind, Output
 
 SAID = Output("/said", ("data",), Kind.STEPS, 1e-3)
 MOVED = Output("/moved", ("linear.x", "angular.z"), Kind.STEPS, 1e-3)
@@ -83,3 +83,26 @@ def test_the_likely_sentence_is_that_of_the_mutants_that_differ_in_the_same_step
         "stand still where it is near"
     )
     assert likely_sentence(mutants, Differences("drawing 0", {"/moved": {9: [[0.9, 0.0]]}}, True)) == ""
+
+
+def test_an_input_that_came_before_the_judge_listened_is_named() -> None:
+    """The input of a step is the next one, and of two maps each cell that differs is shown."""
+    output = Output("/map", ("data", NUMBER), Kind.STEPS, 1e-3)
+
+    def mapped(*cells: int) -> Part:
+        walls = [Event(0.0, "sent", "/wall", {"fields": {"x": 0.5 + cell}}) for cell in range(2)]
+        values = [[[100 * (place == cell) for place in range(9)], 2] for cell in cells]
+        noted = [
+            Event(0.0, "noted", "/map", {"step": step, "given": "/wall" * step, "values": [one]})
+            for step, one in enumerate(values)
+        ]
+        return Part("drawing 0", {}, [*walls, *noted])
+
+    for seen, wall in ((mapped(6, 2), 0.5), (mapped(5, 6), 1.5)):
+        advice = located([output], seen, mapped(5, 2), {})
+        assert advice is not None
+        places = ("5", "6") if wall == 0.5 else ("2", "6")
+        assert advice.text == (
+            f"After /wall with x = {wall}, your code says on /map: “0 at index {places[0]}, 100 at index {places[1]}”; "
+            f"the task asks for “100 at index {places[0]}, 0 at index {places[1]}”."
+        )

@@ -212,7 +212,11 @@ class Output:
             return [(values, "") for event in noted for values in event.data["values"]]
         if self.kind is Kind.RETURNED:
             return [(e.data["values"], f"for item {e.data['step']}, {e.data['given']}") for e in noted]
-        return [(event.data["values"], when(event, noted[:n], part)) for n, event in enumerate(noted)]
+        # The messages are numbered if the judge listens only after the first input.
+        unheard = int(NUMBER in self.paths)
+        return [
+            (event.data["values"], when(event, noted[:n], part, unheard)) for n, event in enumerate(noted)
+        ]
 
     def _in_words(self, listed: Sequence[Sequence[Any]], others: Sequence[Sequence[Any]] = ()) -> str:
         if self.kind is Kind.PARAMETER:
@@ -231,16 +235,17 @@ class Output:
         return shown if self.paths == ("data",) else f"{path} = {shown}"
 
 
-LONG = 8
-"""The maximum length of a list that a card shows whole."""
+LONG, APART = 8, 2
+"""The maximum length of a list that a card shows whole, and how many items it shows of two longer ones that differ."""
 
 
 def _shown(value: Any, other: Any) -> Any:
-    """Return a value for the card: a number with four decimals, and of a long list the first item that differs."""
+    """Return a value for the card: a number with four decimals, and of a long list the first items that differ."""
     if all(isinstance(one, (list, tuple)) and len(one) > LONG for one in (value, other)):
         pairs = enumerate(zip(value, other, strict=False))
-        number = next((number for number, (one, two) in pairs if one != two), None)
-        return value if number is None else f"{_shown(value[number], None)} at index {number}"
+        apart = [number for number, (one, two) in pairs if one != two]
+        told = ", ".join(f"{_shown(value[number], None)} at index {number}" for number in apart[:APART])
+        return f"{told}{', …' * (len(apart) > APART)}" if apart else value
     if isinstance(value, (list, tuple)):
         return [_shown(one, None) for one in value]
     return round(value, 4) if isinstance(value, float) else value

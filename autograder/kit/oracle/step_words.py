@@ -21,31 +21,38 @@ FIRST = 3
 """The number of items of a long list that a card shows."""
 
 
-def when(noted: Event, earlier: Sequence[Event], part: Part) -> str:
+def when(noted: Event, earlier: Sequence[Event], part: Part, unheard: int = 0) -> str:
     """Return after which input a step was noted, in words.
 
     Args:
         noted: The event of the step.
         earlier: The events of the same output in the steps before.
         part: The run, in which the inputs are.
+        unheard: The number of inputs that came before the judge listened.
     """
     given = str(noted.data["given"])
+    inputs = [event for event in part.events if event.kind in ("sent", "asked")]
     if not noted.data["step"]:
-        return "at the start"
+        return f"after {_input(inputs[unheard - 1])}" if 0 < unheard <= len(inputs) else "at the start"
     waits = [*takewhile(_is_wait, [noted, *reversed(earlier)])]
     before = earlier[: 1 + len(earlier) - len(waits)] if waits else []
     if before and before[-1].data["step"]:
         seconds = sum(float(wait.data["given"].removesuffix(WAITED)) for wait in waits)
-        return f"{when(before[-1], before[:-1], part)}, then {seconds:g}{WAITED}"
+        return f"{when(before[-1], before[:-1], part, unheard)}, then {seconds:g}{WAITED}"
     name, _, rest = given.partition(", then ")
-    sent = [event for event in part.events if event.kind in ("sent", "asked") and event.name == name]
+    sent = [event for event in inputs[unheard:] if event.name == name]
     number = sum(str(event.data["given"]).partition(", then ")[0] == name for event in earlier)
     if number >= len(sent):
         return f"after {given}" if given else "at the start"
-    fields = list(_named(sent[number].data["fields"]))
+    told = _input(sent[number])
+    return f"after {told}{f', then {rest}' * bool(rest)}" if told != name else f"after {given}"
+
+
+def _input(event: Event) -> str:
+    """Return an input in words: its name, and its first fields."""
+    fields = list(_named(event.data["fields"]))
     told = ", ".join(f"{path} = {value}" if path != "data" else value for path, value in fields[:FIELDS])
-    later = f", then {rest}" if rest else ""
-    return f"after {name} with {told}{', …' * (len(fields) > FIELDS)}{later}" if told else f"after {given}"
+    return f"{event.name} with {told}{', …' * (len(fields) > FIELDS)}" if told else event.name
 
 
 def _is_wait(noted: Event) -> bool:
