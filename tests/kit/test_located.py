@@ -5,10 +5,11 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
-from autograder.kit.evidence import Event, Part
+from autograder.kit.evidence import Event, Evidence, Part, Reference
 from autograder.kit.oracle.naming.deltas import Differences, Meaning, MutantClass, Mutants
 from autograder.kit.oracle.naming.located import likely_sentence, located
 from autograder.kit.oracle.outputs import NUMBER, Kind, Output
+from autograder.kit.oracle.same_as_solution import SameAsSolution
 
 SAID = Output("/said", ("data",), Kind.STEPS, 1e-3)
 MOVED = Output("/moved", ("linear.x", "angular.z"), Kind.STEPS, 1e-3)
@@ -106,3 +107,21 @@ def test_an_input_that_came_before_the_judge_listened_is_named() -> None:
             f"After /wall with x = {wall}, your code says on /map: “0 at index {places[0]}, 100 at index {places[1]}”; "
             f"the task asks for “100 at index {places[0]}, 0 at index {places[1]}”."
         )
+
+
+def test_a_callback_that_crashed_is_named_with_the_first_input_that_shows_it() -> None:
+    """A wrong index may be too large only later, and what came before says more than the crash."""
+    frames = ("/x/rclpy/executors.py", "/home/student/a.py")
+    lines = [
+        "Traceback (most recent call last):",
+        *(f'  File "{file}", line 9, in on_scan' for file in frames),
+    ]
+    crash = [Event(0.0, "output", "stderr", {"text": line}) for line in (*lines, "IndexError: out of range")]
+    seen = run(["far", "far", "far"], [0.5, 0.0, 0.5])
+    interface = {"publisher": {"/said": "x/msg/Y"}, "subscription": {"/scan": "x/msg/Y"}}
+    evidence = Evidence([replace(seen, events=[*seen.events, *crash])], Reference("a.b", interface, [DUE]))
+    tells = {"/said": "data", "/moved": ("linear.x", "angular.z")}
+    exercise = SameAsSolution("a.b", "A", "B", gives=lambda random: [random.random()], tells=tells).exercise()
+    found = (one.recognize(evidence) for one in exercise.mistakes if one.key == "exception_in_callback")
+    (advice,) = filter(None, found)
+    assert "After /scan with ranges = [0.2, 2, 2, …], your code says on /said: “far”" in advice.text

@@ -109,11 +109,23 @@ class Drawn(OwnScenario):
                 whole,
                 last,
             )
-        usual = ladder(self.roles, late=(*mutants, OWN_LATE, whole))
+        usual = tuple(map(self._with_its_input, ladder(self.roles, late=(*mutants, OWN_LATE, whole))))
         at = usual.index(unfinished.NEVER_CONSTRUCTED)
         # Whether a cancel request is read and accepted is seen on the wire, and a recorded answer may do the same.
         canceled = (CANCEL_REFUSED, CANCEL_UNREAD) if "action_server" in self.roles else ()
         return (*usual[:at], METHOD_UNCALLED, *canceled, variant, clock, likely_variant, *usual[at:], last)
+
+    def _with_its_input(self, known: Mistake) -> Mistake:
+        """Return the mistake; that of a crash with where the run leaves the solution's, there or before."""
+        if known not in OTHER_CRASHES:
+            return known
+
+        def recognize(evidence: Evidence) -> Advice | None:
+            told, run, due = known.recognize(evidence), evidence.main, self.expected(evidence)
+            where = first_apart(self._outputs, run, due) if told and run.name == due.name else ""
+            return replace(told, text=f"{told.text} {where}".rstrip()) if told else None
+
+        return replace(known, recognize=recognize)
 
     def _as_recorded(
         self, key: str, likely: Recognized, sure: Recognized | None = None
