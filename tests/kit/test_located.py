@@ -120,7 +120,7 @@ def test_a_callback_that_crashed_is_named_with_the_first_input_that_shows_it() -
     seen = run(["far", "far", "far"], [0.5, 0.0, 0.5])
     interface = {"publisher": {"/said": "x/msg/Y"}, "subscription": {"/scan": "x/msg/Y"}}
     evidence = Evidence([replace(seen, events=[*seen.events, *crash])], Reference("a.b", interface, [DUE]))
-    tells = {"/said": "data", "/moved": ("linear.x", "angular.z")}
+    tells: dict[str, str | tuple[str, ...]] = {"/said": "data", "/moved": ("linear.x", "angular.z")}
     exercise = SameAsSolution("a.b", "A", "B", gives=lambda random: [random.random()], tells=tells).exercise()
     found = (one.recognize(evidence) for one in exercise.mistakes if one.key == "exception_in_callback")
     (advice,) = filter(None, found)

@@ -31,7 +31,7 @@ def when(noted: Event, earlier: Sequence[Event], part: Part, unheard: int = 0) -
         unheard: The number of inputs that came before the judge listened.
     """
     given = str(noted.data["given"])
-    inputs = [event for event in part.events if event.kind in ("sent", "asked")]
+    inputs = _inputs(part)
     if not noted.data["step"]:
         return f"after {_input(inputs[unheard - 1])}" if 0 < unheard <= len(inputs) else "at the start"
     waits = [*takewhile(_is_wait, [noted, *reversed(earlier)])]
@@ -40,12 +40,28 @@ def when(noted: Event, earlier: Sequence[Event], part: Part, unheard: int = 0) -
         seconds = sum(float(wait.data["given"].removesuffix(WAITED)) for wait in waits)
         return f"{when(before[-1], before[:-1], part, unheard)}, then {seconds:g}{WAITED}"
     name, _, rest = given.partition(", then ")
-    sent = [event for event in inputs[unheard:] if event.name == name]
-    number = sum(str(event.data["given"]).partition(", then ")[0] == name for event in earlier)
-    if number >= len(sent):
+    event = input_of(noted, earlier, part, unheard)
+    if event is None:
         return f"after {given}" if given else "at the start"
-    told = _input(sent[number])
+    told = _input(event)
     return f"after {told}{f', then {rest}' * bool(rest)}" if told != name else f"after {given}"
+
+
+def input_of(noted: Event, earlier: Sequence[Event], part: Part, unheard: int = 0) -> Event | None:
+    """Return the input of a step; None if it has none. For the arguments see :func:`when`."""
+    name = _name(noted)
+    sent = [event for event in _inputs(part)[unheard:] if event.name == name]
+    number = sum(_name(event) == name for event in earlier)
+    return sent[number] if number < len(sent) else None
+
+
+def _inputs(part: Part) -> list[Event]:
+    return [event for event in part.events if event.kind in ("sent", "asked")]
+
+
+def _name(noted: Event) -> str:
+    """Return the name of what was given in a step."""
+    return str(noted.data["given"]).partition(", then ")[0]
 
 
 def _input(event: Event) -> str:

@@ -17,6 +17,8 @@ FEW = 6
 """The greatest number of values of a field that are told apart as words are."""
 LARGEST = 1e15
 """A number that is larger is shown, and not computed with: Python's integers have no end."""
+TWICE = "twice."
+"""The end of the sentence about an output whose messages all come twice."""
 Pairs = list[tuple[Any, Any]]
 """The values of one field in the order of the steps: the subject's, and the solution's."""
 
@@ -74,7 +76,7 @@ def _twice(name: str, mine: Sequence[Any], theirs: Sequence[Any], output: Output
         other and alike(one, two, output.tolerance)
         for one, two, other in zip(mine, doubled, theirs, strict=True)
     ):
-        return f"Your node says everything{name} twice."
+        return f"Your node says everything{name} {TWICE}"
     return ""
 
 

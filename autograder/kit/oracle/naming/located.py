@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 from autograder.kit.model import Advice
 from autograder.kit.oracle.naming.deltas import rows
-from autograder.kit.oracle.naming.effects import effect
+from autograder.kit.oracle.naming.effects import TWICE, effect
+from autograder.kit.oracle.naming.first_values import hint
 from autograder.kit.oracle.outputs import Kind
 
 if TYPE_CHECKING:
@@ -45,7 +46,12 @@ def located(
         what = _where_apart(output, run, due) or not_met
         # Of several lines that publish, the card could not say which one it is.
         uses = ("publish",) if [one.kind for one in outputs] in ([Kind.STEPS], [Kind.LIST]) else ()
-        return Advice(" ".join(filter(None, (whole, what, says))), GO_THROUGH, uses=uses)
+        shows, next_step = hint(output, run, due) or ("", GO_THROUGH)
+        if whole.endswith(TWICE):
+            shows = ""
+        # What the values show is nearer than a sentence of the task.
+        words = (whole, shows, what, says * (not shows))
+        return Advice(" ".join(filter(None, words)), next_step, uses=uses)
     return None
 
 

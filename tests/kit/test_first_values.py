@@ -1,0 +1,98 @@
+"""What the values of the first wrong step show, for a mistake that nothing else names."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from autograder.kit.evidence import Event, Part
+from autograder.kit.oracle.naming.located import GO_THROUGH, located
+from autograder.kit.oracle.outputs import Kind, Output
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+LAW = {"say it": "said"}
+
+
+def told(path: str, came: Sequence[Any], asked: Sequence[Any], given: Sequence[Any] = ()) -> tuple[str, str]:
+    """Return what a card says of outputs that differ, in steps with one input each, and the next step."""
+
+    def run(steps: Sequence[Any]) -> Part:
+        sent = [
+            Event(0.0, "asked", "/said", {"fields": {"data": data}}) for data in given or range(len(steps))
+        ]
+        noted = [
+            Event(
+                0.0, "noted", "/said", {"step": step, "given": "/said", "values": [[one] for one in values]}
+            )
+            for step, values in enumerate(steps, 1)
+        ]
+        return Part("drawing 0", {}, [*sent, *noted])
+
+    advice = located([Output("/said", (path,), Kind.STEPS, 1e-3)], run(came), run(asked), LAW)
+    assert advice is not None
+    return advice.text, advice.next_step
+
+
+RISES = ([[[1, 2, 3]]], [[[3, 2, 1]]])
+
+
+@pytest.mark.parametrize(
+    ("path", "came", "asked", "given", "says"),
+    [
+        ("data", [["a"], ["b", "b", "b"]], [["a"], ["b"]], (), "says the same 3 times where it is due once"),
+        ("success", [[True], [False]], [[True], [True]], [True, False], "what the request asks for"),
+        ("data", [["std_msgs.msg.Int32(data=7): x"]], [["7: x"]], (), "a whole message in it"),
+        ("data", [["error json is wrong"]], [["error: json"]], (), "“:” is missing"),
+        ("data", [["text; x is nan"]], [["text; error: x"]], (), "“error: ” is missing"),
+        ("data", [["I am there"]], [["there"]], (), "“I am ” is too much"),
+        (
+            "data",
+            [["11: far"], ["50: far"]],
+            [["11: far"], ["11: far"]],
+            [11, 50],
+            "says 50, which came last, where 11",
+        ),
+        ("status", [["CANCELED, long after the request"]], [["CANCELED"]], (), "agrees to cancel the goal"),
+        ("left", *RISES, (), "rises where that of the task falls"),
+    ],
+)
+def test_what_the_first_wrong_values_show_is_said(
+    path: str, came: Sequence[Any], asked: Sequence[Any], given: Sequence[Any], says: str
+) -> None:
+    text, next_step = told(path, came, asked, given)
+    assert says in text
+    assert "The task says" not in text
+    assert next_step != GO_THROUGH
+
+
+@pytest.mark.parametrize(
+    ("path", "came", "asked", "given"),
+    [
+        ("data", [["b", "c"]], [["b"]], ()),
+        (
+            "success",
+            [[False], [False]],
+            [[True], [True]],
+            [True, False],
+        ),  # always false, and not the request's data
+        ("data", [["near"]], [["far"]], ()),
+        ("data", [["50: far"], ["50: far"]], [["11: far"], ["11: far"]], [11, 11]),
+        ("data", [["10 m"]], [["0 m"]], ()),  # another number
+        (
+            "data",
+            [["near"], ["not near"]],
+            [["not near"], ["near"]],
+            (),
+        ),  # said elsewhere, so no slip of the pen
+        ("left", RISES[1], [[[3, 2, 2]]], ()),
+    ],
+)
+def test_values_that_show_nothing_are_only_shown(
+    path: str, came: Sequence[Any], asked: Sequence[Any], given: Sequence[Any]
+) -> None:
+    text, next_step = told(path, came, asked, given)
+    assert "The task says" in text
+    assert next_step == GO_THROUGH
