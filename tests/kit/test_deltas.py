@@ -78,6 +78,16 @@ def test_mutants_of_several_meanings_name_nothing() -> None:
     assert named(run(["far"] * 5), mutants(([0, 4], NEVER_NEAR))) is None
 
 
+def test_mutants_of_one_kind_at_several_places_have_the_words_that_are_true_wherever_it_is() -> None:
+    """An object that all share is as one whose value belongs to its class."""
+    shared, made_once = (Meaning("on_the_class", "", 3, 9), Meaning("made_once", "", 8, 50))
+    never = Meaning("condition", "never", 7, 18)
+    for found, text in (([made_once, shared], "The next object still has"), ([never, made_once, shared], "")):
+        told = mutant_words.advice(found, mutants())
+        assert (told.text if told else "").startswith(text)
+        assert bool(told) is bool(text)
+
+
 def test_a_run_of_no_mutant_is_not_named() -> None:
     assert named(run(["far", "far", "near", "far", "near"]), mutants(([0], NEVER_NEAR))) is None
 
@@ -92,6 +102,10 @@ def test_a_failed_output_is_named_by_itself_if_the_run_as_a_whole_is_no_mutant_s
 def test_one_step_alone_tells_nothing_but_another_number_or_its_limit() -> None:
     apart = differences([SAID], run(["far", "far", "near", "far", "far"]), DUE)
     assert not apart.tells
+    # A machine may lose a message, and none of the values that a function returned.
+    returned = Output("/said", ("data",), Kind.RETURNED, 1e-3)
+    assert differences([returned], run(["far", "far", "near", "far", "far"]), DUE).tells
+    assert not differences([returned], DUE, DUE).tells
     assert mutant_words.is_one_limit(MEANINGS[:3])
     assert not mutant_words.is_one_limit(MEANINGS[:4])
     assert not mutant_words.is_one_limit([])

@@ -87,17 +87,19 @@ class Differences:
         drawing: The name of the drawing.
         seen: The values of the subject that differ, by output and step.
         is_whole: True if the run has all steps.
+        is_returned: True if a function returned all of them, so that chance has no part in one.
     """
 
     drawing: str
     seen: Mapping[str, Rows]
     is_whole: bool
+    is_returned: bool = False
 
     @property
     def tells(self) -> bool:
         """True if too much differs to be chance. The description of a parameter tells alone."""
         steps = [step for rows in self.seen.values() for step in rows]
-        return len(steps) >= TELLING or 0 in steps
+        return len(steps) >= TELLING or 0 in steps or (self.is_returned and bool(steps))
 
 
 def alike(one: Any, other: Any, tolerance: float) -> bool:
@@ -138,7 +140,8 @@ def differences(outputs: Sequence[Output], seen: Part, due: Part) -> Differences
         }
         if apart:
             found[output.name] = apart
-    return Differences(seen.name, found, is_whole)
+    is_returned = all(output.kind is Kind.RETURNED for output in outputs)
+    return Differences(seen.name, found, is_whole, is_returned)
 
 
 def meanings_of(mutants: Mutants, apart: Differences, tolerance: float) -> list[Meaning]:

@@ -84,13 +84,22 @@ def advice(found: Sequence[Meaning], mutants: Mutants) -> Advice | None:
     ]
     places = {(one.quote or one.place) for one in found}
     if len(places) > 1 and len({_of_a_place(one) for one in found}) > 1:
-        return None
+        return _without_a_place(others) if len(others) == len(found) else None
     if others:
         one, words = min(others, key=lambda pair: TABLE.index(pair[1]))
         return _advice(words.key, words.text.format(at=_at(one), name=one.name), one)
     if numbers:
         return _of_a_number(numbers, mutants)
     return None
+
+
+def _without_a_place(others: Sequence[tuple[Meaning, Words]]) -> Advice | None:
+    """Return words that are true wherever it is, if the mutants are of one kind; None if there are none."""
+    free = [(one, words) for one, words in others if "{" not in words.text]
+    if not free or len({words.key for _, words in others}) > 1:
+        return None
+    one, words = min(free, key=lambda pair: TABLE.index(pair[1]))
+    return _advice(words.key, words.text, one)
 
 
 def _of_a_place(one: Meaning) -> tuple[str, str, str]:
