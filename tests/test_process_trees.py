@@ -4,7 +4,6 @@ import os
 import signal
 import subprocess
 import sys
-import time
 
 import psutil
 import pytest
@@ -18,9 +17,8 @@ CHILD = """
 import os, signal, subprocess, sys
 from autograder.process_trees import die_with_parent
 own, number = os.getpid(), getattr(signal, sys.argv[1])
-command = ["sh", "-c", "trap 'echo told; exit' TERM; while :; do sleep 0.1; done"]
-child = subprocess.Popen(command, preexec_fn=lambda: die_with_parent(own, number))
-print(child.pid, flush=True)
+command = ["sh", "-c", "trap 'echo told; exit' TERM; echo $$; while :; do sleep 0.1; done"]
+subprocess.Popen(command, preexec_fn=lambda: die_with_parent(own, number))
 signal.pause()
 """
 LATE = """
@@ -37,8 +35,7 @@ os.wait()
 def test_a_process_ends_with_its_parent_however_that_ends(number: str, said: bytes) -> None:
     with subprocess.Popen([sys.executable, "-c", CHILD, number], stdout=subprocess.PIPE) as parent:
         assert parent.stdout is not None
-        child = psutil.Process(int(parent.stdout.readline()))
-        time.sleep(0.2)  # until the shell has its trap
+        child = psutil.Process(int(parent.stdout.readline()))  # said by the shell once it has its trap
         parent.send_signal(signal.SIGKILL)
         psutil.wait_procs([child], timeout=60)
         assert not child.is_running()

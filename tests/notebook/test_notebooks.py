@@ -205,12 +205,12 @@ def test_an_error_in_a_callback_is_a_traceback_of_the_students_lines(notebook: N
 class Broken(TalkerNode):
     def tick(self):
         message = String()
-        message.dta = "typo"
         self.ticked.set()
+        message.dta = "typo"
 broken = Broken()
 broken.ticked = threading.Event()
 with spinning(broken):
-    broken.ticked.wait(0.1)
+    broken.ticked.wait(20)
 """)
     assert output.stderr == ""
     assert "Error in talker_node, in the callback of its timer (every 0.005 s)" in output.stdout

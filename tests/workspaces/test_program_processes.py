@@ -7,15 +7,19 @@ import signal
 import subprocess
 import sys
 import time
+from typing import TYPE_CHECKING
 
 import pytest
 
 from autograder.kit.runners import PROCESS_MARK
 from autograder.process_trees import descendants, kill, known
+from autograder.workspaces import __main__ as workspaces_command
 from autograder.workspaces import program_processes
-from autograder.workspaces.__main__ import _run
 from autograder.workspaces.program_preparation import Prepared
-from autograder.workspaces.program_processes import watched
+from autograder.workspaces.program_processes import print_line, watched
+
+if TYPE_CHECKING:
+    from pathlib import Path
 
 RENAMES_ITSELF = """
 import ctypes, time
@@ -41,8 +45,8 @@ def test_what_renames_itself_all_the_time_fills_nobody_s_memory(
     ) as launch:
         try:
             with watched(launch.pid, reported.append):
-                deadline = time.monotonic() + 20
-                while not reported and time.monotonic() < deadline:
+                while not reported:
+                    assert launch.poll() is None
                     time.sleep(0.05)
                 time.sleep(1.0)
         finally:
@@ -52,14 +56,24 @@ def test_what_renames_itself_all_the_time_fills_nobody_s_memory(
 
 
 def test_a_report_begins_a_line_where_the_launch_is_in_the_middle_of_one(
-    capfd: pytest.CaptureFixture[str],
+    capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     """`ros2 launch` writes a line and its end apart; the report between them was read by nobody, now and then."""
+    os.mkfifo(tmp_path / "reported")
+    told = os.open(tmp_path / "reported", os.O_RDWR)
+
+    def report(line: str) -> None:
+        print_line(line)
+        os.write(told, b"\n")
+
+    monkeypatch.setattr(workspaces_command, "print_line", report)
+    middle = f"printf 'started'; head -n 1 {tmp_path / 'reported'}; true"
     before = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
     try:
-        _run(Prepared(["sh", "-c", "printf 'started'; sleep 1; echo"], dict(os.environ), {}))
+        workspaces_command._run(Prepared(["sh", "-c", middle], dict(os.environ), {}))
     finally:
+        os.close(told)
         for number, handler in before.items():
             signal.signal(number, handler)
     lines = capfd.readouterr().out.splitlines()
-    assert any("sleep" in line for line in lines if line.startswith(PROCESS_MARK))
+    assert any("head" in line for line in lines if line.startswith(PROCESS_MARK))

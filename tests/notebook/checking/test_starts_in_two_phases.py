@@ -179,9 +179,10 @@ class NothingYet(Node):
 PATIENT = """
 from autograder.judge.bench import subject_presence
 subject_presence.SETTLED = dict.fromkeys(subject_presence.SETTLED, 60.0)
+subject_presence.APPEAR = 60.0
 """
-"""Makes a judge wait as long as it ever does for whatever may still come."""
-SOON = 8.0
+"""Makes a judge wait a minute for whatever may still come."""
+SOON = 30.0
 """Seconds that are less than such a wait."""
 
 

@@ -198,6 +198,7 @@ def test_what_colcon_has_left_of_a_launch_file_that_is_installed_elsewhere_now_i
 
 def test_an_installed_file_that_was_changed_since_the_build_is_not_used(built: Path) -> None:
     assert is_current(built, describe_workspace(built).packages)
+    touch_later(built / "later", built / "build" / "tiny_pkg" / "colcon_build.rc")
     program = built / "install" / "tiny_pkg" / "lib" / "tiny_pkg" / "hello"
     program.write_text(f"#!{sys.executable}\nprint('by hand')\n")
     assert not is_current(built, describe_workspace(built).packages)
