@@ -79,8 +79,9 @@ PROGRAMS = {
     "starts_itself_again": "import os, sys\nif 'AGAIN' in os.environ: sys.exit('again')\n"
     "os.environ['AGAIN'] = '1'\nos.execv(sys.executable, sys.orig_argv)",
     # On a busy machine `ros2` meets Ctrl-C when its program has ended already.
-    "has_ended_when_ros2_gets_ctrl_c": "import os, signal, time\nparent = os.getppid()\nif not os.fork():\n"
-    "    time.sleep(0.5)\n    os.kill(parent, signal.SIGINT)\n    os.kill(parent, signal.SIGCONT)\n    os._exit(0)\n"
+    "has_ended_when_ros2_gets_ctrl_c": "import os, signal, time\nparent, own = os.getppid(), os.getpid()\n"
+    "if not os.fork():\n    while os.getppid() == own:\n        time.sleep(0.01)\n"
+    "    os.kill(parent, signal.SIGINT)\n    os.kill(parent, signal.SIGCONT)\n    os._exit(0)\n"
     "os.kill(parent, signal.SIGSTOP)\nos._exit(3)",
 }
 """The programs by name; what they show is that name."""

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import subprocess
 import sys
-import time
 from typing import TYPE_CHECKING, Any
 
 import msgspec
@@ -90,11 +89,10 @@ def test_a_process_that_only_passes_messages_on_is_not_started_again(
 
 
 def test_the_end_of_the_block_ends_the_process(
-    started: list[subprocess.Popen[bytes]], tmp_path: Path
+    started: list[subprocess.Popen[bytes]], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    monkeypatch.setattr(process_link, "_GOODBYE_SECONDS", 60.0)
     with ProcessLink(ANSWER, scratch=tmp_path) as link:
         link.say(Give(1, ADDRESS, b"x"))
         assert link.hear(30.0) == Answered(1, b"x")
-        began = time.monotonic()
-    assert time.monotonic() - began < process_link._GOODBYE_SECONDS + 5
-    assert [process.returncode for process in started] == [0]
+    assert [process.returncode for process in started] == [0], "it ends by itself when it is asked to"
