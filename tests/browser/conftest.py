@@ -14,7 +14,7 @@ from course_runtime.system_packages import CHROMIUM_NAMES, find_program
 
 sys.path.insert(0, str(Path(__file__).parent))
 from open_notebook import LIMIT, opened_page
-from server_of_a_test import jupyter_server
+from server_of_a_test import forget_what_was_open, jupyter_server
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -54,13 +54,20 @@ def chapters(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module")
-def lab(chapters: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+def server(chapters: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
     """The address of a JupyterLab, token included, that knows nothing of the user's own settings."""
     home = tmp_path_factory.mktemp("home")
     environ = {name: value for name, value in os.environ.items() if name != "ROS_DOMAIN_ID"}
     arguments = ["autograder", "lab", "--folder", str(chapters)]
     with jupyter_server(arguments, "student", home, environ) as address:
         yield address + "{}?token=student"
+
+
+@pytest.fixture
+def lab(server: str) -> str:
+    """The address of a JupyterLab in which no kernel runs and no notebook is open, whatever ran before."""
+    forget_what_was_open(server)
+    return server
 
 
 @pytest.fixture(scope="module")

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import contextlib
+import json
 import re
 import subprocess
 import sys
 import threading
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
+from urllib.request import Request, urlopen
 
 import pytest
 
@@ -51,3 +53,20 @@ def jupyter_server(
             yield found.group()
         finally:
             server.terminate()
+
+
+def forget_what_was_open(server: str) -> None:
+    """End the kernels of a JupyterLab, and have it open no notebook again that was open when its page was closed.
+
+    Args:
+        server: The address of each of its pages, token included.
+    """
+
+    def ask(path: str, method: str = "GET") -> Any:
+        with urlopen(Request(server.format(path), method=method), timeout=60) as answer:
+            return json.loads(answer.read() or b"null")
+
+    for session in ask("api/sessions"):
+        ask(f"api/sessions/{session['id']}", "DELETE")
+    for workspace in ask("lab/api/workspaces")["workspaces"]["ids"]:
+        ask(f"lab/api/workspaces/{workspace}", "DELETE")

@@ -48,7 +48,7 @@ def restart(page: Page) -> None:
 
 
 @pytest.fixture(scope="module")
-def page(browser: Browser, lab: str, chapters: Path) -> Iterator[Page]:
+def page(browser: Browser, server: str, chapters: Path) -> Iterator[Page]:
     """The notebook of lab 1.2, opened once; it was saved while a check of its listener went on."""
     file = chapters / "01_ros2_fundamentals" / "lab_1_2.ipynb"
     notebook = nbformat.read(file, as_version=4)
@@ -62,7 +62,7 @@ def page(browser: Browser, lab: str, chapters: Path) -> Iterator[Page]:
     cell.outputs = [nbformat.v4.new_output("display_data", data)]
     file.write_text(nbformat.writes(notebook), encoding="utf-8")
     with opened_page(browser) as page:
-        page.goto(lab.format("lab/tree/01_ros2_fundamentals/lab_1_2.ipynb"))
+        page.goto(server.format("lab/tree/01_ros2_fundamentals/lab_1_2.ipynb"))
         yield page
 
 
