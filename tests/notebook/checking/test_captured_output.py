@@ -264,14 +264,14 @@ def test_a_deep_stack_shows_both_ends_and_each_line_is_looked_up_once(
     threads = [threading.Thread(target=names["deep"], args=(700, over), daemon=True) for _ in range(20)]
     for thread in threads:
         thread.start()
+    stacks: list[str] = []
     try:
-        while "in wait" not in (text := captured.stacks()[0]):
-            pass
+        while sum("in wait\n" in stack for stack in stacks) < len(threads):
+            stacks = captured.stacks()[0].split("Thread ")[1:]
     finally:
         over.set()
-    stacks = text.split("Thread ")[1:]
     assert all(stack.count("\n") <= 2 * MOST_CALLS + 1 for stack in stacks)
-    assert all("in wait\n" in stack and "in run\n" in stack for stack in stacks)
+    assert all("in run\n" in stack for stack in stacks)
     assert 1 <= len(parsed) <= len(DEEP.splitlines())
 
 
