@@ -116,6 +116,7 @@ class Way:
         walls: The two ends of each wall.
         places: Places with names, such as a lamp.
         bumps: The places at which the robot pushed against a wall.
+        supposed: True if the subject uses a wrong name: only with the right one would a robot drive so.
     """
 
     points: tuple[Point, ...]
@@ -123,6 +124,7 @@ class Way:
     walls: tuple[tuple[Point, Point], ...] = ()
     places: dict[str, Point] = field(default_factory=dict)
     bumps: tuple[Point, ...] = ()
+    supposed: bool = False
 
     @property
     def length(self) -> float:
@@ -190,15 +192,7 @@ def from_json(data: bytes | str) -> Verdict:
 
 def failed(exercise: str, title: str, max_score: float, diagnosis: Diagnosis, detail: str = "") -> Verdict:
     """Return a failed verdict with zero points, for a submission that cannot be checked because of its own mistake."""
-    return Verdict(
-        exercise=exercise,
-        title=title,
-        state=State.FAILED,
-        score=0.0,
-        max_score=max_score,
-        diagnosis=diagnosis,
-        detail=detail,
-    )
+    return Verdict(exercise, title, State.FAILED, 0.0, max_score, diagnosis=diagnosis, detail=detail)
 
 
 NO_RESULT = "not_checked"

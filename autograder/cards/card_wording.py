@@ -39,7 +39,7 @@ COUNTS = "what counts"
 COUNTS_BESIDES = "what else counts, and what does not"
 """The label of the same about the exercise as a whole."""
 
-WAY = "The way of the robot"
+WAY = "The robot's path"
 """The heading of the pictures of a robot's way."""
 
 SOLUTION = "The reference solution, and why it is written so"

@@ -21,6 +21,9 @@ _SCALE = 64.0
 """The maximum number of pixels per meter."""
 _MARGIN = 12.0
 """Pixels around the drawn part of the plane, for names at its edges."""
+_SEEN = "The robot drove", "came", "pushed"
+_SUPPOSED = "With the right name, the robot would have driven", "would have come", "would have pushed"
+"""The verbs of a way: how the robot drove, and how it would have driven."""
 
 
 @dataclass(frozen=True)
@@ -87,17 +90,15 @@ def way_picture(way: Way) -> WayPicture:
 
 def way_in_words(way: Way) -> str:
     """Return a way in one sentence."""
+    drove, came, pushed = _SUPPOSED if way.supposed else _SEEN
     near = [
-        f"it came within {_nearest(way, place):.2f} m of the place “{one_line(name, 24)}”"
+        f"it {came} within {min(math.dist(point, place) for point in way.points):.2f} m "
+        f"of the place “{one_line(name, 24)}”"
         for name, place in way.places.items()
     ]
-    pushed = [f"it pushed against a wall at {_at(way.bumps[0])}"] if way.bumps else []
-    more = "; " + ", and ".join(near + pushed) if near + pushed else ""
-    return f"The robot drove {way.length:.1f} m, from {_at(way.points[0])} to {_at(way.points[-1])}{more}."
-
-
-def _nearest(way: Way, place: Point) -> float:
-    return min(math.dist(point, place) for point in way.points)
+    bumps = [f"it {pushed} against a wall at {_at(way.bumps[0])}"] if way.bumps else []
+    more = "; " + ", and ".join(near + bumps) if near + bumps else ""
+    return f"{drove} {way.length:.1f} m, from {_at(way.points[0])} to {_at(way.points[-1])}{more}."
 
 
 def _at(point: Point) -> str:

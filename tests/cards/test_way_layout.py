@@ -23,6 +23,9 @@ def test_a_way_is_said_in_one_sentence() -> None:
     )
     pushed = replace(WAY, places={}, bumps=((5.8, 1.0),))
     assert way_in_words(pushed).endswith("; it pushed against a wall at x = 5.80 m, y = 1.00 m.")
+    supposed = way_in_words(replace(pushed, supposed=True))
+    assert supposed.startswith("With the right name, the robot would have driven 6.0 m")
+    assert "; it would have pushed against" in supposed
 
 
 @pytest.mark.parametrize(
@@ -49,8 +52,8 @@ def test_both_kinds_of_card_say_the_way_and_the_picture_is_escaped() -> None:
     assert '<svg class="agc-plan" aria-hidden="true"' in html
     assert "<b>lamp" not in html
     assert html.count("The robot drove 6.0 m") == 1
-    assert "The way of the robot\n  The robot drove 6.0 m" in card_text(verdict)
-    assert "The way of the robot" not in card_html(verdict, short=True) + card_html(replace(verdict, ways=()))
+    assert "The robot's path\n  The robot drove 6.0 m" in card_text(verdict)
+    assert "The robot's path" not in card_html(verdict, short=True) + card_html(replace(verdict, ways=()))
 
 
 def test_a_card_has_few_pictures() -> None:

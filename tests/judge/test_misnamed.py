@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from autograder import exercises
+from autograder.appeals.replaying import replay
+from autograder.authoring.answer_bank import answers
 from autograder.judge import evidence_files
 from autograder.judge.command_check import check_and_keep
 from autograder.judge.timeline.verdict_timeline import moments
@@ -15,6 +17,7 @@ from autograder.judge.verdicts.deciding import decide, misnamed
 from autograder.kit.evidence import Event, Evidence, Part, Reference
 from autograder.verdict import CriterionResult, State, Verdict
 from tests.cases import cases
+from tests.measure.evidence import kept, record_of
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -113,3 +116,13 @@ def test_the_timeline_has_the_subjects_name() -> None:
     ]
     evidence = Evidence([Part("talking", {}, events)], Reference("an.exercise", {}))
     assert [moment.lane for moment in moments(evidence)] == ["/chater"]
+
+
+def test_a_robot_that_hears_nothing_has_only_a_supposed_path() -> None:
+    name = "00_nervous_system.first_move"
+    evidence = kept(name)
+    ways = {one.name: replay(record_of(one, evidence.get(one.name)).seen).now.ways for one in answers([name])}
+    assert any(ways.values())
+    assert {answer for answer, driven in ways.items() if any(way.supposed for way in driven)} == {
+        f"{name}/wrong/topic_name.py"
+    }
