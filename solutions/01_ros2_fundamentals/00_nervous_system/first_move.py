@@ -9,7 +9,7 @@ EXERCISE = Mission(
     "The robotic nervous system · The first move",
     "Tell the robot every half second to drive straight ahead at 0.5 meters per second.",
     drives=("Drives straight ahead", "velocity", 6),
-    rate=("Keeps telling it", "rate", 4),
+    rate=("Keeps the rate", "rate", 4),
     within=13.0,
 ).exercise(
     text={

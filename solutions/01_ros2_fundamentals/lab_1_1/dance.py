@@ -7,7 +7,7 @@ EXERCISE = Mission(
     "Lab 1.1 · The dance",
     "Tell the robot every half second to drive in a circle.",
     drives=("Drives in a circle", "velocity", 6),
-    rate=("Keeps telling it", "rate", 4),
+    rate=("Keeps the rate", "rate", 4),
     within=13.0,
 ).exercise(
     text={
