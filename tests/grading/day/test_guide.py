@@ -105,7 +105,7 @@ def test_every_command_of_the_guide_runs(
     ran = []
     day = [page for page in pages() if page.stem not in ELSEWHERE]
     for command in (command for page in day for command in commands(page.read_text(encoding="utf-8"))):
-        typed = command.replace("~/robotics-2025", str(tiny.path)).replace("~", str(tmp_path))
+        typed = command.replace("~/robotics-2026", str(tiny.path)).replace("~", str(tmp_path))
         words = shlex.split(typed, comments=True)
         if words[0] == "cd":
             monkeypatch.chdir(words[1])
