@@ -151,7 +151,7 @@ def tally(verdict: Verdict) -> str:
     if total == 1:
         return f"{held} of 1 criterion holds"
     if held == total:
-        return f"all {total} criteria hold"
+        return "both criteria hold" if total == 2 else f"all {total} criteria hold"
     return f"{held} of {total} criteria hold"
 
 
