@@ -215,7 +215,7 @@ def markdown(rates: Rates) -> str:
             _row("without those that were read and do what the task asks", _of(total.killed, left), how),
             _row("rejected mutants with a specific diagnosis", _of(total.told, total.killed), how),
         ]
-        details += [f"- mutant that survived, unread: `{survivor.id}`" for survivor in found.survivors]
+        details += [f"- mutant that survived: `{survivor.id}`" for survivor in found.survivors]
     for part, what in (
         (
             rates.soak,

@@ -68,7 +68,7 @@ def test_what_changed_and_what_survived_is_named() -> None:
     assert "| without those that were read and do what the task asks | 9 of 10 (90.0%) |" in text
     assert "12 of 99; short form" in text
     assert "| 1 of 2 (50.0%) | `python -m tests.made_up`: 4 judgements, 8 at a time;" in text
-    assert "- mutant that survived, unread: `x/y:z:1`" in text
+    assert "- mutant that survived: `x/y:z:1`" in text
     assert "- changed: one: 1 times failed, 0 of 10; 1 times failed, 4 of 10" in text
 
 
