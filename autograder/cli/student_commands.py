@@ -27,7 +27,7 @@ _notebooks = click.option(
 
 
 @click.command(
-    help=f"""Run any COMMAND as the subject of EXERCISE and print the verdict.
+    help=f"""Check the program that COMMAND starts against EXERCISE and print the verdict.
 
     \b
     {COMMAND} check                                       lists the exercises
