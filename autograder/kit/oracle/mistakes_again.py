@@ -29,7 +29,7 @@ class MistakesAgain:
             return
         before = bench.before.main
         due = bench.reference.part(before.name)
-        failed = [output for output in outputs if not output.compared(before, due).passed]
+        failed = [output for output in outputs if not output.agrees(before, due)]
         noted = [(output, event.data) for output in failed if (event := output.noted_at(before, due))]
         # If an output has no steps, or ended before its first wrong one, only a whole look tells.
         if len(noted) == len(failed):

@@ -99,25 +99,17 @@ class Output:
         if self.kind is Kind.RATE:
             return has_rate(seen.of("message", self.name), self.period, self._rate(seen))
         mine, theirs = self._rows(seen), self._rows(expected)
-        both = min(len(mine), len(theirs))
-        differs = self._parting(mine, theirs)
+        differs = self._parting(seen, expected)
         if self.kind is Kind.LIST:
-            # The messages before the judge stepped the clock do not count: how many came depends on the machine.
-            stepped = [
-                sum(event.data["stepped"] for event in part.of("noted", self.name))
-                for part in (seen, expected)
-            ]
-            came_in_all, due_in_all = stepped if all(stepped) else (len(mine), len(theirs))
-            missing = abs(came_in_all - due_in_all)
             around = slice(max(0, differs - 2), differs + 2)
             due, came = (
                 f"{self._in_words([row for row, _ in rows[around]])} ({counted(len(rows), 'message')} in all)"
                 for rows in (theirs, mine)
             )
-            return Finding(differs == both and missing <= 1 + len(theirs) // ONE_MISSING_IN, due, came)
-        if theirs and differs == len(theirs):
+            return Finding(self.agrees(seen, expected), due, came)
+        if self.agrees(seen, expected):
             return Finding(True, right := f"the same as the solution in all {len(theirs)} steps", right)
-        if differs >= both:
+        if differs >= min(len(mine), len(theirs)):
             due = (
                 f"{self._in_words(theirs[differs][0])} {theirs[differs][1]}"
                 if differs < len(theirs)
@@ -136,13 +128,28 @@ class Output:
         # In the subject's run are the inputs, which the recording of the solution does not keep.
         return Finding(False, f"{due} {when}", f"{came} {when}")
 
+    def agrees(self, seen: Part, expected: Part) -> bool:
+        """Return True if a subject's outputs are those of another run in the same drawing."""
+        if self.kind is Kind.RATE:
+            return self.compared(seen, expected).passed
+        mine, theirs, differs = self._values(seen), self._values(expected), self._parting(seen, expected)
+        if self.kind is not Kind.LIST:
+            return bool(theirs) and differs == len(theirs)
+        # The messages before the judge stepped the clock do not count: how many came depends on the machine.
+        stepped = [
+            sum(event.data["stepped"] for event in part.of("noted", self.name)) for part in (seen, expected)
+        ]
+        came, due = stepped if all(stepped) else (len(mine), len(theirs))
+        is_whole = abs(came - due) <= 1 + len(theirs) // ONE_MISSING_IN
+        return is_whole and differs == min(len(mine), len(theirs))
+
     def parting_words(self, seen: Part, expected: Part) -> tuple[str, str, str] | None:
         """Return when the outputs first differ, and the fields that do: the subject's, and those of the solution.
 
         None if a row of one of both is missing, or if the outputs have no steps.
         """
         mine, theirs = self._rows(seen), self._rows(expected)
-        differs = self._parting(mine, theirs)
+        differs = self._parting(seen, expected)
         if self.kind not in (Kind.STEPS, Kind.RETURNED) or differs >= min(len(mine), len(theirs)):
             return None
         (one, when), (other, _) = mine[differs], theirs[differs]
@@ -167,7 +174,7 @@ class Output:
         if self.kind not in (Kind.STEPS, Kind.PARAMETER):
             return None
         noted = seen.of("noted", self.name)
-        return next(iter(noted[self._parting(self._rows(seen), self._rows(expected)) :]), None)
+        return next(iter(noted[self._parting(seen, expected) :]), None)
 
     def is_undeclared(self, seen: Part, _: Part) -> bool:
         """Return True if the subject has no parameter of this name."""
@@ -199,24 +206,31 @@ class Output:
         given = [event.sim for event in seen.of("sent") + seen.of("asked") if event.sim is not None]
         return rate_of(seen.of("message", self.name), self.period, inputs=given)
 
-    def _parting(self, mine: Sequence[Any], theirs: Sequence[Any]) -> int:
-        """Return the index of the first row that differs; the number of compared rows if none does."""
+    def _parting(self, seen: Part, expected: Part) -> int:
+        """Return the index of the first value that differs; the number of compared values if none does."""
+        mine, theirs = self._values(seen), self._values(expected)
         pairs = enumerate(zip(mine, theirs, strict=False))
-        apart = (number for number, (one, other) in pairs if not same(one[0], other[0], self.tolerance))
+        apart = (number for number, (one, other) in pairs if not same(one, other, self.tolerance))
         return next(apart, min(len(mine), len(theirs)))
 
+    def _values(self, part: Part) -> list[Any]:
+        """Return what is compared, in order: the values of each step, or each message of a list."""
+        noted = [event.data["values"] for event in part.of("noted", self.name)]
+        return [value for values in noted for value in values] if self.kind is Kind.LIST else noted
+
     def _rows(self, part: Part) -> list[tuple[Any, str]]:
-        """Return what is compared, in order: the values of each step with its words, or each message of a list."""
+        """Return what is compared, each with the words for its step."""
+        return [*zip(self._values(part), self._words(part), strict=True)]
+
+    def _words(self, part: Part) -> list[str]:
         noted = part.of("noted", self.name)
         if self.kind is Kind.LIST:
-            return [(values, "") for event in noted for values in event.data["values"]]
+            return [""] * len(self._values(part))
         if self.kind is Kind.RETURNED:
-            return [(e.data["values"], f"for item {e.data['step']}, {e.data['given']}") for e in noted]
+            return [f"for item {event.data['step']}, {event.data['given']}" for event in noted]
         # The messages are numbered if the judge listens only after the first input.
         unheard = int(NUMBER in self.paths)
-        return [
-            (event.data["values"], when(event, noted[:n], part, unheard)) for n, event in enumerate(noted)
-        ]
+        return [when(event, noted[:number], part, unheard) for number, event in enumerate(noted)]
 
     def _in_words(self, listed: Sequence[Sequence[Any]], others: Sequence[Sequence[Any]] = ()) -> str:
         if self.kind is Kind.PARAMETER:
