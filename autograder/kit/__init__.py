@@ -16,7 +16,7 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from autograder.kit.counterparts import Qos
+    from autograder.kit.counterparts import Qos, Work
     from autograder.kit.draft import Draft
     from autograder.kit.evidence import Evidence, Part
     from autograder.kit.mission.mission import Mission, Moment, Pose, Wall, World
@@ -24,6 +24,8 @@ if TYPE_CHECKING:
     from autograder.kit.oracle.drawings import dealt, drawn_until, levels, mixed, scans, shuffled
     from autograder.kit.oracle.returns import Returns
     from autograder.kit.oracle.same_as_solution import Goal, SameAsSolution, Sets, To
+    from autograder.kit.oracle.steps import Text
+    from autograder.kit.oracle.tool_user import ToolUser
     from autograder.kit.quests.quest import Quest, Searches
     from autograder.kit.quests.robot import Robot
     from autograder.kit.recipes.launch_file import LaunchFile
@@ -36,7 +38,7 @@ if TYPE_CHECKING:
     from autograder.kit.recipes.subscriber import Subscriber
 
 _PLACES = {
-    "counterparts": ("Qos",),
+    "counterparts": ("Qos", "Work"),
     "draft": ("Draft",),
     "evidence": ("Evidence", "Part"),
     "mission.mission": ("Mission", "Moment", "Pose", "Wall", "World"),
@@ -44,6 +46,8 @@ _PLACES = {
     "oracle.drawings": ("dealt", "drawn_until", "levels", "mixed", "scans", "shuffled"),
     "oracle.returns": ("Returns",),
     "oracle.same_as_solution": ("Goal", "SameAsSolution", "Sets", "To"),
+    "oracle.steps": ("Text",),
+    "oracle.tool_user": ("ToolUser",),
     "quests.quest": ("Quest", "Searches"),
     "quests.robot": ("Robot",),
     "recipes.launch_file": ("LaunchFile",),
@@ -84,8 +88,11 @@ __all__ = [
     "ServiceType",
     "Sets",
     "Subscriber",
+    "Text",
     "To",
+    "ToolUser",
     "Wall",
+    "Work",
     "World",
     "dealt",
     "drawn_until",

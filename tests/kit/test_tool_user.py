@@ -11,7 +11,8 @@ import pytest
 from autograder.kit.counterparts import Work
 from autograder.kit.evidence import Event
 from autograder.kit.oracle.outputs import Kind
-from autograder.kit.oracle.tool_user import ASKED, CANCELED, DONE, TOLD, Sent, Text, To, _answering
+from autograder.kit.oracle.steps import Text, To
+from autograder.kit.oracle.tool_user import ASKED, CANCELED, DONE, TOLD, Sent, _answering
 
 
 def event(kind: str, name: str, **fields: Any) -> Event:

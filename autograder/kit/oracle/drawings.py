@@ -32,7 +32,7 @@ def levels(limit: float, below: float = inf) -> list[float]:
     """Return the levels around a limit, from the lowest to the highest.
 
     Args:
-        limit: The number with which the task compares.
+        limit: The number with which the task compares. At 0 there are no levels: draw small numbers on both sides.
         below: Only levels below this number are possible, such as the width of a room.
     """
     return [level for factor in LADDER if (level := round(limit * factor, 4)) < below]
@@ -58,6 +58,8 @@ def shuffled(random: Random, cases: Sequence[T]) -> list[T]:
 
 def mixed(random: Random, cases: Sequence[T], kind: Callable[[T], object]) -> list[T]:
     """Return the cases in a drawn order in which each kind follows each kind, itself too.
+
+    Two kinds need five cases, such as three of one and two of the other; three kinds need ten: four, three and three.
 
     Raises:
         ValueError: There is no such order, because there are too few cases.

@@ -96,7 +96,8 @@ class SameAsSolution:
             other topics, the period is the student's.
         pause: Seconds of the subject's time after each input.
         tolerance: The absolute or relative tolerance for numbers.
-        roles: The roles of the subject's endpoints, the most telling first.
+        roles: The roles of the subject's endpoints, the most telling first, of ``"publisher"``, ``"subscription"``,
+            ``"service"``, ``"client"``, ``"action_server"`` and ``"action_client"``.
         points: The points of the exercise. All criteria are worth the same.
 
     Example::

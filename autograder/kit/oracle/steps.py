@@ -52,7 +52,8 @@ class Text(To):
 
     Args:
         name: The name of the topic.
-        value: What the text says, as data; a text stays as it is, for an input that is not JSON.
+        value: What the text says, as data. Python writes ``nan`` and ``inf`` as ``NaN`` and ``Infinity``. A text stays
+            as it is, for an input that is not JSON, or for ``1e400``.
         how: The other attributes of :class:`To`.
     """
 

@@ -6,9 +6,8 @@ from typing import Any
 
 from lab_2_4._calls import lamp, no_calls, not_finite, outcome, say, unknown_tools, walk, wrong_types
 
-from autograder.kit import drawn_until, mixed, shuffled
+from autograder.kit import Text, ToolUser, Work, drawn_until, mixed, shuffled
 from autograder.kit.oracle.same_as_solution import PAUSE
-from autograder.kit.oracle.tool_user import Text, ToolUser, Work
 
 LAMP = "error: lamp"
 

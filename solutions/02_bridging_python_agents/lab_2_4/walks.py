@@ -6,8 +6,7 @@ from typing import Any
 
 from lab_2_4._calls import lamp, not_finite, out_of_range, outcome, place, say, walk, wrong_types
 
-from autograder.kit import drawn_until, shuffled
-from autograder.kit.oracle.tool_user import Text, ToolUser, Work
+from autograder.kit import Text, ToolUser, Work, drawn_until, shuffled
 
 ENDS = ("succeeded", "succeeded", "succeeded", "aborted", "canceled", "rejected", "rejected")
 """How the walks end."""

@@ -7,7 +7,7 @@ from typing import Any
 
 import re2
 
-from autograder.kit.oracle.tool_user import Work
+from autograder.kit import Work
 
 WISHES = (
     "Come to the desk",

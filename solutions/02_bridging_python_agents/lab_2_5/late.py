@@ -5,8 +5,7 @@ from random import Random
 
 from lab_2_5._model import kind, order, reply, told
 
-from autograder.kit import shuffled
-from autograder.kit.oracle.tool_user import Text, ToolUser, Work
+from autograder.kit import Text, ToolUser, Work, shuffled
 
 PAUSE = 0.75
 """Seconds of the subject's time after each input."""

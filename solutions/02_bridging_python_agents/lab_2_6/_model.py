@@ -8,7 +8,7 @@ from typing import Any
 import re2
 from lab_2_5._model import field, lines
 
-from autograder.kit.oracle.tool_user import Text, Work
+from autograder.kit import Text, Work
 
 WISHES = (
     "Look into each room",

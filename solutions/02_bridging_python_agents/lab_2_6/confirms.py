@@ -5,8 +5,7 @@ from random import Random
 
 from lab_2_6._model import answer, order, reply, room, told, walk
 
-from autograder.kit import drawn_until, shuffled
-from autograder.kit.oracle.tool_user import Text, ToolUser, Work
+from autograder.kit import Text, ToolUser, Work, drawn_until, shuffled
 
 PAUSE = 1.25
 """Seconds of the subject's time after each input."""

@@ -4,8 +4,7 @@ from random import Random
 
 from lab_2_6._model import order, reply, told, walk
 
-from autograder.kit import drawn_until, shuffled
-from autograder.kit.oracle.tool_user import Text, ToolUser
+from autograder.kit import Text, ToolUser, drawn_until, shuffled
 
 PAUSE = 3.0
 """Seconds of the subject's time after each input. All but the quiet walk and the slow reply are over by then."""

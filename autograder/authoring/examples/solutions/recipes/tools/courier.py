@@ -3,8 +3,7 @@
 from random import Random
 from typing import Any
 
-from autograder.kit import mixed, shuffled
-from autograder.kit.oracle.tool_user import Text, ToolUser, Work
+from autograder.kit import Text, ToolUser, Work, mixed, shuffled
 
 OPEN, LOCKED = {"success": True}, {"success": False, "message": "locked"}
 LOST = Work("aborted", feedback=[{"distance": 1.0}], result={"x": 2.0})
