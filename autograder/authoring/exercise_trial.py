@@ -183,6 +183,8 @@ def try_exercise(
     for line in to_do_in_text(exercise) if only else still_to_do(exercise, wanted):
         tell(f"to do: {line}")
     is_kept = bool(only) or evidence_files.load_reference(exercise.id).mutants is not None
+    if not only:
+        tell(f"{exercise.id}: trying mutants of the solution, which can take some minutes")
     is_ready = bool(only) or try_mutants(exercise, keeps=not is_kept, tell=tell)
     return is_ready and not surprises and not gifts
 

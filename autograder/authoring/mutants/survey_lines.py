@@ -61,14 +61,26 @@ def in_words(of: Solution, mutant: Mutant) -> str:
     """Return in one line the changed line of a solution, the changed piece, and its replacement."""
     if mutant.start < 0:
         return f"an answer that does not look: it {mutant.kind}"
-    source = of.text.splitlines()[mutant.line - 1].strip()
     name = mutant.operator.replace("_", " ")
     kind = f", {mutant.kind}" if mutant.kind else ""
     places = f", in {mutant.all_of} places of the method" if mutant.all_of > 1 else ""
     # Code that keeps values between two calls is long, and says less than the name of the operator.
-    is_readable = mutant.before and len(mutant.after) <= SHOWN and "__" not in mutant.after
+    is_short = len(mutant.after) <= max(SHOWN, len(mutant.before))
+    is_readable = mutant.before and is_short and "__" not in mutant.after
     change = f": {_short(mutant.before)} → {_short(mutant.after) or 'nothing'}" if is_readable else ""
-    return f"“{_short(source)}”: {name}{kind}{places}{change}"
+    return f"“{_around(of.text, mutant.start, mutant.before)}”: {name}{kind}{places}{change}"
+
+
+def _around(text: str, start: int, piece: str) -> str:
+    """Return the line of a piece of code, or its part around the piece, which is marked if the line has it twice."""
+    begin = text.rfind("\n", 0, start) + 1
+    line, place = text[begin:].partition("\n")[0], start - begin
+    if piece and line.count(piece) > 1:
+        line = f"{line[:place]}»{piece}«{line[place + len(piece) :]}"
+    indentation = len(line) - len(line.lstrip())
+    first = max(indentation, min(place - SHOWN // 2, len(line) - SHOWN))
+    cut = "…" * (first > indentation), "…" * (first + SHOWN < len(line))
+    return f"{cut[0]}{line[first : first + SHOWN]}{cut[1]}"
 
 
 def _short(text: str) -> str:
