@@ -12,7 +12,7 @@ from autograder.kit.bench import STEP, Pace
 from autograder.kit.counterparts import SOON, Work
 from autograder.kit.oracle.outputs import NO_OUTPUT, Kind, Output
 from autograder.kit.oracle.same_as_solution import NOTHING, SameAsSolution
-from autograder.kit.oracle.steps import pick
+from autograder.kit.oracle.steps import Goal, Sets, Text, To, pick
 
 if TYPE_CHECKING:
     from random import Random
@@ -20,6 +20,8 @@ if TYPE_CHECKING:
     from autograder.kit.bench import Bench
     from autograder.kit.evidence import Event
     from autograder.kit.oracle.steps import Step
+
+__all__ = ["Goal", "Sets", "Text", "To", "ToolUser", "Work"]
 
 Read = Callable[[Any], Any]
 """A function of the fields of a message, which returns what is compared of it."""
