@@ -247,7 +247,7 @@ def check_pages(tiny: TinyClass, class_: list[Pupil], truth: Truth, comments: di
     run("report", tiny.path)
     page = BeautifulSoup((tiny.path / "report.html").read_text(), "html.parser")
     check_unplaced(page.get_text(), class_)
-    titled = page.find("h2", string="Who is where")
+    titled = page.find("h2", string="Points of each student")
     assert titled
     table = titled.find_next("table")
     assert table

@@ -97,7 +97,7 @@ def test_work_that_is_not_graded_yet_is_blank_and_in_no_figure(graded: TinyClass
     items = figures.items(table, ClassStore(ClassDirectory(graded.path)))
     assert [item.handed_in for item in items] == [4, 4]
     page = BeautifulSoup(write_report(graded.path).read_text(), "html.parser")
-    titled = page.find("h2", string="Who is where")
+    titled = page.find("h2", string="Points of each student")
     assert titled
     table_of_page = titled.find_next("table")
     assert table_of_page
