@@ -88,7 +88,7 @@ def judge(exercise: Exercise, evidence: Evidence, seed: str) -> Verdict:
         diagnosis=diagnosis,
         remarks=tuple(_cut(text) for remark in remarks if (text := remark(evidence))),
         timeline=verdict_timeline.moments(shown, " ".join(told), missed=not passed),
-        # To say so where the causes are hidden would tell one.
+        # If the exercise hides its causes, this sentence would tell one.
         ways=tuple(replace(one, supposed=bool(lost) and shown is evidence) for one in ways(shown)),
         seed=seed,
         # The last lines of a traceback name the error and the student's line.
