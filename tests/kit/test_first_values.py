@@ -42,7 +42,7 @@ RISES = ([[[1, 2, 3]]], [[[3, 2, 1]]])
 @pytest.mark.parametrize(
     ("path", "came", "asked", "given", "says"),
     [
-        ("data", [["a"], ["b", "b", "b"]], [["a"], ["b"]], (), "says the same 3 times where it is due once"),
+        ("data", [["a"], ["b", "b", "b"]], [["a"], ["b"]], (), "says the same 3 times, and it is due once"),
         ("success", [[True], [False]], [[True], [True]], [True, False], "what the request asks for"),
         ("data", [["std_msgs.msg.Int32(data=7): x"]], [["7: x"]], (), "a whole message in it"),
         ("data", [["error json is wrong"]], [["error: json"]], (), "“:” is missing"),

@@ -1,4 +1,4 @@
-"""Recognizes a node that makes one call after the other, where the task asks for each at once."""
+"""Recognizes a node that makes one call after the other, although the task asks for each at once."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ IN_TURN = (
     "Make each call as soon as its input comes. A lock, a queue, or one thread for all work makes one call wait for "
     "the other: leave it out, and keep what belongs to one call in variables of its own.",
 )
-"""What such a node does, and the next step."""
+"""The words for such a node, and the next step."""
 
 
 def called_in_turn(services: Collection[str], inputs: Collection[str], seen: Part, _: Part) -> str:

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 class MistakesAgain:
-    """What the subject did wrong in the look before: the first wrong step of each output.
+    """The mistakes of the look before: the first wrong step of each output.
 
     Args:
         bench: The bench of the present look, which has begun.

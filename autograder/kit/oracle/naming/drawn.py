@@ -116,7 +116,7 @@ class Drawn(OwnScenario):
         return (*usual[:at], METHOD_UNCALLED, *canceled, variant, clock, likely_variant, *usual[at:], last)
 
     def _with_its_input(self, known: Mistake) -> Mistake:
-        """Return the mistake; that of a crash with where the run leaves the solution's, there or before."""
+        """Return the mistake. That of a crash also says after which input the run first leaves the solution's."""
         if known not in OTHER_CRASHES:
             return known
 

@@ -94,7 +94,7 @@ def _too_often(came: Sequence[Any], asked: Sequence[Any]) -> Hint | None:
     if len(asked) != 1 or len(came) < 2 or any(one != asked[0] for one in came):
         return None
     return (
-        f"Your node says the same {len(came)} times where it is due once.",
+        f"Your node says the same {len(came)} times, and it is due once.",
         "Look at each line that says it, and at what comes before it: only one of them may run, once. Perhaps a return "
         "is missing, or the line stands in a loop.",
     )
@@ -108,7 +108,7 @@ def _of_a_text(came: str, asked: str, inputs: Sequence[Event]) -> Hint | None:
         )
     if _WHOLE_MESSAGE.search(came) and not _WHOLE_MESSAGE.search(asked):
         return (
-            "Your text has a whole message in it, with its type, where one field of it is due.",
+            "Your text has a whole message in it, with its type, and only one field of it is due.",
             "Write the field into the text, as in message.data, and not the message.",
         )
     return _of_another_input(came, asked, inputs)

@@ -49,7 +49,7 @@ def located(
         shows, next_step = hint(output, run, due) or ("", GO_THROUGH)
         if whole.endswith(TWICE):
             shows = ""
-        # What the values show is nearer than a sentence of the task.
+        # The values show more than a sentence of the task does.
         words = (whole, shows, what, says * (not shows))
         return Advice(" ".join(filter(None, words)), next_step, uses=uses)
     return None
