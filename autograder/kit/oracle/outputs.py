@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 from autograder.kit.in_words import counted
 from autograder.kit.model import Finding
+from autograder.kit.oracle.naming.step_words import quoted, when
 from autograder.kit.oracle.parameter_answers import parameter_in_words
-from autograder.kit.oracle.step_words import quoted, when
 from autograder.kit.oracle.steps import pick
 from autograder.kit.rules import has_rate, in_words, rate_of, same
 

@@ -20,9 +20,9 @@ from autograder.kit.counterparts import Qos
 from autograder.kit.draft import POINTS, Draft
 from autograder.kit.mistakes.common_mistakes import KEEP_THE_PERIOD, NOT_LATCHED, is_not_latched
 from autograder.kit.model import Finding
-from autograder.kit.oracle.calls_in_turn import IN_TURN, called_in_turn
 from autograder.kit.oracle.goal_sender import GoalSender
 from autograder.kit.oracle.mistakes_again import MistakesAgain
+from autograder.kit.oracle.naming.calls_in_turn import IN_TURN, called_in_turn
 from autograder.kit.oracle.naming.drawn import Drawn
 from autograder.kit.oracle.outputs import NUMBER, Kind, Output
 from autograder.kit.oracle.parameter_answers import (

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 import re2
 
 from autograder.kit.oracle.naming.deltas import rows
+from autograder.kit.oracle.naming.step_words import input_of
 from autograder.kit.oracle.outputs import Kind
-from autograder.kit.oracle.step_words import input_of
 from autograder.kit.rules import same, value
 
 if TYPE_CHECKING:
