@@ -125,3 +125,24 @@ def test_a_callback_that_crashed_is_named_with_the_first_input_that_shows_it() -
     found = (one.recognize(evidence) for one in exercise.mistakes if one.key == "exception_in_callback")
     (advice,) = filter(None, found)
     assert "After /scan with ranges = [0.2, 2, 2, …], your code says on /said: “far”" in advice.text
+
+
+def test_of_several_messages_in_a_step_only_what_differs_is_shown() -> None:
+    """What came rightly before is counted: a card has no room for a page of texts."""
+
+    def asks(*texts: str) -> Part:
+        noted = {"step": 1, "given": "/order", "values": [[text] for text in texts]}
+        return Part("drawing 0", {}, [Event(0.0, "noted", "/asked", noted)])
+
+    output = Output("/asked", ("data",), Kind.STEPS, 1e-3)
+    due = asks("one", "two", "three", "four")
+    for seen, came in (
+        (asks("one", "two"), "says nothing on /asked"),
+        (asks("one", "two", "2"), "says on /asked: “2”"),
+    ):
+        advice = located([output], seen, due, {})
+        assert advice is not None
+        assert (
+            advice.text
+            == f"After /order, then 2 messages as asked, your code {came}; the task asks for “three”."
+        )

@@ -153,6 +153,11 @@ class Output:
         if self.kind not in (Kind.STEPS, Kind.RETURNED) or differs >= min(len(mine), len(theirs)):
             return None
         (one, when), (other, _) = mine[differs], theirs[differs]
+        both = min(len(one), len(other))
+        right = next((n for n in range(both) if not same(one[n], other[n], self.tolerance)), both)
+        if right and both > 1:
+            when = f"{when}, then {counted(right, 'message')} as asked"
+            one, other = one[right:], other[right : right + max(1, len(one) - right)]
         fields = [
             n
             for n in range(len(self.paths))
