@@ -96,3 +96,32 @@ def test_values_that_show_nothing_are_only_shown(
     text, next_step = told(path, came, asked, given)
     assert "The task says" in text
     assert next_step == GO_THROUGH
+
+
+@pytest.mark.parametrize(
+    ("events", "says"),
+    [
+        ("input request late response done", "says “late”, and then uses the answer of /model all the same"),
+        ("input request response done", ""),
+        ("input request late input response done", ""),
+    ],
+)
+def test_an_answer_that_is_used_after_it_was_given_up_is_named(events: str, says: str) -> None:
+    kinds = {
+        "input": ("sent", "/order"),
+        "request": ("request", "/model"),
+        "response": ("response", "/model"),
+    }
+    seen = [
+        Event(0.0, *kinds.get(word, ("message", "/said")), {"fields": {"data": word}})
+        for word in events.split()
+    ]
+    noted = [
+        Event(0.0, "noted", "/said", {"step": 1, "given": "/order", "values": [[word]] if word else []})
+        for word in ("done", "")
+    ]
+    output = Output("/said", ("data",), Kind.STEPS, 1e-3)
+    advice = located([output], Part("a", {}, [*seen, noted[0]]), Part("a", {}, [noted[1]]), LAW)
+    assert advice is not None
+    assert says in advice.text
+    assert (advice.next_step == GO_THROUGH) is not bool(says)

@@ -46,7 +46,7 @@ def hint(output: Output, run: Part, due: Part) -> Hint | None:
     if not apart:
         return None
     came, asked = mine[apart[0]], theirs[apart[0]]
-    if told := _too_often(came, asked):
+    if told := _too_often(came, asked) or (None if asked else _late(output, run, came)):
         return told
     inputs = [event for event, step in _inputs(output, run) if step <= apart[0]]
     texts = [list(_texts(list(values.values()))) for values in (mine, theirs)]
@@ -98,6 +98,21 @@ def _too_often(came: Sequence[Any], asked: Sequence[Any]) -> Hint | None:
         "Look at each line that says it, and at what comes before it: only one of them may run, once. Perhaps a return "
         "is missing, or the line stands in a loop.",
     )
+
+
+def _late(output: Output, run: Part, came: Sequence[Any]) -> Hint | None:
+    """Return that an answer was used after the subject had said something else instead, as that it gives up."""
+    events = [event for event in run.events if event.kind in ("sent", "request", "response", "message")]
+    told = [event for event in events if event.kind != "message" or event.name == output.name]
+    for asks, gives_up, answer, uses in zip(told, told[1:], told[2:], told[3:], strict=False):
+        kinds = tuple(event.kind for event in (asks, gives_up, answer, uses))
+        is_late = kinds == ("request", "message", "response", "message") and asks.name == answer.name
+        if is_late and [value(uses)] == came[0]:
+            return (
+                f"Your node says “{value(gives_up)}”, and then uses the answer of {answer.name} all the same.",
+                "Close a question when you give it up. An answer counts only if its question is still the open one.",
+            )
+    return None
 
 
 def _of_a_text(came: str, asked: str, inputs: Sequence[Event]) -> Hint | None:
