@@ -10,13 +10,14 @@ from typing import TYPE_CHECKING, Any
 import pytest
 import rclpy
 from my_robot_interfaces.srv import AddTwoInts
-from rclpy.executors import Executor
+from rclpy.executors import Executor, MultiThreadedExecutor
 from rclpy.node import Node
 
 from autograder.notebook.nodes import spin_threads
 from autograder.notebook.nodes.background_nodes import spin_in_background, stop_all
 from autograder.notebook.nodes.ros_session import (
     NodeEndedError,
+    destroy_node,
     is_destroyed,
     release_waiting_calls,
     start_ros,
@@ -245,6 +246,23 @@ def test_a_callback_of_an_answer_that_never_comes_ends_in_silence() -> None:
     release_waiting_calls(node)
     node.destroy_node()
     assert isinstance(seen[0], NodeEndedError)
+
+
+def test_a_call_that_ends_with_its_node_in_an_executor_that_no_longer_spins_ends_in_silence(
+    capfd: pytest.CaptureFixture[str],
+) -> None:
+    node, executor = Node("doorkeeper"), MultiThreadedExecutor(num_threads=2)
+    client = node.create_client(AddTwoInts, "nobody_serves_this")
+    node.create_timer(0.005, lambda: client.call(AddTwoInts.Request()))
+    executor.add_node(node)
+    while not client._pending_requests:
+        executor.spin_once(timeout_sec=0.05)
+    executor.remove_node(node)
+    destroy_node(node)
+    executor._executor.shutdown()
+    del executor
+    gc.collect()
+    assert capfd.readouterr().err == ""
 
 
 @pytest.mark.parametrize("later", [0.0, 0.2], ids=["before the stop", "after it"])
