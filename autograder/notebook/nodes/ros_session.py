@@ -325,8 +325,8 @@ def _stay_silent_about_ended_nodes(
         say(future)
 
 
-# When a future is garbage-collected, rclpy writes an exception that nobody has read to stderr, in whichever cell runs.
-# Nobody reads that of a callback that an executor's pool still runs after the student's spin has ended.
+# When a future is garbage-collected, rclpy writes an exception that was never read to stderr, in whichever cell runs.
+# That of a callback is never read if an executor's pool still runs it after the student's spin has ended.
 Future.__del__ = _stay_silent_about_ended_nodes  # type: ignore[method-assign]
 
 
