@@ -242,7 +242,7 @@ def test_a_stack_quotes_the_loop_of_the_student_and_counts_its_processor_time(tm
 DEEP = """def deep(left, over):
     if left:
         return deep(left - 1, over)
-    while not over.wait(0.1):
+    while not over.wait(600.0):
         pass
 """
 
@@ -266,6 +266,7 @@ def test_a_deep_stack_shows_both_ends_and_each_line_is_looked_up_once(
         thread.start()
     stacks: list[str] = []
     try:
+        # None of them wakes up before its event is set, so at last all of them wait.
         while sum("in wait\n" in stack for stack in stacks) < len(threads):
             stacks = captured.stacks()[0].split("Thread ")[1:]
     finally:
