@@ -61,6 +61,7 @@ def ends_after(
 
 
 AHEAD, LATE = run(ALWAYS_AHEAD), run(TURNS_LATE)
+SILENT, THEN_SILENT = run(([], [], [])), run(([0.0, 0.0], [], [0.0, 0.5]))
 
 
 @pytest.mark.parametrize(
@@ -77,6 +78,9 @@ AHEAD, LATE = run(ALWAYS_AHEAD), run(TURNS_LATE)
         pytest.param(run(TURNS_LATE, speed=NO_RANGE), LATE, 4, id="one of both"),
         pytest.param(run(TURNS_LATE, [7]), run(TURNS_LATE, [7]), 4, id="a list needs the whole look"),
         pytest.param(run(TURNS_LATE[:1]), LATE, 4, id="the look before was cut short"),
+        pytest.param(SILENT, SILENT, 4, id="it was silent, perhaps by another clock"),
+        pytest.param(THEN_SILENT, run(([0.1, 0.0], [], [0.0, 0.5])), 4, id="right before, and not now"),
+        pytest.param(THEN_SILENT, THEN_SILENT, 3, id="silent after it has spoken"),
     ],
 )
 def test_a_look_ends_when_each_mistake_was_made_again(before: Part | None, now: Part, steps: int) -> None:

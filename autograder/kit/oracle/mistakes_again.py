@@ -8,9 +8,10 @@ from autograder.kit.bench import Pace
 from autograder.kit.rules import same
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
     from autograder.kit.bench import Bench
+    from autograder.kit.evidence import Part
     from autograder.kit.oracle.outputs import Output
 
 
@@ -24,26 +25,28 @@ class MistakesAgain:
 
     def __init__(self, bench: Bench, outputs: Sequence[Output]) -> None:
         self._bench = bench
-        self._wrong: list[tuple[Output, int, Sequence[Any]]] = []
+        self._wrong: list[tuple[Output, Mapping[int, Sequence[Any]]]] = []
         if bench.before is None or bench.pace is Pace.FAST:
             return
-        before = bench.before.main
-        due = bench.reference.part(before.name)
-        failed = [output for output in outputs if not output.agrees(before, due)]
-        noted = [(output, event.data) for output in failed if (event := output.noted_at(before, due))]
-        # If an output has no steps, or ended before its first wrong one, only a whole look tells.
-        if len(noted) == len(failed):
-            self._wrong = [(output, data["step"], data["values"]) for output, data in noted]
+        run = bench.before.main
+        due = bench.reference.part(run.name)
+        failed = [output for output in outputs if not output.agrees(run, due)]
+        noted = [(output, event.data["step"]) for output in failed if (event := output.noted_at(run, due))]
+        wrong = [(output, _until(step, output, run)) for output, step in noted]
+        # If an output has no steps, or ended before its first wrong one, only a whole look tells. So it does of a
+        # subject that was silent: by another clock it may say something in real time.
+        if len(noted) == len(failed) and all(any(before.values()) for _, before in wrong):
+            self._wrong = wrong
 
     def end_look(self, steps: int, values: Callable[[Output, int], Sequence[Any]]) -> None:
-        """End the look if the subject has made each of the mistakes again, in the same step.
+        """End the look if the subject has made each of the mistakes again, in the same step after the same ones.
 
         Args:
             steps: The number of steps that are over.
             values: Returns the values of an output in a step.
         """
         # The step after the last wrong one is over, too, so that what was sent late has come.
-        if not self._wrong or steps != max(number for _, number, _ in self._wrong) + 2:
+        if not self._wrong or steps != max(map(max, (before for _, before in self._wrong))) + 2:
             return
         if self._are_made(values):
             self._bench.settle()
@@ -53,5 +56,13 @@ class MistakesAgain:
 
     def _are_made(self, values: Callable[[Output, int], Sequence[Any]]) -> bool:
         return all(
-            same(values(output, number), wrong, output.tolerance) for output, number, wrong in self._wrong
+            same(values(output, step), told, output.tolerance)
+            for output, before in self._wrong
+            for step, told in before.items()
         )
+
+
+def _until(last: int, output: Output, run: Part) -> Mapping[int, Sequence[Any]]:
+    """Return the values of an output, by step, up to a given step."""
+    noted = [event.data for event in run.of("noted", output.name)]
+    return {data["step"]: data["values"] for data in noted if data["step"] <= last}
