@@ -281,21 +281,24 @@ def test_all_edits_that_fit_no_line_are_told_before_anything_runs(root: Path) ->
 @pytest.mark.ros
 @pytest.mark.slow
 def test_a_point_for_what_is_given_is_found(root: Path) -> None:
-    new_exercise(root, ID, "switch")
+    new_exercise(root, ID, "hub")
     lab = root / "solutions/01_first/lab_9_1"
     (lab / "battery_of_mine.answers/wrong/answers.toml").unlink()
-    end, method = "        ### END SOLUTION\n", "        self.on = request"
-    before, begin, rest = (
-        (lab / "lab.md").read_text(encoding="utf-8").partition("        ### BEGIN SOLUTION\n")
-    )
-    todo, _, given = rest.replace(end, "").partition("\n")
-    text = before + given.replace(method, f"{begin}{todo}\n{method}", 1)
-    text = text.replace("        response.success", f"{end}        response.success")
+    text = (lab / "lab.md").read_text(encoding="utf-8")
+    # The first class is given as a whole, and with it what the service answers.
+    for marker in (
+        r":tags: \[solution\]\n\n",
+        r"        ### BEGIN SOLUTION\n        # TODO.*\n",
+        r"        ### END SOLUTION\n",
+    ):
+        text = re.sub(marker, "", text, count=1)
+    right = "        response.success = self.left is not None and self.right is not None\n"
+    text = text.replace("        return response", f"{right}        return response", 1)
     (lab / "lab.md").write_text(text, encoding="utf-8")
     tried = autograder(root, "try-exercise", ID)
     assert tried.returncode == 1, tried.stdout + tried.stderr
     assert ", none not as expected" in tried.stdout, tried.stdout
-    assert "the unsolved notebook earns points: 3.5 for “Says the right success on /lamp”" in tried.stdout
+    assert "the unsolved notebook earns points: 5 for “Says the right success on /tare”" in tried.stdout
 
 
 @pytest.mark.ros
