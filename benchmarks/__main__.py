@@ -1,4 +1,4 @@
-"""``python -m benchmarks``: all figures in one run, printed, and kept beside this file."""
+"""``python -m benchmarks``: a class here and in stock nbgrader, printed, and kept beside this file."""
 
 from __future__ import annotations
 
@@ -6,26 +6,19 @@ import argparse
 import datetime
 import os
 import shutil
-import subprocess
 import sys
 import time
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from autograder import course
 from autograder.safe_files import fresh_folder
 from benchmarks import figures, results
-from benchmarks.box_start import measure_box_start
 from benchmarks.classes import BenchmarkClass, make_class
-from benchmarks.execution import measure_execute
-from benchmarks.floor import Floor, measure_floor
-from benchmarks.interrupt import measure_interrupts
-from benchmarks.machine import Usage, Watch, machine
+from benchmarks.machine import machine
 from benchmarks.ours import OurRun, diagnosed, problems_of, run_ours
-from benchmarks.overload import differences, run_overloaded, verdicts_of
-from benchmarks.regrade import measure_regrade
 from benchmarks.stock import StockRun, run_stock
 
 if TYPE_CHECKING:
@@ -44,122 +37,53 @@ class Form:
         students: In the class that is graded.
         assignments: Of the class; all where empty.
         sampled: Students that stock nbgrader grades, in as many runs.
-        floor_rounds: How often the check cells are measured.
-        regraded: Students in the class that is regraded.
-        overloaded: Students in the class that is graded under load.
-        turns: Of starting a box.
-        executed: Notebooks that ``autograder execute`` runs; all where empty.
-        interrupted: Notebooks that are graded before each Ctrl-C.
     """
 
     name: str
     students: int
     assignments: tuple[str, ...]
     sampled: int
-    floor_rounds: int
-    regraded: int
-    overloaded: int
-    turns: int
-    executed: tuple[str, ...]
-    interrupted: tuple[int, ...]
 
 
-FULL = Form("full", 24, (), 2, 1, 100, 3, 20, (), (1, 3, 5))
-SHORT = Form("short", 2, ("exercise_1_2",), 1, 1, 5, 1, 3, ("exercise_1_2",), (1,))
+FULL = Form("full", 24, (), 2)
+SHORT = Form("short", 2, ("exercise_1_2",), 1)
 
 
-@dataclass
-class _Run:
-    """One run of the benchmark."""
+def measure(form: Form, folder: Path) -> results.Results:
+    """Measure in a folder: stock nbgrader and ours by turns.
 
-    form: Form
-    folder: Path
-    figures: list[results.Figure] = field(default_factory=list)
-    differences: list[str] = field(default_factory=list)
+    Args:
+        form: How much.
+        folder: For the class, its copies and their logs; empty.
 
-    def all(self) -> None:
-        """Measure everything; stock nbgrader and ours by turns."""
-        for part in (
-            self.class_against_stock,
-            self.small_costs,
-            self.regrade,
-            self.under_load,
-            self.interrupt,
-            self.execute,
-        ):
-            try:
-                part()
-            except (RuntimeError, OSError, subprocess.SubprocessError) as error:
-                # The other figures are worth having all the same.
-                reason = " ".join(str(error).split())[:300]
-                self.differences.append(f"{part.__name__} could not be measured: {reason}")
-
-    def class_against_stock(self) -> None:
-        """Throughput, points, cores, memory, check cells."""
-        form = self.form
-        made = make_class(self.folder / "class", form.students, form.assignments)
-        sampled = made.students[: form.sampled]
-        stock: list[StockRun] = []
-        ours: OurRun | None = None
-        for number, student in enumerate(sampled):
-            with _told(f"stock nbgrader, {student}"):
-                stock.append(run_stock(made, self.folder / f"stock-{number}", [student], feedback=False))
-            if ours is None:
-                with _told(f"autograder grade, {form.students} students"):
-                    ours = run_ours(made, self.folder / "grade.log")
-        assert ours is not None
-        floor: list[Floor] = []
-        with _told("check cells"), Watch() as watch:
-            for _ in range(form.floor_rounds):
-                floor += measure_floor(made, sampled)
-        load = _load(watch)
-        honest, wrong = _compare_points(made, stock, ours)
-        self.differences += [*wrong, *(f"graded here: {problem}" for problem in problems_of(ours))]
-        self.figures += [
+    Raises:
+        RuntimeError: A class could not be graded; the message names the log.
+    """
+    began = time.monotonic()
+    made = make_class(folder / "class", form.students, form.assignments)
+    stock: list[StockRun] = []
+    ours: OurRun | None = None
+    for number, student in enumerate(made.students[: form.sampled]):
+        with _told(f"stock nbgrader, {student}"):
+            stock.append(run_stock(made, folder / f"stock-{number}", [student]))
+        if ours is None:
+            with _told(f"autograder grade, {form.students} students"):
+                ours = run_ours(made, folder / "grade.log")
+    assert ours is not None
+    honest, wrong = _compare_points(made, stock, ours)
+    return results.Results(
+        machine=machine(),
+        when=datetime.datetime.now(tz=datetime.UTC).date().isoformat(),
+        form=form.name,
+        minutes=(time.monotonic() - began) / 60,
+        figures=(
             figures.throughput(stock, ours, form.students),
             figures.points(wrong, honest),
             figures.busy(ours),
-            *figures.memory(ours),
-            *figures.checks(floor, load),
-        ]
-
-    def small_costs(self) -> None:
-        """What a box adds."""
-        with _told("starting boxes"), Watch() as watch:
-            measured = measure_box_start(self.form.turns)
-        self.figures.append(figures.box_start(measured, _load(watch)))
-
-    def regrade(self) -> None:
-        """An unchanged class."""
-        made = make_class(self.folder / "unchanged", self.form.regraded, self.form.assignments)
-        with _told(f"regrading {self.form.regraded} students"), Watch() as watch:
-            spent = measure_regrade(made, 3)
-        self.figures.append(figures.regrade(spent, self.form.regraded, _load(watch)))
-
-    def under_load(self) -> None:
-        """The same verdicts on a machine that is asked for far too much."""
-        made = make_class(self.folder / "loaded", self.form.overloaded, self.form.assignments)
-        with _told("verdicts, calm"):
-            calm = run_ours(made, self.folder / "calm.log", "--jobs", "2")
-        with _told("verdicts, overloaded"):
-            loaded = run_overloaded(made, self.folder / "loaded.log")
-        found = verdicts_of(calm)
-        wrong = differences(found, verdicts_of(loaded))
-        self.differences += wrong
-        self.figures.append(figures.overload(wrong, len(found), figures.load_of(loaded.usage)))
-
-    def interrupt(self) -> None:
-        """Ctrl-C."""
-        made = make_class(self.folder / "stopped", self.form.students, self.form.assignments)
-        with _told("Ctrl-C"), Watch() as watch:
-            spent = measure_interrupts(made, self.form.interrupted)
-        self.figures.append(figures.interrupt(spent, _load(watch)))
-
-    def execute(self) -> None:
-        """Every notebook of the course."""
-        with _told("autograder execute"), Watch() as watch:
-            run = measure_execute(self.form.executed)
-        self.figures.append(figures.execute(run, _load(watch)))
+        ),
+        notes=NOTES,
+        differences=(*wrong, *(f"graded here: {problem}" for problem in problems_of(ours))),
+    )
 
 
 def _compare_points(made: BenchmarkClass, stock: Sequence[StockRun], ours: OurRun) -> tuple[int, list[str]]:
@@ -172,12 +96,6 @@ def _compare_points(made: BenchmarkClass, stock: Sequence[StockRun], ours: OurRu
         if points != ours.points.get((student, assignment))
     ]
     return len(both), wrong
-
-
-def _load(watch: Watch) -> str:
-    usage: Usage | None = watch.usage
-    assert usage is not None
-    return f"load {usage.load:.1f}, cores {usage.busy:.0%} busy"
 
 
 @contextmanager
@@ -199,13 +117,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
     chosen = parser.parse_args(arguments)
     form = SHORT if chosen.short else FULL
     if chosen.students:
-        form = Form(**{**form.__dict__, "students": chosen.students})
+        form = replace(form, students=chosen.students)
     os.environ.setdefault("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
     folder = fresh_folder("benchmark-")
-    try:
-        found = measure(form, folder)
-    finally:
-        shutil.rmtree(folder, ignore_errors=True)
+    found = measure(form, folder)
+    # Not if something failed: the logs that the message names are in it.
+    shutil.rmtree(folder, ignore_errors=True)
     print(results.markdown(found))
     output = chosen.output or (None if chosen.short else RESULTS)
     if output is not None:
@@ -213,27 +130,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
         if output == RESULTS:
             results.put_into(PAGE, found)
     return 0
-
-
-def measure(form: Form, folder: Path) -> results.Results:
-    """Measure in a folder.
-
-    Args:
-        form: How much.
-        folder: For the classes; empty.
-    """
-    began = time.monotonic()
-    run = _Run(form, folder)
-    run.all()
-    return results.Results(
-        machine=machine(),
-        when=datetime.datetime.now(tz=datetime.UTC).date().isoformat(),
-        form=form.name,
-        minutes=(time.monotonic() - began) / 60,
-        figures=tuple(run.figures),
-        notes=NOTES,
-        differences=tuple(run.differences),
-    )
 
 
 NOTES = (

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import statistics
 import subprocess
 from dataclasses import dataclass
@@ -11,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 
 from benchmarks.machine import Usage, Watch
-from benchmarks.memory import MemorySample, MemoryWatch
 from benchmarks.stock import Points, points_in
 from course_runtime.python_child import python_child
 
@@ -21,8 +19,7 @@ if TYPE_CHECKING:
 
     from benchmarks.classes import BenchmarkClass
 
-AUTOGRADER = tuple(python_child("-m", "autograder").command)
-GRADE = (*AUTOGRADER, "grade")
+GRADE = tuple(python_child("-m", "autograder", "grade").command)
 
 
 @dataclass(frozen=True)
@@ -34,7 +31,6 @@ class OurRun:
         report: What it said of itself, as ``--json`` has it.
         usage: The machine meanwhile.
         busy_working: Share of all cores that was busy between the first and the last notebook, 0 to 1.
-        memory: What it took, every two seconds.
         points: What the gradebook says.
     """
 
@@ -42,42 +38,37 @@ class OurRun:
     report: dict[str, object]
     usage: Usage
     busy_working: float
-    memory: tuple[MemorySample, ...]
     points: Points
 
 
-def run_ours(made: BenchmarkClass, log: Path, *options: str) -> OurRun:
+def run_ours(made: BenchmarkClass, log: Path) -> OurRun:
     """Grade a class and watch.
 
     Args:
         made: The class.
         log: Where standard error goes.
-        options: More options of ``grade``.
 
     Raises:
         RuntimeError: It could not be graded.
     """
     with Watch() as watch, log.open("wb") as errors:
-        process = subprocess.Popen(
-            [*GRADE, str(made.path), "--json", *options],
+        done = subprocess.run(
+            [*GRADE, str(made.path), "--json"],
             stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE,
             stderr=errors,
-            env=dict(os.environ),
             preexec_fn=watch.prepare,
+            check=False,
         )
-        with MemoryWatch(process.pid) as memory:
-            said, _ = process.communicate()
     assert watch.usage is not None
-    if process.returncode not in (0, 2) or not said:
+    if done.returncode not in (0, 2) or not done.stdout:
         raise RuntimeError(f"autograder grade failed; see {log}")
-    report = msgspec.json.decode(said)
+    report = msgspec.json.decode(done.stdout)
     return OurRun(
         notebooks=int(report["totals"]["executed"]),
         report=report,
         usage=watch.usage,
         busy_working=_while_working(watch.busy_by_second, report),
-        memory=tuple(memory.samples),
         points=points_in(made.path, made.assignments, made.students),
     )
 

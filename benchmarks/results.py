@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import msgspec
@@ -23,14 +23,14 @@ class Figure:
         name: What was measured.
         aim: What is wanted, in words.
         measured: What came out, in words.
-        reached: True if the aim is reached; None if the figure has no aim.
+        reached: Whether the aim is reached.
         load: The machine meanwhile: its load average, and the share that other processes took if known.
     """
 
     name: str
     aim: str
     measured: str
-    reached: bool | None
+    reached: bool
     load: str
 
 
@@ -45,7 +45,7 @@ class Results:
         minutes: How long the run took.
         figures: In the order in which they are shown.
         notes: Sentences about what was measured.
-        differences: Points that are not the same in stock nbgrader and here, and verdicts that changed under load.
+        differences: Points that are not the same in stock nbgrader and here, and problems of the run.
     """
 
     machine: Machine
@@ -54,7 +54,7 @@ class Results:
     minutes: float
     figures: tuple[Figure, ...] = ()
     notes: tuple[str, ...] = ()
-    differences: tuple[str, ...] = field(default_factory=tuple)
+    differences: tuple[str, ...] = ()
 
 
 def markdown(results: Results) -> str:
@@ -67,11 +67,9 @@ def markdown(results: Results) -> str:
         "| what | aim | measured | reached | load while measuring |",
         "| --- | --- | --- | --- | --- |",
     ]
-    words = {True: "yes", False: "**no**", None: "–"}
-    lines += [
-        f"| {figure.name} | {figure.aim} | {figure.measured} | {words[figure.reached]} | {figure.load} |"
-        for figure in results.figures
-    ]
+    for figure in results.figures:
+        reached = "yes" if figure.reached else "**no**"
+        lines.append(f"| {figure.name} | {figure.aim} | {figure.measured} | {reached} | {figure.load} |")
     lines += ["", *(f"- {note}" for note in results.notes)]
     if results.differences:
         lines += ["", "Differences:", "", *(f"- {difference}" for difference in results.differences)]

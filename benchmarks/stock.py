@@ -51,16 +51,14 @@ class StockRun:
         notebooks: How many notebooks that were.
         start_seconds: Start of the ``nbgrader`` command, which a class of any size pays once an assignment.
         seconds: Wall time of each assignment's command.
-        feedback_seconds: Wall time of ``nbgrader generate_feedback``, all assignments together.
         points: What the gradebook says.
-        usage: The machine meanwhile, without feedback.
+        usage: The machine meanwhile.
     """
 
     students: tuple[str, ...]
     notebooks: int
     start_seconds: float
     seconds: dict[str, float]
-    feedback_seconds: float
     points: Points
     usage: Usage
 
@@ -77,33 +75,26 @@ class StockRun:
         )
 
 
-def run_stock(made: BenchmarkClass, folder: Path, students: Sequence[str], *, feedback: bool) -> StockRun:
+def run_stock(made: BenchmarkClass, folder: Path, students: Sequence[str]) -> StockRun:
     """Grade some students of a class with stock nbgrader, in a copy of its directory.
 
     Args:
         made: The class; nothing is written into it.
         folder: The folder for the copy.
         students: The students that are graded.
-        feedback: Also make feedback pages.
     """
     copy_for_stock(made, folder, students)
     start = _start_seconds(folder)
     seconds = {}
     with _environment() as environment, Watch() as watch:
         for assignment in made.assignments:
-            seconds[assignment] = _nbgrader(folder, environment, watch, "autograde", assignment)
+            seconds[assignment] = _autograde(folder, environment, watch, assignment)
     assert watch.usage is not None
-    feedback_seconds = 0.0
-    if feedback:
-        with _environment() as environment, Watch() as other:
-            for assignment in made.assignments:
-                feedback_seconds += _nbgrader(folder, environment, other, "generate_feedback", assignment)
     return StockRun(
         students=tuple(students),
         notebooks=len(students) * len(seconds),
         start_seconds=start,
         seconds=seconds,
-        feedback_seconds=feedback_seconds,
         points=points_in(folder, made.assignments, students),
         usage=watch.usage,
     )
@@ -146,13 +137,11 @@ def _start_seconds(folder: Path) -> float:
 _COMMAND = tuple(python_child("-W", "ignore", "-m", "nbgrader").command)
 
 
-def _nbgrader(
-    folder: Path, environment: Mapping[str, str], watch: Watch, command: str, assignment: str
-) -> float:
+def _autograde(folder: Path, environment: Mapping[str, str], watch: Watch, assignment: str) -> float:
     began = time.monotonic()
     with (folder / "nbgrader.log").open("ab") as log:
         done = subprocess.run(
-            [*_COMMAND, command, assignment],
+            [*_COMMAND, "autograde", assignment],
             cwd=folder,
             env=dict(environment),
             stdin=subprocess.DEVNULL,
@@ -162,7 +151,7 @@ def _nbgrader(
             preexec_fn=watch.prepare,
         )
     if done.returncode:
-        raise RuntimeError(f"nbgrader {command} {assignment} failed; see {folder / 'nbgrader.log'}")
+        raise RuntimeError(f"nbgrader autograde {assignment} failed; see {folder / 'nbgrader.log'}")
     return time.monotonic() - began
 
 

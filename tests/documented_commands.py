@@ -38,7 +38,7 @@ _NEXT = re.compile(r"\s*(?:&&|;|\|)\s*(?:do\s+)?")
 _PROGRAMS = re.compile(r"(?:\S*/course|autograder|pip|git|ros2|colcon|\S*python3? -m \S+)(?= |$)")
 _SCRIPTS = {"setup": "environment.bootstrap", "benchmark": "benchmarks.__main__"}
 """The words of ``./course`` that are modules with a parser of their own."""
-_WITHOUT_PARSER = {"benchmarks.cluster": 0, "autograder.workspaces": 2}
+_WITHOUT_PARSER = {"autograder.workspaces": 2}
 """How many words a module takes that has no parser."""
 _PLACEHOLDERS = {"…": "ANY", "WHAT": "--help"}
 """The words of the pages for what a reader fills in, if not every word would do."""

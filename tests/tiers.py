@@ -44,7 +44,6 @@ NIGHTLY = (
     "tests/mutation/test_mutation.py::test_a_sample_of_mutants_is_caught",
     # Each takes up to 40 s of two processors, as `record` does, which an author runs.
     "tests/authoring/mutants/test_survey.py::test_each_exercise_of_the_course_is_ready",
-    "tests/benchmarks/test_ros2_command.py::test_no_command_misses_anything_beside_open_notebooks",
     # Commands of nbgrader itself, each of which takes seconds to start; what they end in is tested within the process.
     "tests/grading/new_classes/test_new_class.py::test_its_gradebook_has_the_version_that_nbgraders_own_would_have",
     "tests/grading/table/test_spreadsheet_csv.py::test_plain_nbgrader_export_is_defused_too",

@@ -12,9 +12,7 @@ from benchmarks import figures, results
 from benchmarks.__main__ import PAGE, RESULTS
 from benchmarks.classes import bank_variants, make_class
 from benchmarks.machine import Usage, machine
-from benchmarks.memory import MemorySample
 from benchmarks.ours import OurRun, _while_working
-from benchmarks.overload import differences
 from benchmarks.stock import StockRun
 
 if TYPE_CHECKING:
@@ -24,20 +22,18 @@ USAGE = Usage(seconds=60.0, busy=0.9, own_cpu=90.0, load=1.0, others=0.05)
 
 
 def ours(**other: object) -> OurRun:
-    memory = tuple(MemorySample(i, 100_000_000, 900_000_000, (80_000_000, 120_000_000)) for i in range(8))
     fields = {
         "notebooks": 180,
         "report": {},
         "usage": USAGE,
         "busy_working": 0.9,
-        "memory": memory,
         "points": {},
     }
     return OurRun(**{**fields, **other})  # type: ignore[arg-type]
 
 
 def test_stock_is_extrapolated_student_by_student_and_its_start_is_paid_once_an_assignment() -> None:
-    stock = StockRun(("a", "b"), 4, 2.0, {"x": 12.0, "y": 22.0}, 0.0, {}, USAGE)
+    stock = StockRun(("a", "b"), 4, 2.0, {"x": 12.0, "y": 22.0}, {}, USAGE)
     assert stock.per_notebook == 7.5
     assert stock.for_class(100) == 2 + 5 * 100 + 2 + 10 * 100
     figure = figures.throughput([stock], ours(), 100)
@@ -49,25 +45,12 @@ def test_stock_is_extrapolated_student_by_student_and_its_start_is_paid_once_an_
 def test_a_figure_says_whether_its_aim_is_reached() -> None:
     assert figures.busy(ours(busy_working=0.84)).reached is False
     assert figures.busy(ours(busy_working=0.86)).reached is True
-    assert figures.regrade([(2.5, 1.0), (1.9, 1.2)], 100, "").reached is True
-    assert figures.overload(["one"], 9, "").measured == "8 of 9 the same"
-    flat, box = figures.memory(ours())
-    assert (flat.reached, box.reached) == (True, True)
+    assert figures.points(["one"], 9).measured == "8 of 9 notebooks identical"
 
 
 def test_cores_count_from_the_first_notebook_to_the_last() -> None:
     report: dict[str, object] = {"timings": {"first_started": 2.3, "last_ended": 5.9}}
     assert _while_working([0.1, 0.1, 1.0, 1.0, 0.7, 0.0, 0.0], report) == pytest.approx(0.9)
-
-
-def test_a_verdict_that_changed_or_is_gone_is_named() -> None:
-    calm = {
-        ("a", "x"): (10.0, "passed", ""),
-        ("a", "y"): (10.0, "passed", ""),
-        ("a", "z"): (0.0, "failed", "k"),
-    }
-    loaded = {("a", "x"): (10.0, "passed", ""), ("a", "y"): (9.0, "failed", "slow")}
-    assert [line.split(":")[0] for line in differences(calm, loaded)] == ["a y", "a z"]
 
 
 def sources(notebook: Path) -> list[str]:
