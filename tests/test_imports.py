@@ -48,7 +48,7 @@ GRADING_FROM_BELOW = (
     *("grading_errors", "grading_task", "course_version"),
     *("rebuilding", "classes", "returning", "running", "cluster"),
     *("table", "export", "class_records", "store_tables", "class_store", "class_checks"),
-    *("collecting", "tasks", "similarity", "result_writer", "reporting"),
+    *("collecting", "tasks", "result_writer", "reporting"),
     *("batch_work", "batch_steps", "batch", "nbgrader_commands", "new_classes", "week"),
 )
 MOST_FILES = 15

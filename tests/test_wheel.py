@@ -176,7 +176,7 @@ def test_a_folder_of_a_student_is_no_course_to_a_command_for_a_class(tmp_path: P
     evil.write_text("print('it ran')")
     code = (
         "import os; from autograder import course; from autograder.cli import cli, IN_A_COURSE\n"
-        "assert not IN_A_COURSE & {'grade', 'collect', 'report', 'export', 'similar', 'appeal', 'replay', 'compare'}\n"
+        "assert not IN_A_COURSE & {'grade', 'collect', 'report', 'export', 'appeal', 'replay'}\n"
         "course.use_the_one_around.__globals__['use'] = lambda folder: print('used', folder)\n"
         "cli(['grade', '.'])"
     )

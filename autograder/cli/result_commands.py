@@ -1,4 +1,4 @@
-"""The commands for instructors about graded work: report, export to the LMS, similar answers, changed points, appeals.
+"""The commands for instructors about graded work: report, export to the LMS, attempts, appeals.
 
 For an appeal, an instructor lists a student's results, saves one check with its evidence, and judges the check again.
 """
@@ -22,7 +22,6 @@ from autograder.cli.class_options import (
 )
 from autograder.cli.command_results import as_json_option, fail, grading_errors, print_json, print_line
 from autograder.command_name import COMMAND
-from autograder.kit.in_words import counted
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -36,7 +35,7 @@ if TYPE_CHECKING:
 @class_folder
 @click.option(
     "--to",
-    type=click.Choice(["canvas", "moodle", "blackboard", "brightspace", "sakai", "ilias", "csv", "xlsx"]),
+    type=click.Choice(["canvas", "moodle", "blackboard", "brightspace", "sakai", "ilias", "csv"]),
     callback=lambda _context, _option, chosen: chosen or "",
     help="The LMS that will import the files. With --into, it is the one from which the list comes.",
 )
@@ -121,61 +120,6 @@ def report(
             print_json(table_json(page, read_table(ClassDirectory(folder), sections)))
         else:
             print_line(str(page))
-
-
-@class_command()
-@class_folder
-@click.argument("assignment", required=False, default="")
-@click.option(
-    "--output", type=click.Path(path_type=Path), help="The page to write. The default is FOLDER/similar.html."
-)
-@as_json_option
-def similar(folder: Path, assignment: str, output: Path | None, as_json: bool) -> None:
-    """Find pairs of submissions in the class FOLDER with more similar code than their task explains.
-
-    A pair is a hint, not a proof. If ASSIGNMENT is given, only its submissions are compared.
-
-    Exit code 0: all submissions were compared; 2: some were not, and the printed lines say which and why.
-    """
-    from autograder.grading.classes.class_directory import ClassDirectory
-    from autograder.grading.grading_errors import clear_disk_errors
-    from autograder.grading.similarity.similar_pairs import find_similar
-    from autograder.grading.similarity.similarity_report import show, similar_json, write_page
-
-    with grading_errors():
-        directory = ClassDirectory(folder)
-        with clear_disk_errors(directory.path):
-            found = find_similar(directory, assignment)
-            page = write_page(found, output)
-    if as_json:
-        print_json(similar_json(found, page))
-    else:
-        show(found, page)
-    sys.exit(found.exit_code)
-
-
-@class_command()
-@class_folder
-@click.argument("before", required=False, default="")
-@click.argument("after", required=False, default="")
-@as_json_option
-def compare(folder: Path, before: str, after: str, as_json: bool) -> None:
-    """Show whose points the last run of `grade` in the class FOLDER has changed.
-
-    BEFORE and AFTER select two other runs by their times, written as in the first line that this command prints.
-    """
-    from autograder.grading.class_store import ClassStore
-    from autograder.grading.classes.class_directory import ClassDirectory
-    from autograder.grading.reporting import class_table
-
-    with grading_errors(), ClassStore(ClassDirectory(folder)) as store:
-        old, new, found = class_table.compare(store, before, after)
-    if as_json:
-        print_json({"before": old, "after": new, "differences": found})
-        return
-    click.echo(f"{old} → {new}: {counted(len(found), 'difference')}")
-    for difference in found:
-        print_line(difference.line())
 
 
 @class_command()
@@ -289,8 +233,6 @@ def _cut(line: str) -> str:
 RESULT_COMMANDS = (
     report,
     export,
-    similar,
-    compare,
     attempts,
     appeal,
     replay,

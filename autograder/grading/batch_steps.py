@@ -22,7 +22,6 @@ from autograder.grading.class_checks import changed_master_warnings, limits_of
 from autograder.grading.classes import gradebook_reading, gradebook_writing
 from autograder.grading.classes.gradebook_reading import SubmissionEntry
 from autograder.grading.collecting.submitted_folder import misplaced_files, rename_decomposed_folders
-from autograder.grading.course_version import course_version
 from autograder.grading.grading_errors import MasterUnusable, is_disk_full
 from autograder.grading.reporting.grade_report import GradeReport
 from autograder.grading.running import execution_backends
@@ -350,7 +349,6 @@ class Batch:
             changes = would_change(self._directory, in_order, entries, self._cells, self._dates)
         else:
             write_csv(self._directory.path / "grades.csv", rows)
-            self._store.keep_run(course_version(), rows)
             if self._run_again:
                 forget_unneeded_documents(self._directory)
         return GradeReport(

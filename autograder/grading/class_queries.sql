@@ -1,4 +1,4 @@
--- What commands ask about the attempts and the runs in a class's store. ClassStore reads each query by its name.
+-- What commands ask about the attempts in a class's store. ClassStore reads each query by its name.
 
 -- query: entered
 -- The attempts whose results are in the gradebook.
@@ -33,21 +33,3 @@ WITH course_of AS (
 SELECT progress.student, progress.assignment, attempts, before.score, after.score, after.max_score
 FROM progress JOIN judged AS before ON before.number = first JOIN judged AS after ON after.number = last
 ORDER BY before.score - after.score, progress.student, first;
-
--- query: differences
--- The results that differ between two runs. A result has points if Row.shown_score in table/rows.py has some.
-WITH result AS (
-    SELECT run.name, json_extract(value, '$.student') AS student, json_extract(value, '$.assignment') AS assignment,
-        json_extract(value, '$.exercise') AS exercise, json_extract(value, '$.diagnosis') AS diagnosis,
-        CASE WHEN json_extract(value, '$.state') IN ('not_submitted', 'not_graded', 'excused', 'not_checked')
-            AND json_extract(value, '$.by_hand') IS NULL AND NOT json_extract(value, '$.extra')
-        THEN NULL ELSE json_extract(value, '$.score') END AS score
-    FROM run, json_each(CAST(report AS TEXT)) WHERE run.name IN (?1, ?2)
-)
-SELECT student, assignment, exercise,
-    max(score) FILTER (WHERE name = ?1) AS score_before, max(score) FILTER (WHERE name = ?2) AS score_after,
-    coalesce(max(diagnosis) FILTER (WHERE name = ?1), '') AS diagnosis_before,
-    coalesce(max(diagnosis) FILTER (WHERE name = ?2), '') AS diagnosis_after
-FROM result GROUP BY student, assignment, exercise
-HAVING (score_before, diagnosis_before) IS NOT (score_after, diagnosis_after)
-ORDER BY student, assignment, exercise;

@@ -1,4 +1,4 @@
-"""The store of a class: one SQLite file in which the grader keeps results, evidence, attempts and runs.
+"""The store of a class: one SQLite file in which the grader keeps results, evidence and attempts.
 
 Each write is one transaction, so that a killed run or a power failure leaves no half-written entry. The file uses
 SQLite's rollback journal, because a write-ahead log would not work on network disks, and would need write access even
@@ -12,7 +12,7 @@ from __future__ import annotations
 import contextlib
 import sqlite3
 from dataclasses import replace
-from datetime import UTC, datetime
+from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self, TypeVar
 
@@ -26,7 +26,7 @@ from autograder.grading.table.rows import Row
 from autograder.safe_files import name_as_text
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+    from collections.abc import Callable, Iterable, Iterator, Mapping
 
     from autograder.grading.classes.class_directory import ClassDirectory, Submission
     from autograder.grading.grading_task import Task
@@ -51,8 +51,6 @@ _RENAME = (
 )
 """SQL statements that give a student (?2) another id (?1). Pages name the student, so they are made again."""
 _TAKE_BACK = "UPDATE attempt SET entered = 0 WHERE (student, assignment) = (?, ?) AND entered"
-_RUNS = 50
-"""The maximum number of runs for which the table of results is stored."""
 _PATIENCE = 30.0
 """Time limit in seconds for waiting until another program has ended its transaction."""
 _Decoded = TypeVar("_Decoded")
@@ -213,36 +211,6 @@ class ClassStore:
         with self._step() as book:
             for statement in _RENAME:
                 book.executemany(statement, [(new, old) for old, new in ids.items()])
-            for name, report in book.execute("SELECT name, report FROM run").fetchall():
-                if rows := _decoded(report, tuple[Row, ...]):
-                    own = [replace(row, student=ids.get(row.student, row.student)) for row in rows]
-                    book.execute("UPDATE run SET report = ? WHERE name = ?", (msgspec.json.encode(own), name))
-
-    # -- runs
-
-    def keep_run(self, course: str, rows: Sequence[Row]) -> None:
-        """Store the table of results after a run, if it differs from the last table, and delete the oldest tables."""
-        report = msgspec.json.encode(rows)
-        if self._rows("SELECT course, report FROM run ORDER BY name DESC LIMIT 1") == [(course, report)]:
-            return
-        with self._step() as book:
-            now = f"{datetime.now(tz=UTC):%Y-%m-%dT%H-%M-%S.%f}"
-            book.execute("INSERT INTO run VALUES (?, ?, ?)", (now, course, report))
-            book.execute(
-                "DELETE FROM run WHERE name NOT IN (SELECT name FROM run ORDER BY name DESC LIMIT ?)",
-                (_RUNS,),
-            )
-
-    def runs(self) -> list[str]:
-        """Return the names of the runs, oldest first."""
-        return [name for (name,) in self._rows("SELECT name FROM run ORDER BY name")]
-
-    def differences(self, before: str, after: str) -> list[tuple[Any, ...]]:
-        """Return the results that differ between two runs.
-
-        Each is a student, an assignment, an exercise, the points before and after, and the diagnosis before and after.
-        """
-        return self._rows(_QUERIES["differences"], before, after)
 
     # -- sources
 

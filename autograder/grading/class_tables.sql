@@ -24,8 +24,6 @@ CREATE INDEX IF NOT EXISTS entered_of ON attempt (student, assignment) WHERE ent
 CREATE TRIGGER IF NOT EXISTS not_removed BEFORE DELETE ON attempt BEGIN SELECT RAISE(ABORT, 'attempts stay'); END;
 CREATE TRIGGER IF NOT EXISTS not_changed BEFORE UPDATE OF number, at, assignment, made_from, course, report, tasks, scores
     ON attempt BEGIN SELECT RAISE(ABORT, 'attempts stay'); END;
--- The class's table of results after each of the last runs that changed the table. The name is the run's time in UTC.
-CREATE TABLE IF NOT EXISTS run (name TEXT PRIMARY KEY, course TEXT NOT NULL, report BLOB NOT NULL);
 -- The master from which each source notebook of the class was made; see the class Origin.
 CREATE TABLE IF NOT EXISTS origin (
     assignment TEXT PRIMARY KEY, master TEXT NOT NULL, text TEXT NOT NULL, work TEXT NOT NULL

@@ -12,34 +12,17 @@ from pathlib import Path
 
 from autograder.safe_files import keep_whole
 
-FORM = 5
+FORM = 6
 """The version of the tables, as the file's ``user_version``."""
 TABLES = Path(__file__).with_name("class_tables.sql").read_text(encoding="utf-8")
-_STEPS = {
-    4: (
-        "ALTER TABLE attempt ADD COLUMN tasks BLOB NOT NULL DEFAULT '{}'",
-        "ALTER TABLE attempt ADD COLUMN scores BLOB NOT NULL DEFAULT '{}'",
-        "ALTER TABLE attempt ADD COLUMN entered INTEGER NOT NULL DEFAULT 0",
-        "ALTER TABLE attempt ADD COLUMN shown TEXT NOT NULL DEFAULT ''",
-        # A grade without its attempt is entered once more, from the stored results.
-        "UPDATE attempt SET (tasks, scores, entered, shown) = (SELECT tasks, scores, 1, shown FROM entered AS one"
-        " WHERE (one.student, one.assignment) = (attempt.student, attempt.assignment)) WHERE number IN"
-        " (SELECT max(number) FROM attempt JOIN entered USING (student, assignment, made_from, report)"
-        " GROUP BY student, assignment)",
-        "DROP TABLE entered",
-        "CREATE INDEX entered_of ON attempt (student, assignment) WHERE entered",
-        "DROP TRIGGER IF EXISTS not_changed",
-        "CREATE TRIGGER not_changed BEFORE UPDATE OF number, at, assignment, made_from, course, report, tasks, scores"
-        " ON attempt BEGIN SELECT RAISE(ABORT, 'attempts stay'); END",
-    ),
-}
+_STEPS = {5: ("DROP TABLE run",)}
 """For the earlier version, the statements that make the next version's tables from its tables."""
 
 
 def bring_up_to_date(book: sqlite3.Connection, path: Path, *, may_make: bool) -> bool:
     """Make the tables if the file has none, or bring those of an earlier version to the present one.
 
-    The steps are one transaction. Before it, the file is copied to ``class.db.version-4`` or the like, so that the
+    The steps are one transaction. Before it, the file is copied to ``class.db.version-5`` or the like, so that the
     earlier course can be used again.
 
     Args:

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 from click.testing import CliRunner
-from tiny_class import TALKER, FakeEngine, TinyClass, make_version_4
+from tiny_class import TALKER, FakeEngine, TinyClass, make_version_5
 
 from autograder.boxes.run_limits import Ended, Limits
 from autograder.cli import cli
@@ -28,7 +28,6 @@ from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.class_directory import ClassDirectory, Submission
 from autograder.grading.grading_errors import DiskFull, StoreTrouble
 from autograder.grading.grading_task import Task
-from autograder.grading.table import rows
 from autograder.grading.table.rows import Row
 from autograder.verdict import State, Verdict
 from tests import hasty_disk
@@ -118,14 +117,9 @@ def test_a_run_that_enters_nothing_leaves_the_evidence_of_a_grade(store: ClassSt
 
 
 def test_an_unknown_class_has_an_empty_answer_to_everything_and_no_file(store: ClassStore) -> None:
-    assert (store.results("ada", "lab"), store.entered(), store.attempts("ada"), store.runs()) == (
-        {},
-        {},
-        [],
-        [],
-    )
+    assert (store.results("ada", "lab"), store.entered(), store.attempts("ada")) == ({}, {}, [])
     assert (store.evidence("ada", "lab.one"), store.origins(), store.graded_cells("x")) == (None, {}, b"")
-    assert (store.last_key(submission()), store.progress(), store.differences("a", "b")) == (None, [], [])
+    assert (store.last_key(submission()), store.progress()) == (None, [])
     assert not file_of(store).exists()
     file_of(store).touch()  # whoever made it was killed before the first step was done
     assert store.entered() == {}
@@ -191,45 +185,6 @@ def test_attempts_are_added_and_neither_changed_nor_removed(store: ClassStore) -
         with pytest.raises(sqlite3.IntegrityError, match="attempts stay"):
             change(store, statement)
     assert attempts_of(store) == attempts(0)
-
-
-def test_the_last_runs_are_kept_and_none_twice(store: ClassStore) -> None:
-    for number in range(class_store._RUNS + 3):
-        for _ in "ab":
-            store.keep_run("v1", [replace(ROWS[0], score=number)])
-    names = store.runs()
-    assert (len(names), names) == (class_store._RUNS, sorted(names))
-    assert store.differences(names[0], names[-1]) == [
-        ("ada", "lab", "lab.one", 3, class_store._RUNS + 2, "", "")
-    ]
-    store.keep_run("v2", [replace(ROWS[0], score=class_store._RUNS + 2)])
-    assert store.runs()[-1] > names[-1], "of another version of the course it is another table"
-
-
-def test_a_difference_has_the_points_that_are_shown(store: ClassStore) -> None:
-    """The store's query and the class Row decide alike whether a row has points."""
-    states = (*rows.NOTHING_JUDGED, State.PASSED, rows.WAITS, rows.BY_HAND, rows.LATE)
-    some = [
-        Row(student, "lab", f"{state} {by_hand} {extra}", 3, 4, str(state), by_hand=by_hand, extra=extra)
-        for student, state, by_hand, extra in itertools.product(
-            ("ada", "ben"), states, (None, 0.0, 3.0), (0.0, 0.5)
-        )
-    ]
-    fewer = [replace(row, score=1) for row in some]
-    for table in ([], some, [replace(row, diagnosis="slow") for row in some], fewer, some[1:]):
-        store.keep_run("v1", table)
-    empty, first, slow, less, last = store.runs()
-    given = {(row.student, row.assignment, row.exercise): row for row in some}
-    expected = [(*key, None, row.shown_score, "", "") for key, row in given.items() if not row.is_blank]
-    assert store.differences(empty, first) == sorted(expected)
-    assert {one[5:] for one in store.differences(first, slow)} == {("", "slow")}
-    assert store.differences(first, first) == []
-    assert {one[3:5] for one in store.differences(first, less)} == {(3, 1)}
-    assert {one[3:5] for one in store.differences(less, first)} == {(1, 3)}
-    gone = some[0]
-    assert [one[:3] for one in store.differences(first, last)] == [
-        key for key in [(gone.student, "lab", gone.exercise)] if not gone.is_blank
-    ]
 
 
 def test_the_progress_is_that_of_changed_work_with_one_version_of_the_course(store: ClassStore) -> None:
@@ -343,7 +298,6 @@ def test_a_damaged_file_is_named_and_costs_nobody_points(
         tiny.grade()
     for words in (
         ["attempts", str(tiny.path), "ada"],
-        ["compare", str(tiny.path)],
         ["report", str(tiny.path)],
     ):
         said = CliRunner().invoke(cli, words)
@@ -377,9 +331,8 @@ def make_earlier(store: ClassStore) -> list[str]:
     store.enter(
         submission(), entered(1), is_final=False
     )  # so the newest attempt is not the one in the gradebook
-    store.keep_run("v1", ROWS)
     store.close()
-    make_version_4(file_of(store))
+    make_version_5(file_of(store))
     return dump_of(file_of(store))
 
 
@@ -391,10 +344,10 @@ def dump_of(path: Path) -> list[str]:
 def test_a_file_of_an_earlier_course_is_used_on_and_a_copy_stays(store: ClassStore) -> None:
     before = make_earlier(store)
     assert store.entered() == {("ada", "lab"): replace(entered(), shown="pages")}
-    assert (attempts_of(store), len(store.runs())) == (attempts(0, 1), 1)
+    assert attempts_of(store) == attempts(0, 1)
     with contextlib.closing(sqlite3.connect(file_of(store))) as book:
         assert book.execute("PRAGMA user_version").fetchone() == (store_tables.FORM,)
-    copy = file_of(store).with_name("class.db.version-4")
+    copy = file_of(store).with_name("class.db.version-5")
     assert dump_of(copy) == before
     store.rename({"ada": "eve"})
     assert (store.attempts("ada"), len(store.attempts("eve"))) == ([], 2)
@@ -433,7 +386,7 @@ def test_a_file_whose_conversion_was_killed_is_whole(
     monkeypatch.undo()
     assert dump_of(file_of(store)) == before
     assert store.entered() == {("ada", "lab"): replace(entered(), shown="pages")}
-    assert dump_of(file_of(store).with_name("class.db.version-4")) == before
+    assert dump_of(file_of(store).with_name("class.db.version-5")) == before
 
 
 # -- killed
@@ -529,7 +482,7 @@ def test_who_reads_reads_while_a_batch_runs(tiny: TinyClass, fake_engine: FakeEn
     said: list[str] = []
 
     def ask(_: object) -> None:
-        for words in (("attempts", "ada"), ("compare",), ("report",), ("appeal", "ada", "lab_1_2.talker")):
+        for words in (("attempts", "ada"), ("report",), ("appeal", "ada", "lab_1_2.talker")):
             done = CliRunner().invoke(cli, [words[0], str(tiny.path), *words[1:]])
             said.append(f"{words[0]} {done.exit_code} {done.output}")
 
@@ -537,7 +490,6 @@ def test_who_reads_reads_while_a_batch_runs(tiny: TinyClass, fake_engine: FakeEn
     tiny.grade()
     assert [one.split()[:2] for one in said] == [
         ["attempts", "0"],
-        ["compare", "0"],
         ["report", "0"],
         ["appeal", "2"],
     ]
@@ -609,7 +561,7 @@ def test_a_class_that_may_only_be_read_is_read(
     with mounted(tiny.path, "--bind", str(tiny.path)):
         subprocess.run(["mount", "-o", "remount,bind,ro", str(tiny.path)], check=True)
         page = str(tmp_path / "report.html")
-        for words in (("attempts", "ada"), ("compare",), ("report", "--output", page)):
+        for words in (("attempts", "ada"), ("report", "--output", page)):
             done = CliRunner().invoke(cli, [words[0], str(tiny.path), *words[1:]])
             assert done.exit_code == 0, done.output
         for line in (

@@ -141,7 +141,7 @@ def test_nothing_of_the_current_folder_runs_while_a_class_is_graded(
     assert "ada" in graded.stdout, graded.stderr
     assert "mallory" not in (tiny.path / "feedback/ada/lab_1_2/lab_1_2.html").read_text()
     more = shutil.copytree(tiny.path / "submitted/ada/lab_1_2", tiny.path / "download/ben")
-    for command, *words in (["collect", str(more)], ["report"], ["similar"], ["export", "--to", "csv"]):
+    for command, *words in (["collect", str(more)], ["report"], ["export", "--to", "csv"]):
         done = typed(course, hostile.path, command, str(tiny.path), *words)
         assert done.returncode == 0, done.stdout + done.stderr
     assert hostile.marks() == ""
@@ -156,7 +156,7 @@ def handed_in(tiny: TinyClass, hostile: Hostile) -> Path:
     return folder
 
 
-@pytest.mark.parametrize("command", ["grade", "report", "similar", "new-class"])
+@pytest.mark.parametrize("command", ["grade", "report", "new-class"])
 def test_a_class_that_a_student_has_handed_in_is_not_used(
     tiny: TinyClass, hostile: Hostile, handed_in: Path, monkeypatch: pytest.MonkeyPatch, command: str
 ) -> None:

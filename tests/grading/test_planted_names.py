@@ -95,8 +95,6 @@ def test_a_name_that_is_typed_or_completed_is_escaped(
         ["grade", "--student", "nobody"],
         ["grade", "--dry-run"],
         ["report"],
-        ["similar"],
-        ["compare"],
         ["export", "--to", "csv"],
         ["attempts", NAME],
         ["appeal", NAME, "lab_1_2.talker"],

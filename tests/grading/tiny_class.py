@@ -110,27 +110,14 @@ def write_master(course: Path, lab: str, text: str) -> None:
     (folder / "lab.md").write_text(text)
 
 
-def make_version_4(store: Path) -> None:
-    """Give a class's store the tables of the course before an attempt said whether the gradebook has it."""
+def make_version_5(store: Path) -> None:
+    """Give a class's store the tables of the course that kept a table of results after each run."""
     with contextlib.closing(sqlite3.connect(store)) as book, book:
         book.executescript(
             """
-            CREATE TABLE entered (
-                student TEXT, assignment TEXT, made_from TEXT NOT NULL, tasks BLOB NOT NULL, scores BLOB NOT NULL,
-                report BLOB NOT NULL, shown TEXT NOT NULL,
-                PRIMARY KEY (student, assignment)
-            );
-            INSERT INTO entered
-                SELECT student, assignment, made_from, tasks, scores, report, shown FROM attempt WHERE entered;
-            DROP TRIGGER not_changed;
-            DROP INDEX entered_of;
-            ALTER TABLE attempt DROP COLUMN tasks;
-            ALTER TABLE attempt DROP COLUMN scores;
-            ALTER TABLE attempt DROP COLUMN entered;
-            ALTER TABLE attempt DROP COLUMN shown;
-            CREATE TRIGGER not_changed BEFORE UPDATE OF number, at, assignment, made_from, course, report ON attempt
-                BEGIN SELECT RAISE(ABORT, 'attempts stay'); END;
-            PRAGMA user_version = 4;
+            CREATE TABLE run (name TEXT PRIMARY KEY, course TEXT NOT NULL, report BLOB NOT NULL);
+            INSERT INTO run VALUES ('2026-11-29T10-15-20.000000', 'v1', '[]');
+            PRAGMA user_version = 5;
             """
         )
 

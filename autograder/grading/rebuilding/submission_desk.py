@@ -4,8 +4,8 @@
 
     cells, left_out = read_notebook(read_bytes(path), directory.state)
 
-The document that a desk makes of a file is kept in the class, under a hash of the file. So `grade`, `collect` and
-`similar` parse a file once, also over several runs and after an update of the course.
+The document that a desk makes of a file is kept in the class, under a hash of the file. So `grade` and
+`collect` parse a file once, also over several runs and after an update of the course.
 
 Even if a file takes over its desk, it can only change what is read from this one file, because a document is checked
 each time that it is used: it must be one that a desk could have made from a notebook. If the document is impossible, or

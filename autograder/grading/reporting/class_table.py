@@ -1,4 +1,4 @@
-"""Reads the table of results of a class, without grading any submission, and compares the results of two runs."""
+"""Reads the table of results of a class, without grading any submission."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.gradebook_reading import Entries, read_entries
 from autograder.grading.collecting.collected_csv import Table, Waiting
-from autograder.grading.grading_errors import GradingError, MasterUnusable, check_known
+from autograder.grading.grading_errors import MasterUnusable
 from autograder.grading.reporting.gradebook_layouts import LAYOUTS
 from autograder.grading.table.roster import Roster, Student
 from autograder.grading.table.rows import DROPPED, EXCUSED, NOT_SUBMITTED, Row, grouped, total
@@ -218,27 +218,3 @@ class Difference:
         elif self.diagnosis_before != self.diagnosis_after:
             words = f" ({self.diagnosis_before or 'no mistake'} → {self.diagnosis_after or 'no mistake'})"
         return f"{self.student}  {self.exercise}  {points}{words}{f', {self.note}' if self.note else ''}"
-
-
-def compare(store: ClassStore, before: str = "", after: str = "") -> tuple[str, str, list[Difference]]:
-    """Compare the results of two runs of a class.
-
-    Args:
-        store: The store of the class.
-        before: The name of the earlier run; if empty, the run before the last.
-        after: The name of the later run; if empty, the last run.
-
-    Returns:
-        The names of the two runs, and their differences.
-
-    Raises:
-        GradingError: There are fewer than two runs, or no run has a given name.
-    """
-    names = store.runs()
-    if len(names) < 2 and not (before and after):
-        raise GradingError(
-            "There is nothing to compare yet: this class does not have two runs with different results."
-        )
-    before, after = before or names[-2], after or names[-1]
-    check_known((before, after), names, "run")
-    return before, after, [Difference(*row) for row in store.differences(before, after)]

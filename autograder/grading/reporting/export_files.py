@@ -4,11 +4,8 @@ from __future__ import annotations
 
 import contextlib
 import functools
-import io
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
-
-import xlsxwriter
 
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.classes.class_file import read_class_file
@@ -25,7 +22,7 @@ from autograder.grading.reporting.list_columns import Called, gradebook_columns
 from autograder.grading.reporting.lms_gradebooks import cell_text, gradebook
 from autograder.grading.reporting.lms_list_filling import fill_list, read_lms_list
 from autograder.grading.table.roster import NAME as ROSTER
-from autograder.grading.table.rows import COLUMNS, DROPPED, LATE, csv_cells
+from autograder.grading.table.rows import DROPPED, LATE
 from autograder.grading.table.spreadsheet_csv import blank, csv_rows, csv_text
 from autograder.kit.in_words import counted
 
@@ -110,7 +107,7 @@ def export(path: Path, to: str, choices: ExportChoices = ExportChoices()) -> Exp
 
     Args:
         path: The class directory.
-        to: A system in :data:`LAYOUTS`, or ``csv`` or ``xlsx``; empty for the system from which the list comes.
+        to: A system in :data:`LAYOUTS`, or ``csv``; empty for the system from which the list comes.
         choices: The choices of the instructor.
 
     Raises:
@@ -311,12 +308,6 @@ def _files(
     layout = LAYOUTS.get(to, GradebookLayout())
     if to == "csv":
         yield "students.csv", class_csv(table, assignments), "a line for each student"
-    elif to == "xlsx":
-        yield (
-            "grades.xlsx",
-            _class_xlsx(table, assignments),
-            "one sheet that lists the students, and one that lists their results in the exercises",
-        )
     elif layout.purpose:
         text = gradebook(to, table, CollectedRecords(directory.state), assignments, names)
         yield f"{to}.csv", text.encode(), layout.purpose
@@ -358,26 +349,3 @@ def _student_rows(table: ClassTable, assignments: Sequence[str]) -> list[_Cells]
 def class_csv(table: ClassTable, assignments: Sequence[str]) -> bytes:
     """Return the students' lines as CSV, with the mark (BOM) by which Excel recognizes UTF-8."""
     return csv_text(_student_rows(table, assignments)).encode("utf-8-sig")
-
-
-def _class_xlsx(table: ClassTable, assignments: Sequence[str]) -> bytes:
-    """Return a workbook with two sheets: a line for each student, and a line for each result in an exercise."""
-    exercises: list[_Cells] = [list(COLUMNS)]
-    exercises += [csv_cells(row) for row in table.rows if row.assignment in assignments]
-    data = io.BytesIO()
-    # A text from a student or an LMS must never become a formula, a link or a number.
-    options = {
-        "in_memory": True,
-        "strings_to_formulas": False,
-        "strings_to_urls": False,
-        "strings_to_numbers": False,
-    }
-    with xlsxwriter.Workbook(data, options) as book:
-        bold = book.add_format({"bold": True})
-        for name, rows in (("students", _student_rows(table, assignments)), ("exercises", exercises)):
-            sheet = book.add_worksheet(name)
-            for place, row in enumerate(rows):
-                sheet.write_row(place, 0, row, None if place else bold)
-            sheet.freeze_panes(1, 1)
-            sheet.autofit()
-    return data.getvalue()

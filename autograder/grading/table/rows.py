@@ -38,7 +38,7 @@ DROPPED = "dropped"
 """The value of ``exercise`` in a row that subtracts the points of a dropped assignment."""
 NO_EXERCISE = (LATE, DROPPED)
 NOTHING_JUDGED = (NOT_SUBMITTED, NOT_GRADED, EXCUSED, State.NOT_CHECKED)
-"""The states in which the judge gave no points. The query ``differences`` in ``class_queries.sql`` has them, too."""
+"""The states in which the judge gave no points."""
 _Key = TypeVar("_Key", bound=Hashable)
 _Of = TypeVar("_Of")
 

@@ -22,7 +22,6 @@ from autograder.boxes.admission import NotAdmitted, admitted
 from autograder.boxes.box_connection import ChannelClosed
 from autograder.boxes.reading_desks import Desk, KeptDesk
 from autograder.boxes.sandbox import why_impossible
-from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.collecting.collect import collect
 from autograder.grading.grading_errors import GradingError
 from autograder.grading.rebuilding import file_desk, submission_desk
@@ -35,7 +34,6 @@ from autograder.grading.rebuilding.submitted_notebook import (
     Unreadable,
     UnreadableSubmission,
 )
-from autograder.grading.similarity.similar_pairs import find_similar
 from tests.drawn import drawn
 from tests.grading.rebuilding.hostile_desk import CRAFTED, SCRIPT
 
@@ -302,7 +300,6 @@ def test_a_class_reads_each_file_once(tiny: TinyClass, asked: list[bytes], fake_
     tiny.grade(again=True)
     tiny.configure("c.WireExecute.memory_bytes = 4_000_000_000")
     tiny.grade()
-    find_similar(ClassDirectory(tiny.path))
     assert len(asked) == 3
     assert set(asked) > {path.read_bytes() for path in files}
     assert tiny.scores("ada")[TALKER] == 6
