@@ -25,7 +25,7 @@ from autograder.grading.collecting.submitted_folder import misplaced_files, rena
 from autograder.grading.grading_errors import MasterUnusable, is_disk_full
 from autograder.grading.reporting.grade_report import GradeReport
 from autograder.grading.running import execution_backends
-from autograder.grading.running.batch_progress import BatchProgress, Timings, plain_line
+from autograder.grading.running.batch_progress import BatchProgress, plain_line
 from autograder.grading.table.rows import rows_of, write_csv
 from autograder.grading.table.student_list import enter_roster
 from autograder.grading.table.weighted_rows import read_what_counts, true_rows
@@ -100,7 +100,7 @@ class Batch:
             raise MasterUnusable(next(iter(released.unusable.values())))
         self._problems: list[str] = []
         self._notices: list[str] = []
-        self._timings = Timings()
+        self._timings: dict[str, float] = {}
         self._run_again: Counter[str] = Counter()
         self._reused = 0
         self._written = 0
@@ -275,11 +275,11 @@ class Batch:
 
         longest = limits_of(self._directory).longest
         with BatchProgress(self._console, self._missing, longest=longest) as progress:
-            self._timings.first_started = time.monotonic() - self._began
+            self._timings["first_started"] = time.monotonic() - self._began
             dones = self._execute(tasks(), on_start=lambda task: progress.started(task.label))
             with contextlib.closing(dones):
                 for done in dones:
-                    self._timings.last_ended = time.monotonic() - self._began
+                    self._timings["last_ended"] = time.monotonic() - self._began
                     made_of = under_way.pop(done.task.label)
                     yield Result(made_of.work, done.task, made_of.rebuilt, done.execution, is_new=True)
                     progress.finished(done.task.label, failed=bool(done.execution.trouble))
@@ -382,7 +382,6 @@ class Batch:
     def _kept(self, result: Result) -> Result:
         """Store the result of an executed notebook, and return it without its evidence."""
         self._run_again[self._why_again(result.work)] += 1
-        self._timings.count(result.task.cells, result.execution)
         execution = self._accepted(result.work, result.task, result.execution)
         if execution.trouble:
             self._problems.append(f"{result.task.label} could not be checked: {execution.trouble}")
@@ -409,9 +408,8 @@ class Batch:
 
         for notebook in work.notebooks:
             if f"{work.label}/{notebook}" not in without:
-                with self._timings.measure("rebuild"):
-                    task, rebuilt = task_of(self._directory, work, notebook)
-                    yield MadeTask(work, replace(task, drawings=self._drawings.of(task)), rebuilt)
+                task, rebuilt = task_of(self._directory, work, notebook)
+                yield MadeTask(work, replace(task, drawings=self._drawings.of(task)), rebuilt)
 
     def _write(self, work: Work, results: Sequence[Result], rows: tuple[Row, ...]) -> Entered:
         """Write the results of a submission; if that fails, the gradebook has zero points for it."""
@@ -419,7 +417,7 @@ class Batch:
         from autograder.grading.tasks.graded_notebooks import convert
 
         try:
-            with self._timings.measure("gradebook"), self._writer.all_or_nothing(work):
+            with self._writer.all_or_nothing(work):
                 if self._keys.of(work) != work.made_from:
                     # The files changed during the run, so the tasks may have been made from other files.
                     raise NotWritten(f"{work.label} was changed while it was graded: grade it again")
@@ -441,13 +439,10 @@ class Batch:
         entry = entered.entry
         if self._asked.dry_run or entry is None or not (entry.is_late or entry.penalty):
             return entered
-        with self._timings.measure("gradebook"):
-            return replace(entered, entry=self._writer.assign_penalties(entered.work))
+        return replace(entered, entry=self._writer.assign_penalties(entered.work))
 
     def _make_pages(self, work: Work, entry: SubmissionEntry) -> None:
-        with self._timings.measure("feedback"):
-            is_made = self._writer.write_feedback(work)
-        if is_made:
+        if self._writer.write_feedback(work):
             self._store.note_shown(work, entry.shown())
         else:
             log = self._directory.state / "nbgrader.log"

@@ -111,27 +111,6 @@ class Attempt:
 
 
 @dataclass(frozen=True)
-class AttemptProgress:
-    """A student's points from the judge in the first and the last attempt at an assignment.
-
-    Attributes:
-        student: The student's id.
-        assignment: The assignment's name.
-        attempts: The number of different submissions that were graded.
-        first: The points of the first attempt.
-        last: The points of the last attempt.
-        max_score: The maximum points that the judge gives.
-    """
-
-    student: str
-    assignment: str
-    attempts: int
-    first: float
-    last: float
-    max_score: float
-
-
-@dataclass(frozen=True)
 class Origin:
     """The master from which a source notebook of a class was made, as the master was then.
 

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any, Self, TypeVar
 import msgspec
 
 from autograder.execution.executed_cells import Execution
-from autograder.grading.class_records import Attempt, AttemptProgress, KeptEvidence, Origin, ResultKey
+from autograder.grading.class_records import Attempt, KeptEvidence, Origin, ResultKey
 from autograder.grading.grading_errors import DiskFull, StoreTrouble, is_disk_full, said_by_database
 from autograder.grading.store_tables import bring_up_to_date
 from autograder.grading.table.rows import Row
@@ -195,10 +195,6 @@ class ClassStore:
         """Return the key of the newest attempt of a submission; None if it was never graded."""
         rows = self._rows(_QUERIES["last_key"], *submission.key)
         return _decoded(rows[0][0], ResultKey) if rows else None
-
-    def progress(self) -> list[AttemptProgress]:
-        """Return the progress in each submission that changed between attempts, the greatest improvement first."""
-        return [AttemptProgress(*row) for row in self._rows(_QUERIES["progress"])]
 
     def rename(self, ids: Mapping[str, str]) -> None:
         """Give students other ids. If a student had both ids, the results under the new one stay.

@@ -23,7 +23,7 @@ from autograder.boxes.run_limits import Ended, Limits
 from autograder.cli import cli
 from autograder.execution.executed_cells import Cell, CellCheck, CellRun, Execution
 from autograder.grading import class_store, store_tables
-from autograder.grading.class_records import Attempt, AttemptProgress, Origin, ResultKey
+from autograder.grading.class_records import Attempt, Origin, ResultKey
 from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.class_directory import ClassDirectory, Submission
 from autograder.grading.grading_errors import DiskFull, StoreTrouble
@@ -119,7 +119,7 @@ def test_a_run_that_enters_nothing_leaves_the_evidence_of_a_grade(store: ClassSt
 def test_an_unknown_class_has_an_empty_answer_to_everything_and_no_file(store: ClassStore) -> None:
     assert (store.results("ada", "lab"), store.entered(), store.attempts("ada")) == ({}, {}, [])
     assert (store.evidence("ada", "lab.one"), store.origins(), store.graded_cells("x")) == (None, {}, b"")
-    assert (store.last_key(submission()), store.progress()) == (None, [])
+    assert store.last_key(submission()) is None
     assert not file_of(store).exists()
     file_of(store).touch()  # whoever made it was killed before the first step was done
     assert store.entered() == {}
@@ -187,24 +187,12 @@ def test_attempts_are_added_and_neither_changed_nor_removed(store: ClassStore) -
     assert attempts_of(store) == attempts(0)
 
 
-def test_the_progress_is_that_of_changed_work_with_one_version_of_the_course(store: ClassStore) -> None:
-    for number, points, course in ((0, 9, "v0"), (1, 1, "v1"), (1, 2, "v1"), (2, 4, "v1")):
-        own = (replace(ROWS[0], score=points), replace(ROWS[0], exercise="lab.two", score=0.5, max_score=1))
-        store.enter(submission(), replace(entered(number), rows=own, course=course))
-        store.enter(submission("ben"), replace(entered(points, "ben"), rows=own, course=course))
-        store.enter(submission("eve"), replace(entered(0, "eve"), rows=own, course=course))
-    assert store.progress() == [
-        AttemptProgress("ada", "lab", 2, 1.5, 4.5, 5),
-        AttemptProgress("ben", "lab", 3, 1.5, 4.5, 5),
-    ]
-    assert store.last_key(submission()) == ResultKey("work 2")
-
-
 def test_the_attempt_before_is_that_at_the_same_assignment(store: ClassStore) -> None:
     for number, assignment in enumerate(("lab", "quiz", "lab", "quiz")):
         store.enter(submission(assignment=assignment), entered(number, assignment=assignment))
     keys = [None, None, ResultKey("work 0"), ResultKey("work 1")]
     assert [one.earlier for one in store.attempts("ada")] == keys
+    assert store.last_key(submission()) == ResultKey("work 2")
 
 
 def test_of_a_student_with_two_ids_the_new_one_keeps_its_grade(store: ClassStore) -> None:
@@ -274,7 +262,7 @@ def test_a_damaged_entry_counts_as_none_and_the_others_stay(store: ClassStore, c
     change(store, "DROP TRIGGER not_changed")
     change(store, f"UPDATE attempt SET {column} = 'x' WHERE student = 'ada'")
     assert store.entered() == {("ben", "lab"): entered(student="ben")}
-    assert (store.progress(), len(store.attempts("ben"))) == ([], 1)
+    assert len(store.attempts("ben")) == 1
 
 
 @pytest.mark.parametrize("damage", ["a page of other bytes", "of another form"])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import dataclass, field, replace
 from itertools import groupby
 from typing import TYPE_CHECKING, Any, Self
 
@@ -15,7 +15,7 @@ from rich.text import Text
 from autograder import standard_output
 from autograder.grading.grading_errors import course_command
 from autograder.grading.grading_task import UNREADABLE
-from autograder.grading.running.batch_progress import Timings, plain_line
+from autograder.grading.running.batch_progress import plain_line
 from autograder.grading.table.rows import (
     DROPPED,
     EXCUSED,
@@ -47,7 +47,7 @@ if TYPE_CHECKING:
     from autograder.grading.tasks.fallen_points import FallenResult
 
 
-_FORM = 2
+_FORM = 3
 """The version of the JSON format. It increases when a field is renamed or removed."""
 
 
@@ -69,7 +69,7 @@ class GradeReport:
         reused: The number of notebooks whose result was already known.
         written: The number of submissions that this run entered into the gradebook.
         seconds: The duration of the run, in seconds of wall time.
-        timings: The seconds that each step took.
+        timings: When the first notebook began, and when the last one ended, in seconds since the start of the run.
         note: A warning if submissions were run without a sandbox, so that the points may be forged; otherwise empty.
         gradebook: The path of the gradebook's SQLite file; None if the gradebook is on a database server.
         due: The due date of each assignment that has one, in the time zone of the class.
@@ -88,7 +88,7 @@ class GradeReport:
     reused: int = 0
     written: int = 0
     seconds: float = 0.0
-    timings: Timings = field(default_factory=Timings)
+    timings: Mapping[str, float] = field(default_factory=dict)
     note: str = ""
     gradebook: Path | None = None
     due: Mapping[str, datetime] = field(default_factory=dict)
@@ -140,7 +140,7 @@ def report_json(report: GradeReport) -> bytes:
                 "not_checked": sum(row.state == State.NOT_CHECKED for row in report.rows),
                 "seconds": round(report.seconds, 3),
             },
-            "timings": {name: round(value, 3) for name, value in asdict(report.timings).items()},
+            "timings": {name: round(value, 3) for name, value in report.timings.items()},
         }
     )
 
@@ -235,8 +235,6 @@ def show(report: GradeReport, console: Console | None = None, *, with_waiting: b
     ):
         if path and path.exists():
             plain_line(console, f"{name:<10} {_near(path)}")
-    if report.executed:
-        plain_line(console, report.timings.line())
 
 
 def _lines(report: GradeReport, *, with_waiting: bool) -> Iterator[tuple[str, str, str]]:

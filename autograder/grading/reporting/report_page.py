@@ -110,7 +110,6 @@ def _page(
         items=figures.items(table, store),
         mistakes=figures.mistakes(table),
         times=_times(directory, table),
-        progress=[one for one in store.progress() if one.student in people],
         remarks=remarks_on(table.rows),
         names=names,
     )

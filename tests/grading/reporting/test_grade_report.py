@@ -51,7 +51,7 @@ def test_it_is_one_object_with_submissions_and_totals(
     assert len(first["problems"]) == 1
     totals = first["totals"]
     assert (totals["executed"], totals["reused"], totals["written"], totals["score"]) == (2, 0, 2, 24.0)
-    assert set(first["timings"]) >= {"boxes", "students", "judge", "gradebook", "feedback", "last_ended"}
+    assert first["timings"].keys() == {"first_started", "last_ended"}
     assert said(tiny)["totals"]["reused"] == 1
 
 

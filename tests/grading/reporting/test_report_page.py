@@ -131,21 +131,6 @@ def test_the_page_needs_nothing_and_links_lead_somewhere(graded: TinyClass) -> N
     assert page.find(role="img")["aria-label"] == "0 students"  # type: ignore[index]
 
 
-def test_who_improved_after_a_grading_is_shown(graded: TinyClass) -> None:
-    assert "Who improved" not in write_report(graded.path).read_text()
-    graded.submit("eve", 7, 10)
-    graded.submit("jose", "1/0", 4)
-    graded.grade(feedback=True)
-    graded.grade(feedback=True, students=["ada"], again=True)  # the same work once more is no attempt
-    page = BeautifulSoup(write_report(graded.path).read_text(), "html.parser")
-    table = page.find("h2", string="Who improved").find_next("table")  # type: ignore[union-attr]
-    lines = [[cell.get_text(strip=True) for cell in line.find_all("td")] for line in table.find_all("tr")[1:]]  # type: ignore[union-attr]
-    assert lines == [
-        ["Eve O'Neill (eve)", "Tiny", "2 times", "3", "17 of 20", "+14"],
-        ["José Núñez (jose)", "Tiny", "2 times", "10", "4 of 20", "-6"],
-    ]
-
-
 def test_two_assignments_with_cells_of_one_name_stay_apart(graded: TinyClass) -> None:
     from own_assignment import write_assignment
 
