@@ -196,10 +196,11 @@ def _submissions(rows: tuple[Row, ...]) -> list[dict[str, Any]]:
     return found
 
 
-_WIDE = 130
 _NAME = 30
 """The maximum width of a student's id or name, in characters. Longer ids and names are wrapped."""
 _ANY_WIDTH = 10_000
+_FOLDED = {"overflow": "fold", "max_width": _NAME}
+_RIGHT = {"justify": "right", "no_wrap": True}
 _STYLES = {State.PASSED: "green", State.FAILED: "red", State.NOT_CHECKED: "yellow", WAITS: "yellow"}
 
 
@@ -219,10 +220,8 @@ def show(report: GradeReport, console: Console | None = None, *, with_waiting: b
     if not report.rows:
         submitted = _near(report.path / "submitted")
         plain_line(console, f"Nothing was submitted: put notebooks into {submitted}/<student>/<assignment>/.")
-    elif console.width >= _WIDE:
-        console.print(*tables(report.rows, console, diagnoses=True))
     else:
-        console.print(*tables(report.rows, console, diagnoses=False))
+        console.print(*tables(report.rows, console))
         console.print(_diagnoses(report.rows))
     for word, text, style in _lines(report, with_waiting=with_waiting):
         plain_line(console, f"{word:<12} {text}" if word else text, style)
@@ -259,100 +258,85 @@ def _lines(report: GradeReport, *, with_waiting: bool) -> Iterator[tuple[str, st
     yield from (("unsafe", note, "red") for note in [report.note] if note)
 
 
-def tables(rows: Sequence[Row], console: Console, *, diagnoses: bool) -> Iterator[Table]:
+@dataclass(frozen=True)
+class _Column:
+    """A column of the printed table, with a cell for each student."""
+
+    heading: str
+    cells: Sequence[Text]
+    options: Mapping[str, Any] = field(default_factory=lambda: {"no_wrap": True})
+
+    @property
+    def widest(self) -> Self:
+        """The column with its widest cell alone, which is as wide: rich is slow at measuring many cells."""
+        widest = max(self.cells, key=lambda cell: max(map(cell_len, cell.plain.split("\n"))))
+        return replace(self, cells=[widest])
+
+
+def tables(rows: Sequence[Row], console: Console) -> Iterator[Table]:
     """Yield tables with a row per student and a column per exercise.
 
-    A table that is too wide is divided into several tables. The last table also has the total.
+    A table that is too wide is divided into several tables. The last one also has late penalty, dropped work and total.
 
     Args:
         rows: The rows to show.
         console: The console into which each table has to fit.
-        diagnoses: True to also show recognized mistakes, with which a table with four exercises is about 130 characters
-            wide.
     """
-    grid = _Grid.of(rows, diagnoses=diagnoses)
-    left = list(grid.names)
-    # rich is slow at measuring many cells, so measure only the widest cell of each column.
-    widest = _with_widest_cells(grid)
-    no_column = _needs(widest.table([]), console)
-    widths = {key: _needs(widest.table([key]), console) - no_column for key in left}
-    without_total, with_total = _needs(grid.table([]), console), _needs(grid.table([], is_last=True), console)
+    results = {(row.student, row.assignment, row.exercise): row for row in rows}
+    students = grouped(rows, lambda row: row.student)
+    first = _Column("student", [_name(own[0]) for own in students.values()], _FOLDED)
+    # With headings of two lines, four exercises fit into a terminal of 80 characters.
+    left = [
+        _Column(name.replace(".", "\n."), [_cell(results.get((student, *key))) for student in students])
+        for key, name in columns(rows).items()
+    ]
+    last = list(_last_columns(rows, list(students.values())))
 
-    def fits(count: int) -> bool:
-        bare = with_total if count == len(left) else without_total
-        return bare + sum(widths[key] for key in left[:count]) <= console.width
+    def columns_of(count: int) -> list[_Column]:
+        return [first, *left[:count], *(last if count == len(left) else [])]
 
     while left:
-        here = next((count for count in range(len(left), 1, -1) if fits(count)), 1)
-        yield grid.table(left[:here], is_last=here == len(left))
+        here = next((count for count in range(len(left), 1, -1) if _fits(columns_of(count), console)), 1)
+        yield _table(columns_of(here))
         left = left[here:]
 
 
-def _needs(shown: Table, console: Console) -> int:
-    """Return the width of a table, in characters, at which no cell is cut off or wrapped."""
-    return console.measure(shown, options=console.options.update(width=_ANY_WIDTH)).maximum
+def _last_columns(rows: Sequence[Row], students: Sequence[Sequence[Row]]) -> Iterator[_Column]:
+    there = {row.exercise for row in rows}
+    if LATE in there:
+        points = [sum(row.score for row in own if row.exercise == LATE) for own in students]
+        yield _Column("late", [Text(f"{one:g}" if one else "", style="red") for one in points], _RIGHT)
+    if DROPPED in there:
+        names = [[row.assignment for row in own if row.exercise == DROPPED] for own in students]
+        yield _Column("dropped", [Text("\n".join(one), style="dim") for one in names], _FOLDED)
+    totals = [(total(own), sum(row.max_score for row in own)) for own in students]
+    cells = [Text("–" if score is None else f"{score:g}/{most:g}") for score, most in totals]
+    yield _Column("total", cells, _RIGHT)
 
 
-@dataclass(frozen=True)
-class _Grid:
-    """The content of the printed table.
-
-    Attributes:
-        names: The headings of the columns, by assignment and exercise.
-        students: The results of each student, by the student's id.
-        results: The result for each cell of the table, by student, assignment and exercise.
-        diagnoses: True if cells also show the mistake.
-    """
-
-    names: Mapping[tuple[str, str], str]
-    students: Mapping[str, Sequence[Row]]
-    results: Mapping[tuple[str, str, str], Row]
-    diagnoses: bool
-
-    @classmethod
-    def of(cls, rows: Sequence[Row], *, diagnoses: bool) -> Self:
-        students = grouped(rows, lambda row: row.student)
-        results = {(row.student, row.assignment, row.exercise): row for row in rows}
-        return cls(columns(rows), students, results, diagnoses)
-
-    def table(self, keys: Sequence[tuple[str, str]], *, is_last: bool = False) -> Table:
-        """Return a table of some columns; the last table also has columns for late penalty, dropped work and total."""
-        there = {exercise for _, _, exercise in self.results} if is_last else set()
-        late, dropped = LATE in there, DROPPED in there
-        shown = Table(header_style="bold", box=box.SIMPLE_HEAD, pad_edge=False)
-        shown.add_column("student", overflow="fold", max_width=_NAME)
-        for key in keys:
-            # With headings of two lines, four exercises fit into a terminal of 80 characters.
-            shown.add_column(self.names[key].replace(".", "\n."), no_wrap=True)
-        if late:
-            shown.add_column("late", justify="right", no_wrap=True)
-        if dropped:
-            shown.add_column("dropped", overflow="fold", max_width=_NAME)
-        if is_last:
-            shown.add_column("total", justify="right", no_wrap=True)
-        for student, own in self.students.items():
-            cells = [_cell(self.results.get((student, *key)), self.diagnoses) for key in keys]
-            if late:
-                points = sum(row.score for row in own if row.exercise == LATE)
-                cells.append(Text(f"{points:g}" if points else "", style="red"))
-            if dropped:
-                names = [row.assignment for row in own if row.exercise == DROPPED]
-                cells.append(Text("\n".join(names), style="dim"))
-            if is_last:
-                score, most = total(own), sum(row.max_score for row in own)
-                cells.append(Text("–" if score is None else f"{score:g}/{most:g}"))
-            name = f"{student}\n{printable(own[0].name)}" if own[0].name else student
-            shown.add_row(Text(name), *cells)
-        return shown
+def _fits(shown: Sequence[_Column], console: Console) -> bool:
+    """Return True if no cell of a table with these columns is cut off or wrapped."""
+    narrow = _table([one.widest for one in shown])
+    return console.measure(narrow, options=console.options.update(width=_ANY_WIDTH)).maximum <= console.width
 
 
-def _with_widest_cells(grid: _Grid) -> _Grid:
-    """Return a grid with one row, which consists of the widest cell of each column."""
-    student = next(iter(grid.students))
-    by_width = sorted(grid.results.values(), key=lambda row: cell_len(_cell(row, grid.diagnoses).plain))
-    # The rows are sorted by width, and a dict keeps the last value for each key: the widest cell of each column.
-    results = {(student, row.assignment, row.exercise): row for row in by_width}
-    return replace(grid, students={student: grid.students[student]}, results=results)
+def _table(of: Sequence[_Column]) -> Table:
+    shown = Table(header_style="bold", box=box.SIMPLE_HEAD, pad_edge=False)
+    for one in of:
+        shown.add_column(one.heading, **one.options)
+    for cells in zip(*(one.cells for one in of), strict=True):
+        shown.add_row(*cells)
+    return shown
+
+
+def _name(row: Row) -> Text:
+    return Text(f"{row.student}\n{printable(row.name)}" if row.name else row.student)
+
+
+def _cell(row: Row | None) -> Text:
+    if row is None or row.state in (NOT_SUBMITTED, EXCUSED):
+        return Text("–" if row is None or row.state == NOT_SUBMITTED else "excused", style="dim")
+    return Text(f"{row.score:g}/{row.max_score:g}{row.mark}", style=_STYLES.get(row.state, "yellow"))
 
 
 def _diagnoses(rows: Sequence[Row]) -> Table:
@@ -374,15 +358,6 @@ def _unreadable(report: GradeReport) -> list[tuple[str, str]]:
         if row.diagnosis == UNREADABLE and (row.student, row.assignment) not in refused
     }
     return list(reasons.items())
-
-
-def _cell(row: Row | None, diagnoses: bool) -> Text:
-    if row is None or row.state in (NOT_SUBMITTED, EXCUSED):
-        return Text("–" if row is None or row.state == NOT_SUBMITTED else "excused", style="dim")
-    text = Text(f"{row.score:g}/{row.max_score:g}{row.mark}", style=_STYLES.get(row.state, "yellow"))
-    if row.diagnosis and diagnoses:
-        text.append(f" {row.diagnosis}", style="default")
-    return text
 
 
 def _legend(rows: Sequence[Row]) -> list[str]:

@@ -32,10 +32,10 @@ ROWS = [
 ]
 
 
-def printed(width: int, *, diagnoses: bool) -> str:
+def printed(width: int) -> str:
     out = io.StringIO()
     console = Console(file=out, width=width)
-    console.print(*tables(ROWS, console, diagnoses=diagnoses))
+    console.print(*tables(ROWS, console))
     return out.getvalue()
 
 
@@ -45,19 +45,13 @@ def test_cells_of_one_name_in_two_assignments_are_two_columns() -> None:
 
 @pytest.mark.parametrize(("width", "parts"), [(50, 6), (60, 3), (80, 2), (200, 1)])
 def test_what_is_too_wide_is_several_tables(width: int, parts: int) -> None:
-    text = printed(width, diagnoses=False)
+    text = printed(width)
     assert "…" not in text
     assert text.count("zoe") == text.count("student") - text.count("a-student") == parts
     assert text.count("total") == 1
     assert text.count("7/60") == len(STUDENTS)
     for score in ("0.5/10", "1.5/10", "2.5/10"):
         assert text.count(score) == len(STUDENTS) * {"0.5/10": 3, "1.5/10": 2, "2.5/10": 1}[score]
-
-
-def test_diagnoses_stand_beside_the_points_where_there_is_room() -> None:
-    text = printed(130, diagnoses=True)
-    assert text.count("/10 wrong_text") == len(ROWS)
-    assert text.count("7/60") == len(STUDENTS)
 
 
 def test_a_file_that_is_not_taken_writes_no_line_of_its_own(tiny: TinyClass) -> None:
