@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import contextlib
 import itertools
-from collections import Counter, defaultdict
+from collections import defaultdict
 from dataclasses import dataclass, replace
 from datetime import datetime
 from typing import TYPE_CHECKING, Any
@@ -272,15 +272,6 @@ class Table:
     def lines(self) -> list[dict[str, str]]:
         """Return the lines of the table that ``collect`` wrote last, each as a dictionary by column."""
         return _rows(self._read_copy(self._newest), whole=True)[0] or []
-
-    def earlier(self) -> Counter[tuple[str, str]]:
-        """Return the numbers of earlier attempts, by student and assignment."""
-        return Counter(
-            (student, row["assignment"])
-            for row in self.lines()
-            if row["counts"] == _WORDS[LineState.EARLIER]
-            for student in row["student"].split("; ")
-        )
 
     def waiting(self) -> list[Waiting]:
         """Return the lines that wait for a person, from the table that ``collect`` wrote last."""

@@ -13,7 +13,6 @@ from autograder.cards.html_rendering import page_templates
 from autograder.cards.readable_text import one_line
 from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.class_directory import ClassDirectory
-from autograder.grading.collecting.collected_csv import Table
 from autograder.grading.grading_errors import GradingError, clear_disk_errors, write_output
 from autograder.grading.reporting import class_statistics as figures
 from autograder.grading.reporting.class_table import ClassTable, read_table
@@ -109,7 +108,6 @@ def _page(
         bands=figures.bands(table),
         items=figures.items(table, store),
         mistakes=figures.mistakes(table),
-        times=_times(directory, table),
         remarks=remarks_on(table.rows),
         names=names,
     )
@@ -160,27 +158,3 @@ def _cell(row: Row | None) -> str:
     if row is None or row.is_blank:
         return "excused" if row and row.state == EXCUSED else "–"
     return f"{row.score:g}{row.mark}"
-
-
-def _times(directory: ClassDirectory, table: ClassTable) -> list[dict[str, object]]:
-    """Return, for each submission, its time, the hours before the due date, and its points."""
-    earlier = Table(directory).earlier()
-    found: list[dict[str, object]] = []
-    for (student, assignment), entry in sorted(
-        table.entries.items(), key=lambda item: str(item[1].handed_in)
-    ):
-        if entry.handed_in is None or student not in table.students:
-            continue
-        before = None if entry.due is None else (entry.due - entry.handed_in).total_seconds() / 3600
-        found.append(
-            {
-                "student": student,
-                "assignment": assignment,
-                "at": f"{entry.handed_in:%Y-%m-%d %H:%M}",
-                "before": before,
-                "attempts": 1 + earlier[student, assignment],
-                "score": table.score(student, assignment) or 0.0,
-                "max": table.max_score(assignment),
-            }
-        )
-    return found

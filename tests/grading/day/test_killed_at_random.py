@@ -81,7 +81,7 @@ def collected(klass: Path) -> tuple[object, ...]:
         histories[student] = [(one.content, one.when) for one in history.now.values()]
     kept = sorted(Inbox(directory.state).deliveries)
     waiting = sorted(one.label for one in Table(directory).waiting())
-    return files_below(klass / "submitted"), histories, kept, waiting, Table(directory).earlier()
+    return files_below(klass / "submitted"), histories, kept, waiting, Table(directory).lines()
 
 
 @dataclass(frozen=True)
