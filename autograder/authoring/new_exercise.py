@@ -6,7 +6,6 @@ import importlib.util
 import re  # noqa: TID251  (not what a student handed in)
 import shutil
 import sys
-import tomllib
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -21,14 +20,6 @@ EXAMPLES = Path(__file__).with_name("examples")
 _GENERATED = shutil.ignore_patterns("__pycache__", f"*{exercises.REFERENCE}")
 """Ignores files that must not be copied from an example, because commands generate them."""
 
-_SEPARATORS = {"msg": 0, "srv": 1, "action": 2}
-"""For each kind of interface, the number of lines ``---`` that separate the parts of a definition."""
-
-_INTERFACE = re.compile(
-    r"(?P<package>[a-z][a-z0-9_]*)/(?P<kind>msg|srv|action)/(?P<name>[A-Z][A-Za-z0-9]*)", re.ASCII
-)
-_LISTED = re.compile(r"(?m)^interfaces\s*=\s*\[(?P<names>[^\]]*?),?\s*\]")
-_TABLE = re.compile(r"(?m)^\[|\Z")
 _ID = re.compile(r"[a-z][a-z0-9_]*\.[a-z][a-z0-9_]*", re.ASCII)
 _NUMBER = re.compile(r"_(\d+(?:_\d+)*)$")
 _TITLE = re.compile(r"^# .*?: ", re.MULTILINE)
@@ -51,7 +42,6 @@ def new_exercise(
     recipe: str,
     *,
     chapter: str | None = None,
-    interfaces: Sequence[str] = (),
     to_lab: bool = False,
 ) -> Sequence[Path]:
     """Make the folder of a lab with one exercise, or add the exercise to a lab.
@@ -62,15 +52,14 @@ def new_exercise(
         recipe: The kind of subject: a key of :func:`recipes`.
         chapter: The folder of the chapter in ``solutions/``, which is created if it does not exist; None for the last
             chapter.
-        interfaces: The chapter's own interface types that its nodes need, such as ``"power_interfaces/srv/SetLevel"``.
         to_lab: True to add the exercise to a lab that exists, in whatever chapter: its cells come last.
 
     Returns:
         The new files and, if the lab existed, its changed master, in order.
 
     Raises:
-        CannotMake: The id, the chapter or an interface is not valid; the lab already exists, or does not; or the recipe
-            does not exist.
+        CannotMake: The id or the chapter is not valid; the lab already exists, or does not; or the recipe does not
+            exist.
     """
     if not _ID.fullmatch(exercise_id):
         raise CannotMake(
@@ -85,7 +74,6 @@ def new_exercise(
     folder = _existing_lab(root, exercise_id) if to_lab else _chapter(root, chapter) / lab
     if not to_lab:
         _refuse_existing(root, folder)
-    types = [_interface_of(root, folder.parent, interface) for interface in interfaces]
     # Make the lab in a temporary folder first, so that an error leaves no half lab in the course.
     with HeldFolder("autograder-new-") as scratch:
         made = scratch.path / lab
@@ -94,10 +82,7 @@ def new_exercise(
             file.name.removesuffix(exercises.REFERENCE) for file in example.glob(f"*{exercises.REFERENCE}")
         )
         _rename(made, f"{example.name}.{old_name}", exercise_id)
-        written = [
-            *_described(folder.parent),
-            *(file for each in types for file in _defined(folder.parent, each)),
-        ]
+        written = _described(folder.parent)
         if to_lab:
             _add_cells(folder / course.LAB, made / course.LAB)
         new = sorted(folder / path.relative_to(made) for path in made.rglob("*") if path.is_file())
@@ -126,59 +111,6 @@ def _described(chapter: Path) -> list[Path]:
         encoding="utf-8",
     )
     return [description]
-
-
-def _interface_of(root: Path, chapter: Path, interface: str) -> re.Match[str]:
-    found = _INTERFACE.fullmatch(interface)
-    if found is None:
-        raise CannotMake(
-            f"{interface!r} is not an interface: write package, kind (msg, srv or action) and type, such as "
-            "power_interfaces/srv/SetLevel"
-        )
-    package = found["package"]
-    elsewhere = [
-        one.folder.name
-        for one in course.chapters(root)
-        if package in one.interfaces and one.folder != chapter
-    ]
-    # A package of this chapter can be imported once it is built, so look for its folder before trying an import.
-    own = (chapter / course.INTERFACES / package).is_dir()
-    taken = not own and (_is_a_module(package) or package in _listed(chapter))
-    if elsewhere or taken:
-        owner = f"chapter {elsewhere[0]}" if elsewhere else "installation of ROS or of the course"
-        raise CannotMake(
-            f"the {owner} already has a package {package}: use its types, or choose another name for your package"
-        )
-    return found
-
-
-def _listed(chapter: Path) -> list[str]:
-    """Return the interface packages that a chapter's ``chapter.toml`` lists."""
-    description = chapter / course.CHAPTER
-    if not description.is_file():
-        return []
-    return list(tomllib.loads(description.read_text(encoding="utf-8")).get("interfaces", ()))
-
-
-def _defined(chapter: Path, interface: re.Match[str]) -> list[Path]:
-    """Write a sample definition of an interface type, and list its package in ``chapter.toml``."""
-    package, kind, name = interface.group("package", "kind", "name")
-    definition = chapter / course.INTERFACES / package / kind / f"{name}.{kind}"
-    if definition.exists():
-        return []
-    definition.parent.mkdir(parents=True, exist_ok=True)
-    definition.write_text("# A field a line: float32 level\n" + "---\n" * _SEPARATORS[kind], encoding="utf-8")
-    if package not in _listed(chapter):
-        description = chapter / course.CHAPTER
-        text = description.read_text(encoding="utf-8") if description.is_file() else ""
-        if found := _LISTED.search(text):
-            before, after = text[: found.end("names")], text[found.end("names") :]
-            text = f"""{before}{", " if found["names"].strip() else ""}"{package}"{after}"""
-        else:
-            end = next(_TABLE.finditer(text)).start()
-            text = f'{text[:end]}interfaces = ["{package}"]\n{text[end:]}'
-        description.write_text(text, encoding="utf-8")
-    return [definition]
 
 
 def _chapter(root: Path, name: str | None) -> Path:

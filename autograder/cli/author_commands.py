@@ -84,13 +84,6 @@ def record(exercises: tuple[str, ...], only_check: bool) -> None:
 @click.option(
     "--chapter", help="The folder of the exercise's chapter in solutions/. The default is the last chapter."
 )
-@click.option(
-    "--interface",
-    "interfaces",
-    multiple=True,
-    metavar="PACKAGE/KIND/TYPE",
-    help="A new message, service or action type that the chapter defines; may be given several times.",
-)
 @click.option("--lab", "to_lab", is_flag=True, help="Add the exercise to its lab, which already exists.")
 def new_exercise(exercise: str, recipe: str, **choices: Any) -> None:
     """Make the folder of a new lab with one working EXERCISE, which you then change.

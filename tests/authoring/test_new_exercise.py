@@ -59,54 +59,6 @@ def test_a_chapter_whose_facts_have_another_form_is_broken(root: Path, descripti
         course.chapters(root)
 
 
-@pytest.mark.parametrize(
-    "description",
-    [
-        'title = "First"\n',
-        'title = "First"\ninterfaces = []\n',
-        'title = "First"\n\ninterfaces = [\n    "one_of_mine",\n]\n[exercises]\nlab_1 = ["b", "a"]\n',
-        'title = "First"\n[exercises]\nlab_1 = ["b", "a"]\n',
-    ],
-)
-def test_an_interface_of_the_chapter_s_own_is_defined_and_named(root: Path, description: str) -> None:
-    chapter = root / "solutions/01_first"
-    (chapter / "chapter.toml").write_text(description)
-    before = course.chapters(root)[0]
-    names = ["power_of_mine/srv/SetLevel", "power_of_mine/action/Drive", "power_of_mine/msg/Level"]
-    made = new_exercise(root, ID, "publisher", interfaces=names)
-    found = course.chapters(root)[0]
-    assert found.interfaces == (*before.interfaces, "power_of_mine")
-    assert (found.title, found.exercises) == (before.title, before.exercises)
-    files = [chapter / f"interfaces/{name}.{name.split('/')[1]}" for name in names]
-    assert [file.read_text().count("---\n") for file in files] == [1, 2, 0]
-    assert set(files) <= set(made)
-    files[0].write_text("bool on\n---\n")
-    again = new_exercise(root, "lab_9_2.other", "publisher", interfaces=names[:1])
-    assert files[0] not in again
-    assert files[0].read_text() == "bool on\n---\n"
-    assert course.chapters(root)[0].interfaces == found.interfaces
-
-
-@pytest.mark.parametrize(
-    ("name", "problem"),
-    [
-        ("SetLevel", "is not an interface"),
-        ("power/srv/set_level", "is not an interface"),
-        ("../power/srv/SetLevel", "is not an interface"),
-        ("std_msgs/msg/Text", "installation of ROS or of the course already has a package"),
-        ("of_the_environment/msg/Text", "installation of ROS or of the course already has a package"),
-        ("of_the_second/msg/Text", "chapter 02_second already has a package"),
-    ],
-)
-def test_an_interface_that_cannot_be_leaves_nothing_behind(root: Path, name: str, problem: str) -> None:
-    (root / "solutions/02_second").mkdir()
-    (root / "solutions/02_second/chapter.toml").write_text('interfaces = ["of_the_second"]\n')
-    (root / "solutions/01_first/chapter.toml").write_text('interfaces = ["of_the_environment"]\n')
-    with pytest.raises(CannotMake, match=problem):
-        new_exercise(root, ID, "publisher", chapter="01_first", interfaces=[name])
-    assert not [path for path in root.rglob("*") if path.is_file() and path.name != "chapter.toml"]
-
-
 def examples(recipe: str) -> list[str]:
     """The names of a recipe's exercises: a ticket has no file of its own."""
     return [path.name.removesuffix(REFERENCE) for path in recipes()[recipe].glob(f"*{REFERENCE}")]
