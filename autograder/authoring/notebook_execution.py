@@ -1,13 +1,12 @@
 """``autograder execute``: runs every notebook of the course, and reports each problem.
 
-A master is expected to earn full marks, a student's notebook no points. A notebook with problems is written as an HTML
-page that shows the problems next to the cells.
+A master is expected to earn full marks, a student's notebook no points. A notebook with problems is written with its
+outputs.
 """
 
 from __future__ import annotations
 
 import contextlib
-import html
 import os
 import re  # noqa: TID251  (not what a student handed in)
 import time
@@ -15,8 +14,6 @@ from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
-
-from nbconvert import HTMLExporter
 
 from autograder import standard_output
 from autograder.boxes.run_limits import Ended, Limits
@@ -43,7 +40,7 @@ if TYPE_CHECKING:
 
 
 REPORTS_FOLDER = "execution-reports"
-"""The name of the folder, in the course's top folder, for pages about failed notebooks."""
+"""The name of the folder, in the course's top folder, for failed notebooks with their outputs."""
 
 
 @dataclass(frozen=True)
@@ -54,7 +51,7 @@ class Executed:
         planned: The notebook and its expected result.
         execution: The result of the execution.
         found: The problems that were found; empty if there are none.
-        report: The path of the page about the problems; None if there are none.
+        report: The path of the notebook with its outputs; None if there are no problems.
     """
 
     planned: Planned
@@ -77,7 +74,7 @@ def execute_command(
         root: The top folder of the course, which contains ``solutions`` and ``chapters``.
         only: Names such as ``"lab_1_2"``; all notebooks if empty.
         jobs: The number of notebooks to execute at the same time; by default as many as processors and memory allow.
-        reports: The folder for pages about failed notebooks. Pages from an earlier run are removed.
+        reports: The folder for failed notebooks. Those from an earlier run are removed.
         console: The console for progress and result; by default standard error.
 
     Returns:
@@ -115,7 +112,7 @@ def execute_all(
 
     Args:
         planned: The notebooks to execute.
-        reports: The folder for pages about failed notebooks.
+        reports: The folder for failed notebooks.
         jobs: The number of notebooks to execute at the same time; by default as many as processors and memory allow.
         console: The console for progress.
 
@@ -143,8 +140,8 @@ def execute_all(
             for done in running:
                 item = of_task[id(done.task)]
                 found = tuple(problems_of(item, done.execution))
-                page = _write_report(reports, item, done.execution, found) if found else None
-                results[id(done.task)] = Executed(item, done.execution, found, page)
+                report = _write_executed(reports, item, done.execution) if found else None
+                results[id(done.task)] = Executed(item, done.execution, found, report)
                 note = f" ({done.execution.seconds:.1f} s)"
                 progress.finished(done.task.label, failed=bool(found), note=note)
     return [results[id(item.task)] for item in planned]
@@ -160,8 +157,9 @@ def _weight(cell: Cell) -> float:
 
 
 def _remove_reports(folder: Path) -> None:
-    for page in folder.glob("*.html"):
-        page.unlink()
+    for kind in NotebookKind:
+        for report in folder.glob(f"*-{kind}.ipynb"):
+            report.unlink()
     with contextlib.suppress(OSError):
         folder.rmdir()
 
@@ -347,47 +345,13 @@ def _text(output: dict[str, Any]) -> str:
     return str(output.get("text", "")) + str(output.get("data", {}).get("text/plain", ""))
 
 
-def _write_report(folder: Path, planned: Planned, execution: Execution, found: Sequence[Problem]) -> Path:
-    """Write a page about the problems of a notebook into a folder. Return the path of the page."""
-    folder.mkdir(parents=True, exist_ok=True)
-    path = folder / f"{planned.task.notebook}-{planned.kind}.html"
-    # By default, nbconvert also searches the current folder for templates, which may run code.
-    exporter = HTMLExporter(extra_template_basedirs=[])
-    exporter.anchor_link_text = ""
-    page, _ = exporter.from_notebook_node(
-        _with_outputs(planned, execution, found),
-        {"metadata": {"name": planned.label}, "config_dir": str(folder)},
-    )
-    path.write_text(page, encoding="utf-8")
-    return path
-
-
-def _with_outputs(planned: Planned, execution: Execution, found: Sequence[Problem]) -> NotebookNode:
+def _write_executed(folder: Path, planned: Planned, execution: Execution) -> Path:
+    """Write a notebook with the outputs of its cells into a folder. Return its path."""
     notebook = nbformat_nodes.copied(planned.notebook)
-    cells = []
-    for index, cell in enumerate(notebook.cells):
-        if cell.cell_type == CellType.CODE and index < len(execution.cells):
-            cell.outputs = [nbformat_nodes.output(**output) for output in execution.cells[index].outputs]
-            cell.execution_count = None
-        wrong = [problem.text for problem in found if problem.cell == index]
-        if wrong:
-            problems = html.escape(" and ".join(wrong))
-            cells.append(_box(f'<p id="problem-{index}"><b>The next cell {problems}.</b></p>'))
-        cells.append(cell)
-    notebook.cells = [_box(_summary(planned, found)), *cells]
-    return notebook
-
-
-def _summary(planned: Planned, found: Sequence[Problem]) -> str:
-    lines = ""
-    for problem in found:
-        text = html.escape(problem.text)
-        if problem.cell is not None:
-            text = f'<a href="#problem-{problem.cell}">cell {problem.cell + 1}</a> {text}'
-        lines += f"<li>{text}</li>"
-    return f"<p><b>{html.escape(planned.label)}</b> failed:</p><ul>{lines}</ul>"
-
-
-def _box(text: str) -> NotebookNode:
-    style = "border-left: 6px solid #c62828; padding: 0.5em 1em; background: #fdecea; color: #5f1414"
-    return nbformat_nodes.cell(CellType.MARKDOWN, f'<div style="{style}">\n{text}\n</div>')
+    for cell, run in zip(notebook.cells, execution.cells, strict=False):
+        if cell.cell_type == CellType.CODE:
+            cell.outputs = [nbformat_nodes.output(**output) for output in run.outputs]
+    folder.mkdir(parents=True, exist_ok=True)
+    path = folder / f"{planned.task.notebook}-{planned.kind}.ipynb"
+    path.write_text(nbformat_nodes.text(notebook), encoding="utf-8")
+    return path

@@ -29,7 +29,7 @@ def build(only_check: bool) -> None:
 @click.option(
     "--reports",
     type=click.Path(path_type=Path),
-    help="Write the pages about failed notebooks into this folder.",
+    help="Write failed notebooks with their outputs into this folder.",
 )
 def execute(notebooks: tuple[str, ...], jobs: int | None, reports: Path | None) -> None:
     """Run every notebook: masters must earn full marks. Students' notebooks must earn no points and cause no error."""

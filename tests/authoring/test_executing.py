@@ -1,10 +1,11 @@
-"""A broken notebook of the course is seen, named and kept as a page."""
+"""A broken notebook of the course is seen, named and kept with its outputs."""
 
 from __future__ import annotations
 
 from io import StringIO
 from typing import TYPE_CHECKING
 
+import nbformat
 import pytest
 from rich.console import Console
 
@@ -76,21 +77,19 @@ def test_a_cell_that_does_not_cope_with_the_stub_is_found_in_the_chapter(tmp_pat
     assert "chapter lab_9_1 failed" in seen
     # Three cells of text and two of code stand before it.
     assert "cell 6 raised ZeroDivisionError: division by zero" in seen
-    page = tmp_path / "execution-reports" / "lab_9_1-chapter.html"
-    assert [*page.parent.iterdir()] == [page]
-    text = page.read_text()
-    assert 'href="#problem-5"' in text
-    assert 'id="problem-5"' in text
-    assert "ZeroDivisionError" in text
+    report = tmp_path / "execution-reports" / "lab_9_1-chapter.ipynb"
+    assert [*report.parent.iterdir()] == [report]
+    assert nbformat.read(report, as_version=4).cells[5].outputs[0].ename == "ZeroDivisionError"
 
 
-def test_the_pages_of_an_earlier_run_go_away(tmp_path: Path) -> None:
+def test_the_notebooks_of_an_earlier_run_go_away_and_no_others(tmp_path: Path) -> None:
     course(tmp_path, GOOD)
-    old = tmp_path / "execution-reports" / "lab_9_1-master.html"
+    old, other = (tmp_path / "execution-reports" / name for name in ("lab_9_1-master.ipynb", "mine.ipynb"))
     old.parent.mkdir()
-    old.write_text("old")
+    for file in (old, other):
+        file.write_text("old")
     assert execute(tmp_path)[0] == 0
-    assert not old.exists()
+    assert [*old.parent.iterdir()] == [other]
 
 
 @pytest.mark.parametrize(
