@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import difflib
 import hashlib
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from itertools import zip_longest
 from pathlib import Path
@@ -14,10 +14,12 @@ from typing import TYPE_CHECKING
 from autograder.authoring.mutants import engine
 from autograder.authoring.mutants.code import Code
 from autograder.authoring.mutants.equivalents import equivalent
+from tests.mutation.line_operators import LINES
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from autograder.authoring.mutants.code import Edit
     from tests.mutation.subjects import Subject
 
 LOGS_FREELY = ("lab_1_2.talker", "lab_1_3.server", "lab_1_4.server")
@@ -98,9 +100,15 @@ def _changes(subject: Subject) -> Iterator[engine.Change]:
             code = Code(text, logs=subject.exercise not in LOGS_FREELY)
             found = engine.python_changes(code)
         else:
-            found = engine.line_changes(text)
+            found = [(operator.__name__, edit) for operator in LINES for edit in operator(text)]
         for operator, edit in found:
-            yield operator, edit.moved(start)
+            yield operator, _moved(edit, start)
+
+
+def _moved(edit: Edit, by: int) -> Edit:
+    """The same edit of a text in which everything stands further behind."""
+    also = tuple(_moved(piece, by) for piece in edit.also)
+    return replace(edit, start=edit.start + by, end=edit.end + by, also=also)
 
 
 def _pieces(subject: Subject) -> Iterator[tuple[int, str, bool]]:

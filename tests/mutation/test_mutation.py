@@ -15,10 +15,11 @@ import msgspec
 import pytest
 
 from autograder import exercises
-from autograder.authoring.mutants.operators import LINES, PYTHON
+from autograder.authoring.mutants.operators import PYTHON
 from autograder.verdict import State
 from tests.cases import cases
 from tests.mutation import equivalents
+from tests.mutation.line_operators import LINES
 from tests.mutation.mutants import Mutant, mutants, sampled
 from tests.mutation.report import Report, report
 from tests.mutation.results import Result, keep, kept

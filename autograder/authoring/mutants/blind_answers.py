@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from rcl_interfaces.msg import ParameterDescriptor, SetParametersResult
 
 from autograder.authoring.mutants.engine import Mutant
+from autograder.authoring.mutants.trials import rounded
 from autograder.authoring.paper.nodes import PaperNode
 from autograder.judge.bench.qos_profiles import profile
 from autograder.judge.bench.ros_interfaces import filled, interface, to_data
@@ -108,15 +109,7 @@ def _did(reaction: Reaction) -> str:
 
 
 def _key(of: Any) -> str:
-    return json.dumps(_rounded(of), sort_keys=True, default=str)
-
-
-def _rounded(value: Any) -> Any:
-    if isinstance(value, float):
-        return round(value, _DIGITS)
-    if isinstance(value, dict):
-        return {key: _rounded(one) for key, one in value.items()}
-    return [_rounded(one) for one in value] if isinstance(value, (list, tuple)) else value
+    return json.dumps(rounded(of, _DIGITS), sort_keys=True, default=str)
 
 
 def _filled_in(given: Any, whole: Any) -> Any:

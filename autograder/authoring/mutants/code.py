@@ -5,13 +5,19 @@ from __future__ import annotations
 import ast
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Iterable, Iterator, Mapping
 
+NodeT = TypeVar("NodeT", bound=ast.AST)
 SAYS = ("debug", "info", "warn", "warning", "error", "fatal", "print", "write")
 """Calls that log or print."""
+SIGNS: dict[type[ast.AST], str] = {
+    **{ast.Lt: "<", ast.Gt: ">", ast.LtE: "<=", ast.GtE: ">=", ast.Eq: "==", ast.NotEq: "!="},
+    **{ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/", ast.Mod: "%", ast.And: "and", ast.Or: "or"},
+}
+"""How operators are written."""
 _DEFINITIONS = (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)
 
 
@@ -46,11 +52,6 @@ class Edit:
         for piece in reversed(self.pieces):
             text = text[: piece.start] + piece.text + text[piece.end :]
         return text
-
-    def moved(self, by: int) -> Edit:
-        """Return the same edit of a text in which everything stands further behind."""
-        also = tuple(piece.moved(by) for piece in self.also)
-        return replace(self, start=self.start + by, end=self.end + by, also=also)
 
 
 class Code:
@@ -132,10 +133,65 @@ class Code:
         """Return the edit that puts a node into a form such as ``"abs({})"``."""
         return self.replaced(node, form.replace("{}", self.source(node)), kind)
 
+    def head_replaced(self, node: ast.AST, old: str, new: str, kind: str = "") -> Edit:
+        """Return the edit that puts something else in the place of what a node begins with."""
+        start, _ = self.span(node)
+        return Edit(start, start + len(old), new, self.where(node), kind)
+
+    def tail_replaced(self, node: ast.AST, old: str, new: str, kind: str = "") -> Edit:
+        """Return the edit that puts something else in the place of what a node ends with."""
+        _, end = self.span(node)
+        return Edit(end - len(old), end, new, self.where(node), kind)
+
+    def sign_replaced(self, left: ast.expr, right: ast.expr, old: str, new: str, kind: str = "") -> Edit:
+        """Return the edit that puts another operator between two operands."""
+        start = self.text.index(old, self.span(left)[1], self.span(right)[0])
+        return Edit(start, start + len(old), new, self.where(left), kind)
+
+    def exchanged(self, one: ast.expr, other: ast.expr) -> Edit:
+        """Return the edit in which two expressions change places."""
+        also = (self.replaced(other, self.source(one)),)
+        return replace(self.replaced(one, self.source(other)), also=also)
+
+    def swapped(self, first: ast.AST, second: ast.AST) -> Edit:
+        """Return the edit that turns the order of two neighbors round."""
+        (start, middle), (begin, end) = self.span(first), self.span(second)
+        between = self.text[middle:begin]
+        return Edit(start, end, self.source(second) + between + self.source(first), self.where(first))
+
+    def left_out(self, element: ast.AST) -> Edit:
+        """Return the edit that leaves out an element of a list, or an argument, with the comma behind it."""
+        start, end = self.span(element)
+        while self.text[end : end + 1] in (",", " "):
+            end += 1
+        return Edit(start, end, "", self.where(element))
+
     def before(self, statement: ast.stmt, text: str, kind: str = "") -> Edit:
         """Return the edit that puts a statement in front of another one."""
         start, _ = self.span(statement)
         return Edit(start, start, f"{text}\n{self.indentation(statement)}", self.where(statement), kind)
+
+    def after(self, statement: ast.stmt, text: str) -> Edit:
+        """Return the edit that puts a statement behind another one."""
+        _, end = self.span(statement)
+        return Edit(end, end, f"\n{self.indentation(statement)}{text}", self.where(statement))
+
+    def calls(self, *names: str) -> Iterator[Any]:
+        """Yield the calls that may be changed of functions with these last names, such as ``create_timer``."""
+        return (call for call in self.all(ast.Call) if called(call) in names)
+
+    def comparisons(self) -> Iterator[tuple[ast.Compare, ast.expr, str, ast.expr]]:
+        """Yield each comparison of two operands: the whole one, the first, the sign, the second."""
+        for compare in self.all(ast.Compare):
+            lefts = (compare.left, *compare.comparators)
+            for left, sign, right in zip(lefts, compare.ops, compare.comparators, strict=False):
+                yield compare, left, SIGNS.get(type(sign), ""), right
+
+    def smallest(self, nodes: Iterable[NodeT], start: int, end: int) -> NodeT | None:
+        """Return the smallest of some nodes around a piece of the text; None if none is around it."""
+        spans = ((self.span(node), node) for node in nodes)
+        around = [(last - first, node) for (first, last), node in spans if first <= start and end <= last]
+        return min(around, key=lambda one: one[0])[1] if around else None
 
     def functions(self) -> Iterator[ast.FunctionDef | ast.AsyncFunctionDef]:
         """Yield the functions and methods that may be changed."""
@@ -252,11 +308,12 @@ def _changeable(node: ast.AST, logs: bool) -> Iterator[ast.AST]:
 
 
 def _is_docstring(node: ast.AST) -> bool:
-    return (
-        isinstance(node, ast.Expr)
-        and isinstance(node.value, ast.Constant)
-        and isinstance(node.value.value, str)
-    )
+    return isinstance(node, ast.Expr) and text_of(node.value) is not None
+
+
+def text_of(node: ast.AST | None) -> str | None:
+    """Return the text that stands in a program as it is, not as an f-string; None for any other node."""
+    return node.value if isinstance(node, ast.Constant) and isinstance(node.value, str) else None
 
 
 def _is_main_guard(node: ast.AST) -> bool:
@@ -265,18 +322,12 @@ def _is_main_guard(node: ast.AST) -> bool:
     }
 
 
-def called(node: ast.AST) -> str:
+def called(node: ast.AST | None) -> str:
     """Return the last name of a called function: ``"create_timer"`` for ``self.create_timer(…)``; empty for no call."""
     if not isinstance(node, ast.Call):
         return ""
     function = node.func
-    return (
-        function.attr
-        if isinstance(function, ast.Attribute)
-        else function.id
-        if isinstance(function, ast.Name)
-        else ""
-    )
+    return str(getattr(function, "attr", getattr(function, "id", "")))
 
 
 def argument(call: ast.Call, place: int, keyword: str) -> ast.expr | None:
@@ -290,6 +341,12 @@ def argument(call: ast.Call, place: int, keyword: str) -> ast.expr | None:
     return plain[place]
 
 
+def given(call: ast.Call, places: Mapping[str, tuple[int, str]]) -> ast.expr | None:
+    """Return the argument of a call that has its place and name in a table, by the name of the function."""
+    place = places.get(called(call))
+    return argument(call, *place) if place else None
+
+
 def paced(code: Code) -> bool:
     """Whether others can see at which pace a program works: it publishes, or serves an action."""
-    return any(called(call) in ("create_publisher", "ActionServer") for call in code.all(ast.Call))
+    return any(code.calls("create_publisher", "ActionServer"))

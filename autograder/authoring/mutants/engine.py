@@ -8,7 +8,7 @@ from collections import Counter
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from autograder.authoring.mutants.operators import LINES, PYTHON
+from autograder.authoring.mutants.operators import PYTHON
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -52,11 +52,6 @@ class Mutant:
 def python_changes(code: Code) -> list[Change]:
     """Return everything that the operators change in a program."""
     return [(operator.__name__, edit) for operator in PYTHON for edit in operator(code)]
-
-
-def line_changes(text: str) -> list[Change]:
-    """Return everything that the operators change in a file that is not Python."""
-    return [(operator.__name__, edit) for operator in LINES for edit in operator(text)]
 
 
 def in_all_places(changes: Iterable[Change]) -> Iterator[Change]:

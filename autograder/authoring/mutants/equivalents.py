@@ -13,7 +13,6 @@ if TYPE_CHECKING:
 
     from autograder.authoring.mutants.engine import Mutant
 
-NAME = "the name of a node is free"
 EXCHANGED = "min and max take their arguments in any order"
 EDGE = "no drawing is exactly at a number that 32 bits do not hold, or at the very end of a time"
 DECLARED = "the order of declarations is free"
@@ -37,15 +36,13 @@ def equivalent(code: Code, mutant: Mutant, root: str = "") -> str:
         root: The name of the class or function that is judged; empty if it is the program.
     """
     operator, end = mutant.operator, mutant.start + len(mutant.before)
-    if operator == "node_name":
-        return NAME
     if operator == "on_the_class" and _is_class(code, root):
         return ONE_OBJECT
     if operator == "exchanged":
-        around = _around(code, mutant.start, end, ast.Call)
-        return EXCHANGED if called(around) in ("min", "max") else ""  # type: ignore[arg-type]
+        around = code.smallest(code.all(ast.Call), mutant.start, end)
+        return EXCHANGED if called(around) in ("min", "max") else ""
     if operator == "comparison":
-        around = _around(code, mutant.start, end, ast.Compare)
+        around = code.smallest(code.all(ast.Compare), mutant.start, end)
         return EDGE if around is not None and _has_no_edge(code, around) else ""
     if operator == "swapped":
         first = next(one for one in code.all(ast.stmt) if code.span(one)[0] == mutant.start)
@@ -74,17 +71,6 @@ def _only_keeps(code: Code, mutant: Mutant) -> bool:
 
 def _is_class(code: Code, root: str) -> bool:
     return any(isinstance(one, ast.ClassDef) and one.name == root for one in code.tree.body)
-
-
-def _around(code: Code, start: int, end: int, kind: type[ast.AST]) -> ast.AST | None:
-    """Return the smallest node of a kind around a place."""
-    spans = [(node, code.span(node)) for node in code.all(kind)]
-    fits = [
-        (last - first, number)
-        for number, (_, (first, last)) in enumerate(spans)
-        if first <= start and end <= last
-    ]
-    return spans[min(fits)[1]][0] if fits else None
 
 
 def _has_no_edge(code: Code, compare: ast.AST) -> bool:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import ast
 import re  # noqa: TID251  (not what a student handed in)
-from functools import cached_property
 from typing import TYPE_CHECKING
 
 from autograder.kit.oracle.naming.deltas import Meaning
@@ -43,7 +42,7 @@ class Places:
     def meaning(self, mutant: Mutant) -> Meaning:
         """Return what a mutant does, without a line of the solution."""
         right, value = _number(mutant.before), _number(mutant.after)
-        statement = self._statement(mutant.start)
+        statement = self._code.smallest(self._code.all(ast.stmt), mutant.start, mutant.start + 1)
         quote = self._quote(mutant, statement, right)
         is_shown = right in self._numbers or (right is not None and bool(quote))
         return Meaning(
@@ -112,24 +111,10 @@ class Places:
                 return quote
         return _only(iter(nearest))
 
-    def _statement(self, start: int) -> ast.stmt | None:
-        spans = [(self._code.span(one), one) for one in self._statements]
-        around = [
-            (end - begin, number) for number, ((begin, end), _) in enumerate(spans) if begin <= start < end
-        ]
-        return spans[min(around)[1]][1] if around else None
-
-    @cached_property
-    def _statements(self) -> list[ast.stmt]:
-        return [node for node in self._code.nodes if isinstance(node, ast.stmt)]
-
     def _test(self, start: int) -> ast.expr | None:
         """Return the smallest condition around a place: the test of a branch, or a comparison."""
         tests = [node.test for node in self._code.all(ast.If, ast.IfExp, ast.While)]
-        tests += list(self._code.all(ast.Compare))
-        spans = [(self._code.span(test), number) for number, test in enumerate(tests)]
-        around = [(end - begin, number) for (begin, end), number in spans if begin <= start < end]
-        return tests[min(around)[1]] if around else None
+        return self._code.smallest([*tests, *self._code.all(ast.Compare)], start, start + 1)
 
 
 def _number(text: str) -> float | None:

@@ -222,7 +222,7 @@ def _runs(task: PaperTask, text: str) -> bytes:
 
 def _outputs(parts: Sequence[Part]) -> str:
     noted = [
-        [event.name, event.data.get("step", -1), _rounded(event.data.get("values"))]
+        [event.name, event.data.get("step", -1), rounded(event.data.get("values"), PLACES)]
         for part in parts
         for event in part.of("noted")
     ]
@@ -231,7 +231,10 @@ def _outputs(parts: Sequence[Part]) -> str:
     return json.dumps([noted, sorted(counts.items())], default=str)
 
 
-def _rounded(value: Any) -> Any:
+def rounded(value: Any, places: int) -> Any:
+    """Return a value of JSON with all its numbers rounded."""
     if isinstance(value, float):
-        return round(value, PLACES)
-    return [_rounded(one) for one in value] if isinstance(value, list) else value
+        return round(value, places)
+    if isinstance(value, dict):
+        return {key: rounded(one, places) for key, one in value.items()}
+    return [rounded(one, places) for one in value] if isinstance(value, (list, tuple)) else value

@@ -50,7 +50,6 @@ def reasons(operator: str, before: str, kind: str = "") -> set[str]:
 @pytest.mark.parametrize(
     ("operator", "before", "kind", "reason"),
     [
-        ("node_name", '"agent"', "", equivalents.NAME),
         ("exchanged", "1.0, self.turn", "", equivalents.EXCHANGED),
         ("comparison", "<", "", equivalents.EDGE),
         ("on_the_class", "", "", equivalents.ONE_OBJECT),

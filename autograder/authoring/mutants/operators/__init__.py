@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 from autograder.authoring.mutants.operators import (
     conditions,
-    lines,
     names,
     numbers,
     outputs,
@@ -35,6 +34,3 @@ PYTHON: Sequence[Callable[[Code], Iterator[Edit]]] = (
     *state.OPERATORS,
     *outputs.OPERATORS,
 )
-"""For programs."""
-LINES: Sequence[Callable[[str], Iterator[Edit]]] = lines.OPERATORS
-"""For files that are not Python."""

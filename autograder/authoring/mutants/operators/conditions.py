@@ -5,37 +5,25 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING, Any
 
-from autograder.authoring.mutants.code import Code, Edit, called
+from autograder.authoring.mutants.code import SIGNS, Code, Edit, called
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-_TURNED: dict[type[ast.cmpop], tuple[str, str]] = {
-    ast.Lt: ("<", ">"),
-    ast.Gt: (">", "<"),
-    ast.LtE: ("<=", ">="),
-    ast.GtE: (">=", "<="),
-    ast.Eq: ("==", "!="),
-    ast.NotEq: ("!=", "=="),
-}
+_TURNED = {"<": ">", ">": "<", "<=": ">=", ">=": "<=", "==": "!=", "!=": "=="}
 
 
 def turned(code: Code) -> Iterator[Edit]:
     """A comparison that is the other way round."""
-    for compare in code.all(ast.Compare):
-        left = compare.left
-        for operator, right in zip(compare.ops, compare.comparators, strict=True):
-            pair = _TURNED.get(type(operator))
-            if pair is not None:
-                start = code.text.index(pair[0], code.span(left)[1], code.span(right)[0])
-                yield Edit(start, start + len(pair[0]), pair[1], code.where(compare), "turned")
-            left = right
+    for _, left, sign, right in code.comparisons():
+        if sign in _TURNED:
+            yield code.sign_replaced(left, right, sign, _TURNED[sign], "turned")
 
 
 def operand_left_out(code: Code) -> Iterator[Edit]:
     """One of two conditions that is not looked at."""
     for operation in code.all(ast.BoolOp):
-        word = " and " if isinstance(operation.op, ast.And) else " or "
+        word = f" {SIGNS[type(operation.op)]} "
         for value in operation.values:
             rest = [code.source(one) for one in operation.values if one is not value]
             yield code.replaced(operation, f"({word.join(rest)})")
@@ -43,15 +31,14 @@ def operand_left_out(code: Code) -> Iterator[Edit]:
 
 def bound(code: Code) -> Iterator[Edit]:
     """One bound of two, the lower bound for the upper one, or what is beyond the bounds refused."""
-    for call in code.all(ast.Call):
+    for call in code.calls("min", "max"):
         name = called(call)
-        if name not in ("min", "max") or len(call.args) != 2:
+        if len(call.args) != 2:
             continue
         for place, value in enumerate(call.args):
             yield code.replaced(call, code.source(value), f"left out {name} {1 - place}")
-        start, _ = code.span(call)
         other = "max" if name == "min" else "min"
-        yield Edit(start, start + 3, other, code.where(call), f"{other} for {name}")
+        yield code.head_replaced(call, name, other, f"{other} for {name}")
         inner: Any = next((one for one in call.args if called(one) == other), None)
         if inner is not None and len(inner.args) == 2:
             low = next(code.source(one) for one in call.args if one is not inner)
@@ -96,7 +83,7 @@ def elif_as_if(code: Code) -> Iterator[Edit]:
         if len(node.orelse) == 1 and isinstance(node.orelse[0], ast.If):
             start, _ = code.span(node.orelse[0])
             if code.text.startswith("elif", start):
-                yield Edit(start, start + 4, "if", code.where(node))
+                yield code.head_replaced(node.orelse[0], "elif", "if")
 
 
 OPERATORS = (turned, operand_left_out, bound, remembered, one_side, elif_as_if)

@@ -1,11 +1,11 @@
-"""Names: of topics, services, actions, nodes and fields."""
+"""Names: of topics, services, actions and fields."""
 
 from __future__ import annotations
 
 import ast
 from typing import TYPE_CHECKING
 
-from autograder.authoring.mutants.code import SAYS, Code, Edit, argument, called
+from autograder.authoring.mutants.code import SAYS, Code, Edit, called, given, text_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -39,40 +39,25 @@ _MESSAGES = ("String", "Request", "Response", "Goal", "Result", "Feedback", "Flo
 
 def endpoint_name(code: Code) -> Iterator[Edit]:
     """A topic, service or action whose name lacks its last letter, or is private."""
-    for call in code.all(ast.Call):
-        place = ENDPOINTS.get(called(call))
-        name = argument(call, *place) if place else None
-        if isinstance(name, ast.Constant) and isinstance(name.value, str):
-            yield code.replaced(name, repr(name.value[:-1]))
-            yield code.replaced(name, repr(f"~/{name.value.lstrip('/')}"))
+    for call in code.calls(*ENDPOINTS):
+        name = given(call, ENDPOINTS)
+        text = text_of(name)
+        if name is not None and text is not None:
+            yield code.replaced(name, repr(text[:-1]))
+            yield code.replaced(name, repr(f"~/{text.lstrip('/')}"))
         elif name is not None:
             yield code.wrapped(name, "({})[:-1]")
-
-
-def node_name(code: Code) -> Iterator[Edit]:
-    """A node of another name."""
-    for call in code.all(ast.Call):
-        makes = called(call) in ("create_node", "Node") or (
-            called(call) == "__init__"
-            and isinstance(call.func, ast.Attribute)
-            and "super" in code.source(call)
-        )
-        name = argument(call, 0, "node_name") if makes else None
-        if isinstance(name, ast.Constant) and isinstance(name.value, str):
-            yield code.replaced(name, repr(f"{name.value}_2"))
 
 
 def field_name(code: Code) -> Iterator[Edit]:
     """A field that the message does not have, or another one."""
     for attribute in code.all(ast.Attribute):
         if attribute.attr in FIELDS:
-            _, end = code.span(attribute)
-            yield Edit(end - len(attribute.attr), end, FIELDS[attribute.attr], code.where(attribute))
-    for call in code.all(ast.Call):
+            yield code.tail_replaced(attribute, attribute.attr, FIELDS[attribute.attr])
+    for call in code.calls(*_MESSAGES):
         for keyword in call.keywords:
-            if called(call) in _MESSAGES and keyword.arg in FIELDS:
-                start, _ = code.span(keyword)
-                yield Edit(start, start + len(keyword.arg), FIELDS[keyword.arg], code.where(call))
+            if keyword.arg in FIELDS:
+                yield code.head_replaced(keyword, keyword.arg, FIELDS[keyword.arg])
 
 
 def exchanged(code: Code) -> Iterator[Edit]:
@@ -85,9 +70,7 @@ def exchanged(code: Code) -> Iterator[Edit]:
             first, second = call.args[:2]
             if called(call) in (*SAYS, "format") or called(first) == called(second) == "int":
                 continue
-            start, end = code.span(first)[0], code.span(second)[1]
-            between = code.text[code.span(first)[1] : code.span(second)[0]]
-            yield Edit(start, end, code.source(second) + between + code.source(first), code.where(call))
+            yield code.swapped(first, second)
 
 
-OPERATORS = (endpoint_name, node_name, field_name, exchanged)
+OPERATORS = (endpoint_name, field_name, exchanged)

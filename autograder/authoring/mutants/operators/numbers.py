@@ -6,7 +6,7 @@ import ast
 from itertools import combinations
 from typing import TYPE_CHECKING, Any
 
-from autograder.authoring.mutants.code import Code, Edit, argument, called, paced
+from autograder.authoring.mutants.code import Code, Edit, given, paced
 from autograder.authoring.mutants.operators.waiting import limit_of, limits, pace_of
 
 if TYPE_CHECKING:
@@ -21,8 +21,7 @@ _QOS = {"create_publisher": (2, "qos_profile"), "create_subscription": (3, "qos_
 
 def depth_of(call: ast.Call) -> ast.expr | None:
     """Return the QoS, or the depth of the queue, that is given for a publisher or a subscription."""
-    place = _QOS.get(called(call))
-    return argument(call, *place) if place else None
+    return given(call, _QOS)
 
 
 def number(code: Code) -> Iterator[Edit]:
@@ -41,11 +40,10 @@ def unit(code: Code) -> Iterator[Edit]:
     for constant in numbers(code):
         for factor in UNITS if constant.value else ():
             yield code.replaced(constant, _written(constant.value, factor), f"times {factor:g}")
-    for call in code.all(ast.Call):
+    for call in code.calls("Duration"):
         for keyword in call.keywords:
-            if called(call) == "Duration" and keyword.arg == "seconds":
-                start, _ = code.span(keyword)
-                yield Edit(start, start + len("seconds"), "nanoseconds", code.where(call), "nanoseconds")
+            if keyword.arg == "seconds":
+                yield code.head_replaced(keyword, "seconds", "nanoseconds", "nanoseconds")
 
 
 def sign(code: Code) -> Iterator[Edit]:
@@ -79,17 +77,7 @@ def number_of_another_place(code: Code) -> Iterator[Edit]:
                 yield code.replaced(constant, repr(value))
         for one, other in combinations(group, 2):
             if one.value != other.value:
-                yield exchange(code, one, other)
-
-
-def exchange(code: Code, one: ast.expr, other: ast.expr) -> Edit:
-    """Return the edit in which two expressions change places."""
-    return Edit(
-        *code.span(one),
-        code.source(other),
-        code.where(one),
-        also=(code.replaced(other, code.source(one)),),
-    )
+                yield code.exchanged(one, other)
 
 
 def numbers(code: Code) -> Iterator[Any]:

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import ast
+from dataclasses import replace
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
-from autograder.authoring.mutants.code import Code, Edit, called
-from autograder.authoring.mutants.operators.numbers import exchange
+from autograder.authoring.mutants.code import Code, Edit, called, text_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -63,30 +63,21 @@ def _said(code: Code) -> Iterator[Any]:
 
 def at_another_event(code: Code) -> Iterator[Edit]:
     """Done at each input for by the timer, and the other way round."""
-    calls = list(code.all(ast.Call))
-    timers = [call for call in calls if called(call) == "create_timer" and len(call.args) > 1]
-    inputs = [call for call in calls if called(call) == "create_subscription" and len(call.args) > 2]
+    timers = [call for call in code.calls("create_timer") if len(call.args) > 1]
+    inputs = [call for call in code.calls("create_subscription") if len(call.args) > 2]
     for timer in timers:
         for heard in inputs:
             method, act = code.method(heard.args[2]), code.source(timer.args[1])
             if method is not None and method.name != act.rpartition(".")[2]:
                 last = method.body[-1]
                 if code.stands_alone(last):
-                    _, end = code.span(last)
-                    text = f"\n{code.indentation(last)}{act}()"
-                    also = (Edit(end, end, text, code.where(last)),)
-                    yield Edit(*code.span(timer), "None", code.where(timer), also=also)
+                    yield replace(code.replaced(timer, "None"), also=(code.after(last, f"{act}()"),))
     for heard in inputs if not timers else ():
         callback, statement = heard.args[2], code.parents[heard]
         if isinstance(statement, ast.Expr) and code.stands_alone(statement):
-            source, _ = code.source(callback), code.span(statement)
             keeps = code.replaced(callback, "lambda message: self.__dict__.update(_message=message)")
-            _, end = code.span(statement)
-            acts = f"lambda: '_message' in self.__dict__ and {source}(self._message)"
-            text = f"\n{code.indentation(statement)}self.create_timer(0.5, {acts})"
-            yield Edit(
-                keeps.start, keeps.end, keeps.text, keeps.where, also=(Edit(end, end, text, keeps.where),)
-            )
+            acts = f"lambda: '_message' in self.__dict__ and {code.source(callback)}(self._message)"
+            yield replace(keeps, also=(code.after(statement, f"self.create_timer(0.5, {acts})"),))
 
 
 def other_clock(code: Code) -> Iterator[Edit]:
@@ -109,7 +100,7 @@ def other_word(code: Code) -> Iterator[Edit]:
     said, names = [], []
     for constant in code.all(ast.Constant):
         parent = code.parents[constant]
-        if not isinstance(constant.value, str) or not constant.value:
+        if not text_of(constant):
             continue
         if called(parent) in ("get_parameter", "declare_parameter"):
             names.append(constant)
@@ -127,7 +118,7 @@ def other_word(code: Code) -> Iterator[Edit]:
     for one in said:
         for other in said:
             if one.lineno == other.lineno and one.col_offset < other.col_offset and one.value != other.value:
-                yield exchange(code, one, other)
+                yield code.exchanged(one, other)
 
 
 def _definition(code: Code, node: ast.AST) -> str:
@@ -136,8 +127,8 @@ def _definition(code: Code, node: ast.AST) -> str:
 
 def range_of_parameter(code: Code) -> Iterator[Edit]:
     """A parameter without its range."""
-    for call in code.all(ast.Call):
-        if called(call) == "declare_parameter" and len(call.args) == 3:
+    for call in code.calls("declare_parameter"):
+        if len(call.args) == 3:
             name, default, _ = call.args
             text = f"{code.source(call.func)}({code.source(name)}, {code.source(default)})"
             yield code.replaced(call, text, "no range")

@@ -5,10 +5,10 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from autograder.authoring.mutants.code import Code, Edit
-
 if TYPE_CHECKING:
     from collections.abc import Iterator
+
+    from autograder.authoring.mutants.code import Code, Edit
 
 _AXES = ("x", "y", "z")
 _OTHERS = {
@@ -38,22 +38,17 @@ def other_field(code: Code) -> Iterator[Edit]:
         others = set(_OTHERS.get(attribute.attr, ()))
         if isinstance(attribute.ctx, ast.Load) and code.source(attribute.value) != "self":
             others |= known.get(code.source(attribute.value), set())
-        _, end = code.span(attribute)
         for other in sorted(others - {attribute.attr}):
-            start = end - len(attribute.attr)
-            yield Edit(start, end, other, code.where(attribute), f"{other} for {attribute.attr}")
+            yield code.tail_replaced(attribute, attribute.attr, other, f"{other} for {attribute.attr}")
         for path, other in _WHOLE.items():
             source = code.source(attribute)
             if source.endswith(path):
                 yield code.replaced(attribute, source.removesuffix(path) + other, f"{other} for {path}")
     for call in code.all(ast.Call):
-        words = [keyword for keyword in call.keywords if keyword.arg]
-        for keyword in words:
-            for other in sorted(
-                {*_OTHERS.get(str(keyword.arg), ()), *_keywords_of(code, call)} - {keyword.arg}
-            ):
-                start, _ = code.span(keyword)
-                yield Edit(start, start + len(str(keyword.arg)), str(other), code.where(call))
+        for keyword in call.keywords:
+            name = keyword.arg or ""
+            for other in sorted({*_OTHERS.get(name, ()), *_keywords_of(code, call)} - {name}) if name else ():
+                yield code.head_replaced(keyword, name, other)
 
 
 def _read(code: Code, nodes: Iterator[ast.AST]) -> Iterator[ast.Attribute]:

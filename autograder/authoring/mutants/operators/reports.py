@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from autograder.authoring.mutants.code import SAYS, Code, Edit, called
+from autograder.authoring.mutants.code import SAYS, Code, Edit, called, text_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -75,13 +75,12 @@ def status(code: Code) -> Iterator[Edit]:
     for attribute in code.all(ast.Attribute):
         kind, _, word = attribute.attr.partition("STATUS_")
         if not kind and word in _STATUS:
-            _, end = code.span(attribute)
-            yield Edit(end - len(word), end, _STATUS[word], code.where(attribute))
+            yield code.tail_replaced(attribute, word, _STATUS[word])
         elif attribute.attr == "status" and isinstance(attribute.ctx, ast.Load):
             yield code.replaced(attribute, "5")
             yield code.replaced(attribute, "4")
     for constant in code.all(ast.Constant):
-        if isinstance(constant.value, str) and constant.value.upper() in _STATUS:
+        if (text_of(constant) or "").upper() in _STATUS:
             yield code.replaced(constant, repr(_STATUS[constant.value.upper()]))
 
 
@@ -92,23 +91,17 @@ def _said(code: Code) -> Iterator[ast.expr]:
 
 
 def _said_by_call(code: Code) -> Iterator[list[ast.expr]]:
-    for call in code.all(ast.Call):
-        if called(call) in SAYS:
-            yield [value for given in call.args for value in _values(given)]
+    for call in code.calls(*SAYS):
+        yield [value for given in call.args for value in _values(given)]
 
 
-def _values(node: ast.expr) -> Iterator[ast.expr]:
+def _values(node: ast.AST) -> Iterator[ast.expr]:
     if isinstance(node, ast.JoinedStr):
-        for part in node.values:
-            if isinstance(part, ast.FormattedValue):
-                yield part.value
-    elif isinstance(node, ast.BinOp):
-        yield from _values(node.left)
-        yield from _values(node.right)
-    elif isinstance(node, ast.Tuple):
-        for element in node.elts:
-            yield from _values(element)
-    elif called(node) in ("format", "str") and isinstance(node, ast.Call):
+        yield from (part.value for part in node.values if isinstance(part, ast.FormattedValue))
+    elif isinstance(node, (ast.BinOp, ast.Tuple)):
+        for part in ast.iter_child_nodes(node):
+            yield from _values(part)
+    elif isinstance(node, ast.Call) and called(node) in ("format", "str"):
         for given in node.args:
             yield from _values(given)
     elif isinstance(node, (ast.Name, ast.Attribute, ast.Call, ast.Subscript)):

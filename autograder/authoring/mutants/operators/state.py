@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from autograder.authoring.mutants.code import Code, Edit, called
@@ -64,13 +65,12 @@ def on_the_class(code: Code) -> Iterator[Edit]:
         if definition is None or not _is_of_init(code, assign) or not isinstance(assign.value, ast.Constant):
             continue
         assert isinstance(definition, ast.ClassDef)
-        head = code.before(definition.body[0], f"{name} = {code.source(assign.value)}", "shared")
+        head = code.before(definition.body[0], f"{name} = {code.source(assign.value)}")
         rest = [code.replaced(assign, "pass")]
         for other, of in _attributes(code):
             if of == name and other is not assign:
-                start, _ = code.span(other)
-                rest.append(Edit(start, start + len("self"), "type(self)", code.where(other)))
-        yield Edit(head.start, head.end, head.text, head.where, also=tuple(rest))
+                rest.append(code.head_replaced(other, "self", "type(self)"))
+        yield replace(head, also=tuple(rest))
 
 
 def made_once(code: Code) -> Iterator[Edit]:

@@ -64,18 +64,10 @@ def swapped(code: Code) -> Iterator[Edit]:
     """Two statements that follow each other, the other way round, where that can make a difference."""
     for body in code.bodies():
         for first, second in pairwise(body):
-            if not (isinstance(first, _SIMPLE) and isinstance(second, _SIMPLE)):
-                continue
-            if (
-                _depend(code, first, second)
-                or _depend(code, second, first)
-                or (_acts(first) and _acts(second))
-            ):
-                (start, middle), (begin, end) = code.span(first), code.span(second)
-                text = code.text
-                yield Edit(
-                    start, end, text[begin:end] + text[middle:begin] + text[start:middle], code.where(first)
-                )
+            matters = _depend(code, first, second) or _depend(code, second, first)
+            matters = matters or (_acts(first) and _acts(second))
+            if matters and isinstance(first, _SIMPLE) and isinstance(second, _SIMPLE):
+                yield code.swapped(first, second)
 
 
 def _depend(code: Code, first: ast.stmt, second: ast.stmt) -> bool:
@@ -97,8 +89,7 @@ def _acts(statement: ast.stmt) -> bool:
 def only_once(code: Code) -> Iterator[Edit]:
     """A loop that is gone through once."""
     for loop in code.all(ast.While):
-        start, _ = code.span(loop)
-        yield Edit(start, start + len("while"), "if", code.where(loop))
+        yield code.head_replaced(loop, "while", "if")
     for repetition in code.all(ast.For):
         yield code.wrapped(repetition.iter, "list({})[:1]")
 
@@ -109,10 +100,7 @@ def keyword_dropped(code: Code) -> Iterator[Edit]:
         for keyword in call.keywords:
             counts = keyword.arg is not None and keyword.arg not in _FREE_WORDS
             if counts and called(call) not in ("dict", "Request", "Goal"):
-                start, end = code.span(keyword)
-                while end < len(code.text) and code.text[end] in ", ":
-                    end += 1
-                yield Edit(start, end, "", code.where(call))
+                yield code.left_out(keyword)
 
 
 def element_dropped_or_doubled(code: Code) -> Iterator[Edit]:
@@ -121,17 +109,13 @@ def element_dropped_or_doubled(code: Code) -> Iterator[Edit]:
         for element in elements.elts:
             if not isinstance(element, (ast.Call, ast.Name, ast.Tuple)):
                 continue
-            start, end = code.span(element)
-            behind = end
-            while behind < len(code.text) and code.text[behind] in ", ":
-                behind += 1
             text = code.source(element)
-            yield Edit(start, behind, "", code.where(elements))
-            yield Edit(start, end, f"{text}, {text}", code.where(elements))
+            yield code.left_out(element)
+            yield code.replaced(element, f"{text}, {text}")
             for keyword in element.keywords if isinstance(element, ast.Call) else ():
                 if keyword.arg == "remappings":
                     plain = text.replace(code.source(keyword), "remappings=[]")
-                    yield Edit(start, end, f"{text}, {plain}", code.where(elements))
+                    yield code.replaced(element, f"{text}, {plain}")
 
 
 OPERATORS = (dropped, doubled, swapped, only_once, keyword_dropped, element_dropped_or_doubled)

@@ -6,7 +6,7 @@ import ast
 import re  # noqa: TID251  (not what a student handed in)
 from typing import TYPE_CHECKING
 
-from autograder.authoring.mutants.code import Code, Edit, argument, called, paced
+from autograder.authoring.mutants.code import Code, Edit, called, given, paced
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -30,6 +30,7 @@ _PACES = {
 }
 """The place of the pace in a call; the number of threads is as free as a pace."""
 _LIMIT_NAME = re.compile("patience|timeout|limit|deadline", re.IGNORECASE)
+_CLOCKS = ("monotonic", "time", "perf_counter")
 _WAITS = ("wait_for_service", "wait_for_server", "wait", "done", "service_is_ready", "server_is_ready")
 _CALLBACKS = {
     "create_timer": (1, "callback"),
@@ -58,28 +59,22 @@ def impatient(code: Code) -> Iterator[Edit]:
 
 def limits(code: Code) -> Iterator[ast.expr]:
     """The limits that do not stand in the call that waits: in a default, in a constant, behind the present time."""
-    for function in code.all(ast.FunctionDef, ast.AsyncFunctionDef):
-        given = function.args.args
+    for function in code.functions():
         defaults = function.args.defaults
-        for argument_, default in zip(given[len(given) - len(defaults) :], defaults, strict=True):
-            if _LIMIT_NAME.search(argument_.arg):
+        for argument, default in zip(function.args.args[-len(defaults) :], defaults, strict=False):
+            if _LIMIT_NAME.search(argument.arg):
                 yield default
     for assign in code.all(ast.Assign):
         if _LIMIT_NAME.search(code.source(assign.targets[0])) and isinstance(assign.value, ast.Constant):
             yield assign.value
     for operation in code.all(ast.BinOp):
-        if isinstance(operation.op, ast.Add) and called(operation.left) in (
-            "monotonic",
-            "time",
-            "perf_counter",
-        ):
+        if isinstance(operation.op, ast.Add) and called(operation.left) in _CLOCKS:
             yield operation.right
 
 
 def limit_of(call: ast.Call) -> ast.expr | None:
     """The limit that is given for a wait."""
-    place = _LIMITS.get(called(call))
-    return argument(call, *place) if place else None
+    return given(call, _LIMITS)
 
 
 def restless(code: Code) -> Iterator[Edit]:
@@ -92,14 +87,13 @@ def restless(code: Code) -> Iterator[Edit]:
 
 def pace_of(call: ast.Call) -> ast.expr | None:
     """The pause or the period that is given to a call."""
-    place = _PACES.get(called(call))
-    return argument(call, *place) if place else None
+    return given(call, _PACES)
 
 
 def taken_for_granted(code: Code) -> Iterator[Edit]:
     """Whatever is waited for is taken to be there."""
-    for call in code.all(ast.Call):
-        if called(call) in _WAITS and not isinstance(code.parents[call], ast.Expr):
+    for call in code.calls(*_WAITS):
+        if not isinstance(code.parents[call], ast.Expr):
             yield code.replaced(call, "True")
 
 
@@ -142,8 +136,7 @@ def answer(code: Code) -> Iterator[Edit]:
         if attribute.attr in endings and not isinstance(code.parents[attribute], ast.Call):
             continue
         for other in others.get(attribute.attr, ()):
-            _, end = code.span(attribute)
-            yield Edit(end - len(attribute.attr), end, other, code.where(attribute))
+            yield code.tail_replaced(attribute, attribute.attr, other)
 
 
 def late(code: Code) -> Iterator[Edit]:
@@ -152,27 +145,18 @@ def late(code: Code) -> Iterator[Edit]:
         body = function.body
         if not code.stands_alone(body[0]) or body[0].lineno == function.lineno:
             continue
-        start, _ = code.span(body[0])
-        indentation = code.indentation(body[0])
         count = "globals().setdefault('_calls', [])"
         for number in _LATE:
             for end in ("raise RuntimeError('too late')", "return"):
-                text = f"{count}.append(1)\n{indentation}if len({count}) > {number}: {end}\n{indentation}"
-                yield Edit(start, start, text, code.where(body[0]))
-        sleep = f"__import__('time').sleep(2)\n{indentation}"
-        yield Edit(start, start, sleep, code.where(body[0]))
+                stops = f"\n{code.indentation(body[0])}if len({count}) > {number}: {end}"
+                yield code.before(body[0], f"{count}.append(1){stops}")
+        yield code.before(body[0], "__import__('time').sleep(2)")
 
 
 def _callbacks(code: Code) -> list[ast.FunctionDef | ast.AsyncFunctionDef]:
-    names = set()
-    for call in code.all(ast.Call):
-        place = _CALLBACKS.get(called(call))
-        callback = argument(call, *place) if place else None
-        if callback is not None:
-            names.add(code.source(callback).rpartition(".")[2])
-    return [
-        function for function in code.all(ast.FunctionDef, ast.AsyncFunctionDef) if function.name in names
-    ]
+    callbacks = [callback for call in code.calls(*_CALLBACKS) if (callback := given(call, _CALLBACKS))]
+    names = {code.source(callback).rpartition(".")[2] for callback in callbacks}
+    return [function for function in code.functions() if function.name in names]
 
 
 OPERATORS = (impatient, restless, taken_for_granted, hardly_spun, not_awaited, threads, answer, late)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import re  # noqa: TID251  (not what a student handed in)
+import re
 from typing import TYPE_CHECKING
 
 from autograder.authoring.mutants.code import Edit
@@ -43,4 +43,4 @@ def _lines(text: str) -> Iterator[tuple[int, int]]:
         start = end
 
 
-OPERATORS = (line_dropped, line_doubled, word_misspelt)
+LINES = (line_dropped, line_doubled, word_misspelt)
