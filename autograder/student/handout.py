@@ -14,6 +14,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from jinja2 import Template
+
 from autograder import course
 from autograder.command_name import COMMAND
 from autograder.course import HANDED_OUT
@@ -43,6 +45,7 @@ KEPT_BACK = (
     "autograder/authoring",
     "autograder/grading",
     "autograder/student/handout.py",
+    "autograder/student/handout_readme.md.j2",
     "autograder/masters",
 )
 """Parts of the files in :data:`WHOLE` that make notebooks, contain solutions or grade a class. They are not handed out.
@@ -60,54 +63,9 @@ PAGES = (
 _MADE = frozenset({"__pycache__", ".ipynb_checkpoints"})
 _MADE_BY_COLCON = frozenset({"build", "install", "log"})
 """Folders with generated files, which colcon makes next to the folder ``src`` of a workspace."""
-README = """\
-# {title}
-
-Notebooks about ROS 2 in which a judge checks your nodes: it is a ROS node itself, and looks at what yours do.
-
-You need Linux on x86-64 and Python 3.11 to 3.14 (or Windows with WSL 2, which was not tried). Then, in this folder:
-
-{begin}
-
-| you want to | |
-| --- | --- |
-{guide}| see how far you are, or begin a notebook again | that map; or `{command} progress` and `{command} reset` |
-| check a program of your own in a terminal | `{command} check`, which lists the exercises |
-{mistakes}| see what is missing on your machine | `{command} doctor` |
-"""
-_OF_A_CLONE = {
-    "command": "./course",
-    "begin": """\
-```console
-$ ./course lab
-```
-
-The first time this sets everything up, in one to three minutes, or longer if the network is slow or the computer is
-busy. It opens a map of all notebooks; press *Begin*. If you work as root, as in many containers, JupyterLab does not
-start: type `./course lab --allow-root`.
-
-On a Mac, on Windows without WSL or on an ARM computer, Docker should work (not tried): `environment/jazzy.Dockerfile`
-begins with the two commands to type. Or open this folder in VS Code, choose *Reopen in Container*, and type
-`./course lab --no-browser`.""",
-    "guide": "| know how to work with the notebooks | [the student's guide](docs/students-guide.md) |\n",
-    "mistakes": "| know what a diagnosis means | [known mistakes](docs/mistakes.md) |\n",
-}
-_OF_A_WHEEL = {
-    "command": "autograder",
-    "begin": f"""\
-```console
-$ python3 -m venv .venv
-$ . .venv/bin/activate
-$ pip install "{PACKAGE}[ros,notebooks]"
-$ autograder lab
-```
-
-The last line opens a map of all notebooks; press *Begin*. If you work as root, type `autograder lab --allow-root`.""",
-    "guide": "",
-    "mistakes": "",
-}
-"""The parts of the hand-out's README for a course in another repository. Such a course has neither ``./course`` nor the
-pages in ``docs/``; its students install this package with pip.
+README = Path(__file__).with_name("handout_readme.md.j2")
+"""The hand-out's README. A course in another repository has neither ``./course`` nor the pages in ``docs/``; its
+students install this package with pip.
 """
 
 
@@ -164,14 +122,25 @@ def hand_out(
     if not chapters:
         raise CannotHandOut(f"{root} has no notebook yet: there is nothing to hand out")
     files = dict(_files(root, chapters, with_solutions=with_solutions))
-    words = _OF_A_CLONE if "course" in files else _OF_A_WHEEL
-    files["README.md"] = README.format(title=" · ".join(one.title for one in chapters), **words).encode()
+    title = " · ".join(one.title for one in chapters)
+    files["README.md"] = readme(title, of_a_clone="course" in files).encode()
     write = _pack if as_zip else _copy
     write(place, files)
     sizes = [
         len(content) if isinstance(content, bytes) else content.stat().st_size for content in files.values()
     ]
     return HandOut(place, len(files), sum(sizes))
+
+
+def readme(title: str, *, of_a_clone: bool) -> str:
+    """Return the README of a hand-out.
+
+    Args:
+        title: The titles of the chapters.
+        of_a_clone: True if the hand-out has ``./course``.
+    """
+    text = Template(README.read_text(encoding="utf-8"), trim_blocks=True, keep_trailing_newline=True)
+    return text.render(title=title, of_a_clone=of_a_clone, package=PACKAGE)
 
 
 def _wanted(chapters: Sequence[course.Chapter], names: Collection[str]) -> list[course.Chapter]:
