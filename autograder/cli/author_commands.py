@@ -9,7 +9,7 @@ from typing import Any
 import click
 
 from autograder.cli.class_options import jobs_option
-from autograder.cli.command_results import NO, fail, need_ros
+from autograder.cli.command_results import NO, fail, failing_with, need_ros
 from autograder.command_name import COMMAND
 
 
@@ -38,10 +38,8 @@ def execute(notebooks: tuple[str, ...], jobs: int | None, reports: Path | None) 
     from autograder.masters.master_files import MasterError
 
     need_ros()
-    try:
+    with failing_with(NothingToExecuteError, MasterError):
         sys.exit(execute_command(course.root(), only=notebooks, jobs=jobs, reports=reports))
-    except (NothingToExecuteError, MasterError) as error:
-        fail(str(error))
 
 
 @click.command()
@@ -62,11 +60,9 @@ def record(exercises: tuple[str, ...], only_check: bool) -> None:
     from autograder.exercises import BrokenExercise, UnknownExercise, all_ids, get
 
     need_ros()
-    try:
+    with failing_with(BrokenExercise, UnknownExercise, reference_files.CannotRecord):
         wanted = [get(exercise_id) for exercise_id in exercises or all_ids()]
         changed = reference_files.record(wanted, only_check=only_check, tell=click.echo)
-    except (BrokenExercise, UnknownExercise, reference_files.CannotRecord) as error:
-        fail(str(error))
     if only_check:
         sys.exit(NO if changed else 0)
     tried = [exercise_trial.try_mutants(one, keeps=True, tell=click.echo) for one in wanted]
@@ -95,10 +91,8 @@ def new_exercise(exercise: str, recipe: str, **choices: Any) -> None:
     from autograder.authoring import new_exercise as making
 
     root = course.root()
-    try:
+    with failing_with(making.CannotMake, course.BrokenChapter):
         made = making.new_exercise(root, exercise, recipe, **choices)
-    except (making.CannotMake, course.BrokenChapter) as error:
-        fail(str(error))
     for file in made:
         click.echo(f"written    {file.relative_to(root)}")
     click.echo(f"\nNow: {COMMAND} try-exercise {exercise}")
@@ -139,25 +133,18 @@ def try_exercise(exercise: str, only_mutants: bool, judge: bool, **choices: Any)
     from autograder.masters.master_files import MasterError
 
     need_ros()
-    try:
+    of_exercises = (exercises.BrokenExercise, exercises.UnknownExercise, exercise_trial.NothingToTry)
+    with failing_with(*of_exercises, BadTable, MasterError, reference_files.CannotRecord):
+        wanted = exercises.get(exercise)
         if only_mutants:
             fits = exercise_trial.try_mutants(
-                exercises.get(exercise),
+                wanted,
                 by_judge=choices["jobs"] if judge else 0,
                 must_be_recorded=False,
                 tell=click.echo,
             )
         else:
-            fits = exercise_trial.try_exercise(exercises.get(exercise), tell=click.echo, **choices)
-    except (
-        BadTable,
-        exercises.BrokenExercise,
-        exercises.UnknownExercise,
-        MasterError,
-        reference_files.CannotRecord,
-        exercise_trial.NothingToTry,
-    ) as error:
-        fail(str(error))
+            fits = exercise_trial.try_exercise(wanted, tell=click.echo, **choices)
     sys.exit(0 if fits else NO)
 
 
@@ -188,10 +175,8 @@ def site(edition: str, folder: Path | None, quick: bool) -> None:
     folder = (folder or root / "site").absolute()
     if folder.exists() and any(folder.iterdir()) and not (folder / "searchindex.js").is_file():
         fail(f"{folder} contains files that are not part of a site: choose another folder with --to FOLDER")
-    try:
+    with failing_with(CannotHandOut):
         problems = build_site(root, folder, edition, outputs=not quick, tell=click.echo)
-    except CannotHandOut as error:
-        fail(str(error))
     click.echo(f"written    {folder / 'index.html'}")
     if problems:
         click.echo(f"{problems} problems are listed above.", err=True)

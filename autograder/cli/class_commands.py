@@ -27,6 +27,7 @@ from autograder.cli.command_results import (
     INTERRUPTED,
     as_json_option,
     fail,
+    failing_with,
     grading_errors,
     need_ros,
     print_json,
@@ -54,10 +55,8 @@ def hand_out(place: Path, **choices: Any) -> None:
     from autograder import course
     from autograder.student import handout
 
-    try:
+    with failing_with(handout.CannotHandOut, OSError):
         made = handout.hand_out(place, course.root(), **choices)
-    except (handout.CannotHandOut, OSError) as error:
-        fail(str(error))
     print_line(
         f"{made.place}: {made.files} files, {made.size / 1e6:.1f} MB. To try it, type in that folder: {COMMAND} lab"
     )

@@ -13,6 +13,7 @@ from autograder.standard_output import printable, printable_json
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
+    from contextlib import AbstractContextManager
 
 
 NO = 1
@@ -52,11 +53,16 @@ def need_ros() -> None:
 
 
 @contextmanager
-def grading_errors() -> Iterator[None]:
+def failing_with(*errors: type[Exception]) -> Iterator[None]:
+    """If the block raises one of these errors, print its message and end the command with exit code 2."""
+    try:
+        yield
+    except errors as error:
+        fail(str(error))
+
+
+def grading_errors() -> AbstractContextManager[None]:
     """If the block raises a ``GradingError``, print its message and end the command with exit code 2."""
     from autograder.grading.grading_errors import GradingError
 
-    try:
-        yield
-    except GradingError as error:
-        fail(str(error))
+    return failing_with(GradingError)

@@ -10,7 +10,15 @@ from typing import TYPE_CHECKING
 
 import click
 
-from autograder.cli.command_results import CANNOT, NO, as_json_option, fail, need_ros, print_json
+from autograder.cli.command_results import (
+    CANNOT,
+    NO,
+    as_json_option,
+    fail,
+    failing_with,
+    need_ros,
+    print_json,
+)
 from autograder.command_name import COMMAND
 
 if TYPE_CHECKING:
@@ -59,10 +67,8 @@ def check(
     if exercise is None:
         _list_exercises()
         return
-    try:
+    with failing_with(exercises.UnknownExercise, exercises.BrokenExercise):
         wanted = exercises.get(exercise)
-    except (exercises.UnknownExercise, exercises.BrokenExercise) as error:
-        fail(str(error))
     if not command:
         fail(
             f"no command to check: write it after two dashes, such as {COMMAND} check {exercise} -- python3 my_file.py"
@@ -76,11 +82,9 @@ def check(
     click.echo(
         f"autograder: judging {exercise}: a right answer takes about 5 s, a wrong one up to 30 s", err=True
     )
-    try:
-        with _box(wanted, command) if boxed else nullcontext() as box, stray_lines_on_stderr():
-            verdict, _ = check_and_keep(exercise, command, seed=seed, box=box)
-    except CommandNotFound as error:
-        fail(str(error))
+    box_or_none = _box(wanted, command) if boxed else nullcontext()
+    with failing_with(CommandNotFound), box_or_none as box, stray_lines_on_stderr():
+        verdict, _ = check_and_keep(exercise, command, seed=seed, box=box)
     # A program of another person, or a solution that the course brings, does not count as the user's progress.
     if not boxed and _is_students(command):
         from autograder import check_journal
@@ -163,29 +167,23 @@ def lab(folder: Path | None, arguments: tuple[str, ...]) -> None:
     from autograder.standard_output import styled
     from autograder.student.lab import NoSuchFolderError, open_lab
 
-    try:
-        # JupyterLab colors its log itself.
-        with redirect_stderr(styled(sys.stderr)):
-            open_lab(folder or course.root() / course.CHAPTERS, arguments)
-    except (NoSuchFolderError, NoFreeDomainError, ValueError) as error:
-        fail(str(error))
+    # JupyterLab colors its log itself.
+    with failing_with(NoSuchFolderError, NoFreeDomainError, ValueError), redirect_stderr(styled(sys.stderr)):
+        open_lab(folder or course.root() / course.CHAPTERS, arguments)
 
 
 @click.command()
-@as_json_option
 @_notebooks
-def progress(as_json: bool, folder: Path | None) -> None:
+def progress(folder: Path | None) -> None:
     """Show which points you have reached, and which task is next. This is not a grade."""
     from autograder import check_journal, course, exercises
-    from autograder.student.progress import standing, standing_json, standing_text
+    from autograder.student.progress import standing, standing_text
 
-    try:
+    with failing_with(course.NoCourse, course.BrokenChapter, exercises.BrokenExercise):
         root = course.root()
         notebooks, kept = _notebooks_and_journal(root, folder)
         found = standing(root, notebooks, check_journal.entries(kept))
-    except (course.NoCourse, course.BrokenChapter, exercises.BrokenExercise) as error:
-        fail(str(error))
-    click.echo(standing_json(found) if as_json else standing_text(found))
+    click.echo(standing_text(found))
 
 
 @click.command()
@@ -196,12 +194,10 @@ def reset(notebook: str, folder: Path | None) -> None:
     from autograder import course
     from autograder.student import notebook_reset
 
-    try:
+    with failing_with(course.NoCourse, course.BrokenChapter, notebook_reset.CannotReset):
         root = course.root()
         notebooks, kept = _notebooks_and_journal(root, folder)
         done = notebook_reset.reset(root, notebooks, notebook, kept)
-    except (course.NoCourse, course.BrokenChapter, notebook_reset.CannotReset) as error:
-        fail(str(error))
     click.echo(f"{done.notebook} is the original again.")
     if done.copy is not None:
         click.echo(f"Your notebook was copied to {done.copy}")

@@ -1,6 +1,6 @@
 """A student's progress: chapters, notebooks and exercises in order, with their points, and the page that shows them.
 
-The course page is made as an HTML file that loads nothing else, as text for a terminal, and as JSON.
+The course page is made as an HTML file that loads nothing else, and as text for a terminal.
 """
 
 from __future__ import annotations
@@ -11,8 +11,6 @@ from functools import cache, lru_cache
 from importlib.resources import files
 from typing import TYPE_CHECKING, Any, Literal
 from urllib.parse import quote
-
-import msgspec
 
 from autograder import check_journal, course, exercises
 from autograder.cards.card_wording import points, points_of, with_solution
@@ -355,32 +353,3 @@ def hours(minutes: int) -> str:
     halves = round(minutes / 30)
     number = f"{halves // 2}{'½' if halves % 2 else ''}"
     return f"{number} hour{'' if halves == 2 else 's'}"
-
-
-def standing_json(standing: Standing) -> str:
-    """Return the progress as JSON."""
-    return msgspec.json.encode(
-        {
-            "chapters": [
-                {
-                    "name": chapter.name,
-                    "title": chapter.title,
-                    "points": chapter.points,
-                    "possible": chapter.possible,
-                    "finished": chapter.finished,
-                    "notebooks": [
-                        {
-                            # msgspec encodes only fields; the three values below are computed properties.
-                            **msgspec.to_builtins(one),
-                            "state": one.state,
-                            "points": one.points,
-                            "possible": one.possible,
-                        }
-                        for one in chapter.notebooks
-                    ],
-                }
-                for chapter in standing.chapters
-            ],
-            "next": standing.following.name if standing.following else None,
-        }
-    ).decode()
