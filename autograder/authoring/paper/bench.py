@@ -24,11 +24,10 @@ from autograder.kit.counterparts import Qos
 from autograder.kit.evidence import Event, Evidence, Part
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Container, Mapping, Sequence
+    from collections.abc import Callable, Container, Mapping
     from random import Random
 
     from autograder.authoring.paper.endpoints import Publisher, Service
-    from autograder.authoring.paper.nodes import PaperNode
     from autograder.kit.counterparts import Work
     from autograder.kit.evidence import Reference
 
@@ -129,26 +128,13 @@ class PaperBench:
             self.ended = True
         return not self.ended
 
-    def release(self) -> None:
-        pass
+    def _nothing(self) -> None:
+        """Do nothing: on paper, no message is on its way, and no thread hangs."""
+
+    release = await_attention = take_in = doubt = note_whether_it_spins = note_where_it_hangs = _nothing
 
     def settle(self) -> None:
         self._guarded(self._network.spin)
-
-    def await_attention(self) -> None:
-        pass
-
-    def note_whether_it_spins(self) -> None:
-        pass
-
-    def note_where_it_hangs(self) -> None:
-        pass
-
-    def take_in(self) -> None:
-        pass
-
-    def doubt(self) -> None:
-        pass
 
     @property
     def moment(self) -> float:
@@ -160,21 +146,14 @@ class PaperBench:
         return self.ended
 
     def _endpoints(self) -> dict[str, dict[str, str]]:
-        nodes = self._network.nodes
-        return {
-            "publisher": {end.topic: _type(end.kind) for node in nodes for end in _of(node, "publishers")},
-            "subscription": {
-                end.topic: _type(end.kind) for node in nodes for end in _of(node, "subscriptions")
-            },
-            "service": {
-                end.name: _type(end.kind)
-                for node in nodes
-                for end in _of(node, "services")
-                if _OF_PARAMETERS not in end.name.rpartition("/")[2]
-            },
-            "client": {end.name: _type(end.kind) for node in nodes for end in _of(node, "clients")},
-            "action_client": {end.name: _type(end.kind) for end in self._network.action_clients},
-        }
+        ends = {role: self._of_nodes(role) for role in ("publisher", "subscription", "service", "client")}
+        ends["service"] = [e for e in ends["service"] if _OF_PARAMETERS not in e.name.rpartition("/")[2]]
+        ends["action_client"] = self._network.action_clients
+        return {role: {end.name: _type(end.kind) for end in some} for role, some in ends.items()}
+
+    def _of_nodes(self, role: str) -> list[Any]:
+        """Return the endpoints that all nodes have in a role such as ``publisher``."""
+        return [end for node in self._network.nodes for end in getattr(node, f"{role}s")]
 
     def await_endpoint(self, role: str, name: str) -> bool:
         return not self.ended and name in self._endpoints().get(role, {})
@@ -182,10 +161,9 @@ class PaperBench:
     def watch_graph(self, condition: Callable[[Evidence], bool], within: float) -> bool:
         del within
         unusual = [
-            (role, end.topic, str(qos))
-            for role, ends in (("publisher", "publishers"), ("subscription", "subscriptions"))
-            for node in self._network.nodes
-            for end in _of(node, ends)
+            (role, end.name, str(qos))
+            for role in ("publisher", "subscription")
+            for end in self._of_nodes(role)
             if (qos := _qos(end.profile)) is not Qos.DEFAULT
         ]
         nodes = [node.full_name for node in self._network.nodes]
@@ -197,23 +175,21 @@ class PaperBench:
 
     def listen(self, topic: str, type_name: str, *, qos: Qos = Qos.DEFAULT) -> None:
         self._listens[topic] = interface(type_name), qos
-        for publisher in self._publishers(topic):
-            if qos is Qos.LATCHED and matches(publisher.profile, profile(qos)):
+        for publisher in self._of_nodes("publisher"):
+            is_late = publisher.name == topic and qos is Qos.LATCHED
+            if is_late and matches(publisher.profile, profile(qos)):
                 first = max(0, len(publisher.sent) - max(1, publisher.profile.depth))
                 for number, message in enumerate(publisher.sent[first:], first + 1):
                     self._hear(publisher, message, number)
 
-    def _publishers(self, topic: str) -> list[Publisher]:
-        return [end for node in self._network.nodes for end in _of(node, "publishers") if end.topic == topic]
-
     def _hear(self, publisher: Publisher, message: Any, number: int) -> None:
-        kind, qos = self._listens.get(publisher.topic, (None, Qos.DEFAULT))
+        kind, qos = self._listens.get(publisher.name, (None, Qos.DEFAULT))
         if kind is not publisher.kind:
             return
         if matches(publisher.profile, profile(qos)):
-            self.record("message", publisher.topic, fields=to_data(message), number=number)
+            self.record("message", publisher.name, fields=to_data(message), number=number)
         else:
-            self.record("mismatch", publisher.topic, policy="")
+            self.record("mismatch", publisher.name, policy="")
 
     def _log(self, logger: str, level: int, text: str) -> None:
         self.record("log", logger, text=text, level=level)
@@ -261,7 +237,7 @@ class PaperBench:
 
     def services(self, name: str) -> list[Service]:
         """Return the subject's services of a name."""
-        return [end for node in self._network.nodes for end in _of(node, "services") if end.name == name]
+        return [end for end in self._of_nodes("service") if end.name == name]
 
     def ask(self, service: Service, request: Any, answered: Callable[[Any], None]) -> None:
         """Send a request to a service of the subject."""
@@ -353,10 +329,6 @@ class _Caller:
         del quiet
         self._bench.settle()
         return self._answered >= self._asked
-
-
-def _of(node: PaperNode, ends: str) -> Sequence[Any]:
-    return list(getattr(node, ends))
 
 
 def _type(kind: Any) -> str:

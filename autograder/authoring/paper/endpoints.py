@@ -26,8 +26,9 @@ class Publisher:
     """A publisher of a program."""
 
     def __init__(self, kind: Any, topic: str, profile: QoSProfile) -> None:
-        self.kind, self.topic, self.profile = kind, topic, profile
-        self.topic_name, self.msg_type, self.qos_profile = topic, kind, profile
+        self.kind = self.msg_type = kind
+        self.name = self.topic = self.topic_name = topic
+        self.profile = self.qos_profile = profile
         self.sent: list[Any] = []
 
     def publish(self, message: Any) -> None:
@@ -43,8 +44,10 @@ class Subscription:
     """A subscription of a program."""
 
     def __init__(self, kind: Any, topic: str, callback: Callable[..., Any], profile: QoSProfile) -> None:
-        self.kind, self.topic, self.callback, self.profile = kind, topic, callback, profile
-        self.topic_name, self.msg_type, self.qos_profile = topic, kind, profile
+        self.kind = self.msg_type = kind
+        self.name = self.topic = self.topic_name = topic
+        self.profile = self.qos_profile = profile
+        self.callback = callback
 
 
 class Service:

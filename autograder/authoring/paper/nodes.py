@@ -181,14 +181,6 @@ class PaperNode(rclpy.node.Node):
         ):
             ends.clear()
 
-    def get_clock(self) -> Any:
-        """Return the robot's clock."""
-        return self._clock
-
-    def get_logger(self) -> Any:
-        """Return a logger whose lines the bench gets."""
-        return self._logger
-
     def get_name(self) -> str:
         """Return the name."""
         return self._name
