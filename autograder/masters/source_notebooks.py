@@ -20,9 +20,11 @@ import re  # noqa: TID251  (not what a student handed in)
 from collections import Counter
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import Any
 from urllib.parse import quote
 
+from jinja2 import Template
 from nbformat import NotebookNode, from_dict
 from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook
 
@@ -40,10 +42,6 @@ from autograder.masters.code_cells import (
 from autograder.masters.master_cells import CellRole, MasterCell, parse_master, with_copies
 from autograder.masters.master_files import CellError, MasterError, before_and_after, chapter_path
 from autograder.masters.notebook_map import link_to, notebook_map
-
-if TYPE_CHECKING:
-    from pathlib import Path
-
 
 _HEADING = re.compile(r"^#{1,6}\s+(.*?)\s*$", re.MULTILINE)
 _FENCED = re.compile(r"^```.*?^```", re.MULTILINE | re.DOTALL)
@@ -313,41 +311,7 @@ SET_UP_CELL = "given-set-up"
 """The grade_id of the cell that sets up the course."""
 SET_UP_CODE = "environment/plain_kernel.py"
 """A file of the course, by which the cell recognizes the course's folder."""
-_SET_UP_SOURCE = """\
-# @title Set the course up, outside of `./course lab`
-# Run this cell first. In `./course lab` it does nothing. In another Jupyter, such as Colab, it takes a minute or two.
-try:
-    import autograder.notebook
-except ImportError:
-    import os
-    import shutil
-    import sys
-    import urllib.request
-    from pathlib import Path
-
-    def course_folder() -> Path | None:
-        folders = [Path.cwd(), *Path.cwd().parents, *sorted(Path.cwd().glob("ros2_course/*"))]
-        return next((one for one in folders if (one / "{part}").is_file()), None)
-
-    if not course_folder():
-        archive = os.environ.get("ROS2_COURSE_ARCHIVE") or "{archive}"
-        if not archive:
-            problem = "This notebook is not in the course's folder, and the course has no address. Open it"
-            raise ImportError(f"{{problem}} there, or let ROS2_COURSE_ARCHIVE name a zip of it.") from None
-        try:
-            file, _ = urllib.request.urlretrieve(archive)
-        except (OSError, ValueError) as error:
-            problem = f"The course could not be fetched from {{archive!r}} ({{error}}). Is there a network?"
-            raise ImportError(f"{{problem}} ROS2_COURSE_ARCHIVE may name another zip of the course.") from None
-        shutil.unpack_archive(file, "ros2_course", "zip")
-    sys.path.append(str(course_folder()))
-    from environment.plain_kernel import set_up
-
-    set_up()
-    from autograder.student.lab import join_domain
-
-    domain = join_domain()  # held for as long as this kernel runs
-"""
+_SET_UP_SOURCE = Path(__file__).with_name("set_up_cell.py.j2")
 
 
 def service_links(address: str, notebook: str) -> dict[str, str]:
@@ -382,7 +346,7 @@ def _with_set_up_cells(master: Path, cells: list[MasterCell]) -> list[MasterCell
         text = f"Nothing installed? Open this notebook in {services}."
         added.append(MasterCell(CellRole.TEXT, text, line=0, body_line=0))
     archive = course.archive(address) if address else ""
-    source = _SET_UP_SOURCE.format(part=SET_UP_CODE, archive=archive).rstrip("\n")
+    source = Template(_SET_UP_SOURCE.read_text(encoding="utf-8")).render(part=SET_UP_CODE, archive=archive)
     added.append(
         MasterCell(CellRole.DEMONSTRATION, source, line=0, body_line=0, grade_id=SET_UP_CELL, folded=True)
     )
