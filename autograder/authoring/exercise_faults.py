@@ -1,4 +1,4 @@
-"""Lists for an author the faults of an exercise that the project's tests and linters would report.
+"""Lists for an author the faults of an exercise that the project's tests would report.
 
 They include each house rule that the lab's master breaks, such as the limit on the words before the first task.
 """
@@ -7,12 +7,9 @@ from __future__ import annotations
 
 import contextlib
 import itertools
-import os
 import re  # noqa: TID251  (not what a student handed in)
-import subprocess
 from collections import Counter
 from dataclasses import replace
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from autograder import course, exercises
@@ -21,11 +18,10 @@ from autograder.kit.evidence import Event, Evidence
 from autograder.masters.code_cells import find_region
 from autograder.masters.master_cells import COPY_LINE, CellRole, parse_master
 from autograder.masters.source_notebooks import named_cells
-from course_runtime.installation import installing
-from course_runtime.python_child import installed_program
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
+    from pathlib import Path
 
     from autograder.authoring.answer_bank import Answer
     from autograder.kit.evidence import Reference
@@ -37,8 +33,6 @@ _OUTPUTS = ("publisher", "service", "action_server")
 """The roles of endpoints through which a node tells something. The others only let it know."""
 _MISTAKES_PAGE = "docs/mistakes.md"
 """The page that explains each diagnosis to students. The key of the diagnosis is the heading of its paragraph."""
-_PACKAGE = Path(course.__file__).resolve().parents[1]
-_SETTINGS = _PACKAGE / "pyproject.toml"
 
 
 def still_to_do(exercise: Exercise, listed: Sequence[Answer]) -> Iterator[str]:
@@ -54,10 +48,9 @@ def still_to_do(exercise: Exercise, listed: Sequence[Answer]) -> Iterator[str]:
     yield from _of_endpoints(exercise)
     yield from _of_answers(listed, exercise.enough)
     yield from _of_mistakes(exercise, listed)
-    lab = exercises.path(exercise.id).parent
     yield from to_do_in_text(exercise)
-    yield from (f"{course.LAB}: {rule}" for rule in broken_rules(lab / course.LAB))
-    yield from _of_linters(lab)
+    master = exercises.path(exercise.id).with_name(course.LAB)
+    yield from (f"{course.LAB}: {rule}" for rule in broken_rules(master))
 
 
 def _of_answers(listed: Sequence[Answer], enough: Mapping[str, int]) -> Iterator[str]:
@@ -172,35 +165,6 @@ _PERIOD = re.compile(r"(?i)\bevery [\d.]+ s\b")
 _MAX_SENTENCES = 2
 """The maximum number of sentences below a criterion, because a card must not read like a contract."""
 _SENTENCE = re.compile(r"[.!?](?= |$)")
-
-
-def _of_linters(lab: Path) -> Iterator[str]:
-    """Yield what ruff and mypy report about a lab's files, and a line for each linter that is not installed."""
-    if not _SETTINGS.is_file():
-        return
-    programs = {name: installed_program(name) for name in ("ruff", "mypy")}
-    for name, program in programs.items():
-        if not program.is_file():
-            yield f"{name}: not installed, so nothing was checked. Type: {installing('dev', clone='--tests')}"
-    files = [str(file) for file in sorted(lab.glob("*.py"))]
-    for name, *words in (
-        ("ruff", "check", "--quiet", "--output-format=concise", f"--config={_SETTINGS}"),
-        ("ruff", "format", "--check", "--quiet", f"--config={_SETTINGS}"),
-        ("mypy", "--no-error-summary", f"--config-file={_SETTINGS}"),
-    ):
-        if files and programs[name].is_file():
-            done = subprocess.run(
-                [programs[name], *words, *files],
-                cwd=_PACKAGE,
-                env=os.environ | {"MYPYPATH": str(lab.parent)},
-                capture_output=True,
-                text=True,
-                check=False,
-            )
-            if words[0] == "format" and done.returncode == 1:  # ruff's output would be a long diff
-                yield f"ruff: a file is not formatted. Type: {programs[name]} format --config={_SETTINGS} {lab}"
-            else:
-                yield from (f"{name}: {line}" for line in (done.stdout + done.stderr).splitlines())
 
 
 _MAX_HEAD_WORDS, _MAX_WORDS_BEFORE_A_TASK, _MAX_SOLUTION_LINES = 150, 400, 12

@@ -13,7 +13,6 @@ from autograder.authoring.answer_bank import answers
 from autograder.authoring.exercise_faults import still_to_do, unasked_outputs
 from autograder.authoring.new_exercise import EXAMPLES, new_exercise, recipes
 from autograder.judge import evidence_files
-from course_runtime import python_child
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -123,8 +122,6 @@ def test_a_check_and_a_stop_need_no_sentence_before_them(lab: Path) -> None:
             "        self.charge -= 1\n" * 9,
             "lab.md: a task is small: ",
         ),
-        ("battery.py", "import annotations\n", "import annotations\n\nimport os\n", "ruff: "),
-        ("battery.py", "heard = Publisher()", "heard: int = Publisher()", "mypy: "),
         (
             "battery.py",
             "\nEXERCISE",
@@ -174,19 +171,6 @@ def test_a_sentence_may_go_on_in_the_next_line(lab: Path) -> None:
     )
     forget()
     assert told() == []
-
-
-def test_a_difference_in_format_is_one_line(lab: Path) -> None:
-    (lab / "battery.py").write_text(
-        (lab / "battery.py").read_text().replace("heard = Publisher", "heard =   Publisher")
-    )
-    forget()
-    assert [line.partition(".")[0] for line in told()] == ["ruff: a file is not formatted"]
-
-
-def test_what_is_not_installed_is_told(lab: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(python_child, "INTERPRETER", str(lab / "python3"))
-    assert [line.partition(",")[0] for line in told()] == ["ruff: not installed", "mypy: not installed"]
 
 
 def test_an_output_that_no_criterion_asks_for_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
