@@ -6,7 +6,7 @@ Names: ``new_exercise``, ``exercise_trial``, ``reference_files``, ``notebook_exe
     ``site_building.build_site``, ``answer_bank.answers``
 Imports: ``boxes``, ``cards``, ``check_journal``, ``course``, ``dds_discovery``, ``execution``, ``exercises``,
     ``grading``, ``judge``, ``kit``, ``masters``, ``messages``, ``packed_files``, ``safe_files``,
-    ``standard_output``, ``student``, ``verdict``.
+    ``standard_output``, ``verdict``.
 Takes: the folder of a lab: master, exercise, tables of answers.
 Gives: reference outputs, the website, and what passes or fails, in words and as an exit code.
 """

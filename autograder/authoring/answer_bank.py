@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import select
 import time
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 from itertools import islice
 from typing import TYPE_CHECKING, Generic, Protocol, TypeVar
@@ -56,7 +56,6 @@ class Answer:
         says: Words that the diagnosis has to contain.
         advice: What the card of a node that does the same says, and the next step; empty if the answer is not recorded
             next to the solution.
-        looks_twice: False to leave out the second look, in real time, which the judge takes if an answer fails.
     """
 
     exercise: str
@@ -67,7 +66,6 @@ class Answer:
     edit: ListedAnswer | None = None
     says: str = ""
     advice: tuple[str, ...] = ()
-    looks_twice: bool = True
 
     @property
     def name(self) -> str:
@@ -112,10 +110,8 @@ class Answer:
         """Judge the answer in this process. Return the verdict, and the evidence unless the judge itself failed."""
         from autograder.judge.command_check import checked_here
 
-        exercise = exercises.get(self.exercise)
-        exercise = replace(exercise, second_look=exercise.second_look and self.looks_twice)
         with HeldFolder("autograder-answer-") as folder:
-            return checked_here(exercise, self.unpack(folder.path), seed, None)
+            return checked_here(exercises.get(self.exercise), self.unpack(folder.path), seed, None)
 
     def recorded(self, reference: Reference) -> Report:
         """Record the answer in this process, in all parts that the recording of the solution has."""

@@ -130,7 +130,6 @@ def try_exercise(
     jobs: int = JOBS,
     repeat: int = 1,
     transcript: Path | None = None,
-    fast: bool = False,
     tell: Callable[[str], object],
 ) -> bool:
     """Try an exercise: check its recording, judge the answers, and print surprises and what is left to do.
@@ -145,7 +144,6 @@ def try_exercise(
         jobs: The number of answers to judge at the same time.
         repeat: The number of times to judge each answer, each time with different random inputs.
         transcript: The folder for the evidence of each answer from its last run; None to write none.
-        fast: True to leave out the second look at answers that are expected to be wrong.
         tell: Called with each line or card for the author.
 
     Returns:
@@ -163,10 +161,7 @@ def try_exercise(
         return False
     # `only` asks about single answers, so whatever concerns the whole exercise is left out.
     gifts = [] if only else list(_of_unsolved(exercise, wanted))
-    twice = {answer.name: not (fast and answer.diagnoses) for answer in wanted}
-    wanted = [
-        _Tried(**{**vars(answer), "looks_twice": twice[answer.name]}, folder=transcript) for answer in wanted
-    ]
+    wanted = [_Tried(**vars(answer), folder=transcript) for answer in wanted]
     told: Counter[str] = Counter()
     surprises = _judged(wanted, jobs=jobs, repeat=repeat, tell=tell, told=told)
     for surprise in surprises:

@@ -27,7 +27,6 @@ from autograder.masters.notebook_map import learning_outcomes
 from autograder.masters.notebook_release import release_text
 from autograder.masters.source_notebooks import SET_UP_CELL, source_notebook
 from autograder.safe_files import HeldFolder
-from autograder.student.handout import hand_out
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -35,9 +34,6 @@ if TYPE_CHECKING:
     from nbformat import NotebookNode
 
 
-SELF_EDITION, CLASS_EDITION = "self", "class"
-EDITIONS = (SELF_EDITION, CLASS_EDITION)
-"""The editions of the website: ``self`` for learners on their own, with solutions; ``class`` without solutions."""
 SOLUTION_SUMMARY = "Solution (click to expand)"
 _STATIC = "_static"
 _START = "README"
@@ -52,13 +48,12 @@ _SPHINX_SETTINGS: dict[str, Any] = msgspec.toml.decode(
 )
 
 
-def build_site(root: Path, folder: Path, edition: str, *, outputs: bool, tell: Callable[[str], None]) -> int:
+def build_site(root: Path, folder: Path, *, outputs: bool, tell: Callable[[str], None]) -> int:
     """Build the website of a course.
 
     Args:
         root: The top folder of the course.
         folder: The folder for the pages. Pages from an earlier build in it are replaced.
-        edition: A value from ``autograder.authoring.site_building.EDITIONS``.
         outputs: True to execute the notebooks first and show their outputs.
         tell: Called with each line to print.
 
@@ -66,10 +61,10 @@ def build_site(root: Path, folder: Path, edition: str, *, outputs: bool, tell: C
         The number of problems: links that lead nowhere, and pages that are too large.
     """
     with HeldFolder("course-site-") as held:
-        executed = run_masters(masters(root), course_of(edition, root, held.path), tell) if outputs else {}
+        executed = run_masters(masters(root), root, tell) if outputs else {}
         sources, pages = held.path / "sources", held.path / "pages"
         sources.mkdir()
-        _write_sources(root, sources, edition, executed)
+        _write_sources(root, sources, executed)
         shutil.copyfile(Path(__file__).with_name(_STYLE_SHEET), sources / _STATIC / _STYLE_SHEET)
         settings = _SPHINX_SETTINGS | _settings_of(root)
         with (held.path / "warnings").open("w+", encoding="utf-8") as warnings:
@@ -118,27 +113,15 @@ def _settings_of(root: Path) -> dict[str, Any]:
     return settings | {"html_theme_options": theme}
 
 
-def course_of(edition: str, root: Path, folder: Path) -> Path:
-    """Return the course to execute for an edition. For a class, make a hand-out: its cards do not offer solutions.
-
-    Raises:
-        autograder.student.handout.CannotHandOut: A notebook of the chapters contains the author's own work.
-    """
-    if edition == SELF_EDITION:
-        return root
-    return hand_out(folder / "handed-out", root).place
-
-
 _ATTACHMENT = re2.compile(r"\(attachment:([^)]+)\.png\)")
 
 
-def _write_sources(root: Path, folder: Path, edition: str, executed: Mapping[str, NotebookNode]) -> None:
+def _write_sources(root: Path, folder: Path, executed: Mapping[str, NotebookNode]) -> None:
     """Write the sources of the website.
 
     Args:
         root: The top folder of the course.
         folder: An empty folder.
-        edition: A value from ``EDITIONS``.
         executed: The executed source notebooks, by the names of the labs. The pages of other labs have no outputs.
     """
     (folder / _STATIC).mkdir()
@@ -149,8 +132,6 @@ def _write_sources(root: Path, folder: Path, edition: str, executed: Mapping[str
     for page in sorted(root.glob("*.md")):
         if page.name != start.name:
             beside.append(f"../{page.stem}")
-        elif edition == CLASS_EDITION:
-            continue  # its pictures show a solution
         shutil.copyfile(page, folder / page.name)
     _append(start, _chapters(root))
     if (folder / _GUIDES).is_file():
@@ -160,42 +141,39 @@ def _write_sources(root: Path, folder: Path, edition: str, executed: Mapping[str
     outcomes = learning_outcomes(root)
     hunts = {one.id.partition(".")[0] for one in exercises.unbroken() if one.hides_causes}
     for master in masters(root):
-        # The outputs of a solved bug hunt tell the causes, so its page is that of a class, without outputs.
+        # The repairs and outputs of a solved bug hunt tell the causes, so its page has neither.
         is_hunt = lab_name(master) in hunts
         source = (None if is_hunt else executed.get(lab_name(master))) or source_notebook(master)
         file = folder / chapter_path(root, master).relative_to(root)
         file.parent.mkdir(parents=True, exist_ok=True)
         for figure in master.parents[1].glob("**/figures/*.svg"):
             shutil.copyfile(figure, file.with_name(figure.name))
-        shown = CLASS_EDITION if is_hunt else edition
-        notebook = book_page(source, shown, outcomes.get(lab_name(master), ()))
+        notebook = book_page(source, outcomes.get(lab_name(master), ()), with_solutions=not is_hunt)
         for cell in notebook.cells:
             cell.source = _ATTACHMENT.sub(r"(\1.svg)", cell.source)
             cell.pop("attachments", None)
         nbformat.write(notebook, file)
 
 
-def book_page(source: NotebookNode, edition: str, outcomes: tuple[str, ...] = ()) -> NotebookNode:
-    """Return a lab's page as a notebook with the cells that students get, and folded solutions for learners alone.
+def book_page(source: NotebookNode, outcomes: tuple[str, ...] = (), *, with_solutions: bool) -> NotebookNode:
+    """Return a lab's page as a notebook with the cells that students get, and folded solutions.
 
     Args:
         source: The source notebook, with or without outputs.
-        edition: A value from ``EDITIONS``.
         outcomes: The learning outcomes of the lab, each completing the sentence "After this notebook you can".
     """
     page = nbformat.reads(release_text(source), as_version=4)
-    secret = _lines_of_solutions(source, page) if edition == CLASS_EDITION else frozenset[str]()
     cells = []
     for solved, cell in zip(source.cells, page.cells, strict=True):
         if cell.get("id") == SET_UP_CELL:  # prepares a kernel
             continue
         changed = solved.source != cell.source
-        outputs = [one for one in solved.get("outputs", []) if secret.isdisjoint(_printed(one))]
+        outputs = solved.get("outputs", [])
         cell.metadata = {}
         if cell.cell_type == "code":
             cell.outputs = [] if changed else outputs
         cells.append(cell)
-        if changed and edition == SELF_EDITION:
+        if changed and with_solutions:
             cells.append(_folded(solved, outputs))
     if outcomes:
         listed = "\n".join(f"- {one}" for one in outcomes)
@@ -208,20 +186,6 @@ def book_page(source: NotebookNode, edition: str, outcomes: tuple[str, ...] = ()
     page.cells = cells
     page.metadata.pop("celltoolbar", None)
     return page
-
-
-def _lines_of_solutions(source: NotebookNode, page: NotebookNode) -> frozenset[str]:
-    """Return the lines that only the solutions contain. An output that shows such a line gives a solution away."""
-    solved, open_ = (
-        {line.strip() for cell in notebook.cells for line in cell.source.split("\n")}
-        for notebook in (source, page)
-    )
-    return frozenset(line for line in solved - open_ if any(map(str.isalnum, line)))
-
-
-def _printed(output: NotebookNode) -> set[str]:
-    text = str(output.get("text", "")) + str(output.get("data", {}).get("text/plain", ""))
-    return {line.strip() for line in text.split("\n")}
 
 
 def _folded(solved: NotebookNode, outputs: list[NotebookNode]) -> NotebookNode:

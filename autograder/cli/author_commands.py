@@ -119,9 +119,6 @@ def new_exercise(exercise: str, recipe: str, **choices: Any) -> None:
     help="Write what the judge saw of each answer into this folder.",
 )
 @click.option(
-    "--fast", is_flag=True, help="Leave out the second look at answers that are expected to be wrong."
-)
-@click.option(
     "--mutants", "only_mutants", is_flag=True, help="Try only the mutants of the solution, recorded or not."
 )
 @click.option("--judge", is_flag=True, help="With --mutants: the judge checks those that paper cannot run.")
@@ -150,13 +147,6 @@ def try_exercise(exercise: str, only_mutants: bool, judge: bool, **choices: Any)
 
 @click.command()
 @click.option(
-    "--edition",
-    type=click.Choice(["self", "class"]),
-    default="self",
-    show_default=True,
-    help="self: for learners on their own, with folded solutions; class: without solutions.",
-)
-@click.option(
     "--to",
     "folder",
     type=click.Path(path_type=Path, file_okay=False),
@@ -165,18 +155,16 @@ def try_exercise(exercise: str, only_mutants: bool, judge: bool, **choices: Any)
 @click.option(
     "--quick", is_flag=True, help="Do not execute the notebooks, so that the pages show no outputs."
 )
-def site(edition: str, folder: Path | None, quick: bool) -> None:
-    """Make a website of the labs, guides and known mistakes, as HTML files that need no server and no network."""
+def site(folder: Path | None, quick: bool) -> None:
+    """Make a website of the labs with folded solutions, and of the guides. It needs no server and no network."""
     from autograder import course
     from autograder.authoring.site_building import build_site
-    from autograder.student.handout import CannotHandOut
 
     root = course.root()
     folder = (folder or root / "site").absolute()
     if folder.exists() and any(folder.iterdir()) and not (folder / "searchindex.js").is_file():
         fail(f"{folder} contains files that are not part of a site: choose another folder with --to FOLDER")
-    with failing_with(CannotHandOut):
-        problems = build_site(root, folder, edition, outputs=not quick, tell=click.echo)
+    problems = build_site(root, folder, outputs=not quick, tell=click.echo)
     click.echo(f"written    {folder / 'index.html'}")
     if problems:
         click.echo(f"{problems} problems are listed above.", err=True)

@@ -1,4 +1,4 @@
-"""The book: its links lead somewhere, it loads nothing from elsewhere, and a class's edition has no solutions."""
+"""The book: its links lead somewhere, it loads nothing from elsewhere, and its solutions are folded."""
 
 from __future__ import annotations
 
@@ -19,15 +19,10 @@ from autograder import course, exercises
 from autograder.authoring import site_building
 from autograder.authoring.executed_masters import _run, show_as_a_students
 from autograder.authoring.site_building import (
-    CLASS_EDITION,
-    EDITIONS,
     MAX_PAGE_BYTES,
-    SELF_EDITION,
     SOLUTION_SUMMARY,
     book_page,
-    course_of,
 )
-from autograder.course import SOLUTION
 from autograder.kit.hunts.ticket import Ticket
 from autograder.masters.master_files import masters
 from autograder.masters.source_notebooks import SET_UP_CELL as SET_UP_CELL
@@ -43,20 +38,18 @@ ELSEWHERE = re.compile(
 LOADED = re.compile(r'(?:src|href)="([^"#?]+\.(?:js|css|png|gif|svg))\b')
 
 
-@pytest.fixture(scope="module", params=EDITIONS)
-def book(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> tuple[str, Path]:
+@pytest.fixture(scope="module")
+def book(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("book") / "pages"
     # In a process of its own: Sphinx keeps what one book has registered.
-    command = python_child(
-        "-m", "autograder", "site", "--quick", "--edition", request.param, "--to", str(folder)
-    )
+    command = python_child("-m", "autograder", "site", "--quick", "--to", str(folder))
     done = subprocess.run(command.command, cwd=ROOT, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
-    return request.param, folder
+    return folder
 
 
-def test_every_lab_has_a_page_and_every_page_is_small_and_loads_nothing(book: tuple[str, Path]) -> None:
-    pages = list(book[1].rglob("*.html"))
+def test_every_lab_has_a_page_and_every_page_is_small_and_loads_nothing(book: Path) -> None:
+    pages = list(book.rglob("*.html"))
     names = {page.stem for page in pages}
     assert {master.parent.name for master in masters(ROOT)} | {
         "index",
@@ -68,8 +61,8 @@ def test_every_lab_has_a_page_and_every_page_is_small_and_loads_nothing(book: tu
     assert not [page.name for page in pages if ELSEWHERE.search(page.read_text(encoding="utf-8"))]
 
 
-def test_title_and_footer_are_the_books(book: tuple[str, Path]) -> None:
-    page = (book[1] / "chapters/01_ros2_fundamentals/lab_1_2.html").read_text(encoding="utf-8")
+def test_title_and_footer_are_the_books(book: Path) -> None:
+    page = (book / "chapters/01_ros2_fundamentals/lab_1_2.html").read_text(encoding="utf-8")
     (title,) = re.findall(r"<title>\s*(.*?)\s*</title>", page, re.DOTALL)
     name = (ROOT / "README.md").read_text(encoding="utf-8").partition("\n")[0].removeprefix("# ")
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
@@ -97,7 +90,7 @@ def test_guides_stand_in_the_order_of_readers(tmp_path: Path) -> None:
     ]
 
 
-def test_a_page_with_all_that_it_loads_is_small_for_a_phone(book: tuple[str, Path]) -> None:
+def test_a_page_with_all_that_it_loads_is_small_for_a_phone(book: Path) -> None:
     """As a web server sends it: the film of README is half of the largest page."""
 
     @cache
@@ -105,11 +98,11 @@ def test_a_page_with_all_that_it_loads_is_small_for_a_phone(book: tuple[str, Pat
         return len(gzip.compress(file.read_bytes()))
 
     sizes = {}
-    for page in book[1].rglob("*.html"):
+    for page in book.rglob("*.html"):
         files = {(page.parent / name).resolve() for name in LOADED.findall(page.read_text(encoding="utf-8"))}
         sizes[page.name] = sent(page) + sum(map(sent, files))
     assert max(sizes.values()) < MAX_PAGE_BYTES, sizes
-    icons = (book[1] / "_static/scripts/fontawesome.js").read_text(encoding="utf-8")
+    icons = (book / "_static/scripts/fontawesome.js").read_text(encoding="utf-8")
     assert {
         name
         for name in ("magnifying-glass", "bars", "xmark", "rocket")
@@ -121,36 +114,33 @@ def test_a_page_with_all_that_it_loads_is_small_for_a_phone(book: tuple[str, Pat
     }
 
 
-def test_a_table_that_is_wider_than_a_phone_is_moved_by_the_keyboard(book: tuple[str, Path]) -> None:
-    tables = re.findall(r'<table class="table"[^>]*>', (book[1] / "docs/learning-outcomes.html").read_text())
+def test_a_table_that_is_wider_than_a_phone_is_moved_by_the_keyboard(book: Path) -> None:
+    tables = re.findall(r'<table class="table"[^>]*>', (book / "docs/learning-outcomes.html").read_text())
     assert set(tables) == {'<table class="table" tabindex="0">'}
 
 
-def test_fairness_tells_task_by_task_what_the_cards_say(book: tuple[str, Path]) -> None:
-    text = re.sub(r"<[^>]*>", "", (book[1] / "docs/fairness.html").read_text(encoding="utf-8"))
+def test_fairness_tells_task_by_task_what_the_cards_say(book: Path) -> None:
+    text = re.sub(r"<[^>]*>", "", (book / "docs/fairness.html").read_text(encoding="utf-8"))
     talker = exercises.get("lab_1_2.talker")
     assert f"{talker.title}#" in text
     assert f"Keeps the rate: {talker.counts['rate']}" in text
     assert "Not graded: “log the string that it publishes”." in text
 
 
-def test_solutions_are_folded_or_absent(book: tuple[str, Path]) -> None:
-    edition, folder = book
-    page = (folder / "chapters/01_ros2_fundamentals/lab_1_2.html").read_text(encoding="utf-8")
+def test_solutions_are_folded(book: Path) -> None:
+    page = (book / "chapters/01_ros2_fundamentals/lab_1_2.html").read_text(encoding="utf-8")
     text = re.sub(r"<[^>]*>", "", page)
     assert "Learning Outcomes" in text
     assert "Set the course up, outside of" not in text
-    assert (SOLUTION_SUMMARY in text) == (edition == SELF_EDITION)
-    assert ("create_timer(0.5, self.say_hello)" in text) == (edition == SELF_EDITION)
+    assert SOLUTION_SUMMARY in text
+    assert "create_timer(0.5, self.say_hello)" in text
     assert "TODO: make the publisher and the timer" in text
-    films = [page.name for page in folder.rglob("*") if "lab.gif" in page.name]
-    assert bool(films) == (edition == SELF_EDITION), "README's film types a solution"
 
 
-def test_a_bug_hunt_has_no_solution_and_no_cause_in_any_edition(book: tuple[str, Path]) -> None:
+def test_a_bug_hunt_has_no_solution_and_no_cause(book: Path) -> None:
     for file in sorted(ROOT.glob(f"solutions/*/*/*{course.TICKET}")):
         ticket = msgspec.toml.decode(file.read_bytes(), type=Ticket)
-        page = (book[1] / "chapters" / file.parents[1].name / f"{file.parent.name}.html").read_text(
+        page = (book / "chapters" / file.parents[1].name / f"{file.parent.name}.html").read_text(
             encoding="utf-8"
         )
         text = html.unescape(re.sub(r"<[^>]*>", "", page))
@@ -160,34 +150,13 @@ def test_a_bug_hunt_has_no_solution_and_no_cause_in_any_edition(book: tuple[str,
         ] == []
 
 
-def test_no_output_shows_a_class_what_a_solution_has_written() -> None:
-    source = source_notebook(next(one for one in masters(ROOT) if one.parent.name == "lab_1_3"))
-    solved = next(cell for cell in source.cells if "BEGIN SOLUTION" in cell.source)
-    given = next(cell for cell in source.cells if cell.id.startswith("given-") and cell.id != SET_UP_CELL)
-    for text in (solved.source, "a plain line"):
-        given.outputs.append(new_output("stream", text=text))
-    shown = {
-        edition: [out.text for cell in book_page(source, edition).cells for out in cell.get("outputs", ())]
-        for edition in EDITIONS
-    }
-    assert shown == {SELF_EDITION: [solved.source, "a plain line"], CLASS_EDITION: ["a plain line"]}
-
-
 def test_a_page_of_a_public_course_opens_its_notebook_in_a_browser(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(course, "repository", lambda _: "https://github.com/ada/ros")
     for master in masters(ROOT):
-        text = str(book_page(source_notebook(master), SELF_EDITION))
+        text = str(book_page(source_notebook(master), with_solutions=True))
         notebook = f"chapters/{master.parents[1].name}/{master.parent.name}.ipynb"
         for link in service_links("https://github.com/ada/ros", notebook).values():
             assert f"]({link})" in text
-
-
-def test_the_cards_of_a_classes_book_offer_no_solution(tmp_path: Path) -> None:
-    assert course_of(SELF_EDITION, ROOT, tmp_path) == ROOT
-    handed_out = course_of(CLASS_EDITION, ROOT, tmp_path)
-    assert list(handed_out.rglob("*.reference.json"))
-    offered = {path.parent.name for path in handed_out.rglob(f"*{SOLUTION}")}
-    assert offered <= {one.id.partition(".")[0] for one in exercises.unbroken() if one.hides_causes}
 
 
 def test_a_line_that_was_printed_in_two_pieces_is_one_line_without_the_folder_of_the_run() -> None:
