@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 import pytest
 
 from autograder import exercises
-from autograder.masters.readme_address import _badges_and_clone_line
 from course_runtime.ros2_command.commands import COMMANDS, ELSEWHERE
 from tests.cases import cases
 from tests.documented_commands import (
@@ -167,12 +166,9 @@ def test_the_course_is_cloned_and_brought_up_to_date(tmp_path: Path) -> None:
     shutil.copy(ROOT / "course", public)
     git("add", "--all")
     git("commit", "--message", "The course")
-    address = "https://github.com/ada/public"
-    shown = _badges_and_clone_line(address, "lab.ipynb")
-    (typed,) = (line.removeprefix("$ ") for line in shown.splitlines() if line.startswith("$ git clone "))
     home = tmp_path / "home"
     home.mkdir()
-    subprocess.run(["sh", "-ec", typed.replace(address, str(public))], cwd=home, check=True)
+    subprocess.run(["git", "clone", public], cwd=home, check=True)
     (public / "README.md").touch()
     git("add", "--all")
     git("commit", "--message", "A page")

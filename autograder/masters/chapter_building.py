@@ -1,4 +1,4 @@
-"""Builds chapter notebooks, solution files and the README's address, or reports which of them are out of date."""
+"""Builds chapter notebooks and solution files, or reports which of them are out of date."""
 
 from __future__ import annotations
 
@@ -14,7 +14,6 @@ from autograder.course import SOLUTION
 from autograder.masters.code_cells import exercise_points
 from autograder.masters.master_files import MasterError, chapter_notebooks, chapter_path, masters
 from autograder.masters.notebook_release import release_text
-from autograder.masters.readme_address import README, readme
 from autograder.masters.reference_solutions import solution_files
 from autograder.masters.source_notebooks import Points, named_cells, notebook_of
 from autograder.safe_files import write_whole
@@ -30,7 +29,7 @@ _NOTEBOOK = ".ipynb"
 
 @dataclass(frozen=True)
 class BuildReport:
-    """What a build did with each chapter notebook, solution file and README, or what it would do in check mode.
+    """What a build did with each chapter notebook and solution file, or what it would do in check mode.
 
     Attributes:
         written: The files that were written.
@@ -71,9 +70,6 @@ def build(root: Path, *, check: bool = False, points: Points = exercise_points) 
     texts = {chapter_path(root, master): release_text(notebook_of(named)) for master, named in cells.items()}
     for master, named in cells.items():
         texts |= solution_files(master, named)
-    front = readme(root, chapter_path(root, next(iter(cells))))
-    if front is not None:
-        texts[root / README] = front
     found: dict[str, list[Path]] = {"written": [], "unchanged": [], "stale": [], "edited": []}
     for path, text in texts.items():
         found[_settle(path, text, check=check)].append(path)

@@ -317,8 +317,6 @@ _SET_UP_SOURCE = Path(__file__).with_name("set_up_cell.py.j2")
 def service_links(address: str, notebook: str) -> dict[str, str]:
     """Return the addresses that open a notebook of a repository in various services, by the name of the service.
 
-    README and the site use the same addresses.
-
     Args:
         address: The address of the repository, as :func:`autograder.course.repository` returns it.
         notebook: The path of the notebook in the repository.
