@@ -40,7 +40,9 @@ if TYPE_CHECKING:
 
 
 REPORTS_FOLDER = "execution-reports"
-"""The name of the folder, in the course's top folder, for failed notebooks with their outputs."""
+"""The name of the folder, in the course's top folder, for failed notebooks with their outputs. Those of an earlier run
+are removed.
+"""
 
 
 @dataclass(frozen=True)
@@ -65,7 +67,6 @@ def execute_command(
     *,
     only: Sequence[str] = (),
     jobs: int | None = None,
-    reports: Path | None = None,
     console: Console | None = None,
 ) -> int:
     """Execute the notebooks of a course and print the problems of each.
@@ -74,7 +75,6 @@ def execute_command(
         root: The top folder of the course, which contains ``solutions`` and ``chapters``.
         only: Names such as ``"lab_1_2"``; all notebooks if empty.
         jobs: The number of notebooks to execute at the same time; by default as many as processors and memory allow.
-        reports: The folder for failed notebooks. Those from an earlier run are removed.
         console: The console for progress and result; by default standard error.
 
     Returns:
@@ -86,7 +86,7 @@ def execute_command(
     """
     began = time.monotonic()
     console = console or standard_output.console(stderr=True)
-    folder = reports or root / REPORTS_FOLDER
+    folder = root / REPORTS_FOLDER
     planned = execution_plan(root, only)
     _remove_reports(folder)
     results = execute_all(planned, folder, jobs=jobs, console=console)

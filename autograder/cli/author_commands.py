@@ -26,12 +26,7 @@ def build(only_check: bool) -> None:
 @click.command()
 @click.argument("notebooks", nargs=-1, metavar="[NOTEBOOK]...")
 @jobs_option
-@click.option(
-    "--reports",
-    type=click.Path(path_type=Path),
-    help="Write failed notebooks with their outputs into this folder.",
-)
-def execute(notebooks: tuple[str, ...], jobs: int | None, reports: Path | None) -> None:
+def execute(notebooks: tuple[str, ...], jobs: int | None) -> None:
     """Run every notebook: masters must earn full marks. Students' notebooks must earn no points and cause no error."""
     from autograder import course
     from autograder.authoring.notebook_execution import NothingToExecuteError, execute_command
@@ -39,7 +34,7 @@ def execute(notebooks: tuple[str, ...], jobs: int | None, reports: Path | None) 
 
     need_ros()
     with failing_with(NothingToExecuteError, MasterError):
-        sys.exit(execute_command(course.root(), only=notebooks, jobs=jobs, reports=reports))
+        sys.exit(execute_command(course.root(), only=notebooks, jobs=jobs))
 
 
 @click.command()

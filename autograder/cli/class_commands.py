@@ -21,6 +21,7 @@ from autograder.cli.class_options import (
     only_assignments,
     only_sections,
     over_option,
+    pairs,
     student_option,
 )
 from autograder.cli.command_results import (
@@ -96,14 +97,6 @@ def renew_class(folder: Path, assignments: tuple[str, ...]) -> None:
             print_line(line)
 
 
-def _pairs(_context: click.Context, _option: click.Parameter, values: tuple[str, ...]) -> dict[str, str]:
-    """Return pairs that were written as ``OLD=NEW``."""
-    pairs = {old.strip(): new.strip() for old, _, new in (one.partition("=") for one in values)}
-    if not all((*pairs, *pairs.values())):
-        fail("--rename needs the old and the new id: --rename OLD=NEW")
-    return pairs
-
-
 @class_command()
 @class_folder
 @click.argument("new_list", required=False, metavar="[LIST]", type=click.Path(path_type=Path))
@@ -111,7 +104,7 @@ def _pairs(_context: click.Context, _option: click.Parameter, values: tuple[str,
     "--rename",
     "said",
     multiple=True,
-    callback=_pairs,
+    callback=pairs,
     metavar="OLD=NEW",
     help="A student's old and new id, if no number in the list shows that both are one student; may be given several "
     "times.",

@@ -69,19 +69,19 @@ def known_zone(_context: click.Context, _option: click.Parameter, name: str) -> 
         fail(f"The time zone {name!r} does not exist. A name looks like Europe/Berlin.")
 
 
-def _columns(_context: click.Context, _option: click.Parameter, values: tuple[str, ...]) -> dict[str, str]:
-    """Return the names of columns, which were written as ``ASSIGNMENT=COLUMN``."""
-    named = {name.strip(): called.strip() for name, _, called in (one.partition("=") for one in values)}
-    if not all(named.values()):
-        fail('--column needs an assignment and the name of its column: --column "ASSIGNMENT=COLUMN"')
-    return named
+def pairs(_context: click.Context, option: click.Parameter, values: tuple[str, ...]) -> dict[str, str]:
+    """Return the pairs of an option that were written as ``OLD=NEW``."""
+    found = {old.strip(): new.strip() for old, _, new in (one.partition("=") for one in values)}
+    if not all((*found, *found.values())):
+        fail(f'{option.opts[0]} needs two names with = between them: {option.opts[0]} "{option.metavar}"')
+    return found
 
 
 into_columns = click.option(
     "--column",
     "columns",
     multiple=True,
-    callback=_columns,
+    callback=pairs,
     metavar="ASSIGNMENT=COLUMN",
     help="The column for an assignment in the list, if its name does not show it; may be given several times.",
 )

@@ -14,9 +14,8 @@ from typing import TYPE_CHECKING
 
 import numpy
 
-from autograder.course import SOLUTIONS
+from autograder import course
 from autograder.masters.master_cells import DIGEST_KEYWORD, figure_digest
-from autograder.masters.master_files import MasterError, find_root
 from course_runtime.system_packages import CHROMIUM_NAMES, find_program
 
 if TYPE_CHECKING:
@@ -47,7 +46,7 @@ _PIXELS = """async png => {
 def stale_figures(root: Path) -> list[Path]:
     """Return those figures of the course in ``root`` whose PNG is missing or out of date."""
     found = []
-    for svg in sorted((root / SOLUTIONS).rglob("figures/*.svg")):
+    for svg in sorted((root / course.SOLUTIONS).rglob("figures/*.svg")):
         png = svg.with_suffix(".png")
         if not png.exists() or figure_digest(svg.read_bytes()) not in png.read_bytes():
             found.append(svg)
@@ -121,11 +120,8 @@ def chunk(kind: bytes, content: bytes) -> bytes:
 
 def main() -> int:
     """Draw all figures that are out of date. Return the exit code, which is 2 if drawing fails."""
-    try:
-        figures = stale_figures(find_root(Path.cwd()))
-    except MasterError as error:
-        print(error, file=sys.stderr)
-        return 2
+    course.use_the_one_around(Path.cwd())
+    figures = stale_figures(course.root())
     chromium = find_program(*CHROMIUM_NAMES)
     if figures and chromium is None:
         print(

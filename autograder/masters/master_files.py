@@ -114,23 +114,6 @@ def chapter_notebooks(root: Path) -> list[Path]:
     return [path for path in found if ".ipynb_checkpoints" not in path.parts and COPY not in path.name]
 
 
-def find_root(start: Path) -> Path:
-    """Return the course that contains ``start``: the nearest folder, at or above it, with a folder ``solutions``.
-
-    Raises:
-        MasterError: ``start`` is not in a course.
-    """
-    for folder in (start, *start.parents):
-        if (folder / SOLUTIONS).is_dir():
-            return folder
-    raise MasterError(
-        start,
-        None,
-        "This folder is not in a course.",
-        "Go to the folder that holds 'solutions' and 'chapters'.",
-    )
-
-
 def relinked(text: str, place: Callable[[str], str]) -> str:
     """Return a text with its links to other notebooks changed, for a copy of the text in another folder.
 

@@ -13,7 +13,7 @@ import pytest
 
 from autograder import exercises
 from autograder.masters.code_cells import CheckCall, exercise_points
-from autograder.masters.master_files import MasterError, find_root, masters
+from autograder.masters.master_files import MasterError, masters
 from autograder.masters.source_notebooks import Points, source_notebook
 
 if TYPE_CHECKING:
@@ -129,9 +129,3 @@ def test_a_folder_without_masters(tmp_path: Path) -> None:
     (tmp_path / "solutions").mkdir()
     with pytest.raises(MasterError, match="No master was found"):
         masters(tmp_path)
-
-
-def test_the_course_is_found_from_inside(course: Path, tmp_path_factory: pytest.TempPathFactory) -> None:
-    assert find_root(course / "solutions/01_first") == course
-    with pytest.raises(MasterError, match="is not in a course"):
-        find_root(tmp_path_factory.mktemp("elsewhere"))
