@@ -102,16 +102,16 @@ def test_a_page_with_all_that_it_loads_is_small_for_a_phone(book: Path) -> None:
         files = {(page.parent / name).resolve() for name in LOADED.findall(page.read_text(encoding="utf-8"))}
         sizes[page.name] = sent(page) + sum(map(sent, files))
     assert max(sizes.values()) < MAX_PAGE_BYTES, sizes
-    icons = (book / "_static/scripts/fontawesome.js").read_text(encoding="utf-8")
-    assert {
-        name
-        for name in ("magnifying-glass", "bars", "xmark", "rocket")
-        if f'{name}":[' in icons or f"{name}:[" in icons
-    } == {
-        "magnifying-glass",
-        "bars",
-        "xmark",
-    }
+    script = book / "_static/scripts/fontawesome.js"
+    assert script.read_text(encoding="utf-8") == ""
+
+
+def test_each_icon_of_a_page_is_a_character_of_the_style_sheet(book: Path) -> None:
+    text = "".join(page.read_text(encoding="utf-8") for page in book.rglob("*.html"))
+    classes = " ".join(re.findall(r'<(?:i|span) class="([^"]*\bfa-solid [^"]*)"', text)).split()
+    shown = {name for name in classes if name.startswith("fa-")}
+    drawn = set(re.findall(r"\.(fa-[\w-]+)::before", (book / "_static/book.css").read_text(encoding="utf-8")))
+    assert shown - drawn == {"fa-solid", "fa-lg", "fa-fw"}
 
 
 def test_a_table_that_is_wider_than_a_phone_is_moved_by_the_keyboard(book: Path) -> None:
