@@ -230,10 +230,4 @@ def _cut(line: str) -> str:
     return line if len(line) <= _MAX_COLUMNS else f"{line[:_MAX_COLUMNS]}…"
 
 
-RESULT_COMMANDS = (
-    report,
-    export,
-    attempts,
-    appeal,
-    replay,
-)
+RESULT_COMMANDS = (report, export, attempts, appeal, replay)

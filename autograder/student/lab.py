@@ -73,7 +73,7 @@ def open_lab(folder: Path, arguments: Sequence[str] = ()) -> None:
     NbGrader.load_cwd_config = is_known(Path.cwd())
     try:
         # JupyterLab runs in this process, because the claim on the domain ends with this process.
-        LabApp.launch_instance([*START_PAGE, NOTHING_TO_SAVE, *QUIET, *_start_folder(Path.cwd()), *arguments])
+        LabApp.launch_instance([*START_PAGE, NOTHING_TO_SAVE, *QUIET, *arguments])
     finally:
         end_idle_workers()
         if claim:
@@ -112,13 +112,3 @@ def join_domain() -> DomainClaim | None:
     claim = claim_free_domain()
     os.environ[DOMAIN_VARIABLE] = str(claim.domain)
     return claim
-
-
-def _start_folder(root: Path) -> list[str]:
-    """Return the options that make the file browser open the chapter's folder, if there is only one chapter."""
-    inside = [path for path in root.iterdir() if not path.name.startswith((".", "_"))]
-    return (
-        [f"--FileContentsManager.preferred_dir={inside[0].name}"]
-        if len(inside) == 1 and inside[0].is_dir()
-        else []
-    )

@@ -8,7 +8,6 @@ import subprocess
 import sys
 import threading
 from pathlib import Path
-from typing import Any
 
 import anyio.to_thread
 import pytest
@@ -148,16 +147,10 @@ def test_cells_have_line_numbers_since_cards_name_them(started: list[Started], t
     assert started[0].settings["@jupyterlab/notebook-extension:tracker"]["codeCellConfig"]["lineNumbers"]
 
 
-@pytest.mark.parametrize("chapters", [["01_first"], ["01_first", "02_second"]])
-def test_it_opens_the_folder_inside_the_only_chapter(
-    started: list[Started], tmp_path: Path, chapters: list[str]
-) -> None:
-    for name in (*chapters, ".ipynb_checkpoints"):
-        (tmp_path / name).mkdir()
+def test_it_opens_the_folder_with_the_options_that_were_typed(started: list[Started], tmp_path: Path) -> None:
     open_lab(tmp_path, ["--no-browser"])
     assert started[0].folder == tmp_path
-    inside: list[Any] = [f"--FileContentsManager.preferred_dir={chapters[0]}"] if len(chapters) == 1 else []
-    assert started[0].argv == [*START, *inside, "--no-browser"]
+    assert started[0].argv == [*START, "--no-browser"]
 
 
 def test_its_kernels_and_terminals_know_the_journal_beside_the_notebooks(

@@ -130,9 +130,8 @@ class PaperTimer:
         """The time of the next call."""
         return NEVER if self._canceled else self._next
 
-    @property
-    def is_due(self) -> bool:
-        """True if the callback has to be called now."""
+    def is_ready(self) -> bool:
+        """Return True if the callback has to be called now."""
         return self.next <= Network.now_running.time
 
     def fire(self) -> None:
@@ -159,10 +158,6 @@ class PaperTimer:
     def is_canceled(self) -> bool:
         """Return True if the timer is stopped."""
         return self._canceled
-
-    def is_ready(self) -> bool:
-        """Return True if the callback has to be called now."""
-        return self.is_due
 
     def time_until_next_call(self) -> int | None:
         """Return the nanoseconds until the next call."""

@@ -149,7 +149,7 @@ class Network:
             if self.pending:
                 self.pending.popleft()()
                 continue
-            timer = next((one for one in self._timers() if one.is_due and id(one) not in called), None)
+            timer = next((one for one in self._timers() if one.is_ready() and id(one) not in called), None)
             if timer is not None:
                 called.add(id(timer))
                 timer.fire()
