@@ -34,11 +34,10 @@ from autograder.workspaces.sources import BadSources
 from course_runtime.interface_packages import ONLY_PYTHON, ONLY_PYTHON_FILE
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable
 
     from autograder.workspaces.builds.colcon_build import Build, Targets
     from autograder.workspaces.jobs import BuildOutcome, Jobs
-    from autograder.workspaces.packages import Package
     from autograder.workspaces.sources import SourceTree
 
 
@@ -161,21 +160,13 @@ class Builds:
             interfaces = any(package.holds_only_interfaces for package in chosen)
             cmake = ONLY_PYTHON if only_python and interfaces else ()
             job = BuildJob(name, found.workspace, tree, packages, cancelled, cmake, NO_DEFAULTS)
-            made = self._find_or_make(found, chosen, job)
+            made = self._entry(found, self._keyed(job))
         except BadSources as error:
             return replace(found, trouble="bad_package", line=str(error))
         except build_cache.GivenUp as error:
             # The caller has canceled the build, so no student will see this reason.
             return replace(found, trouble="build", line=str(error))
         return replace(made, seconds=time.monotonic() - began)
-
-    def _find_or_make(self, found: Build, chosen: Sequence[Package], job: BuildJob) -> Build:
-        """Return the build of the chosen packages from the cache, or make it.
-
-        In ``job``, the folders of the packages are relative to the folder of the build.
-        """
-        del chosen
-        return self._entry(found, self._keyed(job))
 
     def _keyed(self, job: BuildJob, *words: str) -> BuildJob:
         """Return the job with its key for the cache: a hash of the job and of other facts (``words``)."""

@@ -40,7 +40,6 @@ class Build:
         workspace: The folder of the workspace.
         ok: True if every package was built.
         install: The folder of the installed packages; None if the build failed.
-        chosen: The packages of ``install`` that belong to this build; empty if all of them do.
         packages: The packages of the workspace, as their files describe them.
         unusable: For each package that cannot be used, a sentence with the reason.
         seconds: The duration of the build in seconds of wall time.
@@ -56,7 +55,6 @@ class Build:
     workspace: Path
     ok: bool
     install: Path | None = None
-    chosen: tuple[str, ...] = ()
     packages: tuple[Package, ...] = ()
     unusable: tuple[str, ...] = ()
     seconds: float = 0.0
@@ -70,8 +68,7 @@ class Build:
     @property
     def prefixes(self) -> list[Path]:
         """The install folder (prefix) of each package of this build."""
-        found = package_prefixes(self.install) if self.install else []
-        return [prefix for prefix in found if not self.chosen or prefix.name in self.chosen]
+        return package_prefixes(self.install) if self.install else []
 
     def programs(self, package: str) -> tuple[str, ...]:
         """Return the names of the programs that ``ros2 run`` finds in an installed package; empty if there are none."""

@@ -33,15 +33,10 @@ def package_prefixes(install: Path) -> list[Path]:
     return sorted(folder for folder in install.iterdir() if (folder / "share").is_dir())
 
 
-def is_isolated(install: Path) -> bool:
-    """Return True if an install folder has a prefix for each package, as colcon makes it without `--merge-install`."""
-    layout = install / _LAYOUT
-    return layout.is_file() and layout.read_text(encoding="utf-8").strip() == "isolated"
-
-
 def is_merged(install: Path) -> bool:
     """Return True if colcon made an install folder with `--merge-install`: all packages have one prefix."""
-    return (install / _LAYOUT).is_file() and not is_isolated(install)
+    layout = install / _LAYOUT
+    return layout.is_file() and layout.read_text(encoding="utf-8").strip() != "isolated"
 
 
 def python_folders(prefix: Path) -> list[Path]:

@@ -1,23 +1,20 @@
 """Builds a student's own workspace, in a notebook or a terminal on the student's own computer.
 
-A student's own build (`install`) is used if it is up to date with the sources (`src`). This is decided by comparing two
-times: when a file's content or name last changed (``st_ctime``), and when the package's last `colcon build` began. The
-times can be compared because both come from the same file system, and so from the same clock; and no program can set
+A check always builds the sources (`src`), because students hand in only sources, and the grader of a class builds
+these. The student's own build (`install`) is not used. But if sources were changed since the last `colcon build`, the
+card names them, because `ros2 run` in a terminal still runs the old program. This is decided by comparing two times:
+when a file's content or name last changed (``st_ctime``), and when the package's last `colcon build` began. The times
+can be compared because both come from the same file system, and so from the same clock; and no program can set
 ``st_ctime``. Comparing contents instead would not be enough, because `install` has no copy of setup.py or
 CMakeLists.txt. But a newer file that equals its installed copy counts as unchanged. For example, running a cell that
 writes a program changes the file's time even if the program stays the same.
 
-`colcon` never removes what an earlier build has installed. So an `install` folder may have a module or program that the
-sources do not have. Such a folder is not used, because the grader of a class builds from the sources alone and would
-not have this module or program. A folder with a launch file that the last build did not install is not used, either,
-because `ros2 launch` refuses a name that it finds twice.
-
-In a graded notebook, builds are requested from the grader instead, both for a check and for the command ``colcon
-build`` in a cell. The notebook's box cannot see the grader's folders, so it receives each build as an archive. There,
-this module is the program `colcon`: the grader makes plain builds, and the real colcon does everything else. A plain
-build is ``colcon build`` in a workspace, with at most the options ``--packages-select`` or ``--packages-up-to``. As
-usual, it leaves the packages in ``install`` and lists the finished packages. But it leaves ``log`` empty, and does not
-leave the files in ``build`` that would make colcon's next build faster.
+In a graded notebook, the command ``colcon build`` in a cell requests its builds from the grader. The notebook's box
+cannot see the grader's folders, so it receives each build as an archive. There, this module is the program `colcon`:
+the grader makes plain builds, and the real colcon does everything else. A plain build is ``colcon build`` in a
+workspace, with at most the options ``--packages-select`` or ``--packages-up-to``. As usual, it leaves the packages in
+``install`` and lists the finished packages. But it leaves ``log`` empty, and does not leave the files in ``build`` that
+would make colcon's next build faster.
 """
 
 from __future__ import annotations
@@ -29,25 +26,20 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import re2
-
 from autograder.messages import workspace_messages as messages
 from autograder.messages.json_lines import Hangup, Lines, NotUnderstood
 from autograder.workspaces.builds import build_artifacts, build_cache
 from autograder.workspaces.builds.cached_builds import Builds, BuildTookTooLong
-from autograder.workspaces.builds.colcon_build import CannotCopyBuild, copy_to_workspace, describe_workspace
-from autograder.workspaces.builds.install_folder import (
-    BESIDE,
-    entry_points,
-    is_isolated,
-    linked_build,
-    programs,
-    python_folders,
-    rename_paths,
+from autograder.workspaces.builds.colcon_build import (
+    CannotCopyBuild,
+    copy_to_workspace,
+    describe_workspace,
+    packages_to_build,
 )
+from autograder.workspaces.builds.install_folder import BESIDE, linked_build, rename_paths
 from autograder.workspaces.jobs import PlainJobs
-from autograder.workspaces.packages import DEFINITIONS, WORKSPACE, launch_files, needed
-from autograder.workspaces.sources import BadSources, ByteBudget, collect_workspace, is_source
+from autograder.workspaces.packages import WORKSPACE, needed
+from autograder.workspaces.sources import BadSources, collect_workspace, is_source
 from course_runtime.python_child import python_child
 
 if TYPE_CHECKING:
@@ -64,7 +56,7 @@ LIMIT = 300.0
 """Time limit in seconds of wall time for the grader to make a build."""
 
 
-class OwnBuilds(Builds):
+class StudentsBuilds(Builds):
     """Makes builds in the cache or, in a graded notebook, requests them from the grader.
 
     A build does not write to the workspace, and does not use earlier results in its ``install`` folder.
@@ -81,33 +73,23 @@ class OwnBuilds(Builds):
         name: str = WORKSPACE,
         cancelled: Callable[[], bool] = lambda: False,
     ) -> Build:
-        """Build the needed packages. A build that took too long is returned like a failed one."""
+        """Build the needed packages, and name the sources that were changed since the student's last build.
+
+        A build that took too long is returned like a failed one.
+        """
         try:
-            return super().build(found, targets, name=name, cancelled=cancelled)
+            made = super().build(found, targets, name=name, cancelled=cancelled)
         except BuildTookTooLong as error:
-            return error.build
+            made = error.build
+        if name != WORKSPACE:
+            return made
+        chosen, _ = packages_to_build(found, targets)
+        return replace(made, changed=changed_since(found.workspace, chosen))
 
     def _make(self, found: Build, job: BuildJob, entry: build_cache.CachedBuild) -> Build:
         socket = os.environ.get(GRADERS)
         asked = _ask(socket, found, job.packages, entry.folder / "install") if socket else None
         return asked or super()._make(found, job, entry)
-
-
-class StudentsBuilds(OwnBuilds):
-    """Finds builds for a student's own check: the student's build if it is up to date, else a new one.
-
-    If sources were changed since the student's build, the check builds the changed sources, because students hand in
-    only sources, and the grader of a class builds these. The card then names the changed files.
-    """
-
-    def _find_or_make(self, found: Build, chosen: Sequence[Package], job: BuildJob) -> Build:
-        if job.name != WORKSPACE:
-            return super()._find_or_make(found, chosen, job)
-        if is_current(found.workspace, chosen):
-            names = tuple(package.name for package in chosen)
-            return replace(found, ok=True, install=found.workspace / "install", chosen=names, reused=True)
-        made = super()._find_or_make(found, chosen, job)
-        return replace(made, changed=changed_since(found.workspace, chosen))
 
 
 def _ask(socket: str, found: Build, chosen: Iterable[Package], install: Path) -> Build | None:
@@ -154,25 +136,6 @@ _MOST_NAMED = 3
 """The maximum number of changed files to name."""
 _BEGAN = "colcon_command_prefix_*.sh"
 """A file that colcon writes into a package's build folder when it begins to build the package."""
-_RESULT = "colcon_build.rc"
-"""The file into which colcon writes the exit code of a package's build."""
-_RECORDS = ("install.log", "install_manifest.txt")
-"""Files in a package's build folder that list what its last build installed: setuptools' list and CMake's."""
-_OPTIMIZED = re2.compile(r"(?m)^CMAKE_BUILD_TYPE:\w+=(?:Release|RelWithDebInfo|MinSizeRel)$")
-"""Matches a build type in CMakeCache.txt that defines NDEBUG. Without NDEBUG, a value of the wrong type ends the
-process. That does not happen when a class is graded
-(:func:`autograder.workspaces.builds.colcon_build.colcon_command`).
-"""
-
-
-def is_current(workspace: Path, packages: Sequence[Package]) -> bool:
-    """Return True if the last `colcon build` of each package succeeded and is up to date with `src`."""
-    return is_isolated(workspace / "install") and all(
-        _succeeded(workspace, package)
-        and not any(_changed(workspace, package))
-        and not any(_left_over(workspace, package))
-        for package in packages
-    )
 
 
 def changed_since(workspace: Path, packages: Iterable[Package]) -> str:
@@ -190,19 +153,9 @@ def changed_since(workspace: Path, packages: Iterable[Package]) -> str:
     return f"{', '.join(others)} and {last}" if others else last
 
 
-def _succeeded(workspace: Path, package: Package) -> bool:
-    build, prefix = _folders(workspace, package)
-    if _text(build / _RESULT).strip() != "0" or not python_folders(prefix):
-        return False
-    if package.build_type == "ament_python":
-        named = {entry.split(" = ")[0] for entry in entry_points(prefix, ByteBudget(sys.maxsize))}
-        return named == set(programs(prefix))
-    return bool(_OPTIMIZED.search(_text(build / "CMakeCache.txt")))
-
-
 def _changed(workspace: Path, package: Package) -> Iterator[Path]:
     """Yield the sources of a package that were changed since its last build began."""
-    build, prefix = _folders(workspace, package)
+    build, prefix = (workspace / folder / package.name for folder in ("build", "install"))
     began = max((file.stat().st_mtime_ns for file in build.glob(_BEGAN)), default=None)
     if began is None or not prefix.is_dir():
         return
@@ -214,32 +167,6 @@ def _changed(workspace: Path, package: Package) -> Iterator[Path]:
             yield file
 
 
-def _left_over(workspace: Path, package: Package) -> Iterator[Path]:
-    """Yield the installed files that the sources do not contain, or that the last build did not install as they are."""
-    build, prefix = _folders(workspace, package)
-    ended = (build / _RESULT).stat().st_mtime_ns
-    for file in prefix.rglob("*"):
-        if (
-            file.lstat().st_ctime_ns > ended
-            and not file.is_dir()
-            and is_source(str(file.relative_to(prefix)))
-        ):
-            yield file
-    recorded = {path for record in _RECORDS for path in _text(build / record).splitlines()}
-    launches = [prefix / file for file in launch_files(prefix)]
-    yield from (file for file in launches if str(file) not in recorded)
-    linked = _linked(prefix)
-    # In a copied workspace, the links still lead into the original workspace, so Python would import its modules.
-    yield from (folder for folder in linked if not folder.is_relative_to(package.folder))
-    modules = [] if linked else [(f, m) for f in python_folders(prefix) for m in f.rglob("*.py")]
-    shared = prefix / "share" / package.name
-    definitions = [(shared, file) for file in shared.rglob("*") if file.suffix in DEFINITIONS]
-    sources = list(_sources(package))
-    for folder, file in [*(modules if package.build_type == "ament_python" else ()), *definitions]:
-        if not any(_is_copy(source, file, folder) for source in sources):
-            yield file
-
-
 def _linked(prefix: Path) -> list[Path]:
     """Return the source folders to which `--symlink-install` made links, and from which Python imports the modules."""
     build = linked_build(prefix)
@@ -248,11 +175,6 @@ def _linked(prefix: Path) -> list[Path]:
         if build
         else []
     )
-
-
-def _folders(workspace: Path, package: Package) -> tuple[Path, Path]:
-    """Return the build folder and the install folder of a package."""
-    return workspace / "build" / package.name, workspace / "install" / package.name
 
 
 def _sources(package: Package) -> Iterator[Path]:
@@ -272,10 +194,6 @@ def _is_copy(copy: Path, file: Path, folder: Path) -> bool:
     return copy.parts[-len(inside) :] == inside and copy.is_file() and copy.read_bytes() == file.read_bytes()
 
 
-def _text(file: Path) -> str:
-    return file.read_text(encoding="utf-8", errors="replace") if file.is_file() else ""
-
-
 def main(arguments: Sequence[str]) -> int:
     """Request a plain build from the grader, or replace this process by the real colcon. Return the exit code."""
     chosen = _chosen(arguments)
@@ -285,7 +203,7 @@ def main(arguments: Sequence[str]) -> int:
         if set(names) <= {package.name for package in found.packages}:
             if option == "--packages-up-to":
                 names = [package.name for package in needed(found.packages, names)]
-            made = OwnBuilds().build(found, (lambda _: names) if option else None)
+            made = StudentsBuilds().build(found, (lambda _: names) if option else None)
             try:
                 return _take_over(made)
             except CannotCopyBuild:

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 def build(workspace: Path, targets: Targets | None = None) -> Build:
     """What comes of building a folder."""
-    return students_builds.OwnBuilds().build(describe_workspace(workspace), targets)
+    return students_builds.StudentsBuilds().build(describe_workspace(workspace), targets)
 
 
 def run_program(made: Build) -> str:

@@ -13,7 +13,7 @@ from autograder.authoring.answer_bank import answers
 from autograder.workspaces.builds import cached_builds
 from autograder.workspaces.builds.colcon_build import describe_workspace, moved_packages
 from autograder.workspaces.builds.plain_packages import split
-from autograder.workspaces.builds.students_builds import OwnBuilds
+from autograder.workspaces.builds.students_builds import StudentsBuilds
 from autograder.workspaces.jobs import BuildJob, PlainJobs
 from autograder.workspaces.packages import WORKSPACE, sources_of
 from tests.tiers import BUILT
@@ -38,7 +38,7 @@ def job_of(workspace: Path, packages: Sequence[Package] = ()) -> BuildJob:
 
 
 def built(workspace: Path) -> Build:
-    made = OwnBuilds().build(describe_workspace(workspace), None)
+    made = StudentsBuilds().build(describe_workspace(workspace), None)
     assert made.ok, made.log
     return made
 
@@ -99,12 +99,12 @@ def test_the_files_of_each_package_of_the_bank_are_those_of_colcon(
         for package in describe_workspace(workspace).packages:
             if package.build_type != "ament_python":
                 shutil.rmtree(package.folder)
-        made = OwnBuilds().build(describe_workspace(workspace), None)
+        made = StudentsBuilds().build(describe_workspace(workspace), None)
         ours = files_in(made.install) if made.ok else {}
         shutil.rmtree(empty_cache)
         with monkeypatch.context() as patch:
             patch.setattr(cached_builds, "split", lambda job: [job])
-            whole = OwnBuilds().build(describe_workspace(workspace), None)
+            whole = StudentsBuilds().build(describe_workspace(workspace), None)
         assert (made.ok, made.trouble, made.line) == (whole.ok, whole.trouble, whole.line)
         assert not different(ours, files_in(whole.install) if whole.ok else {})
         shutil.rmtree(empty_cache)
