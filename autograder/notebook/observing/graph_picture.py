@@ -3,18 +3,19 @@
 The picture is SVG, with a description in words for readers who cannot see it. JupyterLab's theme does not apply inside
 the picture. So in a dark theme, the light picture is shown with inverted brightness.
 
-Boxes and arrows are laid out in columns, from publishers to subscribers. igraph decides which arrows close a cycle, in
-which column and order the boxes are, and how a long arrow passes the columns in between (Sugiyama's layered drawing).
-This module computes pixels from that. Each arrow begins and ends at its own point on the edge of a box, so that two
-arrows in opposite directions can be told apart.
+Boxes stand in three columns, with topics, services and actions in the middle. A node is on the right if more arrows end
+at it than begin at it, so most arrows go to the right. Every arrow joins two neighboring columns, so it passes no box.
+The boxes of a column are sorted by the mean heights of their neighbors, so that fewer arrows cross. Each arrow begins
+and ends at its own point on the edge of a box, so that two arrows in opposite directions can be told apart.
 """
 
 from __future__ import annotations
 
-import itertools
 import time
+from collections import Counter, defaultdict
 from dataclasses import dataclass, field
 from html import escape
+from statistics import fmean
 from typing import TYPE_CHECKING
 
 from autograder.notebook.observing.live_picture import LivePicture, as_image, svg_page
@@ -28,13 +29,15 @@ from autograder.notebook.observing.ros_graph import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
 
     from rclpy.node import Node
 
 
 Point = tuple[float, float]
-"""A position or size in pixels: along the main direction of the arrows, and across it."""
+"""A position in pixels, from the left and from the top."""
+Arrow = tuple[str, str]
+"""The keys of the two boxes that an arrow joins, in its direction."""
 
 PERIOD = 1.0
 """Seconds between two queries of the graph."""
@@ -49,13 +52,13 @@ _DARK = '<style>[data-jp-theme-light="false"] .ros-graph { filter: invert(0.93) 
 _LETTER = 7.3
 _PADDING = 14
 _HEIGHT = 46
-_GAP_ALONG = 52
-_GAP_ALONG_DOWN = 34
+_GAP_ACROSS = 90
+_GAP_BELOW = 24
 _MARGIN = 12
-_PAGE = 860
-"""The width of a notebook's column in pixels. A picture that would be wider from left to right is drawn from top to
-bottom, if this makes it narrower.
-"""
+_PORTS = 0.72
+"""The fraction of a box's edge, from 0 to 1, that has room for the ends of arrows."""
+_SWEEPS = 4
+"""The number of times that the columns are sorted by the heights of their neighbors."""
 
 _STYLE = """
 .ground { fill: #fff; }
@@ -136,7 +139,7 @@ class GraphPicture:
         for end in self.graph.ends:
             node, channel = _node_key(end.node), _channel_key(end.channel)
             arrows.append((node, channel) if end.gives else (channel, node))
-        return _Drawing(labels, arrows, rates, " ".join(self.sentences())).svg()
+        return _Drawing(labels, arrows, rates).svg(" ".join(self.sentences()))
 
     @property
     def is_moving(self) -> bool:
@@ -192,7 +195,7 @@ class _Label:
 
     @property
     def width(self) -> float:
-        """The width of the box, in pixels."""
+        """The minimum width of the box, in pixels."""
         return max(len(self.name) * 1.1, len(self.small_print)) * _LETTER + 2 * _PADDING
 
 
@@ -205,201 +208,102 @@ def _channel_key(channel: GraphChannel) -> str:
 
 
 class _Drawing:
-    """Computes the layout of a graph and draws it as SVG.
+    """Computes the places of boxes, and draws boxes and arrows as SVG.
 
-    Arrows go to the right, or downward if the picture would be too wide. In this class, ``along`` is the coordinate in
-    the direction of the arrows, and ``beside`` the other coordinate.
+    Args:
+        labels: The boxes by their keys.
+        arrows: The arrows. One that is given twice is drawn once.
+        rates: The rates to show, by the key of the topic.
     """
 
     def __init__(
-        self,
-        labels: Mapping[str, _Label],
-        arrows: Sequence[tuple[str, str]],
-        rates: Mapping[str, str],
-        words: str,
+        self, labels: Mapping[str, _Label], arrows: Iterable[Arrow], rates: Mapping[str, str]
     ) -> None:
         self._labels = labels
+        self._arrows = list(dict.fromkeys(arrows))
         self._rates = rates
-        self._words = words
-        self._down = False
-        self._layout = lay_out(
-            {key: (label.width, _HEIGHT) for key, label in labels.items()}, arrows, _GAP_ALONG
+        self._neighbors: defaultdict[str, list[str]] = defaultdict(list)
+        for start, end in self._arrows:
+            self._neighbors[start].append(end)
+            self._neighbors[end].append(start)
+        self._centers: dict[str, Point] = {}
+        self._widths: dict[str, float] = {}
+        self._width, self._height = self._place(self._columns())
+
+    def _columns(self) -> list[list[str]]:
+        """Return the boxes of each column, from top to bottom."""
+        begin, end = (Counter(arrow[which] for arrow in self._arrows) for which in (0, 1))
+        columns: list[list[str]] = [[], [], []]
+        for key, label in self._labels.items():
+            columns[1 if label.shape != "node" else 2 if end[key] > begin[key] else 0].append(key)
+        for _ in range(_SWEEPS):
+            for column in columns:
+                rows = {key: row - len(boxes) / 2 for boxes in columns for row, key in enumerate(boxes)}
+                means = {key: fmean(rows[one] for one in self._neighbors[key] or [key]) for key in column}
+                column.sort(key=means.__getitem__)
+        return [column for column in columns if column]
+
+    def _place(self, columns: Sequence[Sequence[str]]) -> Point:
+        """Give each box its place, and the width of its column. Return the width and the height of the picture."""
+        row = _HEIGHT + _GAP_BELOW
+        height = max(map(len, columns), default=1) * row - _GAP_BELOW + 2 * _MARGIN
+        left = float(_MARGIN)
+        for column in columns or [[]]:
+            width = max((self._labels[key].width for key in column), default=0.0)
+            top = (height - len(column) * row + row) / 2
+            for number, key in enumerate(column):
+                self._centers[key] = left + width / 2, top + number * row
+                self._widths[key] = width
+            left += width + _GAP_ACROSS
+        return left - _GAP_ACROSS + _MARGIN, height
+
+    def svg(self, words: str) -> str:
+        """Return the whole picture, with its description in words."""
+        boxes = "".join(map(self._box, self._centers))
+        ports = self._ports()
+        lines = "".join(
+            self._line(arrow, ports[arrow[0], arrow], ports[arrow[1], arrow]) for arrow in self._arrows
         )
-        if self._layout.extent[0] + 2 * _MARGIN > _PAGE:
-            sizes = {key: (float(_HEIGHT), label.width) for key, label in labels.items()}
-            down = lay_out(sizes, arrows, _GAP_ALONG_DOWN)
-            # The page shrinks a picture that is too wide, and the text in it becomes too small. So choose the narrower
-            # layout.
-            if down.extent[1] < self._layout.extent[0]:
-                self._down, self._layout = True, down
+        head = f"<title>The running graph</title><desc>{escape(words)}</desc>"
+        return svg_page(self._width, self._height, head, _STYLE, lines + boxes)
 
-    def svg(self) -> str:
-        """Return the whole picture."""
-        width, height = (extent + 2 * _MARGIN for extent in self._turned(self._layout.extent))
-        boxes = "".join(self._box(name) for name in self._layout.centers)
-        lines = "".join(self._line(arrow) for arrow in self._layout.arrows)
-        head = f"<title>The running graph</title><desc>{escape(self._words)}</desc>"
-        return svg_page(width, height, head, _STYLE, lines + boxes)
-
-    def _turned(self, point: Point) -> Point:
-        return (point[1], point[0]) if self._down else point
-
-    def _xy(self, point: Point) -> Point:
-        x, y = self._turned(point)
-        return x + _MARGIN, y + _MARGIN
-
-    def _box(self, name: str) -> str:
-        label = self._labels[name]
-        x, y = self._xy(self._layout.centers[name])
+    def _box(self, key: str) -> str:
+        label, width = self._labels[key], self._widths[key]
+        x, y = self._centers[key]
         round_corners = _HEIGHT / 2 if label.shape == "node" else 3
         rect = (
-            f'<rect x="{x - label.width / 2:.1f}" y="{y - _HEIGHT / 2:.1f}" width="{label.width:.1f}" '
+            f'<rect x="{x - width / 2:.1f}" y="{y - _HEIGHT / 2:.1f}" width="{width:.1f}" '
             f'height="{_HEIGHT}" rx="{round_corners}"/>'
         )
         above = 9 if label.type else 0
         texts = f'<text x="{x:.1f}" y="{y - above:.1f}">{escape(label.name)}</text>'
         if label.type:
             texts += f'<text class="type" x="{x:.1f}" y="{y + 10:.1f}">{escape(label.small_print)}</text>'
-        if rate := self._rates.get(name):
-            edge = (x + label.width / 2 - 8, y - _HEIGHT / 2)
+        if rate := self._rates.get(key):
+            edge = (x + width / 2 - 8, y - _HEIGHT / 2)
             texts += f'<text class="rate" x="{edge[0]:.1f}" y="{edge[1]:.1f}">{escape(rate)}</text>'
         return f'<g class="box {label.shape}">{rect}{texts}</g>'
 
-    def _line(self, arrow: Arrow) -> str:
-        """Return the SVG of an arrow: a curve along its route, and an arrowhead."""
-        path = "M{:.1f},{:.1f}".format(*self._xy(arrow.points[0]))
-        for (a1, b1), (a2, b2) in itertools.pairwise(arrow.points):
-            middle = (a1 + a2) / 2
-            corners = ((middle, b1), (middle, b2), (a2, b2))
-            path += " C" + " ".join("{:.1f},{:.1f}".format(*self._xy(corner)) for corner in corners)
-        flows = " flows" if {arrow.start, arrow.end} & self._rates.keys() else ""
-        return f'<path class="line{flows}" d="{path}"/><path class="head" d="{self._head(arrow)}"/>'
+    def _line(self, arrow: Arrow, start: Point, end: Point) -> str:
+        """Return the SVG of an arrow: a curve from point to point, and an arrowhead."""
+        (x1, y1), (x2, y2) = start, end
+        middle, back = (x1 + x2) / 2, -8 if x2 > x1 else 8
+        path = f"M{x1:.1f},{y1:.1f} C{middle:.1f},{y1:.1f} {middle:.1f},{y2:.1f} {x2:.1f},{y2:.1f}"
+        head = f"M{x2:.1f},{y2:.1f} l{back},-4.5 v9 z"
+        flows = " flows" if self._rates.keys() & set(arrow) else ""
+        return f'<path class="line{flows}" d="{path}"/><path class="head" d="{head}"/>'
 
-    def _head(self, arrow: Arrow) -> str:
-        (before, _), (along, beside) = arrow.points[-2:]
-        back = -8 if along > before else 8
-        corners = ((along, beside), (along + back, beside - 4.5), (along + back, beside + 4.5))
-        return "M" + " L".join("{:.1f},{:.1f}".format(*self._xy(corner)) for corner in corners) + " z"
-
-
-SWEEPS = 100
-"""The maximum number of passes in which igraph reduces the crossings of arrows."""
-GAP_BESIDE = 24
-"""Pixels between two boxes in the same column."""
-_PORTS = 0.72
-"""The fraction of a box's edge, from 0 to 1, that has room for the ends of arrows."""
-
-
-@dataclass(frozen=True)
-class Arrow:
-    """A line between two boxes, given by points: the first on the edge of box ``start``, the last on ``end``'s."""
-
-    start: str
-    end: str
-    points: tuple[Point, ...]
-
-
-@dataclass(frozen=True)
-class GraphLayout:
-    """The positions of boxes and arrows, in pixels.
-
-    Attributes:
-        centers: The center of each box.
-        arrows: The arrows, in the same order as the input.
-        extent: The size of the whole layout: first in the direction of the arrows, then across it.
-    """
-
-    centers: Mapping[str, Point]
-    arrows: tuple[Arrow, ...]
-    extent: Point
-
-
-def lay_out(sizes: Mapping[str, Point], arrows: Sequence[tuple[str, str]], gap: float) -> GraphLayout:
-    """Return the positions of boxes and arrows, with coordinates from 0.
-
-    Args:
-        sizes: The size of each box: first in the direction of the arrows, then across it.
-        arrows: The two boxes that each arrow joins, in its direction. Arrows from a box to itself are left out.
-        gap: Pixels between two columns.
-    """
-    import igraph  # imported here, so that only a notebook that draws a graph waits for the import
-
-    boxes = list(sizes)
-    drawn = [(a, b) for a, b in dict.fromkeys(arrows) if a != b]
-    if not boxes:
-        return GraphLayout({}, (), (0.0, 0.0))
-    number = {box: index for index, box in enumerate(boxes)}
-    edges = [(number[a], number[b]) for a, b in drawn]
-    # Reverse the arrows that close a cycle before igraph does, because igraph 1.0 returns wrong routes for arrows that
-    # it reverses itself.
-    back = set(igraph.Graph(n=len(boxes), edges=edges, directed=True).feedback_arc_set(method="eades"))
-    onward = [(b, a) if index in back else (a, b) for index, (a, b) in enumerate(edges)]
-    graph = igraph.Graph(n=len(boxes), edges=onward, directed=True)
-    found = graph.layout_sugiyama(hgap=1, vgap=1, maxiter=SWEEPS)
-    places = [list(place) for place in found.coords]
-    routing = [way[::-1] if index in back else way for index, way in enumerate(found.edge_routing)]
-    _push_apart([*places, *itertools.chain(*routing)])
-    columns = [round(layer) for _, layer in places]
-    unit = max(beside for _, beside in sizes.values()) + GAP_BESIDE
-    along = _columns(columns, [sizes[box][0] for box in boxes], gap)
-    first = min(place for place, _ in (*places, *itertools.chain(*routing)))
-    start = max(beside for _, beside in sizes.values()) / 2
-
-    def middle(place: float, layer: float) -> Point:
-        return along[round(layer)], (place - first) * unit + start
-
-    centers = {box: middle(*places[index]) for box, index in number.items()}
-    ways = [
-        [centers[a], *(middle(*point) for point in routed), centers[b]]
-        for (a, b), routed in zip(drawn, routing, strict=True)
-    ]
-    extent = (
-        max(centers[box][0] + sizes[box][0] / 2 for box in boxes),
-        max(beside for way in (*ways, [*centers.values()]) for _, beside in way) + start,
-    )
-    return GraphLayout(centers, _with_ports(drawn, ways, sizes), extent)
-
-
-def _push_apart(places: Sequence[list[float]]) -> None:
-    """Move the boxes of a column at least one unit apart, because igraph does not always keep this distance."""
-    last: dict[int, float] = {}
-    for place in sorted(places):
-        column = round(place[1])
-        place[0] = max(place[0], last.get(column, place[0] - 1) + 1)
-        last[column] = place[0]
-
-
-def _columns(columns: Sequence[int], widths: Sequence[float], gap: float) -> list[float]:
-    """Return the center of each column. A column is as wide as its widest box."""
-    middles = []
-    edge = 0.0
-    for column in range(max(columns) + 1):
-        width = max((w for c, w in zip(columns, widths, strict=True) if c == column), default=0.0)
-        middles.append(edge + width / 2)
-        edge += width + gap
-    return middles
-
-
-def _with_ports(
-    drawn: Sequence[tuple[str, str]], ways: Sequence[list[Point]], sizes: Mapping[str, Point]
-) -> tuple[Arrow, ...]:
-    """Return the arrows, with their ends spread along the edges of the boxes so that arrows cross less."""
-    ends: dict[tuple[str, bool], list[tuple[float, int, bool]]] = {}
-    for index, ((a, b), way) in enumerate(zip(drawn, ways, strict=True)):
-        onward = way[-1][0] > way[0][0]
-        ends.setdefault((a, onward), []).append((way[1][1], index, True))
-        ends.setdefault((b, not onward), []).append((way[-2][1], index, False))
-    ports: dict[tuple[int, bool], Point] = {}
-    for (box, after), there in ends.items():
-        width, height = sizes[box]
-        for place, (_, index, leaves) in enumerate(sorted(there)):
-            center = ways[index][0 if leaves else -1]
-            share = (place + 1) / (len(there) + 1) - 0.5
-            ports[index, leaves] = (
-                center[0] + (width / 2 if after else -width / 2),
-                center[1] + share * height * _PORTS,
-            )
-    return tuple(
-        Arrow(a, b, (ports[index, True], *ways[index][1:-1], ports[index, False]))
-        for index, (a, b) in enumerate(drawn)
-    )
+    def _ports(self) -> dict[tuple[str, Arrow], Point]:
+        """Return the point on the edge of a box at which an arrow begins or ends, by the box and the arrow."""
+        sides: defaultdict[tuple[str, int], list[tuple[float, Arrow]]] = defaultdict(list)
+        for arrow in self._arrows:
+            for box, other in (arrow, arrow[::-1]):
+                x, y = self._centers[other]
+                sides[box, 1 if x > self._centers[box][0] else -1].append((y, arrow))
+        ports = {}
+        for (box, side), ends in sides.items():
+            x, y = self._centers[box]
+            for place, (_, arrow) in enumerate(sorted(ends), 1):
+                share = place / (len(ends) + 1) - 0.5
+                ports[box, arrow] = x + side * self._widths[box] / 2, y + share * _HEIGHT * _PORTS
+        return ports

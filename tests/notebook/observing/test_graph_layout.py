@@ -1,98 +1,135 @@
-"""Boxes and arrows in columns."""
+"""Boxes and arrows in three columns, measured in the picture."""
 
 from __future__ import annotations
 
 import itertools
 import random
+import re
+from dataclasses import dataclass
+from xml.etree import ElementTree
 
 import pytest
 
-from autograder.notebook.observing.graph_picture import GAP_BESIDE, GraphLayout, lay_out
+from autograder.notebook.observing.graph_picture import GraphPicture
+from autograder.notebook.observing.ros_graph import ChannelKind, GraphChannel, GraphEndpoint, RosGraph
 
-GAP = 50.0
-
-
-def laid(boxes: str, *arrows: str) -> GraphLayout:
-    """Boxes of 100 to 40 pixels; arrows such as "ab"."""
-    return lay_out(dict.fromkeys(boxes, (100.0, 40.0)), [(arrow[0], arrow[1]) for arrow in arrows], GAP)
+SVG = "{http://www.w3.org/2000/svg}"
+PAGE = 860
+"""Pixels of a notebook's column; what is wider is shrunk, and the letters with it."""
 
 
-def column(layout: GraphLayout, box: str) -> float:
-    return layout.centers[box][0]
+@dataclass(frozen=True)
+class Box:
+    left: float
+    top: float
+    width: float
+    height: float
+
+    @property
+    def middle(self) -> float:
+        return self.top + self.height / 2
 
 
-def test_arrows_point_to_the_right() -> None:
-    layout = laid("dcba", "ab", "bc", "ad", "dc")
-    assert [column(layout, box) for box in "abdc"] == [50.0, 200.0, 200.0, 350.0]
-    assert all(arrow.points[0][0] < arrow.points[-1][0] for arrow in layout.arrows)
+@dataclass(frozen=True)
+class Laid:
+    boxes: dict[str, Box]
+    arrows: list[tuple[tuple[float, float], tuple[float, float]]]
+    width: float
+    height: float
 
 
-def test_a_circle_has_one_arrow_back() -> None:
-    layout = laid("sabc", "sa", "ab", "bc", "ca")
-    back = [arrow for arrow in layout.arrows if arrow.points[-1][0] < arrow.points[0][0]]
-    assert len(back) == 1
+def channel(name: str) -> GraphChannel:
+    return GraphChannel(ChannelKind.TOPIC, f"/{name}", "std_msgs/msg/String")
 
 
-@pytest.mark.parametrize(
-    "arrows",
-    [("ab", "ba"), ("ab", "bc", "ca"), ("ab", "bc", "cd", "da", "ae", "ec", "ac"), ("ab", "bc", "cb")],
-)
-def test_no_arrow_begins_or_ends_where_another_does(arrows: tuple[str, ...]) -> None:
-    layout = laid("".join(sorted(set("".join(arrows)))), *arrows)
-    ends = [point for arrow in layout.arrows for point in (arrow.points[0], arrow.points[-1])]
-    assert len(set(ends)) == len(ends)
-    # Also where there is a box between, an arrow passes beside it.
-    for arrow in layout.arrows:
-        for box, (along, beside) in layout.centers.items():
-            for x, y in arrow.points[1:-1]:
-                assert abs(x - along) >= 50 or abs(y - beside) >= 20, f"{arrow} runs through {box}"
+def laid(nodes: str, *arrows: str) -> Laid:
+    """What is drawn; nodes and topics of one letter, arrows such as "aX" (publishes) and "Xb" (subscribes)."""
+    ends = [
+        GraphEndpoint(
+            f"/{min(arrow, key=str.isupper)}", channel(max(arrow, key=str.isupper)), arrow[0].islower()
+        )
+        for arrow in arrows
+    ]
+    svg = ElementTree.fromstring(
+        GraphPicture(RosGraph(tuple(f"/{node}" for node in nodes), tuple(sorted(ends)))).svg()
+    )
+    boxes = {}
+    for group in svg.iterfind(f"{SVG}g"):
+        rect, text = group.find(f"{SVG}rect"), group.find(f"{SVG}text")
+        assert rect is not None
+        assert text is not None
+        numbers = (float(str(rect.get(name))) for name in ("x", "y", "width", "height"))
+        boxes[str(text.text)[1:]] = Box(*numbers)
+    drawn = []
+    for path in svg.iter(f"{SVG}path"):
+        if "line" in str(path.get("class")):
+            x1, y1, *_, x2, y2 = map(float, re.findall(r"-?[\d.]+", str(path.get("d"))))
+            drawn.append(((x1, y1), (x2, y2)))
+    return Laid(boxes, drawn, float(str(svg.get("width"))), float(str(svg.get("height"))))
 
 
-@pytest.mark.parametrize("arrows", [("ab", "ba"), ("ab", "bc", "cd", "da", "ae", "ec", "ac")])
-def test_each_arrow_begins_and_ends_on_the_edge_of_its_box(arrows: tuple[str, ...]) -> None:
-    layout = laid("".join(sorted(set("".join(arrows)))), *arrows)
-    assert [(arrow.start, arrow.end) for arrow in layout.arrows] == [(arrow[0], arrow[1]) for arrow in arrows]
-    for arrow in layout.arrows:
-        for box, (x, y) in ((arrow.start, arrow.points[0]), (arrow.end, arrow.points[-1])):
-            along, beside = layout.centers[box]
-            assert abs(x - along) == 50
-            assert abs(y - beside) < 20
-        # It leaves to the side on which the other box is, and goes one way only.
-        xs = [x for x, _ in arrow.points]
-        assert xs == sorted(xs) or xs == sorted(xs, reverse=True)
+def test_arrows_lead_to_the_right_through_the_topics() -> None:
+    boxes = laid("ab", "aX", "Xb").boxes
+    assert boxes["a"].left < boxes["X"].left < boxes["b"].left
 
 
-def test_a_box_that_leads_to_itself_has_no_arrow() -> None:
-    assert laid("a", "aa").arrows == ()
+def test_a_node_that_hears_more_than_it_says_is_on_the_right() -> None:
+    boxes = laid("ab", "aX", "Xb", "Yb", "bZ").boxes
+    assert boxes["b"].left > boxes["X"].left == boxes["Z"].left
 
 
-def test_an_arrow_that_is_given_twice_is_drawn_once() -> None:
-    assert len(laid("ab", "ab", "ab").arrows) == 1
+def test_arrows_in_opposite_directions_lie_apart() -> None:
+    ends = [point for arrow in laid("a", "aX", "Xa").arrows for point in arrow]
+    assert len(set(ends)) == len(ends) == 4
 
 
 def test_arrows_do_not_cross_without_need() -> None:
-    layout = laid("abxy", "ay", "bx")
-    height = {box: place for box, (_, place) in layout.centers.items()}
-    assert (height["a"] < height["b"]) == (height["y"] < height["x"])
+    boxes = laid("abcd", "aY", "bX", "Yd", "Xc").boxes
+    up = boxes["a"].middle < boxes["b"].middle
+    assert (boxes["Y"].middle < boxes["X"].middle) == up
+    assert (boxes["d"].middle < boxes["c"].middle) == up
 
 
-def test_an_empty_graph() -> None:
-    assert lay_out({}, [], GAP) == GraphLayout({}, (), (0.0, 0.0))
+def test_an_empty_graph_has_a_size() -> None:
+    drawn = laid("")
+    assert drawn.width > 0 < drawn.height
+    assert not drawn.boxes
 
 
-def test_boxes_never_overlap_and_nothing_leaves_the_picture() -> None:
-    for seed in range(30):
+@pytest.mark.parametrize("count", [1, 7])
+def test_a_long_chain_is_no_wider_than_the_page(count: int) -> None:
+    nodes, topics = "abcdefgh"[: count + 1], "ABCDEFG"[:count]
+    arrows = [node + topic for node, topic in zip(nodes, topics, strict=False)]
+    arrows += [topic + node for node, topic in zip(nodes[1:], topics, strict=False)]
+    assert laid(nodes, *arrows).width < PAGE
+
+
+def test_boxes_never_overlap_and_arrows_end_at_their_boxes_and_pass_no_other() -> None:
+    for seed in range(40):
         chance = random.Random(seed)
-        boxes = "abcdefghij"[: chance.randint(1, 10)]
-        sizes = {box: (chance.uniform(40, 200), 40.0) for box in boxes}
-        arrows = [(chance.choice(boxes), chance.choice(boxes)) for _ in range(chance.randint(0, 15))]
-        layout = lay_out(sizes, arrows, GAP)
-        for one, other in itertools.combinations(boxes, 2):
-            (x1, y1), (x2, y2) = layout.centers[one], layout.centers[other]
-            beside = abs(y1 - y2) - 40 >= GAP_BESIDE - 1e-6
-            assert beside or abs(x1 - x2) - (sizes[one][0] + sizes[other][0]) / 2 >= GAP - 1e-6
-        width, height = layout.extent
-        for box, (x, y) in layout.centers.items():
-            assert sizes[box][0] / 2 - 1e-6 <= x <= width - sizes[box][0] / 2 + 1e-6
-            assert 20 - 1e-6 <= y <= height - 20 + 1e-6
-        assert all(0 <= x <= width and 0 <= y <= height for arrow in layout.arrows for x, y in arrow.points)
+        nodes, topics = "abcdef"[: chance.randint(1, 6)], "UVWXYZ"[: chance.randint(1, 6)]
+        pairs = [(chance.choice(nodes), chance.choice(topics)) for _ in range(chance.randint(0, 12))]
+        arrows = list(dict.fromkeys("".join(pair[:: chance.choice((1, -1))]) for pair in pairs))
+        drawn = laid(nodes, *arrows)
+        for one, other in itertools.combinations(drawn.boxes.values(), 2):
+            same_column = one.left < other.left + other.width and other.left < one.left + one.width
+            assert not same_column or abs(one.top - other.top) > one.height
+        for box in drawn.boxes.values():
+            assert 0 <= box.left <= box.left + box.width <= drawn.width
+            assert 0 <= box.top <= box.top + box.height <= drawn.height
+        assert len(drawn.arrows) == len(arrows)
+        ends = [point for arrow in drawn.arrows for point in arrow]
+        assert len(set(ends)) == len(ends)
+        for x, y in ends:
+            touched = [
+                box
+                for box in drawn.boxes.values()
+                if min(abs(x - box.left), abs(x - box.left - box.width)) < 0.1
+                and abs(y - box.middle) < box.height / 2
+            ]
+            assert len(touched) == 1
+        for (x1, _), (x2, _) in drawn.arrows:
+            inside = [
+                box for box in drawn.boxes.values() if min(x1, x2) < box.left + box.width / 2 < max(x1, x2)
+            ]
+            assert not inside
