@@ -56,7 +56,6 @@ class Mark:
         stray: True if the moment is irrelevant for the task, as in ``Moment``.
         label: The text next to the mark; empty if there was no space.
         label_y: The distance of the label's base line from the top, in pixels.
-        to_the_left: True if the label is to the left of the mark.
         tooltip: The moment in one sentence.
     """
 
@@ -66,7 +65,6 @@ class Mark:
     stray: bool
     label: str
     label_y: float
-    to_the_left: bool
     tooltip: str
 
 
@@ -149,14 +147,16 @@ def _lane(
 ) -> tuple[Lane, float]:
     """Return one lane, and its lower end: the distance from the top of the picture in pixels."""
     moments = part.moments
-    placed = _flags([_Wish(labels[i], xs[i], needed=moments[i].key) for i in members])
+    placed = _levels(
+        [labels[i] for i in members], [xs[i] for i in members], [moments[i].key for i in members]
+    )
     text = one_line(name, 60)
-    levels = 1 + max((flag.level for flag in placed if flag), default=0)
+    top_level = max((level for level in placed if level is not None), default=0)
     name_end = readable_text.width(text) * (_CHARACTER_WIDTH + 0.7) + 6
-    if any(flag.level == levels - 1 and flag.left < name_end for flag in placed if flag):
-        # The lane's name stands at the left of the top level, and a flag there would cover it.
-        levels += 1
-    line_y = top + _LANE_HEAD + levels * _LEVEL_HEIGHT + 7
+    if any(level == top_level and xs[i] < name_end for i, level in zip(members, placed, strict=True)):
+        # The lane's name stands at the left of the top level, and a label there would cover it.
+        top_level += 1
+    line_y = top + _LANE_HEAD + (top_level + 1) * _LEVEL_HEIGHT + 7
     rows = _rows([xs[i] for i in members])
     marks = tuple(
         Mark(
@@ -164,15 +164,14 @@ def _lane(
             y=line_y + row * _MARK,
             direction=moments[i].direction,
             stray=moments[i].stray,
-            label=labels[i] if flag else "",
-            label_y=line_y - 10 - (flag.level if flag else 0) * _LEVEL_HEIGHT,
-            to_the_left=flag is not None and flag.left < flag.pole,
+            label=labels[i] if level is not None else "",
+            label_y=line_y - 10 - (level or 0) * _LEVEL_HEIGHT,
             tooltip=card_wording.moment_in_words(moments[i], part.when(i)),
         )
-        for i, flag, row in zip(members, placed, rows, strict=True)
+        for i, level, row in zip(members, placed, rows, strict=True)
     )
     stray = all(mark.stray for mark in marks)
-    name_y = line_y - 10 - (levels - 1) * _LEVEL_HEIGHT
+    name_y = line_y - 10 - top_level * _LEVEL_HEIGHT
     return Lane(text, name_y, line_y, marks, stray), line_y + max(rows) * _MARK + _LANE_FOOT
 
 
@@ -214,79 +213,34 @@ def _percent(x: float, width: int) -> float:
     return round(100 * x / width, 2)
 
 
-@dataclass(frozen=True)
-class _Wish:
-    """A label that needs a position: its text, the x of its mark in pixels, and whether it must be shown."""
-
-    label: str
-    x: float
-    needed: bool = False
-
-
-@dataclass(frozen=True)
-class _Flag:
-    """A placed label. All positions are pixels from the left, except ``level``.
-
-    Attributes:
-        level: The number of rows between the marks and the text.
-        pole: The position of the leader line, which runs from the mark up to the text.
-        left: The beginning of the text.
-        right: The end of the text.
-    """
-
-    level: int
-    pole: float
-    left: float
-    right: float
-
-
 def _length(label: str) -> float:
     """Return the distance in pixels from a mark to the end of its label."""
     return 5 + readable_text.width(label) * _CHARACTER_WIDTH
 
 
-def _flags(wishes: Sequence[_Wish]) -> list[_Flag | None]:
-    """Return a position for each label of a lane, in order of x; None for a label for which there is no space.
+def _levels(labels: Sequence[str], xs: Sequence[float], needed: Sequence[bool]) -> list[int | None]:
+    """Return the level of each label of a lane, 0 for the lowest; None for a label for which there is no space.
 
-    Labels are placed from right to left, so that an earlier label is above the later ones and its leader line crosses
-    none. Labels that must be shown are placed first, and so always find a position.
+    Labels are placed from right to left, each on the lowest level on which it ends before all labels of this level and
+    of those above it. So no two labels cover each other, and no leader line crosses a label.
+
+    Args:
+        labels: The labels, in order of time; empty for none.
+        xs: The distance of each mark from the left, in pixels.
+        needed: Whether each label must be shown.
     """
-    many = len(wishes) > _MANY
-    found: list[_Flag | None] = [None] * len(wishes)
-    placed: list[_Flag] = []
-    for needed in (True, False):
-        for index in reversed(range(len(wishes))):
-            wish = wishes[index]
-            if not wish.label or wish.needed is not needed:
-                continue
-            # Allow one more level for the first label: the others leave out words that they share with it, so it must
-            # be shown if possible.
-            levels = len(wishes) + 1 if needed else (1 if many else _LEVELS) + (index == 0)
-            before = wishes[index - 1].x if index else 0.0
-            flag = _place(wish, levels, placed, free_left=0.0 if many else wish.x - before)
-            if flag:
-                placed.append(flag)
-                found[index] = flag
+    most = 1 if len(labels) > _MANY else _LEVELS
+    begins: list[float] = []  # where the leftmost label of each level begins
+    found: list[int | None] = [None] * len(labels)
+    for index in reversed([index for index, label in enumerate(labels) if label]):
+        end = xs[index] + _length(labels[index]) + 4
+        level = next((level for level in range(len(begins)) if end <= min(begins[level:])), len(begins))
+        # Allow one more level for the first label: the others leave out words that they share with it, so it must be
+        # shown if possible.
+        if needed[index] or level < most + (index == 0):
+            begins[level : level + 1] = [xs[index]]
+            found[index] = level
     return found
-
-
-def _place(wish: _Wish, levels: int, placed: Sequence[_Flag], *, free_left: float) -> _Flag | None:
-    """Return the lowest free position to the right of the mark, or else within ``free_left`` pixels to its left."""
-    x, long = wish.x, _length(wish.label)
-    for left in (x, x - long) if long < free_left and not wish.needed else (x,):
-        for level in range(levels):
-            flag = _Flag(level, x, left, left + long)
-            if all(_are_apart(flag, other) for other in placed):
-                return flag
-    return None
-
-
-def _are_apart(one: _Flag, other: _Flag) -> bool:
-    """Return True if the texts of two labels do not touch, and neither leader line crosses the other's text."""
-    if one.level == other.level:
-        return one.right + 4 <= other.left or other.right + 4 <= one.left
-    upper, lower = (one, other) if one.level > other.level else (other, one)
-    return not (lower.left < upper.pole <= lower.right + 2) or upper.pole == lower.pole
 
 
 _CHARACTER_WIDTH = 6.7

@@ -25,7 +25,7 @@ def texts(lane: Lane, width: int) -> list[tuple[float, float, float, float]]:
     for mark in lane.marks:
         if mark.label:
             length = readable_text.width(mark.label) * CHARACTER
-            x = mark.x * width / 100 + (-4 - length if mark.to_the_left else 4)
+            x = mark.x * width / 100 + 4
             boxes.append((x, x + length, mark.label_y - 9, mark.label_y + 2))
     return boxes
 
