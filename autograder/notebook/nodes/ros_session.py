@@ -54,7 +54,7 @@ _DEFAULTS = {
     # Make messages raise an error if a field is set to a value of the wrong type.
     _CHECK_FIELDS: "1",
     # Make `colcon build` in a cell use the build type of a check, as environment/activate.sh does in a terminal.
-    # Otherwise, a check cannot use what it has built, and builds it again.
+    # Otherwise, a field of the wrong type would end a program instead of raising an exception.
     "CMAKE_BUILD_TYPE": "Release",
     # A function that bash inherits and calls if it does not find a command: it adds what is known about the command.
     "BASH_FUNC_command_not_found_handle%%": (
