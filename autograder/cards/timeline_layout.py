@@ -308,7 +308,7 @@ class _Axis:
             yield Tick(0.0, TURNS, "start")
             return
         edge = self.start + (self.width - 3 * _MARGIN) / (self.right - _MARGIN) * (self.end - self.start)
-        step = round_step((edge - self.start) * 100 / self.width)
+        step = _round_step((edge - self.start) * 100 / self.width)
         short = edge - self.start < 0.1
         decimals = max(0, -math.floor(math.log10(step) + 1e-9) - (3 if short else 0))
         for number in range(math.ceil(self.start / step - 1e-9), math.floor(edge / step + 1e-9) + 1):
@@ -325,7 +325,7 @@ def _positions(part: TrafficPart) -> list[float]:
     return [moment.t for moment in part.moments]
 
 
-def round_step(step: float) -> float:
+def _round_step(step: float) -> float:
     """Return the next number, at least this large, that is 1, 2 or 5 times a power of ten."""
     power = 10.0 ** math.floor(math.log10(step))
     return next(factor * power for factor in (1, 2, 5, 10) if factor * power >= step * (1 - 1e-9))

@@ -22,7 +22,6 @@ from autograder.notebook.nodes.background_nodes import spin_in_background, spinn
 from autograder.notebook.nodes.ros_session import RosSession
 from autograder.notebook.observing.graph_picture import draw_graph, watch_graph
 from autograder.notebook.observing.message_recordings import read_recording, recording
-from autograder.notebook.observing.topic_plots import plot
 
 if TYPE_CHECKING:
     from autograder.notebook.live_robot import LiveRobot
@@ -31,7 +30,6 @@ __all__ = [
     "RosSession",
     "check",
     "draw_graph",
-    "plot",
     "read_recording",
     "recording",
     "spin_in_background",
