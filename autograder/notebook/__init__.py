@@ -1,10 +1,9 @@
 """The functions that a notebook of the course imports, such as ``start_ros``, ``spinning`` and ``check``.
 
 Promises: nothing here is secret or decides a grade, because the judge is a separate process.
-Names: ``start_ros``, ``start_robot``, ``check``, ``watch``, ``spinning``, ``spin_in_background``, ``draw_graph``,
-    ``recording``
-Imports: ``cards``, ``check_journal``, ``course``, ``dds_discovery``, ``known_errors``, ``mcap_files``, ``messages``,
-    ``own_lines``, ``packed_files``, ``robot``, ``safe_files``, ``standard_output``, ``verdict``, ``workspaces``.
+Names: ``start_ros``, ``start_robot``, ``check``, ``watch``, ``spinning``, ``spin_in_background``, ``draw_graph``
+Imports: ``cards``, ``check_journal``, ``course``, ``dds_discovery``, ``known_errors``, ``messages``, ``own_lines``,
+    ``packed_files``, ``robot``, ``safe_files``, ``standard_output``, ``verdict``, ``workspaces``.
 Takes: the student's classes and functions, in the kernel.
 Gives: running nodes, pictures, and cards below the cells.
 """
@@ -21,7 +20,6 @@ from autograder.notebook.nodes import ros_session
 from autograder.notebook.nodes.background_nodes import spin_in_background, spinning
 from autograder.notebook.nodes.ros_session import RosSession
 from autograder.notebook.observing.graph_picture import draw_graph, watch_graph
-from autograder.notebook.observing.message_recordings import read_recording, recording
 
 if TYPE_CHECKING:
     from autograder.notebook.live_robot import LiveRobot
@@ -30,8 +28,6 @@ __all__ = [
     "RosSession",
     "check",
     "draw_graph",
-    "read_recording",
-    "recording",
     "spin_in_background",
     "spinning",
     "start_robot",

@@ -21,7 +21,7 @@ from autograder.notebook.observing.ros_graph import hidden_node
 if TYPE_CHECKING:
     from rclpy.node import Node
 
-GONE = (InvalidHandle, RCLError, NotInitializedException, ExternalShutdownException)
+_GONE = (InvalidHandle, RCLError, NotInitializedException, ExternalShutdownException)
 """The errors that a node's methods raise if the node was destroyed or ROS was shut down."""
 
 
@@ -130,7 +130,7 @@ class LivePicture:
 
     def _go_on(self, node: Node) -> None:
         end = time.monotonic() + 60 * self._minutes
-        with contextlib.suppress(*GONE):
+        with contextlib.suppress(*_GONE):
             while not self._over.wait(self._pictures.period) and time.monotonic() < end:
                 self._show(self._pictures.next(node))
             node.destroy_node()

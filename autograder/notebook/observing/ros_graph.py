@@ -161,7 +161,7 @@ def _topic_ends(node: Node) -> Iterator[GraphEndpoint]:
     The query is by topic, because a query by node finds only one of two nodes that have the same name.
     """
     for topic, _ in node.get_topic_names_and_types():
-        if not is_shown_topic(topic):
+        if not _is_shown_topic(topic):
             continue
         for gives, infos in (
             (True, node.get_publishers_info_by_topic(topic)),
@@ -196,7 +196,7 @@ def _channels(kind: ChannelKind, names_and_types: Iterable[tuple[str, list[str]]
             yield from (GraphChannel(kind, name, type_name) for type_name in types)
 
 
-def is_shown_topic(topic: str) -> bool:
+def _is_shown_topic(topic: str) -> bool:
     """Return False for the topics that every node has, and for hidden topics such as those of an action."""
     return topic not in _EVERY_TOPIC and not _is_hidden(topic)
 
