@@ -1,4 +1,4 @@
-"""The exit to the terminal, which escapes what a student may have written; and lines of output with a limit.
+"""The exit to the terminal, which escapes what a student may have written; and output of programs, with limits.
 
 Whatever a command prints, a student's text must not move the cursor, color or reverse a line, or begin another line. So
 :func:`guard_terminal` makes the streams of the process escape everything but line ends, whoever prints: a command,
@@ -14,11 +14,13 @@ import io
 import json
 import os
 import sys
+import time
 from contextlib import contextmanager
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, AnyStr, BinaryIO, Protocol, TextIO
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
     from rich.console import Console
     from rich.segment import Segment
@@ -153,3 +155,52 @@ def short_lines(stream: Chunks, limit: int) -> Iterator[bytes]:
             rest, begins = rest[-1:], False
     if rest and begins:
         yield rest
+
+
+LOOK_EVERY = 0.5
+"""Seconds between two checks whether the output of a program is still needed."""
+
+
+class Readable(Protocol):
+    """A program whose output can be read."""
+
+    def read(self, within: float, /) -> bytes | None:
+        """Return the output since the last call; None if there is none within these seconds, b"" at the end."""
+
+
+@dataclass(frozen=True)
+class Collected:
+    """The output of a program, from its start.
+
+    Attributes:
+        output: The output, cut to the maximum number of bytes.
+        cut: True if there was more output.
+        ended: True if the output has ended; False if reading was stopped before.
+        late: True if reading was stopped at the time limit.
+    """
+
+    output: bytes
+    cut: bool
+    ended: bool
+    late: bool = False
+
+
+def collect(
+    program: Readable, limit: float, size: int, unwanted: Callable[[], bool] = lambda: False
+) -> Collected:
+    """Read the output of a program until it ends or is no longer needed.
+
+    Args:
+        limit: Time limit in seconds of wall time, from now.
+        size: The maximum number of bytes to keep.
+        unwanted: Called from time to time. If it returns True, reading stops.
+    """
+    output, cut = bytearray(), False
+    deadline = time.monotonic() + limit
+    while (data := program.read(max(0.0, min(LOOK_EVERY, deadline - time.monotonic())))) != b"":
+        room = size - len(output)
+        output += (data or b"")[:room]
+        cut = cut or len(data or b"") > room
+        if (late := time.monotonic() > deadline) or unwanted():
+            return Collected(bytes(output), cut, ended=False, late=late)
+    return Collected(bytes(output), cut, ended=True)

@@ -6,7 +6,6 @@ import contextlib
 import os
 import select
 import signal
-import time
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Self
 
@@ -166,49 +165,12 @@ class _Command:
 class Running(_Command):
     """A command that bubblewrap has started in a box of its own."""
 
-    def __init__(self, box: Box, output: int, most: int) -> None:
+    def __init__(self, box: Box, output: int) -> None:
         super().__init__(box, output, box.pid)
-        self._box, self._most = box, most
-        self._began = time.monotonic()
-        self._kept = bytearray()
-        self._cut = False
+        self._box = box
 
-    def read(self, within: float) -> bool:
-        """Read available output. Return False once the command has ended.
-
-        Args:
-            within: The maximum number of seconds to wait for output.
-        """
-        piece = self.next_output(max(0.0, within))
-        if piece is None:
-            return True
-        room = self._most - len(self._kept)
-        self._kept += piece[:room]
-        self._cut = self._cut or len(piece) > room
-        return bool(piece)
-
-    @property
-    def said(self) -> bytes:
-        """Return the output that has been read and kept so far."""
-        return bytes(self._kept)
-
-    def wait(self, limit: float) -> Finished:
-        """Wait until the command ends. At the limit, stop it.
-
-        Args:
-            limit: Seconds of wall time, counted from the start of the command.
-        """
-        deadline = self._began + limit
-        running = True
-        while running and time.monotonic() < deadline:
-            running = self.read(deadline - time.monotonic())
-        if running:
-            self._box.end()
-        returncode = None if running else _returncode(self._box.wait_end())
-        return Finished(returncode, self.said, self._cut)
-
-    def next_output(self, within: float) -> bytes | None:
-        """Return the output since the last call, and do not keep it; None if there is none yet, b"" at the end.
+    def read(self, within: float) -> bytes | None:
+        """Return the output since the last call; None if there is none yet, b"" at the end.
 
         Args:
             within: The maximum number of seconds to wait for output.
@@ -243,8 +205,8 @@ class WarmCommand(_Command):
         super().__init__(process, output, pid)
         self._process = process
 
-    def next_output(self, within: float) -> bytes | None:
-        """Return new output; see :meth:`Running.next_output`. Once the command has ended, kill what it left running."""
+    def read(self, within: float) -> bytes | None:
+        """Return new output; see :meth:`Running.read`. Once the command has ended, kill what it left running."""
         process = self._process.fileno()
         ready = select.select([self._output, process], [], [], within)[0]
         if process in ready:

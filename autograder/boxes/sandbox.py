@@ -41,6 +41,7 @@ from autograder.boxes.visible_host import (
     installation,
 )
 from autograder.safe_files import HeldFolder, write_files
+from autograder.standard_output import collect
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -134,16 +135,20 @@ class Enclosure(Supervision):
             entrance = replace(entrance, **self._guarded())
         return ForkedProcess(server, entrance, descriptors, box)
 
-    def run(self, command: Sequence[str], *, limit: float, **settings: Any) -> Finished:
+    def run(
+        self, command: Sequence[str], *, limit: float, output_bytes: int = _OUTPUT_BYTES, **settings: Any
+    ) -> Finished:
         """Run a command in a new box, and wait for the command to end. When this returns, the whole box has ended.
 
-        The box is killed after ``limit`` seconds of wall time. The other arguments are those of :meth:`start`.
+        The box is killed after ``limit`` seconds of wall time. Of the output, ``output_bytes`` bytes are kept. The
+        other arguments are those of :meth:`start`.
 
         Raises:
             NoSandbox: The box could not be made.
         """
         with self.start(command, **settings) as running:
-            return running.wait(limit)
+            said = collect(running, limit, output_bytes)
+            return Finished(running.exit_code() if said.ended else None, said.output, said.cut)
 
     def start(
         self,
@@ -152,7 +157,6 @@ class Enclosure(Supervision):
         binds: Sequence[Bind] = (),
         environment: Mapping[str, str] | None = None,
         cwd: Path = WORK,
-        output_bytes: int = _OUTPUT_BYTES,
         scratch: bool = True,
     ) -> Running:
         """Start a command in a new box, in the submission's network namespace.
@@ -165,7 +169,6 @@ class Enclosure(Supervision):
             binds: As for :meth:`box`.
             environment: All environment variables; None for those of
                 :func:`autograder.boxes.visible_host.box_environment`.
-            output_bytes: The maximum number of bytes of output to keep.
             scratch: As for :meth:`box`. In the enclosure's scratch, commands see each other's files.
 
         Raises:
@@ -190,7 +193,7 @@ class Enclosure(Supervision):
         # The box has its own copies. While this one is open, reading would not end with the command.
         finally:
             close_all([nothing, writing])
-        return Running(box, reading, output_bytes)
+        return Running(box, reading)
 
     def ros2(
         self,

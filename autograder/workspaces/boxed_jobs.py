@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import os
 import shutil
-import time
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -15,6 +14,7 @@ from autograder.boxes.run_limits import BUILD_LIMITS, Ended, Limits
 from autograder.boxes.sandbox import Enclosure
 from autograder.boxes.visible_host import HOME, WORK, Bind, box_environment
 from autograder.safe_files import fresh_folder
+from autograder.standard_output import collect
 from autograder.workspaces.builds import build_artifacts, build_cache
 from autograder.workspaces.jobs import BUILD_SECONDS, MAX_ARCHIVE_BYTES, MAX_LOG_BYTES, BuildOutcome
 from autograder.workspaces.program_plans import ros2
@@ -32,8 +32,6 @@ PROGRAM_LIMITS = Limits(cpu_seconds=200.0, memory_bytes=1_500_000_000, processes
 """The limits for the box of one program. They apply in addition to the limits of the whole submission."""
 PACK_SECONDS = 60.0
 """Time limit in seconds of wall time for packing the result of a build."""
-LOOK_EVERY = 0.5
-"""Seconds between two checks whether a build is still needed."""
 
 
 class BoxedJobs:
@@ -110,16 +108,20 @@ class BoxedJobs:
                 self._supervisors, folder, guard=guard,
                 scratch_bytes=limits.scratch_bytes, scratch_inodes=limits.scratch_files,
             ) as enclosure:  # fmt: skip
-                with enclosure.start(
-                    command, binds=binds, environment=environment, cwd=HOME,
-                    output_bytes=MAX_LOG_BYTES,
-                ) as running:  # fmt: skip
+                with enclosure.start(command, binds=binds, environment=environment, cwd=HOME) as running:
                     guard.watch(running.pid)
-                    returncode, late = _wait(running, lambda: job.cancelled() or bool(guard.exceeded()))
-                    output = running.said
+                    said = collect(
+                        running,
+                        BUILD_SECONDS,
+                        MAX_LOG_BYTES,
+                        lambda: job.cancelled() or bool(guard.exceeded()),
+                    )
+                    returncode, output = running.exit_code() if said.ended else None, said.output
                 if returncode != 0:
                     needs_room = limits.beside and guard.reason() is Ended.OUT_OF_MEMORY
-                    return BuildOutcome(returncode, output, late=BUILD_SECONDS if late else 0.0), needs_room
+                    return BuildOutcome(
+                        returncode, output, late=BUILD_SECONDS if said.late else 0.0
+                    ), needs_room
                 packed = enclosure.run(
                     python_child("-m", build_artifacts.__name__, str(place / "install")).command,
                     limit=PACK_SECONDS,
@@ -172,7 +174,7 @@ class BoxedProgram:
             self._ended = True
         if self._ended:
             return b""
-        data = self._running.next_output(within)
+        data = self._running.read(within)
         if data == b"":
             self._ended = True
             self._code = self._running.exit_code()
@@ -191,17 +193,6 @@ class BoxedProgram:
         """Kill the box."""
         self._guard.close()
         self._running.end()
-
-
-def _wait(running: Running, over: Callable[[], bool]) -> tuple[int | None, bool]:
-    """Wait for a build. Return its exit code (None if it must be stopped), and True if the time limit is the reason."""
-    deadline = time.monotonic() + BUILD_SECONDS
-    while running.read(LOOK_EVERY):
-        if over():
-            return None, False
-        if time.monotonic() > deadline:
-            return None, True
-    return running.exit_code(), False
 
 
 def _covers(hidden: Sequence[Path], folder: Path) -> list[Bind]:

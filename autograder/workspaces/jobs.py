@@ -15,7 +15,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Protocol
 
 from autograder.safe_files import HeldFolder
-from autograder.standard_output import split_lines
+from autograder.standard_output import collect, split_lines
 from autograder.workspaces.builds.build_artifacts import pack
 from autograder.workspaces.builds.install_folder import BESIDE, without_workspaces
 from autograder.workspaces.program_processes import OwnSession
@@ -211,13 +211,13 @@ class PlainJobs:
         environment.pop("PYTHONDONTWRITEBYTECODE", None)
         start = PlainProgram if self._handed_in else OwnSession
         with start(command, environment, entry.folder, (entry.lock,)) as colcon:
-            output, late = colcon.collect(seconds, size, job.cancelled)
+            said = collect(colcon, seconds, size, job.cancelled)
             code = colcon.exit_code()
         archive = pack(entry.folder / "install") if self._handed_in and code == 0 else None
         made = (*BESIDE, "install") if self._handed_in else BESIDE
         # Use rm, because the folders may be nested more deeply than Python's recursion allows.
         subprocess.run(["rm", "-rf", *(str(entry.folder / name) for name in made)], check=False)
-        return BuildOutcome(code, output, archive, late=seconds if late else 0.0)
+        return BuildOutcome(code, said.output, archive, late=seconds if said.late else 0.0)
 
     def start(self, job: ProgramJob) -> PlainProgram:
         """Start the program as a process."""

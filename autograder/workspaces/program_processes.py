@@ -13,7 +13,6 @@ import shutil
 import signal
 import subprocess
 import threading
-import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Self
 
@@ -23,10 +22,6 @@ from course_runtime.python_child import python_child
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
-
-
-LOOK_FOR_OUTPUT_EVERY = 0.5
-"""Seconds between two checks whether a program is still needed."""
 
 
 class OwnSession:
@@ -89,28 +84,6 @@ class OwnSession:
         if data == b"":
             self._process.wait()
         return data
-
-    def collect(
-        self, limit: float, size: int, unwanted: Callable[[], bool] = lambda: False
-    ) -> tuple[bytes, bool]:
-        """Read the output until it ends or is no longer needed.
-
-        Args:
-            limit: Time limit in seconds of wall time for the program to end.
-            size: The maximum number of bytes to keep.
-            unwanted: Called from time to time. If it returns True, reading stops.
-
-        Returns:
-            The output, and True if the time limit was reached. If the program has not ended, :meth:`exit_code` is
-            None.
-        """
-        output = bytearray()
-        deadline = time.monotonic() + limit
-        while (data := self.read(LOOK_FOR_OUTPUT_EVERY)) != b"":
-            output += (data or b"")[: size - len(output)]
-            if (late := time.monotonic() > deadline) or unwanted():
-                return bytes(output), late
-        return bytes(output), False
 
     def exit_code(self) -> int | None:
         """Return the exit code once the program has ended; negative if a signal ended it."""

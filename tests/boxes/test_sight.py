@@ -24,6 +24,7 @@ from autograder.execution.notebook_processes import BoxedProcesses, NotebookSett
 from autograder.execution.notebook_runner import run_notebook
 from autograder.messages.judge_messages import SOCKET_VARIABLE
 from autograder.safe_files import scratch_folder
+from autograder.standard_output import collect
 from course_runtime import ros_flavour
 from course_runtime.place import Place
 from course_runtime.ros_flavour import Ros
@@ -406,9 +407,8 @@ def test_a_command_whose_box_cannot_be_made_says_why_and_its_ctrl_c_reaches_nobo
 
     with enclosure.start(["true"], binds=[Nonsense(Path("/"))]) as running:
         running.interrupt()
-        done = running.wait(10.0)
-    assert b"--no-such-option" in done.output
-    assert done.returncode != 0
+        assert b"--no-such-option" in collect(running, 10.0, 1000).output
+        assert running.exit_code() != 0
     assert enclosure.run(["true"], limit=10.0).returncode == 0
 
 
@@ -423,7 +423,6 @@ def test_boxes_of_one_submission_share_a_network_and_others_do_not(
         Enclosure(boxed.supervisors, tmp_path / "neighbour") as neighbour,
         enclosure.start(["python", "-c", serve]) as server,
     ):
-        while server.said != b"up\n":
-            assert server.read(10.0)
+        assert server.read(10.0) == b"up\n"
         assert neighbour.run(knock, limit=10.0).returncode != 0
         assert enclosure.run(knock, limit=10.0).returncode == 0

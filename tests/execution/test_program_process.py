@@ -155,7 +155,7 @@ def start(enclosure: Enclosure, tmp_path: Path, boxed: Addresses) -> Callable[..
 def end_of(running: Running | WarmCommand) -> Run:
     output, asked = b"", False
     deadline = time.monotonic() + 60.0
-    while (data := running.next_output(30.0)) != b"":
+    while (data := running.read(30.0)) != b"":
         assert time.monotonic() < deadline, "it says more and more, and does not end"
         assert data is not None, f"it says no more than {output!r} and does not end"
         output += data

@@ -12,6 +12,7 @@ from pathlib import Path
 
 import pytest
 
+from autograder.standard_output import Collected, collect
 from autograder.workspaces.program_processes import OwnSession
 
 FOREVER = 1000.0
@@ -31,13 +32,13 @@ def is_gone(pid: int) -> bool:
 
 def test_all_that_it_says_is_collected_with_how_it_ended() -> None:
     with shell("echo one; echo two >&2; exit 3") as program:
-        assert program.collect(FOREVER, 1000) == (b"one\ntwo\n", False)
+        assert collect(program, FOREVER, 1000) == Collected(b"one\ntwo\n", cut=False, ended=True)
         assert program.exit_code() == 3
 
 
 def test_of_much_output_the_beginning_is_kept() -> None:
     with shell("yes | head -n 100000") as program:
-        assert program.collect(FOREVER, 5) == (b"y\ny\ny", False)
+        assert collect(program, FOREVER, 5) == Collected(b"y\ny\ny", cut=True, ended=True)
 
 
 @pytest.mark.parametrize(
@@ -49,16 +50,16 @@ def test_of_much_output_the_beginning_is_kept() -> None:
 )
 def test_one_that_does_not_end_in_time_is_late(script: str) -> None:
     with shell(script) as program:
-        output, late = program.collect(0.2, 1000)
-        assert late
-        assert b"one\n".startswith(output)
+        said = collect(program, 0.2, 1000)
+        assert said.late
+        assert b"one\n".startswith(said.output)
         assert program.exit_code() is None
     assert program.exit_code() is not None
 
 
 def test_one_that_nobody_wants_is_not_waited_for() -> None:
     with shell("sleep 1000") as program:
-        assert program.collect(FOREVER, 1000, lambda: True) == (b"", False)
+        assert collect(program, FOREVER, 1000, lambda: True) == Collected(b"", cut=False, ended=False)
         assert program.exit_code() is None
 
 
@@ -124,15 +125,15 @@ def test_nothing_outlives_a_parent_that_is_killed(how: signal.Signals) -> None:
 
 def test_what_a_program_leaves_behind_ends_with_it() -> None:
     with shell("setsid sleep 1000 & echo $!; exit 3") as program:
-        output, late = program.collect(FOREVER, 1000)
-        assert not late
+        said = collect(program, FOREVER, 1000)
+        assert said.ended
         assert program.exit_code() == 3
-        assert is_gone(int(output))
+        assert is_gone(int(said.output))
 
 
 def test_how_a_program_ended_is_told_as_it_was() -> None:
     with shell("kill -ABRT $$") as program:
-        assert program.collect(FOREVER, 1000) == (b"", False)
+        assert collect(program, FOREVER, 1000) == Collected(b"", cut=False, ended=True)
         assert program.exit_code() == -signal.SIGABRT
 
 
