@@ -145,6 +145,28 @@ def usable() -> Mapping[str, Controller]:
     return found
 
 
+def guards() -> Mapping[str, str]:
+    """Return, for each limit, how this host enforces the limit. ``autograder doctor`` shows this."""
+    watched = "checked four times a second (no cgroup can be made here)"
+    if os.geteuid() == 0:
+        of_processes = "; a fork bomb may be faster than the checks: do not grade as root"
+    else:
+        of_processes = ", and the system limits the number of processes of the box's user"
+    return {
+        "memory": _cgroup("memory") or watched,
+        "processes": _cgroup("pids") or f"{watched}{of_processes}",
+        "processor time": "the sum over all processes is checked four times a second; each process has a limit, too",
+        "share of the processors": _cgroup("cpu") or "none (no cgroup can be made here)",
+        "disk": "a file system in memory that limits the size and the number of files",
+        "open files": "each process has a limit, and the sum over all processes is checked four times a second",
+    }
+
+
+def _cgroup(kind: str) -> str:
+    controller = usable().get(kind)
+    return f"cgroup (version {controller.version})" if controller else ""
+
+
 def _settings(kind: str, version: int, memory_bytes: int, processes: int) -> Iterable[tuple[str, str]]:
     if kind == "pids":
         return [("pids.max", str(processes))]

@@ -26,8 +26,9 @@ from typing import TYPE_CHECKING, Any
 from autograder.boxes.box_connection import Box, NoSandbox, Supervision, close_all
 from autograder.boxes.box_supervisor import bubblewrap, furnish
 from autograder.boxes.boxed_processes import Finished, ForkedProcess, Running, WarmCommand
+from autograder.boxes.cgroups import guards
 from autograder.boxes.fork_server import BESIDE, SUPERVISOR_MODULE, ForkServer, library_folders
-from autograder.boxes.limit_guards import BoxGuard, guards
+from autograder.boxes.limit_guards import BoxGuard
 from autograder.boxes.process_isolation import Entrance, leave_the_host, take_limits
 from autograder.boxes.run_limits import Limits
 from autograder.boxes.visible_host import (

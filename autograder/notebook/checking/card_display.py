@@ -1,12 +1,8 @@
-"""Displays a check's result: as a card below the cell or, during nbgrader's Validate, as an error.
+"""Displays a check's result as a card below the cell.
 
 Repeated checks of a cell use the same place below the cell. At first, the card of the previous check stays, so that the
 page does not jump. If the new check takes long, the card shows its progress instead, so that the student does not take
 the old diagnosis for the new one. If the checked class or function is redefined, the card is dimmed and says so.
-
-If a cell has not earned full marks, Validate shows the error with which the cell ended. Without an error, it shows
-"Partial credit; passed some but not all", even if the cell has earned no points at all. So during Validate, a check
-without full marks ends with an error that contains the text of the card.
 """
 
 from __future__ import annotations
@@ -23,12 +19,12 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Self
 
 from autograder import check_journal, course, packed_files
-from autograder.cards import card_wording, html_rendering
+from autograder.cards import html_rendering
 from autograder.cards.card_content import Solution
 from autograder.cards.card_wording import duration
-from autograder.cards.readable_text import one_line, paragraph, wrap
 from autograder.messages.judge_messages import SOCKET_VARIABLE
 from autograder.notebook.cell_output import notebook_shell
+from autograder.notebook.checking.nbgrader_validation import is_validating
 from autograder.notebook.checking.subject_runs import own_text
 
 if TYPE_CHECKING:
@@ -38,8 +34,6 @@ if TYPE_CHECKING:
     from autograder.verdict import Verdict
 
 
-VALIDATING = "NBGRADER_VALIDATING"
-"""The environment variable that nbgrader sets while its Validate button runs the notebook."""
 SOON = 0.4
 """Seconds of wall time after which a running check shows its progress; also the time between two updates."""
 LONG = 30.0
@@ -291,11 +285,6 @@ def is_live() -> bool:
     return notebook_shell() is not None and not os.environ.get(SOCKET_VARIABLE) and not is_validating()
 
 
-def is_validating() -> bool:
-    """Return True if nbgrader's Validate runs this notebook."""
-    return os.environ.get(VALIDATING) == "1"
-
-
 def _remember(shell: Any, exercise: str, subject: Any, shown: _Shown) -> None:
     if inspect.isclass(subject) or inspect.isfunction(subject):
         shown.name, shown.subject = subject.__name__, weakref.ref(subject)
@@ -347,55 +336,3 @@ def solution_of(exercise: str) -> Solution | None:
     except (OSError, EOFError, ValueError, KeyError, TypeError, course.NoCourse, course.BrokenChapter):
         pass  # The solution is only an addition, so an error here must not break the check.
     return None
-
-
-VALIDATE_WIDTH = 76
-"""The maximum length of a line in characters, because nbgrader cuts longer ones."""
-
-
-class NotFullMarksError(Exception):
-    """A check did not earn full marks. The exception's text is the message that Validate shows."""
-
-    def __init__(self, verdicts: list[Verdict]) -> None:
-        super().__init__("\n".join(_validate_lines(verdicts)))
-
-    def _render_traceback_(self) -> list[str]:
-        """Return only the message, because a traceback would not help. IPython calls this."""
-        return str(self).splitlines()
-
-
-_validated: dict[str, Verdict] = {}
-
-
-def raise_unless_full(verdict: Verdict) -> None:
-    """End the check cell with an error whose message Validate shows. If the check has full marks, do nothing.
-
-    Raises:
-        NotFullMarksError: The check does not have full marks.
-    """
-    _validated.pop(verdict.exercise, None)
-    _validated[verdict.exercise] = verdict
-    if not verdict.passed:
-        raise NotFullMarksError(list(_validated.values()))
-
-
-def _validate_lines(verdicts: list[Verdict]) -> list[str]:
-    """Return the lines of the message: the last check in detail, then the total if there are several checks."""
-    last = verdicts[-1]
-    state = card_wording.STATE_WORDS[last.state]
-    lines = wrap(
-        f"{one_line(last.title or last.exercise, 120)}: {state}, {card_wording.score_line(last)}",
-        VALIDATE_WIDTH,
-    )
-    for criterion in last.criteria:
-        earned = criterion.points if criterion.passed else 0.0
-        mark = "[x]" if criterion.passed else "[ ]"
-        text = f"{one_line(criterion.title, 120)} ({card_wording.points_of(earned, criterion.points)})"
-        lines += wrap(text, VALIDATE_WIDTH, f"  {mark} ", "      ")
-    advice = card_wording.advice(last)
-    lines += wrap(paragraph(f"{advice.text} {advice.next_step}", 600), VALIDATE_WIDTH)
-    if len(verdicts) > 1:
-        score, possible = sum(one.score for one in verdicts), sum(one.max_score for one in verdicts)
-        lines.append(f"The checks of this notebook so far: {card_wording.points_of(score, possible)}.")
-    lines.append(f'The card of this check is below the cell with check("{last.exercise}", …).')
-    return lines

@@ -18,10 +18,9 @@ from autograder.notebook.checking.card_display import (
     CardDisplay,
     Progress,
     is_live,
-    is_validating,
-    raise_unless_full,
 )
 from autograder.notebook.checking.judge_link import CheckContext, JudgeLink, JudgeUnreachable
+from autograder.notebook.checking.nbgrader_validation import is_validating, raise_unless_full
 from autograder.notebook.checking.subject_reports import CapturedOutput, ToldCalls
 from autograder.notebook.checking.subject_runs import (
     PathRun,

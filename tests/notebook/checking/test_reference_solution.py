@@ -13,6 +13,7 @@ from autograder.check_journal import JournalEntry
 from autograder.messages.judge_messages import SOCKET_VARIABLE
 from autograder.notebook.checking import card_display, subject_runs
 from autograder.notebook.checking.card_display import solution_of
+from autograder.notebook.checking.nbgrader_validation import VALIDATING
 from autograder.student.handout import hand_out
 from autograder.verdict import State, Verdict
 
@@ -31,7 +32,7 @@ def shown(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> list[dict[str, str
             def register(name: str, callback: Any) -> None: ...
 
     monkeypatch.delenv(SOCKET_VARIABLE, raising=False)
-    monkeypatch.delenv(card_display.VALIDATING, raising=False)
+    monkeypatch.delenv(VALIDATING, raising=False)
     monkeypatch.setattr(card_display, "notebook_shell", lambda: Shell)
     monkeypatch.setattr(card_display, "display_card", cards.append)
     monkeypatch.setattr(card_display, "update_card", lambda handle, card: cards.append(card))
@@ -118,7 +119,7 @@ def test_a_hand_out_offers_none(
 
 
 @pytest.mark.parametrize(
-    ("variable", "value"), [(SOCKET_VARIABLE, "/somewhere/judge.socket"), (card_display.VALIDATING, "1")]
+    ("variable", "value"), [(SOCKET_VARIABLE, "/somewhere/judge.socket"), (VALIDATING, "1")]
 )
 def test_while_a_class_is_graded_nothing_does(
     shown: list[dict[str, str]], monkeypatch: pytest.MonkeyPatch, variable: str, value: str
