@@ -56,7 +56,7 @@ RISES = ([[[1, 2, 3]]], [[[3, 2, 1]]])
             "says 50, which came last, where 11",
         ),
         ("status", [["CANCELED, long after the request"]], [["CANCELED"]], (), "agrees to cancel the goal"),
-        ("left", *RISES, (), "rises where that of the task falls"),
+        ("left", *RISES, (), "the task asks for numbers that go down"),
     ],
 )
 def test_what_the_first_wrong_values_show_is_said(
@@ -96,6 +96,16 @@ def test_values_that_show_nothing_are_only_shown(
     text, next_step = told(path, came, asked, given)
     assert "The task says" in text
     assert next_step == GO_THROUGH
+
+
+def test_an_answer_without_a_request_of_its_own_is_no_copy_of_one() -> None:
+    run, due = (
+        Part("a", {}, [Event(0.0, "noted", "/said", {"step": 1, "given": "/other", "values": [[success]]})])
+        for success in (False, True)
+    )
+    advice = located([Output("/said", ("success",), Kind.STEPS, 1e-3)], run, due, LAW)
+    assert advice is not None
+    assert advice.next_step == GO_THROUGH
 
 
 @pytest.mark.parametrize(

@@ -122,6 +122,11 @@ def rows(output: Output, part: Part) -> dict[int, Any]:
     return {event.data["step"]: event.data["values"] for event in part.of("noted", output.name)}
 
 
+def steps_apart(mine: Rows, theirs: Rows, tolerance: float) -> list[int]:
+    """Return the steps, in order, in which an output has other values than the solution's."""
+    return [step for step in theirs if step in mine and not alike(mine[step], theirs[step], tolerance)]
+
+
 def differences(outputs: Sequence[Output], seen: Part, due: Part) -> Differences:
     """Return the difference of a run of the subject from the solution's in the same drawing."""
     found: dict[str, Rows] = {}
@@ -133,13 +138,8 @@ def differences(outputs: Sequence[Output], seen: Part, due: Part) -> Differences
         is_whole = is_whole and mine.keys() == theirs.keys()
         if output.kind is Kind.LIST and output.compared(seen, due).passed:
             continue
-        apart = {
-            step: mine[step]
-            for step in theirs
-            if step in mine and not alike(mine[step], theirs[step], output.tolerance)
-        }
-        if apart:
-            found[output.name] = apart
+        if steps := steps_apart(mine, theirs, output.tolerance):
+            found[output.name] = {step: mine[step] for step in steps}
     is_returned = all(output.kind is Kind.RETURNED for output in outputs)
     return Differences(seen.name, found, is_whole, is_returned)
 

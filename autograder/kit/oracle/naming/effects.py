@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
-from autograder.kit.oracle.naming.deltas import alike
+from autograder.kit.oracle.naming.deltas import alike, steps_apart
+from autograder.kit.oracle.naming.step_words import quoted
 from autograder.kit.oracle.outputs import NUMBER, Kind
-from autograder.kit.rules import in_words, same
+from autograder.kit.rules import same
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Iterator, Mapping
 
     from autograder.kit.oracle.outputs import Output
 
@@ -17,14 +18,24 @@ FEW = 6
 """The greatest number of values of a field that are told apart as words are."""
 LARGEST = 1e15
 """A number that is larger is shown, and not computed with: Python's integers have no end."""
-TWICE = "twice."
-"""The end of the sentence about an output whose messages all come twice."""
 Pairs = list[tuple[Any, Any]]
 """The values of one field in the order of the steps: the subject's, and the solution's."""
 
 
-def effect(output: Output, mine: Mapping[int, Any], theirs: Mapping[int, Any]) -> str:
-    """Return in a sentence how all steps of an output differ; empty if no single sentence is true of them.
+class Effect(NamedTuple):
+    """What is wrong with an output as a whole.
+
+    Attributes:
+        text: The sentence for the card.
+        is_twice: True if each message comes twice, which the values of a single step show as well.
+    """
+
+    text: str
+    is_twice: bool = False
+
+
+def effect(output: Output, mine: Mapping[int, Any], theirs: Mapping[int, Any]) -> Effect | None:
+    """Return how all steps of an output differ; None if no single sentence is true of them.
 
     Args:
         output: The output.
@@ -32,20 +43,20 @@ def effect(output: Output, mine: Mapping[int, Any], theirs: Mapping[int, Any]) -
         theirs: The solution's values by step.
     """
     if output.kind not in (Kind.STEPS, Kind.RETURNED):
-        return ""
+        return None
     steps = [step for step in theirs if step in mine]
-    apart = [step for step in steps if not alike(mine[step], theirs[step], output.tolerance)]
-    if len(apart) < 2:
-        return ""
+    wrong = steps_apart(mine, theirs, output.tolerance)
+    if len(wrong) < 2:
+        return None
     name = "" if output.kind is Kind.RETURNED else f" on {output.name}"
-    if told := _twice(name, [mine[step] for step in apart], [theirs[step] for step in apart], output):
-        return told if len(apart) == sum(bool(theirs[step]) for step in steps) else ""
+    if _come_twice([(mine[step], theirs[step]) for step in wrong], output.tolerance):
+        is_whole = len(wrong) == sum(bool(theirs[step]) for step in steps)
+        return Effect(f"Your node says everything{name} twice.", is_twice=True) if is_whole else None
     if any(len(mine[step]) != len(theirs[step]) for step in steps):
-        return ""
-    for what, pairs in _fields(output, name, [(mine[step], theirs[step]) for step in steps]):
-        if told := _values(what, pairs, output.tolerance):
-            return told
-    return ""
+        return None
+    fields = _fields(output, name, [(mine[step], theirs[step]) for step in steps])
+    told = (_values(what, pairs, output.tolerance) for what, pairs in fields)
+    return next((Effect(text) for text in told if text), None)
 
 
 def _fields(output: Output, name: str, listed: Pairs) -> Iterator[tuple[str, Pairs]]:
@@ -69,25 +80,17 @@ def _fields(output: Output, name: str, listed: Pairs) -> Iterator[tuple[str, Pai
             yield what, pairs
 
 
-def _twice(name: str, mine: Sequence[Any], theirs: Sequence[Any], output: Output) -> str:
-    """Return that each message comes twice, if that is all that differs."""
-    doubled = ([value for value in other for _ in range(2)] for other in theirs)
-    if all(
-        other and alike(one, two, output.tolerance)
-        for one, two, other in zip(mine, doubled, theirs, strict=True)
-    ):
-        return f"Your node says everything{name} {TWICE}"
-    return ""
+def _come_twice(pairs: Pairs, tolerance: float) -> bool:
+    """Return True if each message comes twice, and nothing else differs."""
+    return all(due and alike(came, [one for one in due for _ in range(2)], tolerance) for came, due in pairs)
 
 
 def _values(what: str, pairs: Pairs, tolerance: float) -> str:
     apart = [(one, other) for one, other in pairs if not same(one, other, tolerance)]
     if len(apart) < 2:
         return ""
-    for told in (_not_called, _constant, _never, _exchanged, _scaled, _late, _stuck):
-        if text := told(what, pairs, apart, tolerance):
-            return text
-    return ""
+    kinds = (_not_called, _constant, _never, _exchanged, _scaled, _late, _stuck)
+    return next(filter(None, (kind(what, pairs, apart, tolerance) for kind in kinds)), "")
 
 
 def _not_called(what: str, _: Pairs, apart: Pairs, __: float) -> str:
@@ -190,8 +193,4 @@ def _is_number(value: Any) -> bool:
 
 
 def _word(value: Any) -> str:
-    return (
-        f"“{value}”"
-        if isinstance(value, str)
-        else in_words([round(value, 4) if isinstance(value, float) else value])
-    )
+    return quoted(round(value, 4) if isinstance(value, float) else value)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import re2
 
-from autograder.kit.oracle.naming.deltas import rows
+from autograder.kit.oracle.naming.deltas import rows, steps_apart
 from autograder.kit.oracle.naming.step_words import input_of
 from autograder.kit.oracle.outputs import Kind
 from autograder.kit.rules import same, value
@@ -42,13 +42,13 @@ def hint(output: Output, run: Part, due: Part) -> Hint | None:
     if output.kind is not Kind.STEPS:
         return None
     mine, theirs = rows(output, run), rows(output, due)
-    apart = [step for step in theirs if step in mine and not same(mine[step], theirs[step], output.tolerance)]
-    if not apart:
+    steps = steps_apart(mine, theirs, output.tolerance)
+    if not steps:
         return None
-    came, asked = mine[apart[0]], theirs[apart[0]]
+    came, asked = mine[steps[0]], theirs[steps[0]]
     if told := _too_often(came, asked) or (None if asked else _late(output, run, came)):
         return told
-    inputs = [event for event, step in _inputs(output, run) if step <= apart[0]]
+    inputs = [event for event, step in _inputs(output, run) if step <= steps[0]]
     texts = [list(_texts(list(values.values()))) for values in (mine, theirs)]
     for path, one, other in _pairs(output, came, asked):
         if path == "success" and other is True and _is_copied(output, run, mine):
@@ -57,8 +57,8 @@ def hint(output: Output, run: Part, due: Part) -> Hint | None:
         if are_texts and (told := _of_a_text(one, other, inputs) or _a_piece(one, other, *texts)):
             return told
     falls = (
-        f"Your {path} on {output.name} rises where that of the task falls."
-        for step in apart
+        f"The numbers of your {path} on {output.name} go up; the task asks for numbers that go down."
+        for step in steps
         for path, one, other in _pairs(output, mine[step], theirs[step])
         if _rises(one) and _rises(other, -1)
     )
@@ -78,7 +78,7 @@ def _is_copied(output: Output, run: Part, mine: Mapping[int, Any]) -> bool:
     """Return True if the field success of each answer is the data of its request."""
     column = output.paths.index("success")
     asked = [(value(event), mine[step]) for event, step in _inputs(output, run) if event.name == output.name]
-    return all(answer and answer[0][column] is data for data, answer in asked)
+    return bool(asked) and all(answer and answer[0][column] is data for data, answer in asked)
 
 
 def _pairs(output: Output, came: Sequence[Any], asked: Sequence[Any]) -> Iterator[tuple[str, Any, Any]]:
@@ -96,7 +96,7 @@ def _too_often(came: Sequence[Any], asked: Sequence[Any]) -> Hint | None:
     return (
         f"Your node says the same {len(came)} times, and it is due once.",
         "Look at each line that says it, and at what comes before it: only one of them may run, once. Perhaps a return "
-        "is missing, or the line stands in a loop.",
+        "is missing, or the line is in a loop.",
     )
 
 

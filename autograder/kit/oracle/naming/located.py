@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from autograder.kit.model import Advice
 from autograder.kit.oracle.naming.deltas import rows
-from autograder.kit.oracle.naming.effects import TWICE, effect
+from autograder.kit.oracle.naming.effects import effect
 from autograder.kit.oracle.naming.first_values import hint
 from autograder.kit.oracle.outputs import Kind
 
@@ -47,10 +47,10 @@ def located(
         # Of several lines that publish, the card could not say which one it is.
         uses = ("publish",) if [one.kind for one in outputs] in ([Kind.STEPS], [Kind.LIST]) else ()
         shows, next_step = hint(output, run, due) or ("", GO_THROUGH)
-        if whole.endswith(TWICE):
+        if whole and whole.is_twice:
             shows = ""
         # The values show more than a sentence of the task does.
-        words = (whole, shows, what, says * (not shows))
+        words = (whole.text if whole else "", shows, what, says * (not shows))
         return Advice(" ".join(filter(None, words)), next_step, uses=uses)
     return None
 
