@@ -230,7 +230,7 @@ def _levels(labels: Sequence[str], xs: Sequence[float], needed: Sequence[bool]) 
         needed: Whether each label must be shown.
     """
     most = 1 if len(labels) > _MANY else _LEVELS
-    begins: list[float] = []  # where the leftmost label of each level begins
+    begins: list[float] = []  # the left edge of the leftmost label of each level
     found: list[int | None] = [None] * len(labels)
     for index in reversed([index for index, label in enumerate(labels) if label]):
         end = xs[index] + _length(labels[index]) + 4

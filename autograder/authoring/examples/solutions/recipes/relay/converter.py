@@ -5,11 +5,11 @@ from random import Random
 from autograder.kit import SameAsSolution, Sets, To, shuffled
 
 REQUESTS = ((True, False, False, True, False), (False, False, True, True, False))
-"""What switches, and what is so already."""
+"""Requests that switch the converter, and requests for the present state, which it refuses."""
 
 
 def day(random: Random) -> list[To | Sets]:
-    """Return requests, and after each of them another offset and temperatures: one twice, one that is no number."""
+    """Return requests, and after each of them another offset and temperatures: one twice, and nan."""
     steps: list[To | Sets] = []
     for is_on in random.choice(REQUESTS):
         once, twice = random.uniform(-40.0, 100.0), random.uniform(-40.0, 100.0)
