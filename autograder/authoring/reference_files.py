@@ -45,6 +45,10 @@ class CannotRecord(RuntimeError):
     """A reference solution could not be run, or does not meet the criteria of its exercise."""
 
 
+_DIFFERENCES = 12
+"""Differences of a recording that are printed at most: a changed step moves all that comes after it."""
+
+
 def record(wanted: Iterable[Exercise], *, only_check: bool, tell: Callable[[str], object]) -> list[str]:
     """Record reference outputs and store them.
 
@@ -81,7 +85,9 @@ def _different(file: Path, text: str, tolerance: float) -> list[str]:
         stored = _parsed(file.read_text(encoding="utf-8"))
     except (ValueError, KeyError, TypeError) as error:
         return [f"the stored file is not a recording ({error})"]
-    return list(differences(stored, _parsed(text), tolerance))
+    said = list(differences(stored, _parsed(text), tolerance))
+    more = len(said) - _DIFFERENCES
+    return said[:_DIFFERENCES] + [f"and {more} more differences"] * (more > 0)
 
 
 def _parsed(text: str) -> Reference:

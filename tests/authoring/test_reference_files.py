@@ -124,3 +124,13 @@ def test_a_solution_without_an_endpoint_that_the_recipe_judges_is_named(
 
 def test_a_subject_without_a_topic_was_heard_not_once() -> None:
     assert Met(bench=object(), topics=(), speakers=(), callers=()).heard == 0  # type: ignore[arg-type]
+
+
+def test_of_many_differences_the_first_are_printed(tmp_path: Path) -> None:
+    text = exercises.reference_path("lab_2_1.map").read_text(encoding="utf-8")
+    stored = tmp_path / "map.reference.json"
+    stored.write_text(text.replace('"step": ', '"step": 1'), encoding="utf-8")
+    *first, last = reference_files._different(stored, text, 1e-6)
+    assert len(first) == reference_files._DIFFERENCES
+    assert last.startswith("and ")
+    assert last.endswith(" more differences")
